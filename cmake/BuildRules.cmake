@@ -1,0 +1,13 @@
+# Warnings and floating-point rules every target of ours is compiled with, and nobody who links to us.
+add_library(waymark_build_rules INTERFACE)
+target_compile_options(waymark_build_rules INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Wold-style-cast -Werror
+  -ffp-contract=off)  # the same bits on a machine with and without fused multiply-add
+find_program(CCACHE ccache)
+if(CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+find_program(MOLD mold)
+if(MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()

@@ -1,0 +1,13 @@
+# Everything comes from Debian 12; scripts/install-packages lists the packages.
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(GeographicLib REQUIRED)
+find_package(PROJ REQUIRED)
+find_package(GDAL REQUIRED)
+find_package(SQLite3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(Boost REQUIRED)

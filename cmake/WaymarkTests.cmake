@@ -1,0 +1,15 @@
+# tests/<folder>/*_test.cpp become one executable <folder>_tests whose cases ctest lists one by one.
+#   waymark_tests(NAME geo USES waymark_geo)
+function(waymark_tests)
+  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "USES")
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  set(target ${arg_NAME}_tests)
+  add_executable(${target} ${sources})
+  target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules GTest::gmock
+                        GTest::gtest_main)
+  gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+endfunction()

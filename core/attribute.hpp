@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+namespace waymark {
+
+/// A fact about a landmark that is not an observed feature: it has no spread and is never merged,
+/// e.g. where the key saddle of a summit lies. A column of its own in the map.
+struct AttributeSpec {
+  enum class Kind { real, integer, text };
+  std::string name, unit;
+  Kind kind = Kind::real;
+  std::string summary;
+};
+
+/// std::monostate is NULL.
+using AttributeValue = std::variant<std::monostate, double, std::int64_t, std::string>;
+
+/// One value per AttributeSpec of the type, in the order of the specs.
+using AttributeSet = std::vector<AttributeValue>;
+
+}  // namespace waymark

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+namespace waymark {
+
+struct MapCrs;       ///< x, y in the units of the map's CRS (x = easting or longitude), z in metres
+struct MapFrame;     ///< east, north, up in metres about the map's origin
+struct CameraFrame;  ///< x right, y down, z forward, metres (OpenCV)
+struct RobotFrame;   ///< x forward, y left, z up, metres
+
+template <class Frame>
+struct Point {
+  Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
+  friend bool operator==(const Point&, const Point&) = default;
+};
+
+template <class Frame>
+struct Direction {
+  Eigen::Vector3d unit = Eigen::Vector3d::UnitX();
+};
+
+template <class Frame>
+struct Ray {
+  Point<Frame> origin;
+  Direction<Frame> along;
+};
+
+/// Rigid motion: Pose<To, From> turns a Point<From> into a Point<To>. Variables read `to_from_from`,
+/// e.g. `map_from_camera`. Chaining frames that do not meet does not compile.
+template <class To, class From>
+struct Pose {
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+
+  Point<To> operator*(const Point<From>& p) const { return {transform * p.xyz}; }
+  Direction<To> operator*(const Direction<From>& d) const { return {transform.linear() * d.unit}; }
+  template <class Source>
+  Pose<To, Source> operator*(const Pose<From, Source>& next) const {
+    return {transform * next.transform};
+  }
+  Pose<From, To> inverse() const { return {transform.inverse()}; }
+};
+
+}  // namespace waymark

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include "geo/dem_source.hpp"
+namespace waymark {
+
+/// A DEM as it is passed between stages.
+using DemHandle = std::shared_ptr<const DemSource>;
+
+}  // namespace waymark

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "landmarks/landmark_type.hpp"
+namespace waymark {
+
+void register_type_rock(TypeRegistry& types);
+void register_type_rock(TypeRegistry& types) {
+  types.add({
+      .name = "rock",
+      .summary = "Rock or boulder: an obstacle and a landmark at close range",
+      .features = {{"radius", "m", Scale::ratio, 0.01, 100, "Half the mean width"},
+                   {"height", "m", Scale::ratio, 0.01, 100, "Height above the ground around it"}},
+      .drawn_as = Solid::cylinder,
+      .colour = "#5f5b57",
+      .label_feature = "",
+      .size_feature = "radius",
+  });
+}
+
+}  // namespace waymark
