@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+namespace waymark {
+
+/// Points that do not move, found by where they are: a packed R-tree (Leutenegger et al. 1997, "STR", via
+/// Boost.Geometry). Points of a plane have z = 0. Results are indices into the points given.
+/// Building costs O(n log n), about 2 M points/s; queries may run in many threads.
+class SpatialIndex {
+ public:
+  explicit SpatialIndex(std::span<const Eigen::Vector3d> points);
+  ~SpatialIndex();
+  SpatialIndex(SpatialIndex&&) noexcept;
+  SpatialIndex& operator=(SpatialIndex&&) noexcept;
+
+  std::size_t size() const;
+
+  /// Points inside the box or on its border, ascending.
+  std::vector<std::size_t> in_box(const Eigen::AlignedBox3d& box) const;
+
+  /// Points at most `radius` away, ascending.
+  std::vector<std::size_t> within(const Eigen::Vector3d& centre, double radius) const;
+
+  /// The `count` nearest points, nearest first; of equal distances the lower index first. Fewer if there are fewer.
+  std::vector<std::size_t> nearest(const Eigen::Vector3d& centre, std::size_t count) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace waymark
