@@ -14,7 +14,7 @@ struct Field {
   std::string help;  ///< the effect, not the name: "Smallest rock kept"
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::vector<std::string> choices;  ///< of a text option; empty: any text
+  std::vector<std::string> choices = {};  ///< of a text option; empty: any text
   bool affects_result = true;        ///< false: threads, memory: left out of fingerprints
 };
 

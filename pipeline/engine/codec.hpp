@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+namespace waymark {
+
+/// How an artifact looks on disk. Specialise it beside the type T; only the stage that writes a T needs it:
+///   static std::string encode(const T&);        equal values give equal bytes
+///   static T decode(std::string_view bytes);    throws on bytes it does not understand
+/// Change the layout and the version of every stage that writes T rises.
+template <class T>
+struct Codec;
+
+/// A Codec whose type is forgotten.
+struct ErasedCodec {
+  std::string (*encode)(const void* value);
+  std::shared_ptr<const void> (*decode)(std::string_view bytes);
+};
+
+template <class T>
+const ErasedCodec& erased_codec() {
+  static constexpr ErasedCodec codec{
+      [](const void* value) { return Codec<T>::encode(*static_cast<const T*>(value)); },
+      [](std::string_view bytes) -> std::shared_ptr<const void> {
+        return std::make_shared<const T>(Codec<T>::decode(bytes));
+      }};
+  return codec;
+}
+
+}  // namespace waymark

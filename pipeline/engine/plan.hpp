@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+#include "pipeline/engine/tile.hpp"
+namespace waymark {
+
+/// One stage on one item: the smallest piece of work that is done, kept and done again.
+struct Unit {
+  std::string stage;
+  std::string item;          ///< "map" or "tile_000003"
+  std::optional<Tile> tile;
+  std::string fingerprint;   ///< equal fingerprints, equal results; empty without a work folder
+  std::vector<std::size_t> after;  ///< units whose artifacts it reads, ascending indices into Plan::units
+  bool done = false;         ///< its result is in the work folder
+
+  std::string id() const { return stage + "/" + item; }
+};
+
+/// Units in an order in which they can be run: stage by stage, tiles in their order.
+struct Plan {
+  std::vector<Unit> units;
+};
+
+/// How a scheduler calls us for one unit.
+struct PlanCommand {
+  std::string job;   ///< job file
+  std::string work;  ///< work folder shared by all machines
+  std::string program = "waymark";
+};
+
+/// One JSON object per line: unit, stage, item, fingerprint, done, after (ids).
+std::string plan_as_jsonl(const Plan& plan);
+/// A Snakefile: one rule per unit, its manifest as output.
+std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command);
+/// A shell script of sbatch calls: per stage one job, or one array of shares, after the stages it reads.
+std::string plan_as_slurm(const Plan& plan, const PlanCommand& command);
+
+}  // namespace waymark

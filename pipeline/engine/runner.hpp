@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <typeindex>
+#include <vector>
+#include "core/input_file.hpp"
+#include "pipeline/engine/artifact.hpp"
+#include "pipeline/engine/file_hash.hpp"
+#include "pipeline/engine/pipeline.hpp"
+#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/report.hpp"
+namespace waymark {
+
+/// How far a stage is. Given to one caller at a time, at most 20 times a second and at the end of each stage.
+struct Progress {
+  std::string stage;
+  double done = 0;  ///< units, parts of units included
+  std::int64_t total = 0;
+  double rate = 0;  ///< units per second since the stage began; 0 at the start
+};
+
+/// Share `index` of `count`, from 1: 3/8. Tile-scope units go round robin; a map-scope unit is done by every
+/// share that finds its inputs complete, so the last share finishes the job.
+struct Shard {
+  int index = 1, count = 1;
+};
+
+struct RunOptions {
+  /// Where results are kept so that a later run can go on; empty: in memory, nothing is written.
+  std::filesystem::path work = {};
+  int threads = 0;  ///< 0: as many as the machine has
+  std::optional<Shard> shard = {};
+  std::string unit = {};        ///< do this unit only, "find_mountain_tops/tile_000003"
+  std::string rerun_from = {};  ///< make this stage and what depends on it anew
+  bool check_only = false;      ///< stop after planning: options, wiring, files
+  std::function<void(const Progress&)> progress = {};
+  FileHasher hash_file = hash_plain_file;
+};
+
+class RunResult {
+ public:
+  RunReport report;
+  std::vector<InputFile> inputs;  ///< every file the stages named, once, in their order
+
+  /// A map-scope artifact. Throws Error where it was not made, with the first failure; std::logic_error where
+  /// no stage writes that name and type, or it belongs to tiles.
+  template <class T>
+  const T& artifact(std::string_view name) const& {
+    return *static_cast<const T*>(find(name, typeid(T), Scope::map).front().get());
+  }
+  template <class T>
+  const T& artifact(std::string_view name) const&& = delete;  // would dangle
+
+  /// The artifacts of all tiles, in their order, unless a later stage read them: those are released.
+  template <class T>
+  std::vector<std::shared_ptr<const T>> artifacts(std::string_view name) const {
+    std::vector<std::shared_ptr<const T>> all;
+    for (auto& value : find(name, typeid(T), Scope::tile))
+      all.push_back(std::static_pointer_cast<const T>(value));
+    return all;
+  }
+
+ private:
+  friend class Run;
+  struct Kept {
+    std::type_index type;
+    Scope scope;
+    std::vector<ArtifactPtr> items;  ///< null where not made
+  };
+  std::vector<Artifact::Value> find(std::string_view name, std::type_index type, Scope scope) const;
+
+  std::map<std::string, Kept, std::less<>> artifacts_;
+};
+
+/// Runs what is not yet in the work folder. Units of a stage run in parallel; results and report do not depend
+/// on threads. A unit that throws becomes a failure, units that read it are skipped, the others go on.
+/// Throws Error where the job itself is wrong or a listing stage fails, std::logic_error where a stage breaks
+/// its own declaration.
+RunResult run(const Pipeline& pipeline, const RunOptions& options = {});
+
+/// The units a run would do. Runs the listing stages.
+Plan plan(const Pipeline& pipeline, const RunOptions& options = {});
+
+}  // namespace waymark

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+#include "pipeline/engine/artifact.hpp"
+#include "pipeline/engine/stage_spec.hpp"
+#include "pipeline/engine/tile.hpp"
+namespace waymark {
+
+/// How many things went in, came out and were dropped. Adds up over units and resumed runs.
+struct Counts {
+  std::int64_t in = 0, out = 0;
+  std::map<std::string, std::int64_t> rejected;  ///< by reason
+
+  std::int64_t rejected_total() const;
+  Counts& operator+=(const Counts& other);
+  friend bool operator==(const Counts&, const Counts&) = default;
+};
+
+/// What a unit of work is given.
+struct UnitInputs {
+  std::string id = {};                                   ///< "find_mountain_tops/tile_000003"
+  std::optional<Tile> tile = {};                         ///< of a tile-scope unit
+  std::map<std::string, std::vector<ArtifactPtr>> ports = {};  ///< in item order
+  std::filesystem::path base_folder = {};                ///< relative paths of options start here
+  int threads = 1;
+  std::function<void(double)> progress = {};
+};
+
+/// What a unit of work leaves behind.
+struct UnitOutcome {
+  std::map<std::string, Artifact::Value> outputs;  ///< by port
+  Counts counts;
+  std::vector<std::string> warnings;
+  double seconds = 0;
+};
+
+/// All a running stage may touch: its declared ports, its item, and its report. Touching a port it has not
+/// declared throws std::logic_error. Counting, warning and progress may be called from many threads.
+class StageContext {
+ public:
+  /// Both must outlive the context.
+  StageContext(const StageSpec& spec, const UnitInputs& inputs) : spec_(spec), inputs_(inputs) {}
+
+  /// The artifact of the same item, or of the map. Valid until the unit ends.
+  template <class T>
+  const T& read(In<T> port) {
+    return *static_cast<const T*>(read_one(port.name, typeid(T)).get());
+  }
+  /// The artifacts of all tiles in the order of the tiles: what a map-scope stage gathers.
+  template <class T>
+  std::vector<std::shared_ptr<const T>> read_all(In<T> port) {
+    std::vector<std::shared_ptr<const T>> all;
+    for (auto& value : read_each(port.name, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
+    return all;
+  }
+  /// Once per port; every declared output must be written.
+  template <class T>
+  void write(Out<T> port, T value) {
+    write_one(port.name, typeid(T), std::make_shared<const T>(std::move(value)));
+  }
+
+  /// Throws std::logic_error in a map-scope stage.
+  const Tile& tile() const;
+  /// The tile's cells grown by the declared halo; may reach outside the grid.
+  Window cells_with_halo() const;
+  /// "stage/item": what a random generator is seeded from.
+  const std::string& id() const { return inputs_.id; }
+  /// Threads a stage may use; oneTBB algorithms inside a stage keep to them by themselves.
+  int threads() const { return inputs_.threads; }
+  /// An option that names a file: relative to the folder of the job file.
+  std::string path(const std::string& option) const;
+
+  /// A stage that counts what goes in must count every thing out again or reject it; the engine checks that
+  /// in = out + rejected. One that only counts out is a source.
+  void count_in(std::int64_t n);
+  void count_out(std::int64_t n);
+  void reject(std::string_view reason, std::int64_t n = 1);
+  void warn(std::string text);
+  /// Share of this unit that is done, [0, 1]. Cheap enough for once per row.
+  void progress(double done_fraction) const;
+
+  /// For the engine: what the unit left behind. Throws std::logic_error naming the stage where a declared
+  /// output was not written or in != out + rejected.
+  UnitOutcome finish();
+
+ private:
+  Artifact::Value read_one(std::string_view port, std::type_index type);
+  std::vector<Artifact::Value> read_each(std::string_view port, std::type_index type);
+  void write_one(std::string_view port, std::type_index type, Artifact::Value value);
+  const std::vector<ArtifactPtr>& declared_input(std::string_view port, std::type_index type) const;
+
+  const StageSpec& spec_;
+  const UnitInputs& inputs_;
+  std::mutex mutex_;
+  UnitOutcome outcome_;
+};
+
+/// `text` where it is absolute or a GDAL name such as "NETCDF:x.nc:z"; else below `folder`.
+std::string resolve_path(const std::filesystem::path& folder, const std::string& text);
+
+}  // namespace waymark
