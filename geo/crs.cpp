@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/crs.hpp"
+
+#include <fmt/format.h>
+#include <proj.h>
+#include <proj_experimental.h>  // proj_crs_demote_to_2D
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "geo/proj_object.hpp"
+
+namespace waymark {
+
+struct Crs::Definition {
+  CrsKind kind = CrsKind::local;
+  std::string name, authority, code, wkt2, wkt1;
+  double metres_per_unit = 1;
+  Body body;
+};
+
+namespace {
+
+pj_ctx* context() {
+  return ProjContext::of_this_thread().get();
+}
+
+std::string text_or_empty(const char* text) {
+  return text ? text : "";
+}
+
+[[noreturn]] void refuse(std::string_view definition, const std::string& why) {
+  const std::string shown(definition.substr(0, 120));
+  throw Error(ErrorCode::input, "cannot understand the coordinate reference system: " + why, shown,
+              "give it as EPSG:4326, IAU_2015:49900, a PROJ string or WKT");
+}
+
+// The part that says where x and y are: compound, bound and three-dimensional systems reduced to two
+// dimensions.
+ProjObject horizontal_part(ProjObject crs) {
+  for (;;) {
+    PJ* part = nullptr;
+    switch (proj_get_type(crs.get())) {
+      case PJ_TYPE_COMPOUND_CRS:
+        part = proj_crs_get_sub_crs(context(), crs.get(), 0);
+        break;
+      case PJ_TYPE_BOUND_CRS:
+        part = proj_get_source_crs(context(), crs.get());
+        break;
+      case PJ_TYPE_GEOGRAPHIC_3D_CRS:
+        part = proj_crs_demote_to_2D(context(), nullptr, crs.get());
+        break;
+      default:
+        return crs;
+    }
+    crs.reset(part);
+    if (!crs) return crs;
+  }
+}
+
+ProjObject parse(std::string_view definition) {
+  ProjContext& proj = ProjContext::of_this_thread();
+  proj.take_message();
+  ProjObject crs(proj_create(proj.get(), std::string(definition).c_str()));
+  if (crs) crs = horizontal_part(std::move(crs));
+  if (!crs) {
+    const std::string why = proj.take_message();
+    refuse(definition, why.empty() ? "PROJ does not know it" : why);
+  }
+  return crs;
+}
+
+// GeoTIFF keeps names and numbers but drops the codes of planetary systems; PROJ finds them again. An
+// identity is believed only at 100 %: equal in every number and in name.
+ProjObject catalogued(ProjObject crs) {
+  if (proj_get_id_code(crs.get(), 0)) return crs;
+  int* confidence = nullptr;
+  const std::unique_ptr<PJ_OBJ_LIST, decltype(&proj_list_destroy)> found(
+      proj_identify(context(), crs.get(), nullptr, nullptr, &confidence), &proj_list_destroy);
+  const std::unique_ptr<int, decltype(&proj_int_list_destroy)> owner(confidence, &proj_int_list_destroy);
+  if (found && proj_list_get_count(found.get()) > 0 && confidence[0] == 100)
+    return ProjObject(proj_list_get(context(), found.get(), 0));
+  return crs;
+}
+
+struct Axis {
+  std::string direction, unit;
+  double factor = 1;  ///< to metres or radians
+};
+
+Axis axis_of(const PJ* crs, int index) {
+  const ProjObject system(proj_crs_get_coordinate_system(context(), crs));
+  const char* direction = nullptr;
+  const char* unit = nullptr;
+  Axis axis;
+  if (!system || !proj_cs_get_axis_info(context(), system.get(), index, nullptr, nullptr, &direction,
+                                        &axis.factor, &unit, nullptr, nullptr))
+    return axis;
+  return {text_or_empty(direction), text_or_empty(unit), axis.factor};
+}
+
+Body body_of(const PJ* crs) {
+  const ProjObject ellipsoid(proj_get_ellipsoid(context(), crs));
+  double equatorial = 0, inverse_flattening = 0;  // 0 for a sphere
+  if (!ellipsoid || !proj_ellipsoid_get_parameters(context(), ellipsoid.get(), &equatorial, nullptr, nullptr,
+                                                   &inverse_flattening))
+    return {};
+  return body_of_ellipsoid(text_or_empty(proj_get_name(ellipsoid.get())), equatorial,
+                           inverse_flattening == 0 ? 0 : 1 / inverse_flattening);
+}
+
+CrsKind kind_of(const PJ* crs, std::string_view definition) {
+  switch (proj_get_type(crs)) {
+    case PJ_TYPE_GEOGRAPHIC_2D_CRS:
+      return CrsKind::geographic;
+    case PJ_TYPE_PROJECTED_CRS:
+      return CrsKind::projected;
+    case PJ_TYPE_ENGINEERING_CRS:
+      return CrsKind::local;
+    default:
+      refuse(definition, "'" + text_or_empty(proj_get_name(crs)) + "' is neither geographic nor projected");
+  }
+}
+
+void check_degrees(const PJ* crs, std::string_view definition) {
+  for (int i = 0; i < 2; ++i) {
+    const Axis axis = axis_of(crs, i);
+    if (std::abs(axis.factor / kRadiansPerDegree - 1) > 1e-9)
+      refuse(definition, "its angles are in " + axis.unit + ", not in degrees");
+    if (axis.direction == "west" || axis.direction == "south")
+      refuse(definition, "its coordinates grow towards the " + axis.direction);
+  }
+}
+
+std::string wkt_of(const PJ* crs, PJ_WKT_TYPE version) {
+  const char* const options[] = {"MULTILINE=NO", nullptr};
+  return text_or_empty(proj_as_wkt(context(), crs, version, options));
+}
+
+}  // namespace
+
+Crs::Crs(std::shared_ptr<const Definition> definition) : definition_(std::move(definition)) {}
+
+Crs Crs::from_text(std::string_view definition) {
+  if (definition == "local") return local();
+  const ProjObject crs = catalogued(parse(definition));
+  auto known = std::make_shared<Definition>();
+  known->kind = kind_of(crs.get(), definition);
+  known->name = text_or_empty(proj_get_name(crs.get()));
+  known->authority = text_or_empty(proj_get_id_auth_name(crs.get(), 0));
+  if (known->authority == "IAU") known->authority = "IAU_2015";  // as WKT spells it: ID["IAU",49900,2015]
+  known->code = text_or_empty(proj_get_id_code(crs.get(), 0));
+  known->wkt2 = wkt_of(crs.get(), PJ_WKT2_2019);
+  known->wkt1 = wkt_of(crs.get(), PJ_WKT1_GDAL);
+  if (known->kind == CrsKind::geographic) check_degrees(crs.get(), definition);
+  known->metres_per_unit = known->kind == CrsKind::geographic ? 0 : axis_of(crs.get(), 0).factor;
+  if (known->kind != CrsKind::local) known->body = body_of(crs.get());
+  ProjContext::of_this_thread().take_message();  // what could not be expressed as WKT1 is no news
+  return Crs(std::move(known));
+}
+
+Crs Crs::local() {
+  static const auto definition = [] {
+    Definition local;
+    local.name = "local";
+    local.wkt2 =
+        R"(ENGCRS["local",EDATUM["local"],CS[Cartesian,2],AXIS["x",east,ORDER[1],LENGTHUNIT["metre",1]],)"
+        R"(AXIS["y",north,ORDER[2],LENGTHUNIT["metre",1]]])";
+    local.wkt1 = R"(LOCAL_CS["local",UNIT["metre",1],AXIS["x",EAST],AXIS["y",NORTH]])";
+    return std::make_shared<const Definition>(std::move(local));
+  }();
+  return Crs(definition);
+}
+
+CrsKind Crs::kind() const {
+  return definition_->kind;
+}
+const std::string& Crs::name() const {
+  return definition_->name;
+}
+const std::string& Crs::authority() const {
+  return definition_->authority;
+}
+const std::string& Crs::code() const {
+  return definition_->code;
+}
+std::string Crs::id() const {
+  return code().empty() ? name() : authority() + ":" + code();
+}
+const std::string& Crs::wkt2() const {
+  return definition_->wkt2;
+}
+const std::string& Crs::wkt1() const {
+  return definition_->wkt1;
+}
+double Crs::metres_per_unit() const {
+  return definition_->metres_per_unit;
+}
+const Body& Crs::body() const {
+  return definition_->body;
+}
+
+bool Crs::same_as(const Crs& other) const {
+  if (wkt2() == other.wkt2()) return true;
+  if (kind() != other.kind()) return false;
+  return proj_is_equivalent_to_with_ctx(context(), parse(wkt2()).get(), parse(other.wkt2()).get(),
+                                        PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS);
+}
+
+Crs geographic_of(const Crs& crs) {
+  if (crs.kind() == CrsKind::geographic) return crs;
+  if (crs.kind() == CrsKind::local)
+    throw Error(ErrorCode::input, "a local CRS has no longitude and latitude", crs.name(),
+                "pass --crs to say where the data lies");
+  const ProjObject whole = parse(crs.wkt2());
+  const ProjObject geodetic(proj_crs_get_geodetic_crs(context(), whole.get()));
+  return Crs::from_text(wkt_of(geodetic.get(), PJ_WKT2_2019));
+}
+
+}  // namespace waymark
