@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/export_check.hpp"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/error.hpp"
+#include "exporters/aside_folder.hpp"
+#include "exporters/gdal_messages.hpp"
+
+namespace waymark {
+
+std::vector<std::string> check_export(const VectorFormat& format, const std::string& path, const std::string& shown_as,
+                                      const Crs& crs, std::int64_t landmarks) {
+  GdalMessages messages;
+  const char* only[] = {format.driver.c_str(), nullptr};
+  const std::unique_ptr<GDALDataset> dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, only, nullptr, nullptr));
+  if (!dataset) {
+    const bool readable = GetGDALDriverManager()->GetDriverByName(only[0])->GetMetadataItem(GDAL_DCAP_OPEN) != nullptr;
+    if (readable) fail_output(shown_as, messages.cause("it cannot be read again"));
+    return {};
+  }
+  std::int64_t found = 0;
+  for (OGRLayer* layer : dataset->GetLayers()) found += layer->GetFeatureCount();
+  if (found < landmarks)
+    fail_output(shown_as, messages.cause(fmt::format("only {} of {} landmarks arrived", found, landmarks)));
+  if (format.is_table || crs.kind() == CrsKind::local || dataset->GetLayerCount() == 0) return {};
+
+  const OGRSpatialReference* kept = dataset->GetLayer(0)->GetSpatialRef();
+  const bool same_body =
+      kept != nullptr && std::abs(kept->GetSemiMajor() / crs.body().equatorial_radius - 1) < 0.005;
+  if (!same_body && crs.body().name != earth().name)
+    throw Error(ErrorCode::output,
+                fmt::format("{} cannot hold the CRS {}: a reader would place it {}", format.driver, crs.id(),
+                            kept == nullptr ? "nowhere" : "on another body"),
+                shown_as, "write .gpkg, .fgb or .shp, which keep the CRS, or .csv, which has plain columns");
+  if (kept == nullptr)
+    return {fmt::format("{} does not keep the CRS: tell its readers that it is {}", format.driver, crs.id())};
+  if (crs.authority().empty() || kept->GetAuthorityCode(nullptr) != nullptr) return {};
+  return {fmt::format("{} keeps the definition of the CRS, not its code {}", format.driver, crs.id())};
+}
+
+}  // namespace waymark

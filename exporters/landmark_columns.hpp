@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+#include "core/attribute.hpp"
+#include "core/landmark.hpp"
+#include "landmarks/landmark_type.hpp"
+namespace waymark {
+
+/// One column of a table of landmarks, named as in the map.
+struct LandmarkColumn {
+  std::string name, unit, summary;
+  AttributeSpec::Kind kind = AttributeSpec::Kind::real;
+  std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate where the landmark has none
+};
+
+/// The columns of a type without the geometry: uid; per feature its value, spread (`_sd`, standard deviation) and
+/// confidence (`_q`); the attributes; then counts, qualities and the covariance (square metres).
+std::vector<LandmarkColumn> landmark_columns(const LandmarkType& type);
+
+/// Landmark quality (eq. 8) with equal weights; absent where nothing is known about it.
+std::optional<double> equal_weight_quality(const Landmark& landmark);
+
+}  // namespace waymark

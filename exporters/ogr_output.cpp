@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/ogr_output.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include "core/error.hpp"
+#include "exporters/aside_folder.hpp"
+#include "exporters/gdal_messages.hpp"
+#include "exporters/landmark_columns.hpp"
+#include "exporters/place_text.hpp"
+
+namespace waymark {
+namespace {
+
+/// A column and the field it is written to.
+struct Field {
+  LandmarkColumn column;
+  int index = 0;
+};
+
+OGRFieldType field_type(AttributeSpec::Kind kind) {
+  switch (kind) {
+    case AttributeSpec::Kind::real: return OFTReal;
+    case AttributeSpec::Kind::integer: return OFTInteger64;
+    case AttributeSpec::Kind::text: return OFTString;
+  }
+  return OFTString;
+}
+
+LandmarkColumn coordinate(const char* name, Eigen::Index axis) {
+  return {name, "", "Position", AttributeSpec::Kind::real,
+          [axis](const Landmark& l) { return AttributeValue(l.position.xyz[axis]); }};
+}
+
+LandmarkColumn text(const std::string& name, std::function<std::string(const Landmark&)> of) {
+  return {name, "", "", AttributeSpec::Kind::text, [of](const Landmark& l) { return AttributeValue(of(l)); }};
+}
+
+std::vector<LandmarkColumn> columns_of(const VectorFormat& format, const LandmarkType& type) {
+  std::vector<LandmarkColumn> columns = landmark_columns(type);
+  if (format.is_table)
+    columns.insert(columns.begin() + 1, {coordinate("x", 0), coordinate("y", 1), coordinate("z", 2)});
+  if (!format.place_name.empty())
+    columns.insert(columns.begin(),
+                   {text(format.place_name, [&type](const Landmark& l) { return place_name(l, type); }),
+                    text(format.place_description, [&type](const Landmark& l) { return place_description(l, type); })});
+  return columns;
+}
+
+CPLStringList layer_options(const VectorFormat& format, const Crs& crs) {
+  CPLStringList options;
+  if (format.driver == "GeoJSON") {
+    if (crs.same_as(Crs::from_text("EPSG:4326"))) options.SetNameValue("RFC7946", "YES");
+    options.SetNameValue("ID_FIELD", "uid");
+    options.SetNameValue("SIGNIFICANT_FIGURES", "12");
+  }
+  if (format.driver == "ESRI Shapefile") options.SetNameValue("ENCODING", "UTF-8");
+  return options;
+}
+
+CPLStringList file_options(const VectorFormat& format) {
+  CPLStringList options;
+  if (format.driver == "GPX") options.SetNameValue("GPX_USE_EXTENSIONS", "YES");
+  if (format.driver == "GeoRSS") options.SetNameValue("USE_EXTENSIONS", "YES");
+  return options;
+}
+
+struct ReleaseSrs {
+  void operator()(OGRSpatialReference* srs) const { srs->Release(); }
+};
+using Srs = std::unique_ptr<OGRSpatialReference, ReleaseSrs>;
+
+/// Null for a local CRS: metres on no body.
+Srs srs_of(const Crs& crs) {
+  if (crs.kind() == CrsKind::local) return {};
+  Srs srs(new OGRSpatialReference);
+  srs->importFromWkt(crs.wkt2().c_str());
+  srs->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return srs;
+}
+
+void set_field(OGRFeature& feature, int index, const AttributeValue& value) {
+  if (const auto* real = std::get_if<double>(&value)) feature.SetField(index, *real);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) feature.SetField(index, GIntBig{*integer});
+  if (const auto* words = std::get_if<std::string>(&value)) feature.SetField(index, words->c_str());
+  if (std::holds_alternative<std::monostate>(value)) feature.SetFieldNull(index);
+}
+
+}  // namespace
+
+struct OgrOutput::File {
+  VectorFormat format;
+  std::string shown_as;
+  GdalMessages messages;
+  std::unique_ptr<GDALDataset> dataset;
+  std::vector<std::string> warnings;
+
+  [[noreturn]] void fail(const std::string& otherwise) { fail_output(shown_as, messages.cause(otherwise)); }
+
+  std::vector<Field> add_fields(OGRLayer& layer, const LandmarkType& type) {
+    std::vector<std::string> names, refused, shortened;
+    const auto columns = columns_of(format, type);
+    for (const LandmarkColumn& column : columns) names.push_back(column.name);
+    const auto fitting = fitting_names(format, names);
+    std::vector<Field> fields;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const GdalMessages quiet;  // a format that lacks a column is warned of below
+      OGRFieldDefn definition(fitting[i].c_str(), field_type(columns[i].kind));
+      int index = layer.GetLayerDefn()->GetFieldIndex(fitting[i].c_str());
+      if (index < 0 && layer.CreateField(&definition) == OGRERR_NONE)
+        index = layer.GetLayerDefn()->GetFieldIndex(fitting[i].c_str());
+      if (index >= 0) fields.push_back({columns[i], index});
+      if (index < 0) refused.push_back(names[i]);
+      if (fitting[i] != names[i]) shortened.push_back(names[i] + " as " + fitting[i]);
+    }
+    if (!refused.empty())
+      warnings.push_back(fmt::format("{} has no place for: {}", format.driver, fmt::join(refused, ", ")));
+    if (!shortened.empty())
+      warnings.push_back(fmt::format("{} has short column names: {}", format.driver, fmt::join(shortened, ", ")));
+    return fields;
+  }
+};
+
+OgrOutput::OgrOutput(const VectorFormat& format, const std::string& path, std::string shown_as)
+    : file_(std::make_unique<File>()) {
+  file_->format = format;
+  file_->shown_as = std::move(shown_as);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver.c_str());
+  CPLStringList options = file_options(format);
+  file_->dataset.reset(format.is_file
+                           ? driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, options.List())
+                           : GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE, nullptr, nullptr, nullptr));
+  if (!file_->dataset) file_->fail(format.driver + " could not make it");
+}
+
+OgrOutput::~OgrOutput() = default;
+
+void OgrOutput::add_layer(const LandmarkType& type, const std::vector<Landmark>& landmarks, const Crs& crs) {
+  File& file = *file_;
+  const Srs srs = file.format.is_table ? Srs() : srs_of(crs);
+  CPLStringList options = layer_options(file.format, crs);
+  OGRLayer* layer = file.dataset->CreateLayer(type.name.c_str(), srs.get(),
+                                              file.format.is_table ? wkbNone : wkbPoint25D, options.List());
+  if (layer == nullptr) file.fail(file.format.driver + " could not make a layer of points");
+  const std::vector<Field> fields = file.add_fields(*layer, type);
+  const std::string style = fmt::format("SYMBOL(c:{})", type.colour);
+  const bool one_transaction = layer->StartTransaction() == OGRERR_NONE;
+  for (const Landmark& landmark : landmarks) {
+    OGRFeature feature(layer->GetLayerDefn());
+    for (const Field& field : fields) set_field(feature, field.index, field.column.value(landmark));
+    if (!file.format.is_table) {
+      const auto& p = landmark.position.xyz;
+      feature.SetGeometryDirectly(new OGRPoint(p.x(), p.y(), p.z()));
+      feature.SetStyleString(style.c_str());
+    }
+    if (layer->CreateFeature(&feature) != OGRERR_NONE) file.fail("a landmark was refused");
+  }
+  if (one_transaction && layer->CommitTransaction() != OGRERR_NONE) file.fail("the layer could not be committed");
+}
+
+std::vector<std::string> OgrOutput::close() {
+  File& file = *file_;
+  file.dataset->FlushCache();
+  file.dataset.reset();
+  if (!file.messages.failures().empty()) file.fail("closing it failed");
+  std::vector<std::string> warnings = file.warnings;
+  for (const std::string& said : file.messages.warnings()) warnings.push_back(file.format.driver + ": " + said);
+  return warnings;
+}
+
+}  // namespace waymark
