@@ -18,7 +18,7 @@ namespace waymark {
 class @arg_REGISTRY@;
 @declarations@
 void @arg_FUNCTION@(@arg_REGISTRY@& registry);
-void @arg_FUNCTION@(@arg_REGISTRY@& registry) {
+void @arg_FUNCTION@([[maybe_unused]] @arg_REGISTRY@& registry) {
 @calls@}
 }
 ")
