@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 #include "geodb/map_contents.hpp"
 namespace waymark {
 
 struct WriteMapOptions {
-  bool replace = true;       ///< false: an existing file is an error
-  bool empty_tables = false; ///< also tables for types without a landmark
+  bool replace = true;  ///< false: an existing file is an error
+  /// Types that get a table though they have no landmark. A map without any landmark and without this gets a
+  /// table for every type of the contents.
+  std::vector<std::string> empty_tables = {};
 };
 
 /// Writes a map as a GeoPackage 1.3 (tables: geodb/sql/schema.sql, docs of interface.md).
