@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/landmark.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "tests/plug_in/stations.hpp"
+namespace waymark {
+namespace {
+
+/// Puts a station on each summit that is high enough.
+struct PlaceWeatherStations {
+  struct Options {
+    Meters min_elevation{500};
+    void describe(OptionVisitor& option) {
+      option("min_elevation", min_elevation, {.help = "Lowest summit that gets a station", .min = -500, .max = 9000});
+    }
+  };
+  static constexpr In<std::vector<Landmark>> summits{"landmarks"};
+  static constexpr Out<Stations> stations{"stations"};
+  static StageSpec spec() {
+    return {.name = "place_weather_stations", .summary = "Puts weather stations on summits",
+            .inputs = {summits}, .outputs = {stations}};
+  }
+  static void run(const Options& options, StageContext& unit) {
+    Stations placed;
+    const auto& tops = unit.read(summits);
+    unit.count_in(std::ssize(tops));
+    for (const Landmark& top : tops) {
+      if (top.position.xyz.z() >= options.min_elevation.value)
+        placed.uids.push_back(top.uid);
+      else
+        unit.reject("too low");
+    }
+    unit.count_out(std::ssize(placed.uids));
+    unit.write(stations, std::move(placed));
+  }
+};
+
+}  // namespace
+
+void register_stage_place_weather_stations(Registry& registry);
+void register_stage_place_weather_stations(Registry& registry) { registry.add<PlaceWeatherStations>(); }
+
+}  // namespace waymark

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "pipeline/engine/codec.hpp"
+namespace waymark {
+
+/// An artifact the engine has never heard of: the summits that carry a station.
+struct Stations {
+  std::vector<std::string> uids;
+};
+
+/// One uid per line.
+template <>
+struct Codec<Stations> {
+  static std::string encode(const Stations& stations) {
+    std::string lines;
+    for (const auto& uid : stations.uids) lines += uid + '\n';
+    return lines;
+  }
+  static Stations decode(std::string_view lines) {
+    Stations stations;
+    for (std::size_t end; (end = lines.find('\n')) != lines.npos; lines.remove_prefix(end + 1))
+      stations.uids.emplace_back(lines.substr(0, end));
+    return stations;
+  }
+};
+
+}  // namespace waymark
