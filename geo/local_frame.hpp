@@ -5,9 +5,10 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// East, north, up in metres about an origin: the frame robots drive in. On a body it is the plane that touches the
-/// ellipsoid there (GeographicLib::LocalCartesian), exact at any distance; in a local CRS it is a shift.
-/// z of the map is taken as height above the ellipsoid. Copies share a mutex where the CRS is projected.
+/// East, north, up in metres about an origin: the frame robots drive in. On a body it is the plane that
+/// touches the ellipsoid there (GeographicLib::LocalCartesian), exact at any distance; in a local CRS it is a
+/// shift. z of the map is taken as height above the ellipsoid. Copies share a mutex where the CRS is
+/// projected.
 class LocalFrame {
  public:
   LocalFrame(const Crs& crs, const Point<MapCrs>& origin);

@@ -9,10 +9,11 @@ namespace waymark {
 
 /// Which files make a DEM, and how they are read.
 struct DemImport {
-  std::vector<std::string> files;  ///< anything GDAL opens, `/vsi...` too; where they overlap the first one wins
+  std::vector<std::string>
+      files;  ///< anything GDAL opens, `/vsi...` too; where they overlap the first one wins
   NodataPolicy nodata = NodataPolicy::ocean;
   std::string crs = {};  ///< instead of the files' own; "local": metres on no body; empty: as the files say
-  std::int64_t memory_bytes = std::int64_t{256} << 20;  ///< for decoded blocks, all threads together
+  std::int64_t memory_bytes = std::int64_t{512} << 20;  ///< for decoded blocks, all threads together
   double height_sd = 0;                                 ///< of a height, metres; 0: not known
   bool inspect = true;  ///< compare seams, refuse a DEM without heights; false: open the headers only
 };
@@ -23,16 +24,19 @@ class ImportedDem : public DemSource {
   /// What a person should know: seams that disagree, a constant DEM, an unknown height unit, a layout that is
   /// slow to read. One line each, in a fixed order.
   virtual const std::vector<std::string>& warnings() const = 0;
+  /// How it was opened; opening it so again gives the same heights.
+  virtual const DemImport& import() const = 0;
 };
 
-/// Opens the files as one grid. Heights are in metres whatever the band's scale, offset and unit are; a cell that
-/// is no-data, masked, NaN or infinite has no height. South-up files are turned.
+/// Opens the files as one grid. Heights are in metres whatever the band's scale, offset and unit are; a cell
+/// that is no-data, masked, NaN or infinite has no height. South-up files are turned.
 ///  - Files must share CRS, cell size and alignment, within 1/1000 of a cell.
 ///  - Geographic files across the antimeridian join: x may then exceed 180, or be below -180.
-///  - A geographic grid, or one in a cylindrical projection, that goes all the way round wraps; the columns it
+///  - A geographic grid, or one in a cylindrical projection, that goes all the way round wraps; the columns
+///  it
 ///    repeats are dropped.
-/// Throws Error for a file that is missing, damaged, rotated, in no CRS or not a DEM; the hint says what mends it.
-/// Costs about 1 ms per file, and with `inspect` the reading of what overlaps.
+/// Throws Error for a file that is missing, damaged, rotated, in no CRS or not a DEM; the hint says what
+/// mends it. Costs about 1 ms per file, and with `inspect` the reading of what overlaps.
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import);
 
 }  // namespace waymark

@@ -15,19 +15,20 @@ namespace waymark {
 
 /// Which landmarks a query keeps.
 struct LandmarkFilter {
-  std::string type = {};                   ///< empty: all types
-  double min_quality = 0;                  ///< 0 keeps landmarks of unknown quality too
-  const SensorProfile* sensor = nullptr;   ///< whose quality (eq. 8); null: equal weights
+  std::string type = {};                  ///< empty: all types
+  double min_quality = 0;                 ///< 0 keeps landmarks of unknown quality too
+  const SensorProfile* sensor = nullptr;  ///< whose quality (eq. 8); null: equal weights
 };
 
-/// Corners of a box in the map's CRS, inclusive. In a geographic CRS west > east goes across the antimeridian.
+/// Corners of a box in the map's CRS, inclusive. In a geographic CRS west > east goes across the
+/// antimeridian.
 struct MapBox {
   double west = 0, south = 0, east = 0, north = 0;
 };
 
 /// Landmarks in memory, immutable, to be asked from many threads; copies share everything.
-/// Distances are horizontal, in metres: geodesics of the body's ellipsoid, so they hold across the antimeridian and
-/// at the poles; plane distances in a local CRS.
+/// Distances are horizontal, in metres: geodesics of the body's ellipsoid, so they hold across the
+/// antimeridian and at the poles; plane distances in a local CRS.
 class SemanticMap {
  public:
   /// For `for (const Landmark& rock : map.near(...))`. Valid as long as a copy of the map lives.

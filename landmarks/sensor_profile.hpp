@@ -27,7 +27,8 @@ struct SensorProfile {
 std::vector<double> weights_for(const SensorProfile& profile, const LandmarkType& type);
 
 /// Quality of a landmark as this sensor sees it (eq. 8), [0, 1]; absent where no image could have shown it.
-std::optional<double> quality_for(const SensorProfile& profile, const LandmarkType& type, const Landmark& landmark);
+std::optional<double> quality_for(const SensorProfile& profile, const LandmarkType& type,
+                                  const Landmark& landmark);
 
 /// The same for nobody in particular: equal weights. The map's column `quality`.
 std::optional<double> quality_of(const LandmarkType& type, const Landmark& landmark);

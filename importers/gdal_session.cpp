@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/gdal_session.hpp"
+
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+
+#include <mutex>
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+// Not every path names a file: "NETCDF:a.nc:height" and "<VRTDataset>..." are for GDAL alone to judge.
+bool is_plain_path(const std::string& path) {
+  return path.starts_with('/') || path.find_first_of(":<") == std::string::npos;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& said) {
+  VSIStatBufL status;
+  const bool exists = VSIStatL(path.c_str(), &status) == 0;
+  if (!exists && is_plain_path(path))
+    throw Error(ErrorCode::input, "there is no such file", path, "check the path");
+  if (exists && status.st_size == 0 && !VSI_ISDIR(status.st_mode))
+    throw Error(ErrorCode::input, "the file is empty", path, "fetch or write it again");
+  throw Error(ErrorCode::input, "this is not a raster that GDAL reads" + (said.empty() ? "" : ": " + said),
+              path, "`gdalinfo --formats` lists what can be read; a damaged file must be fetched again");
+}
+
+}  // namespace
+
+void GdalClose::operator()(GDALDataset* dataset) const {
+  const GdalMessages quiet;
+  GDALClose(dataset);
+}
+
+GdalMessages::GdalMessages() {
+  CPLPushErrorHandlerEx(
+      [](CPLErr level, CPLErrorNum, const char* text) {
+        if (level >= CE_Failure) static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->last_error_ = text;
+      },
+      this);
+  static std::once_flag registered;
+  std::call_once(registered, GDALAllRegister);
+}
+
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+}
+
+GdalDataset open_raster(const std::string& path) {
+  const GdalMessages gdal;
+  GdalDataset dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset) refuse(path, gdal.last_error());
+  return dataset;
+}
+
+}  // namespace waymark

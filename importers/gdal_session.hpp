@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+class GDALDataset;
+namespace waymark {
+
+struct GdalClose {
+  void operator()(GDALDataset* dataset) const;
+};
+
+/// An open file of GDAL. To be used by one thread at a time.
+using GdalDataset = std::unique_ptr<GDALDataset, GdalClose>;
+
+/// Keeps what GDAL says in this thread while it lives, so that nothing leaks to the terminal. Registers the
+/// drivers when first used.
+class GdalMessages {
+ public:
+  GdalMessages();
+  ~GdalMessages();
+  GdalMessages(GdalMessages&&) = delete;
+
+  /// The last error, without the path that GDAL likes to put first; empty if there was none.
+  const std::string& last_error() const { return last_error_; }
+
+ private:
+  std::string last_error_;
+};
+
+/// Opens a raster for reading. Throws Error{input} that says whether the file is missing, empty or of no kind
+/// that GDAL knows, and what GDAL said.
+GdalDataset open_raster(const std::string& path);
+
+}  // namespace waymark
