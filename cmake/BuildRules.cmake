@@ -2,6 +2,7 @@
 add_library(waymark_build_rules INTERFACE)
 target_compile_options(waymark_build_rules INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wold-style-cast -Werror
+  -Wno-restrict         # false alarms of g++ 12 on std::string (bug 105651)
   -ffp-contract=off)  # the same bits on a machine with and without fused multiply-add
 find_program(CCACHE ccache)
 if(CCACHE)

@@ -19,17 +19,22 @@ Body body_of_ellipsoid(const std::string& name, double equatorial_radius, double
   return {name, equatorial_radius, flattening};
 }
 
-double geodesic_distance(const Body& body, double lon1, double lat1, double lon2, double lat2) {
-  const GeographicLib::Geodesic geodesic(body.equatorial_radius, body.flattening);
-  double distance = 0;
-  geodesic.Inverse(lat1, lon1, lat2, lon2, distance);
-  return distance;
+struct Geodesic::Lines {
+  GeographicLib::Geodesic solve;
+};
+
+Geodesic::Geodesic(const Body& body)
+    : lines_(std::make_shared<const Lines>(Lines{{body.equatorial_radius, body.flattening}})) {}
+
+double Geodesic::distance(LonLat from, LonLat to) const {
+  double metres = 0;
+  lines_->solve.Inverse(from.lat, from.lon, to.lat, to.lon, metres);
+  return metres;
 }
 
-LonLat geodesic_direct(const Body& body, LonLat from, double azimuth, double distance) {
-  const GeographicLib::Geodesic geodesic(body.equatorial_radius, body.flattening);
+LonLat Geodesic::direct(LonLat from, double azimuth, double distance) const {
   LonLat to;
-  geodesic.Direct(from.lat, from.lon, azimuth, distance, to.lat, to.lon);
+  lines_->solve.Direct(from.lat, from.lon, azimuth, distance, to.lat, to.lon);
   return to;
 }
 

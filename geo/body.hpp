@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <string>
 namespace waymark {
 
@@ -22,14 +23,22 @@ Body mars();   ///< IAU 2015: 3396190 m, polar 3376200 m (Archinal et al. 2018)
 /// The body an ellipsoid belongs to, named after the known body whose radius agrees within 0.5 %; else `name`.
 Body body_of_ellipsoid(const std::string& name, double equatorial_radius, double flattening);
 
-/// Geodesic distance in metres between two points in degrees (Karney 2013, via GeographicLib).
-/// Good to 15 nm for |flattening| < 1/50.
-double geodesic_distance(const Body& body, double lon1, double lat1, double lon2, double lat2);
-
-/// The point reached from (lon, lat) degrees after `distance` metres at `azimuth` degrees clockwise from north.
 struct LonLat {
-  double lon = 0, lat = 0;
+  double lon = 0, lat = 0;  ///< degrees
 };
-LonLat geodesic_direct(const Body& body, LonLat from, double azimuth, double distance);
+
+/// Geodesics on a body's ellipsoid (Karney 2013, via GeographicLib); good to 15 nm for flattening < 1/50.
+class Geodesic {
+ public:
+  explicit Geodesic(const Body& body);
+  /// Metres; about 1 us.
+  double distance(LonLat from, LonLat to) const;
+  /// The point reached after `distance` metres at `azimuth` degrees clockwise from north.
+  LonLat direct(LonLat from, double azimuth, double distance) const;
+
+ private:
+  struct Lines;
+  std::shared_ptr<const Lines> lines_;
+};
 
 }  // namespace waymark

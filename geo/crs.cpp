@@ -62,7 +62,9 @@ ProjObject horizontal_part(ProjObject crs) {
 ProjObject parse(std::string_view definition) {
   ProjContext& proj = ProjContext::of_this_thread();
   proj.take_message();
-  ProjObject crs(proj_create(proj.get(), std::string(definition).c_str()));
+  std::string text(definition);
+  if (text.starts_with('+') && text.find("+type=crs") == std::string::npos) text += " +type=crs";  // else: an operation
+  ProjObject crs(proj_create(proj.get(), text.c_str()));
   if (crs) crs = horizontal_part(std::move(crs));
   if (!crs) {
     const std::string why = proj.take_message();
