@@ -107,7 +107,7 @@ std::vector<OutputFile> output_files(const VectorFormat& format, const std::stri
 
 void write_map_file(Export& job, const std::vector<std::string>& types, const fs::path& out) {
   MapSubset subset = map_subset(job.map, types, job.crs);
-  write_map(out, subset.contents, {.replace = true, .empty_tables = true});
+  write_map(out, subset.contents, {.empty_tables = types});
   job.summary.layers = std::move(subset.layers);
   job.summary.files = {out.string()};
   job.warn(std::move(subset.warnings));
