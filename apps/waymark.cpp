@@ -1,2 +1,75 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 2; }
+#include <iostream>
+#include <new>
+
+#include "apps/command.hpp"
+#include "apps/help.hpp"
+#include "apps/log.hpp"
+#include "apps/parse.hpp"
+#include "apps/session.hpp"
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+/// A subcommand with its words: parsed twice, since global options stand before or after its name.
+int run_command(const CommandTable& commands, Session& session, const std::vector<std::string>& words) {
+  Command& command = commands.find(words[0]);
+  const CommandSpec spec = command.describe();
+  const std::vector<Argument> globals = global_arguments(session);
+  std::vector<Argument> arguments = spec.arguments;
+  arguments.insert(arguments.end(), globals.begin(), globals.end());
+  parse(spec.name, arguments, {words.begin() + 1, words.end()});
+  if (session.help) {
+    std::cout << command_help(spec, globals);
+    return 0;
+  }
+  require(spec.name, arguments);
+  begin(session);
+  return command.run(session);
+}
+
+int run_program(const std::vector<std::string>& words) {
+  Session session;
+  session.command_line = quoted(words);
+  CommandTable commands;
+  register_commands(commands);
+  const std::vector<Argument> globals = global_arguments(session);
+  const std::vector<std::string> rest = parse_leading(globals, {words.begin() + 1, words.end()});
+  if (session.version) {
+    std::cout << program_version() << '\n';
+    return 0;
+  }
+  if (rest.empty()) {
+    (session.help ? std::cout : std::cerr) << program_help(commands.describe(), globals);
+    return session.help ? 0 : 2;
+  }
+  return run_command(commands, session, rest);
+}
+
+/// The one place where errors become text and exit codes.
+int guarded(const std::vector<std::string>& words) {
+  try {
+    const int code = run_program(words);
+    if (!std::cout.flush()) throw Error(ErrorCode::output, "cannot write to standard output", "", "is the disk full?");
+    return code;
+  } catch (const Error& error) {
+    log_error(error.what());
+    return exit_code(error.code());
+  } catch (const std::bad_alloc&) {
+    log_error("out of memory\n  fewer --threads or smaller --tile-cells need less");
+  } catch (const std::exception& error) {
+    log_error(std::string("this is a fault of waymark itself: ") + error.what());
+  }
+  return 1;
+}
+
+}  // namespace
+}  // namespace waymark
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
+  std::vector<std::string> words(argv, argv + argc);
+  words[0] = "waymark";
+  return waymark::guarded(words);
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/command.hpp"
+#include "apps/log.hpp"
+#include "apps/registries.hpp"
+#include "exporters/export_map.hpp"
+
+namespace waymark {
+namespace {
+
+class Export final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {.name = "export",
+            .group = Group::use,
+            .summary = "Write the landmarks of a map in another format",
+            .about = "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.",
+            .arguments = {{"", "MAP.gpkg", &map_, "Map to read", true, {}, {}, Offer::file},
+                          {"", "OUT", &out_, "File to write; its extension tells the format", true, {}, {}, Offer::file},
+                          {"-of,--format", "OGR_DRIVER", &options_.driver, "Format by GDAL's name, where the extension does not tell",
+                           false, {}, {"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}},
+                          {"--type", "T", &options_.types, "Landmarks of this type only; may be repeated", false, {},
+                           all_types().names()},
+                          {"--crs", "CRS", &options_.crs, "Coordinates of the output (default: the map's)"},
+                          {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
+            .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
+                         {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top", "A table in UTM metres"},
+                         {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"}}};
+  }
+
+  int run(const Session&) override {
+    const ExportSummary done = export_map(map_, out_, options_);
+    for (const std::string& warning : done.warnings) log_warning(warning);
+    for (const ExportedLayer& layer : done.layers) say(fmt::format("{} {}\n", layer.landmarks, layer.type));
+    say(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
+    return 0;
+  }
+
+ private:
+  std::string map_, out_;
+  ExportOptions options_;
+};
+
+}  // namespace
+
+void register_command_export(CommandTable& commands);
+void register_command_export(CommandTable& commands) { commands.add<Export>(); }
+
+}  // namespace waymark

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/plan.hpp"
+
+#include <iostream>
+
+#include "apps/make_map.hpp"
+#include "apps/registries.hpp"
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+class PlanJob final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {.name = "plan",
+            .group = Group::make,
+            .summary = "Print the units of work of a job, for a scheduler",
+            .about = "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines that "
+                     "share the --work folder need nothing else in common.",
+            .arguments = {{"", "JOB.json", &job_, "Job file", true, {}, {}, Offer::file},
+                          {"--as", "FORM", &as_, "JSON lines, a Snakefile, or a script of sbatch calls", false,
+                           {"jsonl", "snakemake", "slurm"}},
+                          {"--work", "DIR", &work_, "Folder all units share (default: work)", false, {}, {}, Offer::folder},
+                          {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
+            .examples = {{"waymark plan job.json --as jsonl", "One unit per line, done or not"},
+                         {"waymark plan job.json --as snakemake > Snakefile && snakemake -j 8", "Run by Snakemake"},
+                         {"waymark plan job.json --as slurm | bash", "Run on a Slurm cluster"}}};
+  }
+
+  int run(const Session& session) override {
+    if (!settings_.empty() && as_ != "jsonl")
+      throw Error(ErrorCode::usage, "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
+                  "write the options into " + job_);
+    Job job = read_job(job_, all_stages());
+    for (const std::string& setting : settings_) job.pipeline.set(setting);
+    RunOptions options = run_options(session);
+    options.work = work_;
+    const Plan units = plan(job.pipeline, options);
+    const PlanCommand call{.job = job_, .work = work_};
+    std::cout << (as_ == "snakemake" ? plan_as_snakemake(units, call)
+                  : as_ == "slurm"   ? plan_as_slurm(units, call)
+                                     : plan_as_jsonl(units));
+    return 0;
+  }
+
+ private:
+  std::string job_, as_ = "jsonl", work_ = "work";
+  std::vector<std::string> settings_;
+};
+
+}  // namespace
+
+void register_command_plan(CommandTable& commands);
+void register_command_plan(CommandTable& commands) { commands.add<PlanJob>(); }
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/described.hpp"
+#include "apps/registries.hpp"
+
+namespace waymark {
+namespace {
+
+class Sensors final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {.name = "sensors",
+            .group = Group::look_up,
+            .summary = "List the sensor profiles, or describe one with its weights",
+            .about = "A sensor profile says how much each feature helps that sensor to tell landmarks apart. "
+                     "`waymark query --sensor NAME` ranks landmarks by it.",
+            .arguments = describe_arguments(what_, all_sensors().names()),
+            .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
+  }
+
+  int run(const Session&) override {
+    print_described(described(all_sensors(), all_types()), "sensor", what_);
+    return 0;
+  }
+
+ private:
+  DescribeWhat what_;
+};
+
+}  // namespace
+
+void register_command_sensors(CommandTable& commands);
+void register_command_sensors(CommandTable& commands) { commands.add<Sensors>(); }
+
+}  // namespace waymark

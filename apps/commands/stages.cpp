@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/described.hpp"
+#include "apps/registries.hpp"
+
+namespace waymark {
+namespace {
+
+class Stages final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {.name = "stages",
+            .group = Group::look_up,
+            .summary = "List the stages a job can name, or describe one with all its options",
+            .arguments = describe_arguments(what_, all_stages().names()),
+            .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
+                         {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
+  }
+
+  int run(const Session&) override {
+    print_described(described(all_stages()), "stage", what_);
+    return 0;
+  }
+
+ private:
+  DescribeWhat what_;
+};
+
+}  // namespace
+
+void register_command_stages(CommandTable& commands);
+void register_command_stages(CommandTable& commands) { commands.add<Stages>(); }
+
+}  // namespace waymark

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/described.hpp"
+#include "apps/registries.hpp"
+
+namespace waymark {
+namespace {
+
+class Types final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {.name = "types",
+            .group = Group::look_up,
+            .summary = "List the landmark types, or describe one with its features",
+            .arguments = describe_arguments(what_, all_types().names()),
+            .examples = {{"waymark types mountain_top", "Its features with units and plausible ranges"},
+                         {"waymark types rock --as json", "The same for a script"}}};
+  }
+
+  int run(const Session&) override {
+    print_described(described(all_types()), "landmark type", what_);
+    return 0;
+  }
+
+ private:
+  DescribeWhat what_;
+};
+
+}  // namespace
+
+void register_command_types(CommandTable& commands);
+void register_command_types(CommandTable& commands) { commands.add<Types>(); }
+
+}  // namespace waymark

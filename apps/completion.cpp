@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/completion.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr auto kHead = R"(# bash completion for waymark, written by `waymark completion bash`
+_waymark() {
+  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} command= word words= path=
+  [[ $cur == = ]] && cur=
+  [[ $prev == = ]] && prev=${COMP_WORDS[COMP_CWORD-2]}
+  for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
+)";
+
+constexpr auto kTail = R"(  esac
+  local offered=()
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$cur")
+  if [[ -n $path ]]; then
+    compopt -o filenames 2>/dev/null
+    mapfile -t offered < <(compgen -A "$path" -- "$cur")
+    COMPREPLY+=("${offered[@]}")
+  fi
+}
+complete -F _waymark waymark
+)";
+
+/// Assignments that make the script offer a value of `argument`.
+std::string offer(const Argument& argument) {
+  const auto& words = argument.choices.empty() ? argument.suggestions : argument.choices;
+  std::string text;
+  if (!words.empty()) text += fmt::format("words='{}' ", fmt::join(words, " "));
+  if (argument.offer == Offer::file) text += "path=file ";
+  if (argument.offer == Offer::folder) text += "path=directory ";
+  return text + ";;\n";
+}
+
+std::string alternatives(std::string names) {
+  std::ranges::replace(names, ',', '|');
+  return names;
+}
+
+std::string options(std::span<const Argument> arguments) {
+  std::string all;
+  for (const Argument& argument : arguments) all += (all.empty() ? "" : " ") + argument.names;
+  std::ranges::replace(all, ',', ' ');
+  return all;
+}
+
+/// Branches on the word before: the value of an option, else options or positional words.
+std::string branches(std::span<const Argument> arguments) {
+  std::string text;
+  std::vector<Argument> words, named;
+  for (const Argument& argument : arguments) (argument.positional() ? words : named).push_back(argument);
+  for (const Argument& argument : named)
+    if (!argument.flag()) text += "      " + alternatives(argument.names) + ") " + offer(argument);
+  text += "      *) if [[ $cur == -* ]]; then words='" + options(named) + "'; else\n";
+  for (const Argument& argument : words)
+    text += fmt::format("           words+=' {}' path=${{path:-{}}}\n",
+                        fmt::join(argument.choices.empty() ? argument.suggestions : argument.choices, " "),
+                        argument.offer == Offer::file     ? "file"
+                        : argument.offer == Offer::folder ? "directory"
+                                                          : "");
+  return text + "           :; fi ;;\n";
+}
+
+}  // namespace
+
+std::string bash_completion(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
+  std::vector<std::string> names;
+  for (const CommandSpec& command : commands) names.push_back(command.name);
+  std::string text = kHead;
+  text += fmt::format("    case $word in {}) command=$word; break ;; esac\n  done\n  case $command in\n",
+                      fmt::join(names, "|"));
+  for (const CommandSpec& command : commands) {
+    std::vector<Argument> arguments = command.arguments;
+    arguments.insert(arguments.end(), globals.begin(), globals.end());
+    text += "    " + command.name + ") case $prev in\n" + branches(arguments) + "    esac ;;\n";
+  }
+  const Argument command{.names = "", .value = "COMMAND", .into = {}, .help = "", .suggestions = names};
+  std::vector<Argument> before(globals.begin(), globals.end());
+  before.push_back(command);
+  return text + "    '') case $prev in\n" + branches(before) + "    esac ;;\n" + kTail;
+}
+
+}  // namespace waymark

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/help.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sstream>
+
+#include "apps/parse.hpp"
+#include "apps/session.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kWidth = 100, kTextColumn = 26;
+
+/// Paragraphs of `text` broken at kWidth, every line after `indent` blanks.
+std::string wrapped(const std::string& text, std::size_t indent) {
+  std::string result, line;
+  const auto flush = [&] {
+    if (!line.empty()) result += std::string(indent, ' ') + line + "\n";
+    line.clear();
+  };
+  std::istringstream paragraphs(text);
+  for (std::string paragraph; std::getline(paragraphs, paragraph); flush()) {
+    if (paragraph.empty()) result += "\n";
+    std::istringstream words(paragraph);
+    for (std::string word; words >> word; line += (line.empty() ? "" : " ") + word)
+      if (indent + line.size() + 1 + word.size() > kWidth) flush();
+  }
+  return result;
+}
+
+/// A name with its explanation beside it, or below where the name is long.
+std::string entry(const std::string& name, const std::string& text) {
+  const std::string left = "  " + name;
+  std::string right = wrapped(text, kTextColumn);
+  if (left.size() + 2 > kTextColumn) return left + "\n" + right;
+  return left + right.substr(left.size());
+}
+
+std::string entry(const Argument& argument) {
+  std::string left = argument.positional() ? argument.value : argument.names;
+  if (const auto comma = left.find(','); !argument.positional() && comma != std::string::npos) left.insert(comma + 1, " ");
+  if (!argument.positional() && !argument.flag()) left += " " + argument.value;
+  return entry(left, full_help(argument));
+}
+
+std::string section(const std::string& title, std::span<const Argument> arguments, bool positional) {
+  std::string text;
+  for (const Argument& argument : arguments)
+    if (argument.positional() == positional) text += entry(argument);
+  return text.empty() ? "" : "\n" + title + ":\n" + text;
+}
+
+std::string usage(const CommandSpec& command) {
+  std::string line = "waymark " + command.name;
+  for (const Argument& argument : command.arguments)
+    if (argument.positional() || argument.required) line += " " + synopsis(argument);
+  return "Usage: " + line + " [options]\n";
+}
+
+std::string heading(Group group) {
+  switch (group) {
+    case Group::make: return "Make a map";
+    case Group::use: return "Use a map";
+    case Group::look_up: return "Look up";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string full_help(const Argument& argument) {
+  if (argument.choices.empty()) return argument.help;
+  return fmt::format("{}: {}", argument.help, fmt::join(argument.choices, ", "));
+}
+
+std::vector<ExitCode> exit_codes() {
+  return {{0, "Done"},
+          {1, "The run failed, or `validate` found faults"},
+          {2, "Wrong usage, a bad option or a bad job file"},
+          {3, "Finished, but some units of work failed; with --work a second run does only those"}};
+}
+
+std::string command_help(const CommandSpec& command, std::span<const Argument> globals) {
+  std::string text = usage(command) + "\n" + wrapped(command.summary + ".", 0);
+  if (!command.about.empty()) text += "\n" + wrapped(command.about, 0);
+  text += section("Arguments", command.arguments, true) + section("Options", command.arguments, false);
+  text += section("Options of every command", globals, false);
+  if (!command.examples.empty()) text += "\nExamples:\n";
+  for (const Example& example : command.examples)
+    text += "  " + example.command_line + "\n" + wrapped(example.says, 6);
+  return text;
+}
+
+std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
+  std::string text = program_version() +
+                     ": semantic navigation maps from elevation models\n\n"
+                     "Usage: waymark COMMAND [arguments and options]\n";
+  for (const Group group : {Group::make, Group::use, Group::look_up}) {
+    text += "\n" + heading(group) + ":\n";
+    for (const CommandSpec& command : commands)
+      if (command.group == group) text += entry(command.name, command.summary);
+  }
+  text += section("Options of every command", globals, false) + "\nExit codes:\n";
+  for (const ExitCode& exit : exit_codes()) text += entry(std::to_string(exit.code), exit.says);
+  return text + "\n`waymark COMMAND --help` explains a command and shows examples.\n";
+}
+
+}  // namespace waymark

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+#include "apps/command.hpp"
+namespace waymark {
+
+/// What `waymark --help` prints: the commands by group, and the global options.
+std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals);
+
+/// What `waymark NAME --help` prints.
+std::string command_help(const CommandSpec& command, std::span<const Argument> globals);
+
+/// Help of an argument with its choices.
+std::string full_help(const Argument& argument);
+
+struct ExitCode {
+  int code = 0;
+  std::string says;
+};
+std::vector<ExitCode> exit_codes();
+
+}  // namespace waymark

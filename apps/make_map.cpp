@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/make_map.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <map>
+
+#include "apps/log.hpp"
+#include "apps/output_path.hpp"
+#include "apps/progress.hpp"
+#include "apps/registries.hpp"
+#include "apps/session.hpp"
+#include "core/error.hpp"
+#include "geo/dem_handle.hpp"
+#include "geodb/write_map.hpp"
+#include "importers/hash.hpp"
+
+namespace waymark {
+namespace {
+
+using Landmarks = std::vector<Landmark>;
+
+void check_request(const Job& job, const MapRequest& request, const RunOptions& options) {
+  const bool share = options.shard || !options.unit.empty();
+  if (share && request.work.empty())
+    throw Error(ErrorCode::usage, "a share of a job needs --work DIR, where all shares meet");
+  if (request.map.empty() && !share && !request.check)
+    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg");
+  if (request.map.empty()) return;
+  for (const char* artifact : {"dem", "landmarks"})
+    if (!job.pipeline.writer_of(artifact))
+      throw Error(ErrorCode::usage, std::string("no stage of the job writes '") + artifact + "', so there is no map",
+                  job.name, "`waymark peaks DEM --print-job` shows a job that makes one");
+  check_map_output(request.map);
+}
+
+RunRecord record_of(const Job& job, const RunResult& result, const Session& session,
+                    std::chrono::system_clock::time_point started) {
+  const auto second = std::chrono::floor<std::chrono::seconds>(started);
+  return {.version = program_version(),
+          .command_line = session.command_line,
+          .job_json = job_as_json(job.name, job.pipeline),
+          .started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(second))),
+          .report_json = report_as_json(result.report),
+          .seconds = result.report.seconds,
+          .seed = 0,  // no stage draws random numbers
+          .inputs = result.inputs};
+}
+
+/// "1204 mountain_top", "12 crater, 3 rock".
+std::string count_by_type(const Landmarks& landmarks) {
+  std::map<std::string, std::int64_t> counts;
+  for (const Landmark& landmark : landmarks) ++counts[all_types()[landmark.type].name];
+  std::string text;
+  for (const auto& [type, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
+  return text.empty() ? "no landmarks" : text;
+}
+
+/// Where the map is, and how fast it was made. A rate is told only where nothing was taken from an earlier run.
+std::string summary(const RunResult& result, const std::string& map) {
+  const std::int64_t cells = result.artifact<DemHandle>("dem")->geometry().cells();
+  std::string text = fmt::format("{}: {}\n{:.4g} M cells, {:.2f} s", map,
+                                 count_by_type(result.artifact<Landmarks>("landmarks")),
+                                 static_cast<double>(cells) / 1e6, result.report.seconds);
+  std::int64_t reused = 0;
+  for (const StageReport& stage : result.report.stages) reused += stage.reused;
+  if (reused == 0 && result.report.seconds > 0)
+    text += fmt::format(", {:.3g} M cells/s", static_cast<double>(cells) / 1e6 / result.report.seconds);
+  return text + "\n";
+}
+
+void write(const Job& job, const RunResult& result, const MapRequest& request, const Session& session,
+           std::chrono::system_clock::time_point started) {
+  const auto& landmarks = result.artifact<Landmarks>("landmarks");
+  const auto& dem = result.artifact<DemHandle>("dem");
+  MapContents contents;
+  contents.types = all_types();
+  contents.crs = dem->geometry().where.crs;
+  contents.landmarks = landmarks;
+  contents.run = record_of(job, result, session, started);
+  if (request.with_dem) contents.dem_coverage = dem;
+  write_map(request.map, contents);
+  say(summary(result, request.map));
+}
+
+/// Failures are told even by a quiet program.
+void tell(const RunReport& report) {
+  say(report_as_text(report));
+  if (!quiet_log()) return;
+  for (const Failure& failure : report.failures) log_error(failure.unit + ": " + failure.message);
+}
+
+int check(const Job& job, const RunOptions& options) {
+  std::int64_t done = 0;
+  const Plan units = plan(job.pipeline, options);
+  for (const Unit& unit : units.units) done += unit.done ? 1 : 0;
+  say(fmt::format("the job is sound: {} stages, {} units of work, {} of them done\n", job.pipeline.steps().size(),
+                  units.units.size(), done));
+  return 0;
+}
+
+}  // namespace
+
+std::vector<Argument> map_arguments(MapRequest& request) {
+  return {
+      {.names = "-o,--output", .value = "MAP.gpkg", .into = &request.map,
+       .help = "Map to write; an older map of that name is replaced when the new one is whole, any other file is kept",
+       .offer = Offer::file},
+      {.names = "--work", .value = "DIR", .into = &request.work,
+       .help = "Keep finished work here, so that a killed or changed run does only what is missing",
+       .offer = Offer::folder},
+      {.names = "--rerun-from", .value = "STAGE", .into = &request.rerun_from,
+       .help = "Make this stage and all that depends on it anew, whatever is in --work",
+       .suggestions = all_stages().names()},
+      {.names = "--with-dem", .value = "", .into = &request.with_dem, .help = "Store the DEM in the map as a gridded coverage"},
+      {.names = "--check", .value = "", .into = &request.check, .help = "Check options, wiring and files, then stop"},
+  };
+}
+
+RunOptions run_options(const Session& session) {
+  RunOptions options;
+  options.threads = static_cast<int>(session.threads);
+  options.progress = progress_renderer(session);
+  options.hash_file = hash_file;
+  return options;
+}
+
+int make_map(const Job& job, const MapRequest& request, RunOptions options, const Session& session) {
+  options.work = request.work;
+  options.rerun_from = request.rerun_from;
+  check_request(job, request, options);
+  if (request.check) return check(job, options);
+  const auto started = std::chrono::system_clock::now();
+  const RunResult result = run(job.pipeline, options);
+  for (const InputFile& input : result.inputs) log_detail(fmt::format("{}  {}", input.sha256, input.path));
+  tell(result.report);
+  if (request.map.empty()) return result.report.exit_code();
+  if (result.report.complete())
+    write(job, result, request, session, started);
+  else
+    say(request.map + " is not written: some units of work are missing\n");
+  return result.report.exit_code();
+}
+
+}  // namespace waymark

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/parse.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr int kAnyNumber = CLI::detail::expected_max_vector_size;
+
+int words_of(const Argument& argument) {
+  return 1 + static_cast<int>(std::ranges::count(argument.value, ' '));
+}
+
+bool repeatable(const Argument& argument) { return std::holds_alternative<std::vector<std::string>*>(argument.into); }
+
+template <class Number>
+Number number(const std::string& what, const std::string& word, const char* kind) {
+  Number value{};
+  const char* end = word.data() + word.size();
+  const auto [stop, fault] = std::from_chars(word.data() + (word.starts_with('+') ? 1 : 0), end, value);
+  if (fault != std::errc{} || stop != end || !std::isfinite(static_cast<double>(value)))
+    throw Error(ErrorCode::usage, what + " must be a " + kind + ", is '" + word + "'");
+  return value;
+}
+
+std::string one_of(const Argument& argument, const std::string& word) {
+  if (argument.choices.empty() || std::ranges::count(argument.choices, word)) return word;
+  std::string all;
+  for (const auto& choice : argument.choices) all += (all.empty() ? "" : ", ") + choice;
+  const std::string nearest = nearest_name(word, argument.choices);
+  throw Error(ErrorCode::usage, display_name(argument) + " must be one of " + all + ", is '" + word + "'", "",
+              nearest.empty() ? "" : "did you mean '" + nearest + "'?");
+}
+
+struct Store {
+  const Argument& argument;
+  const std::vector<std::string>& words;
+
+  void operator()(bool* flag) const { *flag = true; }
+  void operator()(std::int64_t* into) const { *into = number<std::int64_t>(display_name(argument), words[0], "whole number"); }
+  void operator()(double* into) const { *into = to_number(display_name(argument), words[0]); }
+  void operator()(std::optional<double>* into) const { *into = to_number(display_name(argument), words[0]); }
+  void operator()(std::string* into) const { *into = one_of(argument, words[0]); }
+  void operator()(std::vector<double>* into) const {
+    into->clear();
+    for (const auto& word : words) into->push_back(to_number(display_name(argument), word));
+  }
+  void operator()(std::vector<std::string>* into) const {
+    for (const auto& word : words) into->push_back(one_of(argument, word));
+  }
+};
+
+void store(const Argument& argument, const std::vector<std::string>& words) {
+  const auto wanted = static_cast<std::size_t>(words_of(argument));
+  if (!argument.flag() && !repeatable(argument) && words.size() != wanted)
+    throw Error(ErrorCode::usage,
+                display_name(argument) + " takes " + std::to_string(wanted) + (wanted == 1 ? " value (" : " values (") +
+                    argument.value + "), has " + std::to_string(words.size()));
+  std::visit(Store{argument, words}, argument.into);
+}
+
+std::vector<std::string> names_of(const Argument& argument) { return CLI::detail::split(argument.names, ','); }
+
+/// GDAL's `-of`, which CLI11 would read as `-o f`.
+bool gdal_style(const std::string& name) { return name.size() > 2 && name[0] == '-' && name[1] != '-'; }
+
+std::string name_for_cli11(const Argument& argument) {
+  std::string all;
+  for (const auto& name : names_of(argument)) all += (all.empty() ? "" : ",") + (gdal_style(name) ? "-" + name : name);
+  return all;
+}
+
+void add(CLI::App& app, const Argument& argument) {
+  if (argument.flag()) {
+    app.add_flag_callback(name_for_cli11(argument), [&argument] { store(argument, {}); })
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+    return;
+  }
+  const auto callback = [&argument](const CLI::results_t& words) {
+    store(argument, words);
+    return true;
+  };
+  const bool many_words = argument.value.ends_with("...");
+  app.add_option(argument.positional() ? "word" + std::to_string(app.get_options().size()) : name_for_cli11(argument),
+                 callback)
+      ->type_name(argument.value)
+      ->expected(1, many_words || repeatable(argument) ? kAnyNumber : words_of(argument))
+      ->allow_extra_args(many_words || words_of(argument) > 1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+std::vector<std::string> option_names(std::span<const Argument> arguments) {
+  std::vector<std::string> names;
+  for (const Argument& argument : arguments)
+    if (!argument.positional())
+      for (const auto& name : names_of(argument)) names.push_back(name);
+  return names;
+}
+
+/// The words CLI11 did not know.
+std::vector<std::string> leftover(CLI::App& app, std::span<const Argument> arguments, std::vector<std::string> words) {
+  const std::vector<std::string> names = option_names(arguments);
+  for (auto& word : words)
+    if (gdal_style(word) && std::ranges::count(names, word)) word = "-" + word;
+  app.set_help_flag();
+  for (const Argument& argument : arguments) add(app, argument);
+  std::ranges::reverse(words);  // CLI11 takes them from the back
+  try {
+    app.parse(words);
+  } catch (const CLI::ParseError& problem) {
+    throw Error(ErrorCode::usage, problem.what());
+  }
+  return app.remaining();
+}
+
+[[noreturn]] void refuse_unknown(const std::string& who, std::span<const Argument> arguments,
+                                 const std::string& word) {
+  if (!word.starts_with('-') || word == "-")
+    throw Error(ErrorCode::usage, who + " has no use for the word '" + word + "'", "",
+                "`" + who + " --help` shows what it takes");
+  const std::string name = word.substr(0, word.find('='));
+  const std::string nearest = nearest_name(name, option_names(arguments));
+  throw Error(ErrorCode::usage, who + " has no option '" + name + "'", "",
+              nearest.empty() ? "`" + who + " --help` lists them" : "did you mean '" + nearest + "'?");
+}
+
+bool empty(const Target& into) {
+  if (const auto* text = std::get_if<std::string*>(&into)) return (*text)->empty();
+  if (const auto* texts = std::get_if<std::vector<std::string>*>(&into)) return (*texts)->empty();
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::string> parse_leading(std::span<const Argument> options, const std::vector<std::string>& words) {
+  CLI::App app;
+  app.prefix_command();
+  std::vector<std::string> rest = leftover(app, options, words);
+  if (!rest.empty() && rest[0].starts_with('-')) refuse_unknown("waymark", options, rest[0]);
+  return rest;
+}
+
+void parse(const std::string& name, std::span<const Argument> arguments, const std::vector<std::string>& words) {
+  CLI::App app;
+  app.allow_extras();
+  std::vector<std::string> rest = leftover(app, arguments, words);
+  if (rest.empty()) return;
+  const auto option = std::ranges::find_if(rest, [](const auto& word) { return word.starts_with("-"); });
+  refuse_unknown("waymark " + name, arguments, option != rest.end() ? *option : rest[0]);
+}
+
+void require(const std::string& name, std::span<const Argument> arguments) {
+  for (const Argument& argument : arguments)
+    if (argument.required && empty(argument.into))
+      throw Error(ErrorCode::usage, "waymark " + name + " needs " + synopsis(argument), "",
+                  argument.help + "; `waymark " + name + " --help` shows examples");
+}
+
+double to_number(const std::string& what, const std::string& word) { return number<double>(what, word, "number"); }
+
+std::string synopsis(const Argument& argument) {
+  if (argument.positional()) return argument.required ? argument.value : "[" + argument.value + "]";
+  std::string text = argument.names.substr(0, argument.names.find(','));
+  if (!argument.flag()) text += " " + argument.value;
+  if (!argument.required) text = "[" + text + "]";
+  return repeatable(argument) ? text + "..." : text;
+}
+
+std::string display_name(const Argument& argument) {
+  return argument.positional() ? argument.value : argument.names.substr(argument.names.rfind(',') + 1);
+}
+
+}  // namespace waymark

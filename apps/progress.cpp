@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/progress.hpp"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "apps/session.hpp"
+
+namespace waymark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double fraction(const Progress& progress) {
+  return progress.total > 0 ? std::clamp(progress.done / static_cast<double>(progress.total), 0.0, 1.0) : 1.0;
+}
+
+bool finished(const Progress& progress) { return !(progress.done < static_cast<double>(progress.total)); }
+
+std::string speed(const Progress& progress) {
+  return fmt::format("{:.3g} {}/s", progress.rate, progress.total == 1 ? "unit" : "units");
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+/// "join_mountain_tops     [#######.......]  50 %  3.1 units/s  0:04 left", redrawn in place.
+void draw_bar(const Progress& progress) {
+  constexpr std::size_t kBar = 24;
+  const double part = fraction(progress);
+  const auto full = static_cast<std::size_t>(part * kBar);
+  std::string line = fmt::format("{:<22} [{}{}] {:3.0f} %", progress.stage, std::string(full, '#'),
+                                 std::string(kBar - full, '.'), std::floor(100 * part));
+  if (progress.rate > 0) line += "  " + speed(progress);
+  if (!finished(progress)) line += "  " + clock_time(seconds_left(progress)) + " left";
+  line.resize(std::min(line.size(), terminal_width() - 1));
+  fmt::print(stderr, "\r{}\x1b[K{}", line, finished(progress) ? "\n" : "");
+}
+
+/// GDAL's "0...10...20...30...40...50...60...70...80...90...100 - done.", a line per stage.
+class Dots {
+ public:
+  void operator()(const Progress& progress) {
+    if (progress.stage != stage_) {
+      stage_ = progress.stage;
+      drawn_ = -1;
+      fmt::print(stderr, "{}: ", stage_);
+    }
+    const int reached = static_cast<int>(std::floor(fraction(progress) * kSteps));
+    while (drawn_ < reached) {
+      ++drawn_;
+      drawn_ % 4 == 0 ? fmt::print(stderr, "{}", drawn_ / 4 * 10) : fmt::print(stderr, ".");
+    }
+    if (finished(progress) && reached == kSteps && !done_) fmt::print(stderr, " - done.\n");
+    done_ = reached == kSteps;
+    std::fflush(stderr);
+  }
+
+ private:
+  static constexpr int kSteps = 40;
+  std::string stage_;
+  int drawn_ = -1;
+  bool done_ = false;
+};
+
+void print_json(const Progress& progress) {
+  nlohmann::ordered_json line{{"stage", progress.stage},
+                              {"done", progress.done},
+                              {"total", progress.total},
+                              {"units_per_second", progress.rate}};
+  if (const double left = seconds_left(progress); left >= 0) line["seconds_left"] = left;
+  fmt::print(stderr, "{}\n", line.dump());
+}
+
+/// For logs: a line when half a minute has passed.
+class SparseLines {
+ public:
+  void operator()(const Progress& progress) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(30)) return;
+    last_ = now;
+    fmt::print(stderr, "{}: {:.0f} %, {}, {} left\n", progress.stage, 100 * fraction(progress), speed(progress),
+               clock_time(seconds_left(progress)));
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace
+
+std::function<void(const Progress&)> progress_renderer(const Session& session) {
+  const bool automatic = session.progress == "auto";
+  if (session.progress == "none" || (automatic && session.quiet)) return {};
+  if (session.progress == "bar" || (automatic && isatty(STDERR_FILENO))) return draw_bar;
+  if (session.progress == "dots") return Dots();
+  if (session.progress == "json") return print_json;
+  return SparseLines();
+}
+
+double seconds_left(const Progress& progress) {
+  if (!(progress.rate > 0)) return -1;
+  return std::max(0.0, static_cast<double>(progress.total) - progress.done) / progress.rate;
+}
+
+std::string clock_time(double seconds) {
+  if (!(seconds >= 0) || seconds > 1e8) return "-:--";
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+}  // namespace waymark

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/session.hpp"
+
+#include <cpl_conv.h>
+
+#include "apps/log.hpp"
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+std::string quoted(const std::string& word) {
+  constexpr auto plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./%@";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) c == '\'' ? text += "'\\''" : text += c;
+  return text + "'";
+}
+
+}  // namespace
+
+std::vector<Argument> global_arguments(Session& session) {
+  return {
+      {"-h,--help", "", &session.help, "Show what a command does, its options and examples"},
+      {"--version", "", &session.version, "Show the version"},
+      {"-q,--quiet", "", &session.quiet, "Say nothing but errors"},
+      {"-v,--verbose", "", &session.verbose, "Say more: every unit of work, every input file"},
+      {"--threads", "N", &session.threads, "Threads to compute with (default: one per processor)"},
+      {"--progress", "HOW", &session.progress,
+       "Show progress on standard error as a bar, GDAL's dots, JSON lines or not at all; auto is a bar on a "
+       "terminal and a line now and then elsewhere",
+       false, {"auto", "bar", "dots", "json", "none"}},
+      {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
+  };
+}
+
+void begin(const Session& session) {
+  set_log_level(session.quiet ? LogLevel::errors : session.verbose ? LogLevel::all : LogLevel::warnings);
+  if (session.threads < 0)
+    throw Error(ErrorCode::usage, "--threads must be 1 or more, or 0 for one per processor, is " +
+                                      std::to_string(session.threads));
+  for (const std::string& setting : session.gdal_config) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw Error(ErrorCode::usage, "--config takes KEY=VALUE, is '" + setting + "'", "",
+                  "e.g. --config GDAL_CACHEMAX=512");
+    CPLSetConfigOption(setting.substr(0, equals).c_str(), setting.substr(equals + 1).c_str());
+  }
+}
+
+std::string quoted(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
+  return line;
+}
+
+std::string program_version() { return "waymark " WAYMARK_VERSION; }
+
+}  // namespace waymark
