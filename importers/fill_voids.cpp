@@ -37,13 +37,13 @@ GdalDataset in_memory(std::vector<T>& cells, const Window& window, const char* t
   return GdalDataset(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
 }
 
-// Float32 is what GDAL computes with, whatever the raster holds.
+// Float32 is what GDAL computes with, whatever the raster holds. It leaves a void it cannot fill as it was.
 std::vector<float> interpolated(const HeightWindow& heights, const Window& window) {
   std::vector<float> cells;
   std::vector<std::uint8_t> known;
   for (const double height : heights.cells()) {
     known.push_back(height == kNoHeight ? 0 : 255);
-    cells.push_back(height == kNoHeight ? 0 : static_cast<float>(height));
+    cells.push_back(static_cast<float>(height));
   }
   const GdalMessages gdal;
   const GdalDataset raster = in_memory(cells, window, "Float32"), mask = in_memory(known, window, "Byte");
@@ -55,9 +55,6 @@ std::vector<float> interpolated(const HeightWindow& heights, const Window& windo
     throw Error(ErrorCode::environment, "filling voids failed: " + gdal.last_error(), "",
                 "use --nodata ocean or unknown, or fewer threads if memory is short");
   raster->FlushCache(false);
-  mask->FlushCache(false);
-  for (std::size_t i = 0; i < cells.size(); ++i)  // GDAL marks what it filled
-    if (known[i] == 0) cells[i] = static_cast<float>(kNoHeight);
   return cells;
 }
 

@@ -4,7 +4,6 @@
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 
-#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -33,24 +32,39 @@ void collect(const std::string& raster, std::vector<std::string>& files, std::se
   }
 }
 
-}  // namespace
+// A file that is no raster stands for itself; if it should have been one, its reader will say so.
+std::vector<std::string> parts_of(const std::string& path) {
+  try {
+    return files_behind(path);
+  } catch (const Error&) {
+    return {path};
+  }
+}
 
-InputFile hash_file(const std::string& path) {
+std::uint64_t add_content(const std::string& path, Sha256& sum) {
   const GdalMessages gdal;
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
   if (!file)
     throw Error(ErrorCode::input, "the file cannot be read", path, "check that it exists and may be read");
-  Sha256 sum;
-  InputFile found{.path = path, .bytes = 0, .sha256 = {}};
+  std::uint64_t bytes = 0;
   std::string piece(kPiece, '\0');
   while (const std::size_t count = VSIFReadL(piece.data(), 1, kPiece, file.get())) {
     sum.add({piece.data(), count});
-    found.bytes += count;
+    bytes += count;
   }
   if (!VSIFEofL(file.get()))
     throw Error(ErrorCode::input, "reading the file failed: " + gdal.last_error(), path, "try again");
-  found.sha256 = sum.hex();
-  return found;
+  return bytes;
+}
+
+}  // namespace
+
+InputFile hash_file(const std::string& path) {
+  Sha256 sum;
+  InputFile input{.path = path, .bytes = 0, .sha256 = {}};
+  for (const std::string& part : parts_of(path)) input.bytes += add_content(part, sum);
+  input.sha256 = sum.hex();
+  return input;
 }
 
 std::vector<std::string> files_behind(const std::string& raster) {

@@ -83,7 +83,7 @@ void Mosaic::add_file(std::size_t file, const Window& part, const Window& window
     return header.south_up ? header.rows - 1 - (row - place.row) : row - place.row;
   };
   const std::int64_t left = part.column - place.column, right = part.end_column() - place.column;
-  const auto [top, bottom] = std::minmax(file_row(part.row), file_row(part.end_row() - 1));
+  const auto [top, bottom] = std::minmax({file_row(part.row), file_row(part.end_row() - 1)});
   const std::int64_t blocks_across = (header.columns + wide - 1) / wide;
   std::optional<RasterHandles::Lease> open;
   for (std::int64_t block_row = top / tall; block_row <= bottom / tall; ++block_row)

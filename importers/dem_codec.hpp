@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "geo/dem_handle.hpp"
+#include "pipeline/engine/codec.hpp"
+namespace waymark {
+
+/// A DEM on disk is its recipe: files, policy, CRS. Decoding opens the files again, headers only, so shards
+/// on other machines read the rasters themselves. Only a DEM that import_dem opened can be encoded
+/// (std::logic_error).
+template <>
+struct Codec<DemHandle> {
+  static std::string encode(const DemHandle& dem);
+  static DemHandle decode(std::string_view bytes);
+};
+
+}  // namespace waymark

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+#include "geo/dem_source.hpp"
+namespace waymark {
+
+/// "ocean", "unknown", "fill".
+std::string to_string(NodataPolicy policy);
+
+/// Throws Error{usage} with the nearest name where there is no such policy.
+NodataPolicy nodata_policy(std::string_view name);
+
+std::vector<std::string> nodata_policy_names();
+
+}  // namespace waymark
