@@ -9,8 +9,7 @@ namespace waymark {
 
 /// Which files make a DEM, and how they are read.
 struct DemImport {
-  std::vector<std::string>
-      files;  ///< anything GDAL opens, `/vsi...` too; where they overlap the first one wins
+  std::vector<std::string> files = {};  ///< anything GDAL opens, `/vsi...` too; the first one wins
   NodataPolicy nodata = NodataPolicy::ocean;
   std::string crs = {};  ///< instead of the files' own; "local": metres on no body; empty: as the files say
   std::int64_t memory_bytes = std::int64_t{512} << 20;  ///< for decoded blocks, all threads together
@@ -32,9 +31,8 @@ class ImportedDem : public DemSource {
 /// that is no-data, masked, NaN or infinite has no height. South-up files are turned.
 ///  - Files must share CRS, cell size and alignment, within 1/1000 of a cell.
 ///  - Geographic files across the antimeridian join: x may then exceed 180, or be below -180.
-///  - A geographic grid, or one in a cylindrical projection, that goes all the way round wraps; the columns
-///  it
-///    repeats are dropped.
+///  - A grid in degrees or in a cylindrical projection that goes all the way round wraps; columns that
+///    repeat the first ones are dropped.
 /// Throws Error for a file that is missing, damaged, rotated, in no CRS or not a DEM; the hint says what
 /// mends it. Costs about 1 ms per file, and with `inspect` the reading of what overlaps.
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import);
