@@ -16,6 +16,16 @@ install(FILES ${PROJECT_BINARY_DIR}/WaymarkConfig.cmake ${PROJECT_BINARY_DIR}/Wa
         DESTINATION ${package_dir} COMPONENT development)
 
 # The program writes its own man page and completion, so that they cannot disagree with it.
+set(pages ${PROJECT_BINARY_DIR}/pages)
+add_custom_command(OUTPUT ${pages}/waymark.1.gz ${pages}/waymark
+  COMMAND waymark man > ${pages}/waymark.1
+  COMMAND gzip -9nf ${pages}/waymark.1
+  COMMAND waymark completion bash > ${pages}/waymark
+  DEPENDS waymark VERBATIM)
+file(MAKE_DIRECTORY ${pages})
+add_custom_target(waymark_pages ALL DEPENDS ${pages}/waymark.1.gz)
+install(FILES ${pages}/waymark.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${pages}/waymark DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/install-packages --list libraries

@@ -25,7 +25,7 @@ int main(int, char** argv) {
   const RunResult result = run(mapping);
   map.crs = result.artifact<DemHandle>("dem")->geometry().where.crs;
   map.landmarks = result.artifact<std::vector<Landmark>>("landmarks");
-  write_map("consumer.gpkg", map, {.empty_tables = true});
+  write_map("consumer.gpkg", map, {.empty_tables = {"boulder_field"}});
 
   const MapStore store = MapStore::open("consumer.gpkg");
   std::cout << store.count("mountain_top") << " summits, " << store.count("boulder_field") << " boulder fields\n";
