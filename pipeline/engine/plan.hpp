@@ -12,7 +12,7 @@ struct Unit {
   std::string stage;
   std::string item;          ///< "map" or "tile_000003"
   std::optional<Tile> tile;
-  std::string fingerprint;   ///< equal fingerprints, equal results; empty without a work folder
+  std::string fingerprint;   ///< equal fingerprints, equal results; empty where nothing is kept
   std::vector<std::size_t> after;  ///< units whose artifacts it reads, ascending indices into Plan::units
   bool done = false;         ///< its result is in the work folder
 
@@ -22,6 +22,9 @@ struct Unit {
 /// Units in an order in which they can be run: stage by stage, tiles in their order.
 struct Plan {
   std::vector<Unit> units;
+  std::vector<std::size_t> begins = {0};  ///< units of stage s: [begins[s], begins[s + 1])
+
+  std::size_t stage_count() const { return begins.size() - 1; }
 };
 
 /// How a scheduler calls us for one unit.

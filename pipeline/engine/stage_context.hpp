@@ -24,11 +24,17 @@ struct Counts {
   friend bool operator==(const Counts&, const Counts&) = default;
 };
 
+/// What a unit reads from one port.
+struct PortInput {
+  std::vector<ArtifactPtr> items;  ///< one, or one per tile in the order of the tiles
+  bool all_tiles = false;          ///< to be read with read_all
+};
+
 /// What a unit of work is given.
 struct UnitInputs {
   std::string id = {};                                   ///< "find_mountain_tops/tile_000003"
   std::optional<Tile> tile = {};                         ///< of a tile-scope unit
-  std::map<std::string, std::vector<ArtifactPtr>> ports = {};  ///< in item order
+  std::map<std::string, PortInput, std::less<>> ports = {};
   std::filesystem::path base_folder = {};                ///< relative paths of options start here
   int threads = 1;
   std::function<void(double)> progress = {};
@@ -36,10 +42,9 @@ struct UnitInputs {
 
 /// What a unit of work leaves behind.
 struct UnitOutcome {
-  std::map<std::string, Artifact::Value> outputs;  ///< by port
+  std::map<std::string, Artifact::Value, std::less<>> outputs;  ///< by port
   Counts counts;
   std::vector<std::string> warnings;
-  double seconds = 0;
 };
 
 /// All a running stage may touch: its declared ports, its item, and its report. Touching a port it has not
@@ -95,12 +100,13 @@ class StageContext {
   Artifact::Value read_one(std::string_view port, std::type_index type);
   std::vector<Artifact::Value> read_each(std::string_view port, std::type_index type);
   void write_one(std::string_view port, std::type_index type, Artifact::Value value);
-  const std::vector<ArtifactPtr>& declared_input(std::string_view port, std::type_index type) const;
+  const PortInput& declared_input(std::string_view port, std::type_index type) const;
 
   const StageSpec& spec_;
   const UnitInputs& inputs_;
   std::mutex mutex_;
   UnitOutcome outcome_;
+  bool counts_what_goes_in_ = false;
 };
 
 /// `text` where it is absolute or a GDAL name such as "NETCDF:x.nc:z"; else below `folder`.

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/job.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/error.hpp"
+#include "pipeline/engine/option_table.hpp"
+
+namespace waymark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(std::string problem, std::string_view origin, std::string hint = {}) {
+  throw Error(ErrorCode::usage, std::move(problem), std::string(origin), std::move(hint));
+}
+
+/// "3:17", line and column from 1 of a byte, as compilers print it.
+std::string line_and_column(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  const auto line = 1 + std::ranges::count(before, '\n');
+  const std::size_t begin = before.rfind('\n') + 1;  // npos + 1 is 0
+  return fmt::format("{}:{}", line, std::max<std::size_t>(1, before.size() - begin));
+}
+
+/// JSON keeps the last of two equal keys in silence; a job file must not.
+class DuplicateKeys {
+ public:
+  bool operator()(int, Json::parse_event_t event, const Json& parsed) {
+    using Event = Json::parse_event_t;
+    if (event == Event::object_start) open_.emplace_back();
+    if (event == Event::object_end) open_.pop_back();
+    if (event == Event::key && !open_.back().insert(parsed.get<std::string>()).second && first_.empty())
+      first_ = parsed.get<std::string>();
+    return true;
+  }
+  const std::string& first() const { return first_; }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+  std::string first_;
+};
+
+Json parse_json(std::string_view text, std::string_view origin) {
+  DuplicateKeys duplicates;
+  try {
+    Json json = Json::parse(text, std::ref(duplicates));
+    if (!duplicates.first().empty()) refuse(fmt::format("the key '{}' is given twice", duplicates.first()), origin);
+    return json;
+  } catch (const nlohmann::json::parse_error& error) {
+    const std::string what = error.what();
+    const std::size_t detail = what.find(": ");
+    refuse("not valid JSON: " + (detail == std::string::npos ? what : what.substr(detail + 2)),
+           fmt::format("{}:{}", origin, line_and_column(text, error.byte)));
+  }
+}
+
+void expect(bool fits, const std::string& place, const char* kind, const Json& found, std::string_view origin) {
+  if (!fits) refuse(fmt::format("{} must be {}, is {}", place, kind, found.type_name()), origin);
+}
+
+void add_stage(Pipeline& pipeline, const Json& entry, std::size_t index, std::string_view origin) {
+  const std::string place = fmt::format("stages[{}]", index);
+  expect(entry.is_object(), place, "an object", entry, origin);
+  if (!entry.contains("stage")) refuse(place + " has no \"stage\"", origin, "add the name of a stage");
+  expect(entry["stage"].is_string(), place + ".stage", "a string", entry["stage"], origin);
+  Json options = entry;
+  options.erase("stage");
+  pipeline.add(entry["stage"].get<std::string>(), options.dump());
+}
+
+}  // namespace
+
+Job parse_job(std::string_view text, const Registry& registry, std::string_view origin) {
+  const Json json = parse_json(text, origin);
+  expect(json.is_object(), "the job", "an object", json, origin);
+  for (const auto& [key, value] : json.items()) {
+    const std::vector<std::string> keys{"name", "stages"};
+    if (std::ranges::find(keys, key) != keys.end()) continue;
+    const std::string near = nearest_name(key, keys);
+    refuse(fmt::format("the job has no '{}'{}", key, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
+           origin, "a job has a name and stages");
+  }
+  Job job{.name = {}, .pipeline = Pipeline(registry)};
+  if (json.contains("name")) {
+    expect(json["name"].is_string(), "name", "a string", json["name"], origin);
+    job.name = json["name"].get<std::string>();
+  }
+  if (!json.contains("stages")) refuse("the job has no \"stages\"", origin, "a job has a name and stages");
+  expect(json["stages"].is_array(), "stages", "an array", json["stages"], origin);
+  try {
+    for (std::size_t i = 0; i < json["stages"].size(); ++i) add_stage(job.pipeline, json["stages"][i], i, origin);
+    job.pipeline.check();
+  } catch (const Error& error) {
+    throw Error(error.code(), error.problem(), std::string(origin), error.hint());
+  }
+  return job;
+}
+
+Job read_job(const std::filesystem::path& file, const Registry& registry) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw Error(ErrorCode::usage, "cannot read the job file", file.string(), "check the path");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  Job job = parse_job(text, registry, file.string());
+  job.pipeline.base_folder = file.parent_path();
+  return job;
+}
+
+std::string job_as_json(std::string_view name, const Pipeline& pipeline) {
+  Json stages = Json::array();
+  for (const auto& step : pipeline.steps()) {
+    Json stage{{"stage", step->spec().name}};
+    for (const OptionRow& row : option_table(*step))
+      std::visit([&](const auto& value) { stage[row.name] = value; }, row.value);
+    stages.push_back(std::move(stage));
+  }
+  return Json{{"name", name}, {"stages", std::move(stages)}}
+      .dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace waymark

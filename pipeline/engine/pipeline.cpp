@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/pipeline.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "pipeline/engine/option_reader.hpp"
+
+namespace waymark {
+namespace {
+
+using Steps = std::vector<std::unique_ptr<Step>>;
+
+std::string place(std::size_t index) { return fmt::format("stages[{}]", index); }
+std::string place(const Steps& steps, std::size_t index) {
+  return fmt::format("stages[{}] {}", index, steps[index]->spec().name);
+}
+
+[[noreturn]] void refuse(std::string problem, std::string hint = {}) {
+  throw Error(ErrorCode::usage, std::move(problem), {}, std::move(hint));
+}
+
+const OutputPort* output_of(const Step& step, std::string_view artifact) {
+  const auto& outputs = step.spec().outputs;
+  const auto port = std::ranges::find(outputs, artifact, &OutputPort::name);
+  return port == outputs.end() ? nullptr : &*port;
+}
+
+std::vector<std::string> stages_where(const Registry& registry, auto predicate) {
+  std::vector<std::string> names;
+  for (const std::string& name : registry.names())
+    if (predicate(registry.at(name))) names.push_back(name);
+  return names;
+}
+
+std::string hint_to_add(const std::vector<std::string>& stages) {
+  return stages.empty() ? "" : fmt::format("add before it: {}", fmt::join(stages, " or "));
+}
+
+[[noreturn]] void refuse_missing(const Steps& steps, std::size_t reader, const std::string& artifact,
+                                 const Registry& registry) {
+  const std::string problem =
+      fmt::format("{} reads '{}', which no stage before it writes", place(steps, reader), artifact);
+  for (std::size_t later = reader; later < steps.size(); ++later)
+    if (output_of(*steps[later], artifact))
+      refuse(problem, fmt::format("{} writes it: move it up", place(steps, later)));
+  refuse(problem, hint_to_add(stages_where(registry, [&](const Step& s) { return output_of(s, artifact); })));
+}
+
+void check_inputs(const Steps& steps, std::size_t reader, const Registry& registry) {
+  for (const InputPort& input : steps[reader]->spec().inputs) {
+    const OutputPort* output = nullptr;
+    std::size_t writer = 0;
+    for (; writer < reader && !output; ++writer) output = output_of(*steps[writer], input.name);
+    if (!output) refuse_missing(steps, reader, input.name, registry);
+    if (output->type != input.type)
+      refuse(fmt::format("{} reads '{}' as {}, but {} writes it as {}", place(steps, reader), input.name,
+                         readable_type(input.type), place(steps, writer - 1), readable_type(output->type)));
+  }
+}
+
+void check_outputs(const Steps& steps, std::size_t second) {
+  for (std::size_t first = 0; first < second; ++first) {
+    if (steps[first]->spec().name == steps[second]->spec().name)
+      refuse(fmt::format("{} and {} are the same stage", place(steps, first), place(steps, second)));
+    for (const OutputPort& output : steps[second]->spec().outputs)
+      if (output_of(*steps[first], output.name))
+        refuse(fmt::format("{} and {} both write '{}'", place(steps, first), place(steps, second), output.name));
+    if (steps[first]->spec().lists && steps[second]->spec().lists)
+      refuse(fmt::format("{} and {} both list tiles", place(steps, first), place(steps, second)));
+  }
+}
+
+void check_tiles(const Steps& steps, std::size_t index, const Registry& registry) {
+  if (steps[index]->spec().scope != Scope::tile) return;
+  for (std::size_t earlier = 0; earlier < index; ++earlier)
+    if (steps[earlier]->spec().lists) return;
+  refuse(fmt::format("{} works on tiles, but no stage before it lists them", place(steps, index)),
+         hint_to_add(stages_where(registry, [](const Step& s) { return s.spec().lists.has_value(); })));
+}
+
+}  // namespace
+
+Pipeline& Pipeline::add(std::string_view stage, std::string_view options_json) {
+  auto step = [&] {
+    try {
+      return registry_->at(stage).clone();
+    } catch (const Error& error) {
+      refuse(place(steps_.size()) + ": " + error.problem(), error.hint());
+    }
+  }();
+  if (!options_json.empty()) read_options(*step, options_json, place(steps_.size()));
+  return add(std::move(step));
+}
+
+Pipeline& Pipeline::add(std::unique_ptr<Step> step) {
+  check_options(*step, place(steps_.size()));
+  steps_.push_back(std::move(step));
+  return *this;
+}
+
+Pipeline& Pipeline::set(std::string_view assignment) {
+  const std::size_t dot = assignment.find('.'), equals = assignment.find('=');
+  if (equals == std::string_view::npos || dot >= equals)
+    refuse(fmt::format("'{}' is not STAGE.OPTION=VALUE", assignment), "as in find_mountain_tops.min_prominence=25");
+  const std::string_view stage = assignment.substr(0, dot);
+  std::vector<std::string> names;
+  for (const auto& step : steps_) {
+    names.push_back(step->spec().name);
+    if (names.back() != stage) continue;
+    set_option(*step, assignment.substr(dot + 1, equals - dot - 1), assignment.substr(equals + 1));
+    return *this;
+  }
+  const std::string near = nearest_name(stage, names);
+  refuse(fmt::format("the job has no stage '{}'{}", stage,
+                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
+         fmt::format("its stages: {}", fmt::join(names, ", ")));
+}
+
+const Step* Pipeline::writer_of(std::string_view artifact) const {
+  for (const auto& step : steps_)
+    if (output_of(*step, artifact)) return step.get();
+  return nullptr;
+}
+
+void Pipeline::check() const {
+  if (steps_.empty()) refuse("the job has no stages");
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    check_inputs(steps_, i, *registry_);
+    check_outputs(steps_, i);
+    check_tiles(steps_, i, *registry_);
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/progress_meter.hpp"
+
+#include <utility>
+
+namespace waymark {
+
+ProgressMeter::ProgressMeter(const Listener& listener, std::string stage, std::int64_t total)
+    : listener_(listener), progress_{.stage = std::move(stage), .done = 0, .total = total, .rate = 0} {
+  if (listener_) tell(begin_);
+}
+
+void ProgressMeter::add(double units) {
+  if (!listener_) return;
+  const std::lock_guard lock(mutex_);
+  progress_.done += units;
+  const auto now = Clock::now();
+  if (now - told_ >= std::chrono::milliseconds(50)) tell(now);
+}
+
+void ProgressMeter::finish() {
+  if (!listener_) return;
+  const std::lock_guard lock(mutex_);
+  tell(Clock::now());
+}
+
+void ProgressMeter::tell(Clock::time_point now) {
+  const double seconds = std::chrono::duration<double>(now - begin_).count();
+  progress_.rate = seconds > 0 ? progress_.done / seconds : 0;
+  told_ = now;
+  listener_(progress_);
+}
+
+void UnitProgress::reach(double done_fraction) {
+  const std::lock_guard lock(mutex_);
+  if (!(done_fraction > reached_)) return;
+  meter_.add(done_fraction - std::exchange(reached_, done_fraction));
+}
+
+}  // namespace waymark

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/registry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+bool is_name(std::string_view text) {
+  return !text.empty() && text.front() >= 'a' && text.front() <= 'z' &&
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
+}
+
+/// What contradicts itself in a spec; empty if nothing does.
+std::string contradiction(const StageSpec& spec) {
+  if (!is_name(spec.name)) return "its name is not [a-z][a-z0-9_]*";
+  for (const OutputPort& port : spec.outputs) {
+    if (!is_name(port.name)) return "its output '" + port.name + "' is not [a-z][a-z0-9_]*";
+    if (std::ranges::count(spec.outputs, port.name, &OutputPort::name) > 1)
+      return "it declares the output '" + port.name + "' twice";
+  }
+  if (spec.lists) {
+    if (spec.scope != Scope::map || *spec.lists != Scope::tile) return "a listing stage has map scope, lists tiles";
+    if (!spec.inputs.empty()) return "a listing stage runs while planning: it can read no artifact";
+    if (std::ranges::count(spec.outputs, std::type_index(typeid(std::vector<Tile>)), &OutputPort::type) != 1)
+      return "a listing stage writes one std::vector<Tile>";
+  }
+  if (spec.halo < 0 || (spec.halo > 0 && spec.scope != Scope::tile)) return "only a tile has a halo, >= 0 cells";
+  return {};
+}
+
+}  // namespace
+
+void Registry::add(std::unique_ptr<Step> step) {
+  const StageSpec& spec = step->spec();
+  if (const std::string problem = contradiction(spec); !problem.empty())
+    throw std::logic_error(fmt::format("stage '{}': {}", spec.name, problem));
+  const std::string name = spec.name;
+  if (!steps_.emplace(name, std::move(step)).second) throw std::logic_error("two stages named " + name);
+}
+
+std::vector<std::string> Registry::names() const {
+  std::vector<std::string> all;
+  for (const auto& [name, step] : steps_) all.push_back(name);
+  return all;
+}
+
+const Step& Registry::at(std::string_view name) const {
+  if (const auto found = steps_.find(name); found != steps_.end()) return *found->second;
+  const std::string near = nearest_name(name, names());
+  throw Error(ErrorCode::usage,
+              fmt::format("there is no stage '{}'{}", name,
+                          near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
+              {}, fmt::format("stages: {}", fmt::join(names(), ", ")));
+}
+
+}  // namespace waymark

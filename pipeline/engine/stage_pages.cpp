@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/stage_pages.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pipeline/engine/option_table.hpp"
+
+namespace waymark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json as_json(const OptionValue& value) {
+  return std::visit([](const auto& v) { return Json(v); }, value);
+}
+
+/// The default as a person types it.
+std::string readable_default(const OptionRow& row) {
+  if (const auto* text = std::get_if<std::string>(&row.value)) return text->empty() ? "none" : *text;
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&row.value))
+    return texts->empty() ? "none" : fmt::format("{}", fmt::join(*texts, ", "));
+  if (const auto* number = std::get_if<double>(&row.value))
+    return fmt::format("{}{}{}", *number, row.unit.empty() ? "" : " ", row.unit);
+  return as_json(row.value).dump();
+}
+
+std::string readable_values(const OptionRow& row) {
+  if (!row.field.choices.empty()) return fmt::format("{}", fmt::join(row.field.choices, ", "));
+  const std::string range = readable_range(row);
+  return range.empty() ? json_type(row.value) : range;
+}
+
+/// "divide_tree (DivideTree), tiles (vector<Tile>)", or "none".
+template <class Ports>
+std::string readable_ports(const Ports& ports) {
+  std::string text;
+  for (const auto& port : ports)
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", port.name, readable_type(port.type));
+  return text.empty() ? "none" : text;
+}
+
+std::string readable_scope(const StageSpec& spec) {
+  if (spec.lists) return "the whole map; runs while planning and decides the tiles";
+  if (spec.scope == Scope::map) return "the whole map";
+  return spec.halo == 0 ? "one tile" : fmt::format("one tile and {} cells around it", spec.halo);
+}
+
+Json option_schema(const OptionRow& row) {
+  Json schema{{"type", json_type(row.value)}, {"description", row.field.help}, {"default", as_json(row.value)}};
+  Json strings = row.field.choices.empty() ? Json::object() : Json{{"enum", row.field.choices}};
+  if (schema["type"] == "array") schema["items"] = Json{{"type", "string"}};
+  (schema["type"] == "array" ? schema["items"] : schema).update(strings);
+  if (!row.unit.empty()) schema["x-unit"] = row.unit;
+  if (std::isfinite(row.field.min)) schema["minimum"] = row.field.min;
+  if (std::isfinite(row.field.max)) schema["maximum"] = row.field.max;
+  if (!row.field.affects_result) schema["x-affects-result"] = false;
+  return schema;
+}
+
+Json option_schemas(const Step& step) {
+  Json schemas = Json::object();
+  for (const OptionRow& row : option_table(step)) schemas[row.name] = option_schema(row);
+  return schemas;
+}
+
+template <class Ports>
+Json ports_json(const Ports& ports) {
+  Json list = Json::array();
+  for (const auto& port : ports) list.push_back({{"name", port.name}, {"type", readable_type(port.type)}});
+  return list;
+}
+
+/// A cell of a Markdown table.
+std::string cell(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  return text;
+}
+
+}  // namespace
+
+std::string stage_as_text(const Step& step) {
+  const StageSpec& spec = step.spec();
+  std::string text = fmt::format("{}: {}\n\n  works on  {}\n  reads     {}\n  writes    {}\n", spec.name,
+                                 spec.summary, readable_scope(spec), readable_ports(spec.inputs),
+                                 readable_ports(spec.outputs));
+  const auto rows = option_table(step);
+  if (!rows.empty()) text += "\nOptions:\n";
+  for (const OptionRow& row : rows)
+    text += fmt::format("  {:<20} {}\n  {:<20} {}; default: {}\n", row.name, row.field.help, "", readable_values(row),
+                        readable_default(row));
+  return text;
+}
+
+std::string stage_as_markdown(const Step& step) {
+  const StageSpec& spec = step.spec();
+  std::string page = fmt::format(
+      "# {}\n\n{}\n\n| | |\n|---|---|\n| version | {} |\n| works on | {} |\n| reads | {} |\n| writes | {} |\n",
+      spec.name, spec.summary, spec.version, readable_scope(spec), cell(readable_ports(spec.inputs)),
+      cell(readable_ports(spec.outputs)));
+  const auto rows = option_table(step);
+  if (!rows.empty()) page += "\n| option | effect | values | default |\n|---|---|---|---|\n";
+  for (const OptionRow& row : rows)
+    page += fmt::format("| `{}` | {}{} | {} | {} |\n", row.name, cell(row.field.help),
+                        row.field.affects_result ? "" : " (does not change the result)", cell(readable_values(row)),
+                        cell(readable_default(row)));
+  page += fmt::format("\nIn a job file: `{{\"stage\": \"{}\"", spec.name);
+  for (const OptionRow& row : rows) page += fmt::format(", \"{}\": {}", row.name, as_json(row.value).dump());
+  return page + "}`\n";
+}
+
+std::string stage_as_schema(const Step& step) {
+  Json properties{{"stage", {{"const", step.spec().name}}}};
+  properties.update(option_schemas(step));
+  return Json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", step.spec().name},
+              {"description", step.spec().summary},
+              {"type", "object"},
+              {"properties", properties},
+              {"required", {"stage"}},
+              {"additionalProperties", false}}
+      .dump(2);
+}
+
+std::string stage_as_json(const Step& step) {
+  const StageSpec& spec = step.spec();
+  return Json{{"name", spec.name},
+              {"summary", spec.summary},
+              {"version", spec.version},
+              {"scope", to_string(spec.scope)},
+              {"lists", spec.lists ? Json(to_string(*spec.lists)) : Json(nullptr)},
+              {"halo", spec.halo},
+              {"inputs", ports_json(spec.inputs)},
+              {"outputs", ports_json(spec.outputs)},
+              {"options", option_schemas(step)}}
+      .dump(2);
+}
+
+}  // namespace waymark

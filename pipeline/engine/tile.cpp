@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/tile.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace waymark {
+
+Window grown(const Window& window, std::int64_t halo) {
+  return {.column = window.column - halo,
+          .row = window.row - halo,
+          .columns = window.columns + 2 * halo,
+          .rows = window.rows + 2 * halo};
+}
+
+// A row of numbers per tile: index, column, row, then the window.
+std::string Codec<std::vector<Tile>>::encode(const std::vector<Tile>& tiles) {
+  auto rows = nlohmann::json::array();
+  for (const auto& [index, column, row, cells] : tiles)
+    rows.push_back({index, column, row, cells.column, cells.row, cells.columns, cells.rows});
+  return rows.dump();
+}
+
+std::vector<Tile> Codec<std::vector<Tile>>::decode(std::string_view bytes) {
+  std::vector<Tile> tiles;
+  for (const auto& row : nlohmann::json::parse(bytes)) {
+    const auto n = row.get<std::vector<std::int64_t>>();
+    tiles.push_back({n.at(0), n.at(1), n.at(2), {n.at(3), n.at(4), n.at(5), n.at(6)}});
+  }
+  return tiles;
+}
+
+}  // namespace waymark
