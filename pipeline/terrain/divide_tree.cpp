@@ -38,6 +38,8 @@ class TileSurvey {
     for (const auto& saddle : saddle_cells_) add_saddle(saddle);
     note_contacts();
     label_border();
+    tree_.maxima = std::ranges::count(tree_.nodes, false, &DivideTree::Node::portal);
+    tree_.min_prominence = options_.min_prominence;
     std::ranges::sort(tree_.saddles, [](const auto& p, const auto& q) {
       return is_higher(p.height, p.cell, q.height, q.cell);
     });

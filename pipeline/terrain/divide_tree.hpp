@@ -37,6 +37,8 @@ struct DivideTree {
   std::vector<Saddle> saddles;  ///< in the order of cell_order.hpp, highest first
   std::vector<Border> border;   ///< for each cell beside another tile: the summit or portal above it; by cell
   std::int64_t cells = 0;       ///< cells with a height
+  std::int64_t maxima = 0;      ///< local maxima before any were pruned
+  double min_prominence = 0;    ///< DivideTreeOptions::min_prominence
   double lowest = 0, highest = 0;  ///< of those; 0 where there are none
 };
 

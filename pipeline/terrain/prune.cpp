@@ -38,6 +38,8 @@ DivideTree without_contracted(const DivideTree& tree, std::vector<DivideTree::Sa
   std::vector<std::int32_t> number(tree.nodes.size(), -1);
   DivideTree kept;
   kept.cells = tree.cells;
+  kept.maxima = tree.maxima;
+  kept.min_prominence = tree.min_prominence;
   kept.lowest = tree.lowest;
   kept.highest = tree.highest;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {

@@ -67,6 +67,14 @@ void ReliefPyramid::add_levels() {
   }
 }
 
+BlockRelief ReliefPyramid::finest() const {
+  const auto highest = highest_[0].cells();
+  const auto voids = voids_[0].cells();
+  return {{0, 0, highest_[0].columns(), highest_[0].rows()},
+          {highest.begin(), highest.end()},
+          {voids.begin(), voids.end()}};
+}
+
 Window ReliefPyramid::cells(const Block& b) const {
   const std::int64_t side = kReliefBlock << b.level;
   Window cells{b.column * side, b.row * side, side, side};

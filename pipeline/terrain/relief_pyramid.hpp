@@ -47,6 +47,10 @@ class ReliefPyramid {
   bool contains(const Block& b) const {
     return highest_[static_cast<std::size_t>(b.level)].contains(b.column, b.row);
   }
+  std::int64_t columns() const { return columns_; }  ///< of the grid, in cells
+  std::int64_t rows() const { return rows_; }
+  /// Level 0 as if one tile had held the whole grid.
+  BlockRelief finest() const;
   /// The cells of a block, cut to the grid.
   Window cells(const Block& b) const;
 

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/dem_handle.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/terrain/codecs.hpp"
+
+namespace waymark {
+namespace {
+
+struct FindMountainTops {
+  struct Options {
+    Meters min_prominence{20};
+    void describe(OptionVisitor& option) {
+      option("min_prominence", min_prominence,
+             {.help = "Smallest prominence of a summit that is kept; 0 keeps all", .min = 0, .max = 40000});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr Out<DivideTree> divide_tree{"divide_tree"};
+  static constexpr Out<BlockRelief> block_relief_out{"block_relief"};
+
+  static StageSpec spec() {
+    return {.name = "find_mountain_tops",
+            .summary = "Finds the summits and saddles of a tile",
+            .version = 1,
+            .scope = Scope::tile,
+            .halo = 1,
+            .inputs = {dem},
+            .outputs = {divide_tree, block_relief_out}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    const DemSource& source = *unit.read(dem);
+    const HeightWindow heights = source.read(unit.cells_with_halo());
+    unit.progress(0.5);
+    unit.write(block_relief_out, block_relief(heights, unit.tile().cells));
+    unit.write(divide_tree,
+               build_divide_tree(heights, unit.tile().cells, source.geometry(),
+                                 {.min_prominence = options.min_prominence.value,
+                                  .voids_hide_ground = source.nodata_policy() != NodataPolicy::ocean}));
+  }
+};
+
+}  // namespace
+
+void register_stage_find_mountain_tops(Registry& registry);
+void register_stage_find_mountain_tops(Registry& registry) { registry.add<FindMountainTops>(); }
+
+}  // namespace waymark

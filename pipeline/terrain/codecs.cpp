@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/terrain/codecs.hpp"
+
+#include "core/bytes.hpp"
+
+namespace waymark {
+namespace {
+
+// Each layout is told once and serves both ways: `io` is a ByteWriter or a ByteReader.
+
+void layout(auto& io, auto& node) requires requires { node.portal; } {
+  io(node.cell), io(node.height), io(node.contact), io(node.portal);
+}
+void layout(auto& io, auto& saddle) requires requires { saddle.a; } {
+  io(saddle.cell), io(saddle.height), io(saddle.a), io(saddle.b);
+}
+void layout(auto& io, auto& border) requires requires { border.node; } {
+  io(border.cell), io(border.height), io(border.node);
+}
+void layout(auto& io, auto& window) requires requires { window.columns; } {
+  io(window.column), io(window.row), io(window.columns), io(window.rows);
+}
+void layout(auto& io, auto& summit) requires requires { summit.prominence_low; } {
+  io(summit.cell), io(summit.height), io(summit.prominence), io(summit.prominence_low);
+  io(summit.saddle), io(summit.saddle_height), io(summit.parent);
+}
+
+template <class T>
+void write_all(ByteWriter& out, const std::vector<T>& items) {
+  out(static_cast<std::uint64_t>(items.size()));
+  for (const T& item : items) layout(out, item);
+}
+template <class T>
+std::vector<T> read_all(ByteReader& in) {
+  std::vector<T> items(in.length(8));
+  for (T& item : items) layout(in, item);
+  return items;
+}
+
+void write_optional(ByteWriter& out, const std::optional<double>& value) {
+  out(value.has_value());
+  out(value.value_or(0));
+}
+std::optional<double> read_optional(ByteReader& in) {
+  const bool known = in.get<bool>();
+  const double value = in.get<double>();
+  return known ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::string Codec<DivideTree>::encode(const DivideTree& tree) {
+  ByteWriter out;
+  write_all(out, tree.nodes);
+  write_all(out, tree.saddles);
+  write_all(out, tree.border);
+  out(tree.cells), out(tree.maxima), out(tree.min_prominence), out(tree.lowest), out(tree.highest);
+  return out.take();
+}
+
+DivideTree Codec<DivideTree>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  DivideTree tree;
+  tree.nodes = read_all<DivideTree::Node>(in);
+  tree.saddles = read_all<DivideTree::Saddle>(in);
+  tree.border = read_all<DivideTree::Border>(in);
+  in(tree.cells), in(tree.maxima), in(tree.min_prominence), in(tree.lowest), in(tree.highest);
+  in.expect_end();
+  return tree;
+}
+
+std::string Codec<BlockRelief>::encode(const BlockRelief& relief) {
+  ByteWriter out;
+  layout(out, relief.blocks);
+  out(relief.highest), out(relief.voids);
+  return out.take();
+}
+
+BlockRelief Codec<BlockRelief>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  BlockRelief relief;
+  layout(in, relief.blocks);
+  in(relief.highest), in(relief.voids);
+  in.expect_end();
+  return relief;
+}
+
+// The finest level is a single tile's relief; the others follow from it.
+std::string Codec<ReliefPyramid>::encode(const ReliefPyramid& pyramid) {
+  ByteWriter out;
+  out(pyramid.columns()), out(pyramid.rows()), out(Codec<BlockRelief>::encode(pyramid.finest()));
+  return out.take();
+}
+
+ReliefPyramid Codec<ReliefPyramid>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  const auto columns = in.get<std::int64_t>(), rows = in.get<std::int64_t>();
+  std::string finest;
+  in(finest);
+  in.expect_end();
+  const std::shared_ptr<const BlockRelief> whole[] = {
+      std::make_shared<const BlockRelief>(Codec<BlockRelief>::decode(finest))};
+  return {whole, columns, rows};
+}
+
+std::string Codec<std::vector<Summit>>::encode(const std::vector<Summit>& summits) {
+  ByteWriter out;
+  write_all(out, summits);
+  return out.take();
+}
+
+std::vector<Summit> Codec<std::vector<Summit>>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  auto summits = read_all<Summit>(in);
+  in.expect_end();
+  return summits;
+}
+
+std::string Codec<std::vector<Isolation>>::encode(const std::vector<Isolation>& isolations) {
+  ByteWriter out;
+  out(static_cast<std::uint64_t>(isolations.size()));
+  for (const Isolation& i : isolations) {
+    write_optional(out, i.metres), write_optional(out, i.metres_low);
+    out(i.higher.column), out(i.higher.row);
+  }
+  return out.take();
+}
+
+std::vector<Isolation> Codec<std::vector<Isolation>>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  std::vector<Isolation> isolations(in.length(8));
+  for (Isolation& i : isolations) {
+    i.metres = read_optional(in), i.metres_low = read_optional(in);
+    in(i.higher.column), in(i.higher.row);
+  }
+  in.expect_end();
+  return isolations;
+}
+
+}  // namespace waymark
