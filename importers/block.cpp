@@ -32,7 +32,7 @@ std::vector<T> read_cells(GDALRasterBand& band, const RasterHeader& header, int 
   const auto count =
       static_cast<std::size_t>(header.block_columns) * static_cast<std::size_t>(header.block_rows);
   const GDALDataType stored = band.GetRasterDataType();
-  const GdalMessages gdal;
+  const GdalListener gdal;
   std::vector<T> cells(count);
   CPLErr result = CE_None;
   if (stored == gdal_type<T>()) {
@@ -56,7 +56,7 @@ void apply_mask(GDALRasterBand& band, const RasterHeader& header, int column, in
   const int columns = static_cast<int>(std::min<std::int64_t>(header.block_columns, header.columns - left));
   const int rows = static_cast<int>(std::min<std::int64_t>(header.block_rows, header.rows - top));
   std::vector<std::uint8_t> shown(cells.size());
-  const GdalMessages gdal;
+  const GdalListener gdal;
   if (band.GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, shown.data(), columns, rows, GDT_Byte,
                                    1, header.block_columns, nullptr) != CE_None)
     refuse(header, column, row, gdal.last_error());

@@ -45,7 +45,7 @@ std::vector<float> interpolated(const HeightWindow& heights, const Window& windo
     known.push_back(height == kNoHeight ? 0 : 255);
     cells.push_back(static_cast<float>(height));
   }
-  const GdalMessages gdal;
+  const GdalListener gdal;
   const GdalDataset raster = in_memory(cells, window, "Float32"), mask = in_memory(known, window, "Byte");
   char temporary[] = "TEMP_FILE_DRIVER=MEM";
   char* options[] = {temporary, nullptr};

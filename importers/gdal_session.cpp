@@ -30,26 +30,26 @@ bool is_plain_path(const std::string& path) {
 }  // namespace
 
 void GdalClose::operator()(GDALDataset* dataset) const {
-  const GdalMessages quiet;
+  const GdalListener quiet;
   GDALClose(dataset);
 }
 
-GdalMessages::GdalMessages() {
+GdalListener::GdalListener() {
   CPLPushErrorHandlerEx(
       [](CPLErr level, CPLErrorNum, const char* text) {
-        if (level >= CE_Failure) static_cast<GdalMessages*>(CPLGetErrorHandlerUserData())->last_error_ = text;
+        if (level >= CE_Failure) static_cast<GdalListener*>(CPLGetErrorHandlerUserData())->last_error_ = text;
       },
       this);
   static std::once_flag registered;
   std::call_once(registered, GDALAllRegister);
 }
 
-GdalMessages::~GdalMessages() {
+GdalListener::~GdalListener() {
   CPLPopErrorHandler();
 }
 
 GdalDataset open_raster(const std::string& path) {
-  const GdalMessages gdal;
+  const GdalListener gdal;
   GdalDataset dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) refuse(path, gdal.last_error());

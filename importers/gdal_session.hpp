@@ -14,11 +14,11 @@ using GdalDataset = std::unique_ptr<GDALDataset, GdalClose>;
 
 /// Keeps what GDAL says in this thread while it lives, so that nothing leaks to the terminal. Registers the
 /// drivers when first used.
-class GdalMessages {
+class GdalListener {
  public:
-  GdalMessages();
-  ~GdalMessages();
-  GdalMessages(GdalMessages&&) = delete;
+  GdalListener();
+  ~GdalListener();
+  GdalListener(GdalListener&&) = delete;
 
   /// The last error, without the path that GDAL likes to put first; empty if there was none.
   const std::string& last_error() const { return last_error_; }

@@ -23,7 +23,7 @@ struct CloseFile {
 // A VRT may be built on VRTs.
 void collect(const std::string& raster, std::vector<std::string>& files, std::set<std::string>& known) {
   const GdalDataset dataset = open_raster(raster);
-  const GdalMessages quiet;
+  const GdalListener quiet;
   const std::unique_ptr<char*, decltype(&CSLDestroy)> list(dataset->GetFileList(), &CSLDestroy);
   for (char** file = list.get(); file && *file; ++file) {
     if (!known.insert(*file).second) continue;
@@ -42,7 +42,7 @@ std::vector<std::string> parts_of(const std::string& path) {
 }
 
 std::uint64_t add_content(const std::string& path, Sha256& sum) {
-  const GdalMessages gdal;
+  const GdalListener gdal;
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
   if (!file)
     throw Error(ErrorCode::input, "the file cannot be read", path, "check that it exists and may be read");

@@ -159,7 +159,7 @@ CellType cell_type(GDALDataType type, bool masked) {  // a masked cell becomes N
 }  // namespace
 
 RasterHeader read_header(GDALDataset& dataset, const std::string& path, const std::string& crs) {
-  const GdalMessages quiet;
+  const GdalListener quiet;
   GDALRasterBand& band = only_band(dataset, path);
   const auto transform = transform_of(dataset, path);
   RasterHeader header;
