@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "landmarks/sensor_profile.hpp"
+namespace waymark {
+
+void register_sensor_bearing_camera(SensorRegistry& sensors);
+void register_sensor_bearing_camera(SensorRegistry& sensors) {
+  sensors.add(
+      {.name = "bearing_camera",
+       .summary = "One camera that measures directions: summits on the horizon, by how far they stand out",
+       .weights = {{"mountain_top", "prominence", 1},
+                   {"mountain_top", "isolation", 1},
+                   {"mountain_top", "elevation", 0.5},
+                   {"rock", "height", 1},
+                   {"tree", "height", 1}}});
+}
+
+}  // namespace waymark

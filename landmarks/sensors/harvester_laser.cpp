@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "landmarks/sensor_profile.hpp"
+namespace waymark {
+
+void register_sensor_harvester_laser(SensorRegistry& sensors);
+void register_sensor_harvester_laser(SensorRegistry& sensors) {
+  sensors.add({.name = "harvester_laser",
+               .summary = "Scanner on a forest machine, level with the stems: sees stem diameters",
+               .weights = {{"tree", "diameter", 1}}});
+}
+
+}  // namespace waymark

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "landmarks/sensor_profile.hpp"
+namespace waymark {
+
+void register_sensor_horizontal_laser(SensorRegistry& sensors);
+void register_sensor_horizontal_laser(SensorRegistry& sensors) {
+  sensors.add({.name = "horizontal_laser",
+               .summary = "Line scanner that looks level: sees how wide things are, not how tall",
+               .weights = {{"rock", "radius", 1},
+                           {"rock", "height", 0.2},
+                           {"tree", "diameter", 1},
+                           {"crater", "radius", 0.2}}});
+}
+
+}  // namespace waymark
