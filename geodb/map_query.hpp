@@ -23,7 +23,8 @@ struct MapQuery {
     double x = 0, y = 0;
     Meters radius;
   };
-  /// The `k` nearest to x, y that meet the other conditions, nearest first; distance as for Near.
+  /// The `k` nearest to x, y that meet the other conditions, nearest first; distance as for Near. Not together
+  /// with Near or largest_first.
   struct NearestK {
     double x = 0, y = 0;
     std::int64_t k = 1;

@@ -42,9 +42,10 @@ class MapStore {
   std::vector<RunRecord> runs() const;                                   ///< oldest first
   bool has_dem_coverage() const;  ///< read it with GDAL as "GPKG:<path>:dem"
 
+  struct Connection;  ///< private to geodb
+
  private:
   friend class MapEditor;
-  struct Connection;
   explicit MapStore(std::unique_ptr<Connection> connection);
   std::unique_ptr<Connection> connection_;
 };

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <vector>
+#include "core/observation.hpp"
+#include "geodb/sqlite.hpp"
+#include "landmarks/landmark_type.hpp"
+namespace waymark {
+
+/// Stores observations and links the kept ones to their landmarks.
+class EvidenceWriter {
+ public:
+  EvidenceWriter(const sqlite::Database& database, const TypeRegistry& types);
+  /// `landmark` is the row of its landmark; absent for a rejected observation.
+  void add(const Observation& observation, std::optional<std::int64_t> landmark);
+
+ private:
+  const sqlite::Database* database_;
+  const TypeRegistry* types_;
+  sqlite::Statement insert_;
+  std::vector<sqlite::Statement> link_;  ///< by type
+};
+
+/// Observations that meet `where` (SQL on table o, with one text parameter at most), in order of storing.
+std::vector<Observation> read_evidence(const sqlite::Database& database, const TypeRegistry& types,
+                                       std::string_view where, std::string_view parameter = {});
+
+}  // namespace waymark

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/packed_rtree.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "geodb/sql_text.hpp"
+
+namespace waymark {
+namespace {
+
+// A node is: depth of the tree (only in the root, node 1), count of cells, then per cell the rowid (leaf) or child
+// node and min x, max x, min y, max y; all big-endian; zeros to the end.
+constexpr std::size_t kCellBytes = 8 + 4 * 4;
+constexpr std::size_t kHeaderBytes = 4;
+constexpr std::int64_t kRoot = 1;
+
+struct Cell {
+  std::int64_t id = 0;
+  std::array<float, 4> box{};  ///< min x, max x, min y, max y
+};
+
+float rounded_down(double v) {
+  const auto f = static_cast<float>(v);
+  return static_cast<double>(f) > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+}
+float rounded_up(double v) { return -rounded_down(-v); }
+
+std::array<float, 4> around(std::span<const Cell> cells) {
+  auto box = cells[0].box;
+  for (const Cell& cell : cells) {
+    for (const std::size_t low : {0u, 2u}) box[low] = std::min(box[low], cell.box[low]);
+    for (const std::size_t high : {1u, 3u}) box[high] = std::max(box[high], cell.box[high]);
+  }
+  return box;
+}
+
+template <class T>
+void put_big_endian(std::byte*& at, T value) {
+  auto bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+  std::ranges::reverse(bytes);
+  at = std::ranges::copy(bytes, at).out;
+}
+
+class Packer {
+ public:
+  Packer(const sqlite::Database& database, const std::string& index)
+      : node_(database.prepare("INSERT OR REPLACE INTO " + sql_name(index + "_node") + " VALUES (?, ?)")),
+        parent_(database.prepare("INSERT INTO " + sql_name(index + "_parent") + " VALUES (?, ?)")),
+        rowid_(database.prepare("INSERT INTO " + sql_name(index + "_rowid") + " VALUES (?, ?)")),
+        bytes_(static_cast<std::size_t>(database.integer(
+            "SELECT length(data) FROM " + sql_name(index + "_node") + " WHERE nodeno = 1"))) {}
+
+  /// Writes one level of the tree and gives the cells of the next.
+  std::vector<Cell> pack(std::span<const Cell> cells, int depth) {
+    const std::size_t room = (bytes_.size() - kHeaderBytes) / kCellBytes;
+    const std::size_t nodes = std::max<std::size_t>(1, (cells.size() + room - 1) / room);
+    std::vector<Cell> above;
+    above.reserve(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {  // evenly filled: none is nearly empty
+      const auto part = cells.subspan(i * cells.size() / nodes, (i + 1) * cells.size() / nodes - i * cells.size() / nodes);
+      const std::int64_t number = nodes == 1 ? kRoot : next_node_++;
+      write(number, part, nodes == 1 ? depth : 0);
+      sqlite::Statement& link = depth == 0 ? rowid_ : parent_;
+      for (const Cell& cell : part) {
+        link.bind_all(cell.id, number);
+        link.run();
+      }
+      if (nodes > 1) above.push_back({number, around(part)});
+    }
+    return above;
+  }
+
+ private:
+  void write(std::int64_t number, std::span<const Cell> cells, int depth) {
+    std::ranges::fill(bytes_, std::byte{0});
+    std::byte* at = bytes_.data();
+    put_big_endian(at, static_cast<std::uint16_t>(depth));
+    put_big_endian(at, static_cast<std::uint16_t>(cells.size()));
+    for (const Cell& cell : cells) {
+      put_big_endian(at, cell.id);
+      for (const float side : cell.box) put_big_endian(at, side);
+    }
+    node_.bind_all(number, std::span<const std::byte>(bytes_));
+    node_.run();
+  }
+
+  sqlite::Statement node_, parent_, rowid_;
+  std::vector<std::byte> bytes_;  ///< of one node; SQLite chose the size when it made the empty root
+  std::int64_t next_node_ = kRoot + 1;
+};
+
+}  // namespace
+
+void fill_rtree(const sqlite::Database& database, std::string_view table, std::span<const IndexedPoint> points) {
+  if (points.empty()) return;
+  std::vector<Cell> level;
+  level.reserve(points.size());
+  for (const auto& [id, x, y] : points)
+    level.push_back({id, {rounded_down(x), rounded_up(x), rounded_down(y), rounded_up(y)}});
+  Packer packer(database, "rtree_" + std::string(table) + "_geom");
+  for (int depth = 0; !level.empty(); ++depth) level = packer.pack(level, depth);
+}
+
+}  // namespace waymark

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/row_order.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "geodb/hilbert.hpp"
+
+namespace waymark {
+namespace {
+
+std::uint16_t scaled(double value, double lowest, double highest) {
+  if (!(highest > lowest)) return 0;
+  return static_cast<std::uint16_t>((value - lowest) / (highest - lowest) * 65535);
+}
+
+struct Place {
+  std::uint32_t along, index;
+};
+
+}  // namespace
+
+Envelope extent_of(std::span<const Landmark> landmarks, std::span<const std::uint32_t> indices) {
+  Envelope box;
+  for (const std::uint32_t i : indices) box.add(landmarks[i].position.xyz.x(), landmarks[i].position.xyz.y());
+  return box;
+}
+
+void sort_along_hilbert_curve(std::span<std::uint32_t> indices, std::span<const Landmark> landmarks,
+                              const Envelope& extent) {
+  std::vector<Place> places;
+  places.reserve(indices.size());
+  for (const std::uint32_t i : indices) {
+    const auto& at = landmarks[i].position.xyz;
+    places.push_back({hilbert_index(scaled(at.x(), extent.min_x, extent.max_x),
+                                    scaled(at.y(), extent.min_y, extent.max_y)), i});
+  }
+  std::ranges::sort(places, [&](const Place& a, const Place& b) {
+    return a.along != b.along ? a.along < b.along : landmarks[a.index].uid < landmarks[b.index].uid;
+  });
+  std::ranges::transform(places, indices.begin(), &Place::index);
+}
+
+}  // namespace waymark
