@@ -66,7 +66,7 @@ bool is_plain(const LandmarkType& type, const AttributeSpec& attribute) {
 }
 
 TableColumn attribute_column(const AttributeSpec& attribute, std::size_t i, const std::vector<Landmark>& rows) {
-  const FeatureSpec as_feature{attribute.name, attribute.unit, Scale::interval};
+  const FeatureSpec as_feature{.name = attribute.name, .unit = attribute.unit, .scale = Scale::interval, .summary = {}};
   const Reading read = reading_of(as_feature, largest(rows, [i](const Landmark& l) { return real_attribute(l, i); }));
   return {with_unit(title_of(attribute.name), read), attribute.summary,
           [=](const Landmark& l) { return read.number(real_attribute(l, i)); }};

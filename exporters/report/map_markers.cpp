@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kMostMarkers = 2500;  // of a type; more are a carpet, and make the file heavy
 constexpr std::size_t kMostLabels = 40;
-constexpr double kSmallest = 3.4, kLargest = 13;  // radius of a marker, drawing units
+constexpr double kSmallest = 2, kLargest = 13;  // radius of a marker, drawing units
+constexpr double kModest = 4;                     // smaller markers have a fainter rim: thousands must not hide the relief
 constexpr double kLetter = 7.2, kLine = 13;       // of a label's text
 
 struct Box {
@@ -82,7 +83,9 @@ double letters(const std::string& text) {
 /// Writes labels where there is room: right, left, above or below the marker.
 class Labels {
  public:
-  explicit Labels(const MapView& view) : view_(view) {}
+  /// The corners of the scale bar and the north arrow stay free.
+  explicit Labels(const MapView& view)
+      : view_(view), taken_{{0, view.height - 56, 260, view.height}, {view.width - 70, 0, view.width, 70}} {}
 
   void add(const Marker& marker, const std::string& text) {
     if (text.empty() || count_ == kMostLabels) return;
@@ -124,8 +127,9 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
     result.svg += fmt::format("<g class='marker {}' style='--type:{}'>",
                               section.type.drawn_as == Solid::bowl ? "ring" : "solid", section.type.colour);
     for (auto m = markers.rbegin(); m != markers.rend(); ++m)  // the foremost on top
-      result.svg += fmt::format("<g transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>", m->x,
-                                m->y, m->radius, shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
+      result.svg += fmt::format("<g{} transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>",
+                                m->radius < kModest ? " class='modest'" : "", m->x, m->y, m->radius,
+                                shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
     result.svg += "</g>\n";
     for (const Marker& marker : markers) labels.add(marker, label_text(*marker.landmark, section.type));
     result.drawn += markers.size();

@@ -30,7 +30,7 @@ int decimals_of(double step) { return step >= 1 ? 0 : static_cast<int>(std::ceil
 double graticule_step(double length, double wanted, bool degrees) {
   const double step = length / wanted;
   if (degrees)
-    for (const double round : {2.0, 5.0, 10.0, 15.0, 30.0, 45.0})
+    for (const double round : {2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0})
       if (step > 1 && step <= round) return round;
   return round_length(2 * step);
 }

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/wording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace waymark {
+namespace {
+
+const FeatureSpec kElevation{.name = "elevation", .unit = "m", .scale = Scale::interval, .summary = {}};
+const FeatureSpec kIsolation{.name = "isolation", .unit = "m", .scale = Scale::ratio, .summary = {}};
+const FeatureSpec kOrientation{.name = "orientation", .unit = "rad", .scale = Scale::axis, .summary = {}};
+
+TEST(NumberText, SetsThousandsApartFromFiveDigitsOn) {
+  EXPECT_EQ(number_text(4506), "4506");
+  EXPECT_EQ(number_text(21134), "21\u202f134");
+  EXPECT_EQ(number_text(1234567.25, 1), "1\u202f234\u202f567.2");
+}
+
+TEST(NumberText, HasAMinusAndNoNegativeZero) {
+  EXPECT_EQ(number_text(-4506), "\u22124506");
+  EXPECT_EQ(number_text(-0.04, 1), "0.0");
+  EXPECT_EQ(number_text(std::nan("")), "\u2013");
+}
+
+TEST(Reading, DistancesBecomeKilometresElevationsNever) {
+  EXPECT_EQ(reading_of(kIsolation, 62732.6)(62732.6), "62.7\u00a0km");
+  EXPECT_EQ(reading_of(kIsolation, 19000)(534), "534\u00a0m");
+  EXPECT_EQ(reading_of(kElevation, 21134)(21134), "21\u202f134\u00a0m");
+}
+
+TEST(Reading, SmallThingsKeepThreeDigits) {
+  EXPECT_EQ(reading_of(kIsolation, 0.43)(0.43), "0.430\u00a0m");
+  EXPECT_EQ(reading_of(kIsolation, 0)(0), "0\u00a0m");
+}
+
+TEST(Reading, AnglesAreReadInDegrees) { EXPECT_EQ(reading_of(kOrientation, 1)(M_PI / 4), "45.0\u00a0\u00b0"); }
+
+TEST(TitleOf, ReadsLikeWords) { EXPECT_EQ(title_of("mountain_top"), "Mountain top"); }
+
+TEST(Escaped, LeavesNoMarkup) { EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;"); }
+
+}  // namespace
+}  // namespace waymark
