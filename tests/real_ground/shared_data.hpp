@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "importers/dem.hpp"
+#include "pipeline/terrain/isolation.hpp"
+#include "tests/pipeline/survey.hpp"
+namespace waymark::testing {
+
+/// Real elevation models with known answers; they stay outside the repository.
+inline std::filesystem::path dem_data() {
+  return std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/dem";
+}
+
+#define SKIP_WITHOUT_DEM_DATA() \
+  if (!std::filesystem::exists(dem_data())) GTEST_SKIP() << dem_data() << " is not on this machine"
+
+inline std::vector<std::vector<std::string>> read_rows(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> row;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+    if (!line.empty() && line.back() == ',') row.emplace_back();
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// A CSV file with a header: each row by column name.
+inline std::vector<std::map<std::string, std::string>> read_table(const std::filesystem::path& path) {
+  const auto rows = read_rows(path);
+  std::vector<std::map<std::string, std::string>> table;
+  for (std::size_t r = 1; r < rows.size(); ++r)
+    for (auto& row = table.emplace_back(); const auto& name : rows[0])
+      row[name] = rows[r].at(static_cast<std::size_t>(&name - rows[0].data()));
+  return table;
+}
+
+inline std::shared_ptr<const DemSource> open_dem(const std::vector<std::string>& names,
+                                                 NodataPolicy policy = NodataPolicy::ocean) {
+  DemImport import{.files = {}, .nodata = policy};
+  for (const auto& name : names) import.files.push_back((dem_data() / name).string());
+  return import_dem(import);
+}
+
+inline ReliefPyramid pyramid_of(const DemSource& dem, std::int64_t side) {
+  std::vector<std::shared_ptr<const BlockRelief>> tiles;
+  for (const Window& t : tiles_of(dem.geometry(), side))
+    tiles.push_back(std::make_shared<const BlockRelief>(
+        block_relief(dem.read({t.column - 1, t.row - 1, t.columns + 2, t.rows + 2}), t)));
+  return {tiles, dem.geometry().columns, dem.geometry().rows};
+}
+
+inline std::vector<Isolation> isolation_of(const std::vector<Summit>& summits, const DemSource& dem,
+                                           const IsolationOptions& options = {}) {
+  std::vector<HighPoint> points;
+  for (const Summit& s : summits) points.push_back({s.cell, s.height});
+  return measure_isolation(points, dem, pyramid_of(dem, 512), options);
+}
+
+/// The cell whose centre is nearest to a place in the DEM's CRS.
+inline std::int64_t cell_at(const GridGeometry& grid, double x, double y) {
+  return grid.index(std::lround(grid.where.column(x)), std::lround(grid.where.row(y)));
+}
+
+}  // namespace waymark::testing
