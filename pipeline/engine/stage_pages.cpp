@@ -30,8 +30,9 @@ std::string readable_default(const OptionRow& row) {
 
 std::string readable_values(const OptionRow& row) {
   if (!row.field.choices.empty()) return fmt::format("{}", fmt::join(row.field.choices, ", "));
-  const std::string range = readable_range(row);
-  return range.empty() ? json_type(row.value) : range;
+  if (const std::string range = readable_range(row); !range.empty()) return range;
+  static constexpr const char* kWords[] = {"any number", "any whole number", "true or false", "text", "list of texts"};
+  return kWords[row.value.index()];
 }
 
 /// "divide_tree (DivideTree), tiles (vector<Tile>)", or "none".
@@ -107,9 +108,9 @@ std::string stage_as_markdown(const Step& step) {
     page += fmt::format("| `{}` | {}{} | {} | {} |\n", row.name, cell(row.field.help),
                         row.field.affects_result ? "" : " (does not change the result)", cell(readable_values(row)),
                         cell(readable_default(row)));
-  page += fmt::format("\nIn a job file: `{{\"stage\": \"{}\"", spec.name);
+  page += fmt::format("\nIn a job file:\n\n```json\n{{\"stage\": \"{}\"", spec.name);
   for (const OptionRow& row : rows) page += fmt::format(", \"{}\": {}", row.name, as_json(row.value).dump());
-  return page + "}`\n";
+  return page + "}\n```\n";
 }
 
 std::string stage_as_schema(const Step& step) {
