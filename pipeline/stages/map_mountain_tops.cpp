@@ -11,7 +11,7 @@ namespace {
 struct MapMountainTops {
   struct Options {
     Meters min_isolation{0};
-    Meters visible_range{20000};
+    Meters visible_range{10000};
     void describe(OptionVisitor& option) {
       option("min_isolation", min_isolation,
              {.help = "Summits nearer than this to higher ground are left out", .min = 0, .max = 4e7});

@@ -12,7 +12,7 @@ namespace waymark {
 
 struct MountainTopOptions {
   Meters min_isolation{0};  ///< summits nearer than this to higher ground are left out
-  Meters visible_range{20000};
+  Meters visible_range{10000};
 };
 
 /// The summits as landmarks of type mountain_top, in row order of their cells. `isolations` in the order of

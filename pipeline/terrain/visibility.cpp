@@ -10,7 +10,7 @@ double expected_visibility(Meters prominence, Meters isolation, Meters body_radi
   const double apart = std::min(isolation.value, range.value);
   if (!(prominence.value > 0) || !(apart > 0) || !(range.value > 0)) return 0;
   const double horizon = std::min(range.value, std::sqrt(2 * body_radius.value * prominence.value));
-  const double free_length = kFreeLength * std::sqrt(prominence.value * apart);
+  const double free_length = std::sqrt(kSightLength * std::sqrt(prominence.value * apart));
   const double x = horizon / free_length;
   // 1 - (1 + x) exp(-x), without cancellation for small x
   const double share = x < 1e-4 ? x * x / 2 : 1 - (1 + x) * std::exp(-x);

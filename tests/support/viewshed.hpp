@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cmath>
+#include <algorithm>
 #include <cstdint>
+#include <numbers>
+#include <numeric>
 #include <random>
+#include <vector>
 
+#include "core/units.hpp"
 #include "geo/dem_source.hpp"
 namespace waymark::testing {
 
@@ -30,7 +35,7 @@ class Viewshed {
     for (int i = 1; i < steps; ++i) {
       const double t = static_cast<double>(i) / steps;
       const double ground = height(column + t * (to_column - column), row + t * (to_row - row)) - drop(t * distance);
-      if (ground > eye + t * (target - eye)) return false;
+      if (!(ground <= eye + t * (target - eye))) return false;  // nobody sees across a void
     }
     return true;
   }
@@ -46,7 +51,7 @@ class Viewshed {
       const double c = static_cast<double>(column) + distance * std::sin(azimuth) / cell_width_;
       const double r = static_cast<double>(row) - distance * std::cos(azimuth) / cell_height_;
       if (c < 0 || r < 0 || c > static_cast<double>(grid_.columns - 1) || r > static_cast<double>(grid_.rows - 1)) continue;
-      if (height(c, r) == kNoHeight) continue;
+      if (!std::isfinite(height(c, r))) continue;
       ++inside;
       seen += sees(c, r, static_cast<double>(column), static_cast<double>(row));
     }
