@@ -44,7 +44,7 @@ std::vector<T> read_cells(GDALRasterBand& band, const RasterHeader& header, int 
     GDALCopyWords64(raw.data(), stored, size, cells.data(), gdal_type<T>(), sizeof(T),
                     static_cast<GPtrDiff_t>(count));
   }
-  if (result != CE_None) refuse(header, column, row, gdal.last_error());
+  if (result != CE_None) refuse(header, column, row, gdal.error_about(header.path));
   return cells;
 }
 
@@ -59,7 +59,7 @@ void apply_mask(GDALRasterBand& band, const RasterHeader& header, int column, in
   const GdalListener gdal;
   if (band.GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, shown.data(), columns, rows, GDT_Byte,
                                    1, header.block_columns, nullptr) != CE_None)
-    refuse(header, column, row, gdal.last_error());
+    refuse(header, column, row, gdal.error_about(header.path));
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (shown[i] == 0) cells[i] = std::numeric_limits<T>::quiet_NaN();
 }

@@ -52,7 +52,7 @@ std::vector<float> interpolated(const HeightWindow& heights, const Window& windo
   if (!raster || !mask ||
       GDALFillNodata(raster->GetRasterBand(1), mask->GetRasterBand(1), kReach, 0, 0, options, nullptr,
                      nullptr))
-    throw Error(ErrorCode::environment, "filling voids failed: " + gdal.last_error(), "",
+    throw Error(ErrorCode::environment, "filling voids failed: " + gdal.error_about(""), "",
                 "use --nodata ocean or unknown, or fewer threads if memory is short");
   raster->FlushCache(false);
   return cells;

@@ -37,7 +37,8 @@ void GdalClose::operator()(GDALDataset* dataset) const {
 GdalListener::GdalListener() {
   CPLPushErrorHandlerEx(
       [](CPLErr level, CPLErrorNum, const char* text) {
-        if (level >= CE_Failure) static_cast<GdalListener*>(CPLGetErrorHandlerUserData())->last_error_ = text;
+        auto& first = static_cast<GdalListener*>(CPLGetErrorHandlerUserData())->first_error_;
+        if (level >= CE_Failure && first.empty()) first = text;
       },
       this);
   static std::once_flag registered;
@@ -48,11 +49,19 @@ GdalListener::~GdalListener() {
   CPLPopErrorHandler();
 }
 
+std::string GdalListener::error_about(const std::string& path) const {
+  std::string text = first_error_;
+  for (const std::string& start : {"`" + path + "' ", path + ", band 1: ", path + ": "})
+    if (text.starts_with(start)) text.erase(0, start.size());
+  while (text.ends_with('.') || text.ends_with('\n')) text.pop_back();
+  return text;
+}
+
 GdalDataset open_raster(const std::string& path) {
   const GdalListener gdal;
   GdalDataset dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (!dataset) refuse(path, gdal.last_error());
+  if (!dataset) refuse(path, gdal.error_about(path));
   return dataset;
 }
 

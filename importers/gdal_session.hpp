@@ -20,11 +20,12 @@ class GdalListener {
   ~GdalListener();
   GdalListener(GdalListener&&) = delete;
 
-  /// The last error, without the path that GDAL likes to put first; empty if there was none.
-  const std::string& last_error() const { return last_error_; }
+  /// The first error, which names the cause; empty if there was none. `path` is left out where GDAL puts it
+  /// first.
+  std::string error_about(const std::string& path) const;
 
  private:
-  std::string last_error_;
+  std::string first_error_;
 };
 
 /// Opens a raster for reading. Throws Error{input} that says whether the file is missing, empty or of no kind

@@ -53,7 +53,7 @@ std::uint64_t add_content(const std::string& path, Sha256& sum) {
     bytes += count;
   }
   if (!VSIFEofL(file.get()))
-    throw Error(ErrorCode::input, "reading the file failed: " + gdal.last_error(), path, "try again");
+    throw Error(ErrorCode::input, "reading the file failed: " + gdal.error_about(path), path, "try again");
   return bytes;
 }
 

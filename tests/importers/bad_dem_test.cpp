@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every way a file can be no DEM, and what the message says about it.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "importers/dem.hpp"
+#include "tests/importers/raster_maker.hpp"
+#include "tests/support/dem_art.hpp"
+
+namespace waymark::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const Grid<double> kHills = dem_art("1 2 3 / 4 9 6 / 7 8 5");
+
+std::string complaint_about(const std::string& path, const std::string& crs = {}) {
+  ::testing::internal::CaptureStderr();
+  const std::string message = message_of([&] { import_dem({.files = {path}, .crs = crs}); });
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << "GDAL may not speak for itself";
+  return message;
+}
+
+std::string complaint_about(const RasterFile& file) {
+  return complaint_about(write_raster(file));
+}
+
+TEST(BadDem, NothingGiven) {
+  EXPECT_THAT(message_of([] { import_dem({}); }), HasSubstr("no DEM is given"));
+}
+
+TEST(BadDem, Missing) {
+  EXPECT_THAT(complaint_about("/no/such/dem.tif"),
+              AllOf(HasSubstr("there is no such file"), HasSubstr("\n  /no/such/dem.tif\n  check the path")));
+}
+
+TEST(BadDem, Empty) {
+  const std::string path = write_text("empty.tif", "");
+  EXPECT_THAT(complaint_about(path), AllOf(HasSubstr("the file is empty"), HasSubstr(path)));
+}
+
+TEST(BadDem, NotARaster) {
+  const std::string path = write_text("letter.tif", "Dear Sir or Madam");
+  EXPECT_THAT(complaint_about(path), AllOf(HasSubstr("this is not a raster that GDAL reads: not recognized"),
+                                           HasSubstr(path), HasSubstr("gdalinfo --formats")));
+}
+
+TEST(BadDem, Truncated) {
+  const std::string path = write_text("cut.tif", "");
+  write_raster(
+      {.path = path, .cells = random_terrain(5, 300, 300), .options = {"COMPRESS=DEFLATE", "TILED=YES"}});
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) * 2 / 3);
+  EXPECT_THAT(complaint_about(path),
+              AllOf(HasSubstr("block (1, 1) of the file cannot be read: "), HasSubstr("\n  " + path + "\n"),
+                    HasSubstr("truncated or damaged")));
+}
+
+TEST(BadDem, DamagedInTheMiddle) {
+  const std::string path = write_text("scratched.tif", "");
+  write_raster(
+      {.path = path, .cells = random_terrain(5, 600, 600), .options = {"COMPRESS=DEFLATE", "TILED=YES"}});
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(size / 4);
+  file << std::string(static_cast<std::size_t>(size / 2),
+                      '\0');  // hits the beginnings of blocks, which are checked
+  file.close();
+  const auto dem = import_dem({.files = {path}, .inspect = false});
+  EXPECT_THAT(message_of([&] { dem->read({0, 0, 600, 600}); }), HasSubstr("of the file cannot be read"));
+}
+
+TEST(BadDem, ThreeBands) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .type = GDT_Byte, .bands = 3}),
+              AllOf(HasSubstr("a DEM has one band of heights, this file has 3"),
+                    HasSubstr("gdal_translate -b 1 '/vsimem/dem.tif' dem.tif")));
+}
+
+TEST(BadDem, ComplexNumbers) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .type = GDT_CFloat32}),
+              HasSubstr("heights are real numbers, this file holds complex ones (CFloat32)"));
+}
+
+TEST(BadDem, NoCrs) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .crs = ""}),
+              AllOf(HasSubstr("it has no coordinate reference system"), HasSubstr("--crs EPSG:32611"),
+                    HasSubstr("--crs local"), Not(HasSubstr("look like degrees"))));
+}
+
+TEST(BadDem, DegreesWithoutAnEllipsoid) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = centred_on(8, 46, 1.0 / 1200), .crs = ""}),
+              AllOf(HasSubstr("its numbers look like degrees: pass --crs EPSG:4326 if this is Earth"),
+                    HasSubstr("IAU_2015:49900 if Mars")));
+}
+
+TEST(BadDem, DegreesWhereMetresAreDeclared) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = centred_on(8, 46, 1.0 / 1200)}),
+              AllOf(HasSubstr("EPSG:32633 is in metres, but these look like degrees: x 7.99"),
+                    HasSubstr("--crs EPSG:4326")));
+}
+
+TEST(BadDem, MetresWhereDegreesAreDeclared) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .crs = "EPSG:4326"}),
+              AllOf(HasSubstr("EPSG:4326 is in degrees, but these are none: x 499985 to 500105"),
+                    HasSubstr("pass --crs with the projection")));
+}
+
+TEST(BadDem, UnknownCrs) {
+  EXPECT_THAT(complaint_about(write_raster({.cells = kHills}), "EPSG:123456"), HasSubstr("crs not found"));
+}
+
+TEST(BadDem, NoPlace) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = {}}), HasSubstr("it has no geotransform"));
+}
+
+TEST(BadDem, Rotated) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = GeoTransform{500000, 30, 5, 4000000, 5, -30}}),
+              AllOf(HasSubstr("the grid is rotated"), HasSubstr("gdalwarp '/vsimem/dem.tif' dem.tif")));
+}
+
+TEST(BadDem, EastToWest) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = GeoTransform{500000, -30, 0, 4000000, 0, -30}}),
+              HasSubstr("columns must run from west to east"));
+}
+
+TEST(BadDem, NoHeightAtAll) {
+  EXPECT_THAT(complaint_about({.cells = Grid<double>(2000, 1500, kNoHeight), .nodata = -32768}),
+              AllOf(HasSubstr("the DEM has no heights: every cell is no-data"), HasSubstr("gdalinfo -mm")));
+}
+
+TEST(BadDem, ScaleOfZero) {
+  EXPECT_THAT(complaint_about({.cells = kHills, .scale = 0}), HasSubstr("heights would be 0 times the cell"));
+}
+
+TEST(BadDem, VirtualRasterWithoutItsSource) {
+  const std::string source = write_raster({.path = write_text("source.tif", ""), .cells = kHills});
+  const std::string vrt = "/vsimem/mosaic.vrt";
+  GDALDatasetH opened = GDALOpen(source.c_str(), GA_ReadOnly);
+  GDALClose(GDALCreateCopy(GDALGetDriverByName("VRT"), vrt.c_str(), opened, 0, nullptr, nullptr, nullptr));
+  GDALClose(opened);
+  EXPECT_EQ(import_dem({.files = {vrt}})->read({1, 1, 1, 1})(0, 0), 9);
+  std::filesystem::remove(source);
+  EXPECT_THAT(complaint_about(vrt),
+              AllOf(HasSubstr("cannot be read: "), HasSubstr("source.tif: No such file or directory")));
+}
+
+TEST(BadDem, SeveralDataSetsInOneFile) {
+  const std::string path = write_text("two.gpkg", "");
+  std::filesystem::remove(path);
+  for (const char* table : {"RASTER_TABLE=summer", "RASTER_TABLE=winter"}) {
+    const bool again = std::filesystem::exists(path);
+    write_raster({.path = path,
+                  .cells = kHills,
+                  .type = GDT_Float32,
+                  .driver = "GPKG",
+                  .options = {table, again ? "APPEND_SUBDATASET=YES" : "APPEND_SUBDATASET=NO"}});
+  }
+  EXPECT_THAT(complaint_about(path), AllOf(HasSubstr("the file holds no raster of its own"),
+                                           HasSubstr("name one of its data sets, e.g. GPKG:")));
+}
+
+}  // namespace
+}  // namespace waymark::testing

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/dem.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/importers/raster_maker.hpp"
+#include "tests/support/dem_art.hpp"
+
+namespace waymark::testing {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+HeightWindow all_of(const DemSource& dem) {
+  return dem.read({0, 0, dem.geometry().columns, dem.geometry().rows});
+}
+
+HeightWindow heights_of(const RasterFile& file) {
+  return all_of(*import_dem({.files = {write_raster(file)}}));
+}
+
+const Grid<double> kHills = dem_art("1 2 3 / 4 9 6 / 7 8 5");
+
+TEST(ImportDem, GivesTheCentresOfCells) {
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills})}});
+  const GridGeometry& grid = dem->geometry();
+  EXPECT_EQ(grid.columns, 3);
+  EXPECT_EQ(grid.rows, 3);
+  EXPECT_EQ(grid.where.x0, 500015);
+  EXPECT_EQ(grid.where.y0, 3999985);
+  EXPECT_EQ(grid.where.dy, -30);
+  EXPECT_EQ(grid.where.crs.id(), "EPSG:32633");
+  EXPECT_FALSE(grid.wraps);
+  EXPECT_EQ(all_of(*dem), kHills);
+  EXPECT_THAT(dem->warnings(), IsEmpty());
+}
+
+TEST(ImportDem, CellsThatArePointsLieWhereTheFileSays) {
+  char point[] = "Point";
+  const std::string path = write_raster({.path = "/vsimem/point.tif", .cells = kHills});
+  {
+    const auto dataset = GDALOpen(path.c_str(), GA_Update);
+    GDALSetMetadataItem(dataset, "AREA_OR_POINT", point, nullptr);
+    GDALClose(dataset);
+  }
+  // GDAL writes the tie point for the centre and reads it back as the corner: the same ground either way.
+  EXPECT_EQ(import_dem({.files = {path}})->geometry().where.x0, 500015);
+}
+
+TEST(ImportDem, AppliesScaleOffsetAndUnit) {
+  EXPECT_EQ(heights_of({.cells = dem_art("10 20"), .scale = 0.5, .offset = 100}), dem_art("105 110"));
+  const auto feet = heights_of({.cells = dem_art("10 20"), .unit = "ft"});
+  EXPECT_NEAR(feet(0, 0), 3.048, 1e-12);
+  EXPECT_NEAR(feet(1, 0), 6.096, 1e-12);
+}
+
+TEST(ImportDem, WarnsOfAUnitItDoesNotKnow) {
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills, .unit = "furlong"})}});
+  EXPECT_THAT(dem->warnings(),
+              ElementsAre(HasSubstr("in 'furlong', which is no unit we know; read as metres")));
+}
+
+TEST(ImportDem, KeepsEveryCellTypeExactly) {
+  for (const GDALDataType type : {GDT_Byte, GDT_UInt16, GDT_Int16, GDT_UInt32, GDT_Int32, GDT_Int64,
+                                  GDT_UInt64, GDT_Float32, GDT_Float64})
+    EXPECT_EQ(heights_of({.cells = kHills, .type = type}), kHills) << GDALGetDataTypeName(type);
+  const auto large = dem_art("65535 40000");
+  EXPECT_EQ(heights_of({.cells = large, .type = GDT_UInt16}), large);
+  const auto fine = dem_art("0.1 8848.123456789");
+  EXPECT_EQ(heights_of({.cells = fine, .type = GDT_Float64}), fine);
+}
+
+TEST(ImportDem, NoDataHasNoHeight) {
+  const auto holed = dem_art("1 . / . 4");
+  EXPECT_EQ(heights_of({.cells = holed, .nodata = -32768}), holed);
+  EXPECT_EQ(heights_of({.cells = holed, .type = GDT_Float32, .nodata = -9999.9}), holed);
+  EXPECT_EQ(heights_of({.cells = holed, .type = GDT_Float32, .nodata = std::nan("")}), holed);
+  EXPECT_EQ(heights_of({.cells = holed, .type = GDT_Float32, .nodata = -3.4028234663852886e38}), holed);
+  EXPECT_EQ(heights_of({.cells = holed, .type = GDT_Float64, .nodata = -3.4028234663852886e38}), holed);
+}
+
+TEST(ImportDem, NoDataThatTheTypeCannotHoldHidesNothing) {
+  EXPECT_EQ(heights_of({.cells = dem_art("0 1"), .type = GDT_Byte, .nodata = -9999}), dem_art("0 1"));
+}
+
+TEST(ImportDem, NanAndInfinityHaveNoHeight) {
+  Grid<double> odd = dem_art("1 2 3 4");
+  odd(1, 0) = std::nan("");
+  odd(2, 0) = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(heights_of({.cells = odd, .type = GDT_Float32}), dem_art("1 . . 4"));
+  EXPECT_EQ(heights_of({.cells = odd, .type = GDT_Float64}), dem_art("1 . . 4"));
+}
+
+TEST(ImportDem, MaskedCellsHaveNoHeight) {
+  for (const GDALDataType type : {GDT_Int16, GDT_Float32, GDT_Float64})
+    EXPECT_EQ(heights_of({.cells = dem_art("1 2 / 3 4"), .type = type, .mask = dem_art("1 0 / 1 1")}),
+              dem_art("1 . / 3 4"));
+}
+
+TEST(ImportDem, TurnsASouthUpFile) {
+  const auto dem =
+      import_dem({.files = {write_raster({.cells = dem_art("1 2 / 3 4 / 5 6"),
+                                          .transform = GeoTransform{500000, 30, 0, 3999910, 0, 30}})}});
+  EXPECT_EQ(all_of(*dem), dem_art("5 6 / 3 4 / 1 2"));
+  EXPECT_EQ(dem->geometry().where.y0, 3999985);
+  EXPECT_EQ(dem->read({1, 1, 1, 2}), dem_art("4 / 2"));
+}
+
+TEST(ImportDem, HasNoHeightsOutside) {
+  const auto dem = import_dem({.files = {write_raster({.cells = dem_art("1 2 / 3 4")})}});
+  EXPECT_EQ(dem->read({-1, -1, 4, 4}), dem_art(". . . . / . 1 2 . / . 3 4 . / . . . ."));
+  EXPECT_EQ(dem->read({10, 10, 2, 1}), dem_art(". ."));
+}
+
+TEST(ImportDem, ReadsOtherFormats) {
+  const std::string grid = write_text("dem.asc",
+                                      "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 50\ncellsize 0.5\n"
+                                      "NODATA_value -9999\n1 2 3\n4 -9999 6\n");
+  const auto dem = import_dem({.files = {grid}, .crs = "EPSG:4326"});
+  EXPECT_EQ(all_of(*dem), dem_art("1 2 3 / 4 . 6"));
+  EXPECT_EQ(dem->geometry().where.x0, 10.25);
+  EXPECT_EQ(dem->geometry().where.y0, 50.75);
+}
+
+TEST(ImportDem, ReadsAnArchiveWithoutUnpackingIt) {
+  const std::string tif = write_raster({.path = "/vsimem/inside.tif", .cells = kHills});
+  VSILFILE* zip = VSIFOpenL("/vsizip//vsimem/archive.zip/inside.tif", "wb");
+  VSILFILE* plain = VSIFOpenL(tif.c_str(), "rb");
+  std::string bytes(100000, '\0');
+  bytes.resize(VSIFReadL(bytes.data(), 1, bytes.size(), plain));
+  VSIFCloseL(plain);
+  VSIFWriteL(bytes.data(), 1, bytes.size(), zip);
+  VSIFCloseL(zip);
+  EXPECT_EQ(all_of(*import_dem({.files = {"/vsizip//vsimem/archive.zip/inside.tif"}})), kHills);
+}
+
+TEST(ImportDem, OneCellIsADem) {
+  const auto dem = import_dem({.files = {write_raster({.cells = dem_art("7")})}});
+  EXPECT_EQ(all_of(*dem), dem_art("7"));
+  EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("every cell has the height 7 m")));
+}
+
+TEST(ImportDem, WarnsOfAConstantDem) {
+  const auto dem = import_dem({.files = {write_raster({.cells = Grid<double>(5, 4, -3)})}});
+  EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("every cell has the height -3 m: there is no relief")));
+}
+
+TEST(ImportDem, TakesACrsInsteadOfTheFiles) {
+  const std::string path = write_raster({.cells = kHills, .crs = ""});
+  EXPECT_EQ(import_dem({.files = {path}, .crs = "EPSG:32611"})->geometry().where.crs.id(), "EPSG:32611");
+  EXPECT_EQ(import_dem({.files = {path}, .crs = "local"})->geometry().where.crs.kind(), CrsKind::local);
+}
+
+TEST(ImportDem, WithoutATransformLocalCellsAreMetres) {
+  const std::string path = write_raster({.cells = kHills, .transform = {}, .crs = ""});
+  const auto dem = import_dem({.files = {path}, .crs = "local"});
+  EXPECT_EQ(dem->geometry().where.dx, 1);
+  EXPECT_EQ(dem->geometry().where.dy, -1);
+  EXPECT_EQ(all_of(*dem), kHills);
+}
+
+TEST(ImportDem, KeepsFeetOfTheGroundInTheCrs) {
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills, .crs = "EPSG:2263"})}});
+  EXPECT_NEAR(dem->geometry().where.crs.metres_per_unit(), 0.3048006096, 1e-9);
+  EXPECT_EQ(dem->geometry().where.dx, 30);
+}
+
+TEST(ImportDem, RemembersWhatItWasTold) {
+  const auto dem = import_dem(
+      {.files = {write_raster({.cells = kHills})}, .nodata = NodataPolicy::unknown, .height_sd = 2.5});
+  EXPECT_EQ(dem->nodata_policy(), NodataPolicy::unknown);
+  EXPECT_EQ(dem->height_sd(), 2.5);
+  EXPECT_THAT(dem->files(), ElementsAre("/vsimem/dem.tif"));
+}
+
+}  // namespace
+}  // namespace waymark::testing

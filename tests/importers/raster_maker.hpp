@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gdal.h>
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/grid.hpp"
+namespace waymark::testing {
+
+using GeoTransform = std::array<double, 6>;  ///< as GDAL has it: about the corner of the first cell
+
+/// A raster file for a test, in memory unless the path says otherwise.
+struct RasterFile {
+  std::string path = "/vsimem/dem.tif";
+  Grid<double> cells = {};  ///< as stored; kNoHeight is written as `nodata`
+  GDALDataType type = GDT_Int16;
+  std::optional<GeoTransform> transform = GeoTransform{500000, 30, 0, 4000000, 0, -30};
+  std::string crs = "EPSG:32633";  ///< empty: none
+  std::optional<double> nodata = {};
+  std::string unit = {};
+  double scale = 1, offset = 0;
+  int bands = 1;
+  std::optional<Grid<double>> mask = {};  ///< 0 hides a cell
+  std::string driver = "GTiff";
+  std::vector<std::string> options = {};  ///< of creation, "TILED=YES"
+};
+
+/// Writes the file and gives its path.
+std::string write_raster(const RasterFile& file);
+
+/// Degrees of a file whose first cell has its centre at (lon, lat).
+GeoTransform centred_on(double lon, double lat, double cell);
+
+/// The path of a file of the shared test data, if it is here.
+std::optional<std::string> shared_dem(const std::string& name);
+
+/// A plain file with this content in a folder of this test.
+std::string write_text(const std::string& name, const std::string& content);
+
+/// What an Error says that `action` throws.
+std::string message_of(const std::function<void()>& action);
+
+}  // namespace waymark::testing
