@@ -29,6 +29,7 @@ struct Argument {
   std::vector<std::string> choices = {};      ///< the only values allowed; empty: any
   std::vector<std::string> suggestions = {};  ///< values the shell offers, others are allowed
   Offer offer = Offer::nothing;
+  std::string otherwise = {};                 ///< what holds where it is not given; empty: nothing to tell
 
   bool positional() const { return names.empty(); }
   bool flag() const { return std::holds_alternative<bool*>(into); }

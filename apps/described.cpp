@@ -64,7 +64,8 @@ std::vector<Described> described(const Registry& stages) {
 
 std::vector<Argument> describe_arguments(DescribeWhat& what, std::vector<std::string> names) {
   return {{"", "NAME", &what.name, "Only this one, in full", false, {}, std::move(names)},
-          {"--as", "FORM", &what.as, "How to print it", false, {"text", "json", "schema", "markdown"}}};
+          {"--as", "FORM", &what.as, "How to print it", false, {"text", "json", "schema", "markdown"}, {}, Offer::nothing,
+           "text"}};
 }
 
 void print_described(std::span<const Described> all, const std::string& kind, const DescribeWhat& what) {

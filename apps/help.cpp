@@ -72,8 +72,10 @@ std::string heading(Group group) {
 }  // namespace
 
 std::string full_help(const Argument& argument) {
-  if (argument.choices.empty()) return argument.help;
-  return fmt::format("{}: {}", argument.help, fmt::join(argument.choices, ", "));
+  std::string text = argument.help;
+  if (!argument.choices.empty()) text += fmt::format(": {}", fmt::join(argument.choices, ", "));
+  if (!argument.otherwise.empty()) text += " (default: " + argument.otherwise + ")";
+  return text;
 }
 
 std::vector<ExitCode> exit_codes() {

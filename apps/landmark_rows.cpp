@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 
 namespace waymark {
 namespace {
@@ -54,7 +54,7 @@ std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const
   std::map<std::string, std::map<TypeId, Value>> values;
   for (const std::string& name : chosen) {
     const TypeId id = types.id(name);
-    for (const LandmarkColumn& column : landmark_columns(types[id])) {
+    for (const ExportColumn& column : export_columns(types[id])) {
       if (column.name == "uid") continue;
       if (!values.contains(column.name))
         more.push_back({column.name, column.unit, is_feature(types[id], column.name) || column.name == "quality", {}});

@@ -27,7 +27,7 @@ void check_request(const Job& job, const MapRequest& request, const RunOptions& 
   if (share && request.work.empty())
     throw Error(ErrorCode::usage, "a share of a job needs --work DIR, where all shares meet");
   if (request.map.empty() && !share && !request.check)
-    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg");
+    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg", "", "--check looks at the job without making a map");
   if (request.map.empty()) return;
   for (const char* artifact : {"dem", "landmarks"})
     if (!job.pipeline.writer_of(artifact))

@@ -35,14 +35,14 @@ CrsTransform::XY in_map(const std::vector<double>& point, const Crs& from, const
 
 std::vector<Argument> query_arguments(QueryRequest& request) {
   return {
-      {"--type", "T", &request.types, "Landmarks of this type; may be repeated (default: all)", false, {},
-       all_types().names()},
+      {"--type", "T", &request.types, "Landmarks of this type; may be repeated", false, {}, all_types().names(),
+       Offer::nothing, "all"},
       {"--bbox", "X0 Y0 X1 Y1", &request.bbox, "Landmarks in this box; X0 > X1 crosses the antimeridian"},
       {"--near", "X Y RADIUS", &request.near, "Landmarks within RADIUS metres of X Y, nearest first"},
       {"--nearest", "X Y COUNT", &request.nearest, "The COUNT landmarks nearest to X Y"},
       {"--min", "FEATURE=VALUE", &request.lowest, "Landmarks whose feature is at least this; may be repeated"},
       {"--max", "FEATURE=VALUE", &request.highest, "Landmarks whose feature is at most this; may be repeated"},
-      {"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed (default: the map's)"},
+      {"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed", false, {}, {}, Offer::nothing, "the map's"},
       {"--sensor", "NAME", &request.sensor, "Quality as this sensor sees it; `waymark sensors` lists them", false, {},
        all_sensors().names()},
       {"--min-quality", "Q", &request.min_quality, "Landmarks of at least this quality, 0 to 1"},

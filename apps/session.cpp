@@ -25,10 +25,11 @@ std::vector<Argument> global_arguments(Session& session) {
       {"--version", "", &session.version, "Show the version"},
       {"-q,--quiet", "", &session.quiet, "Say nothing but errors"},
       {"-v,--verbose", "", &session.verbose, "Say more: every unit of work, every input file"},
-      {"--threads", "N", &session.threads, "Threads to compute with (default: one per processor)"},
+      {"--threads", "N", &session.threads, "Threads to compute with", false, {}, {}, Offer::nothing,
+       "one per processor"},
       {"--progress", "HOW", &session.progress,
-       "Show progress on standard error as a bar, GDAL's dots, JSON lines or not at all; auto is a bar on a "
-       "terminal and a line now and then elsewhere",
+       "Show progress on standard error; auto is a bar on a terminal and a line now and then elsewhere, dots are "
+       "GDAL's",
        false, {"auto", "bar", "dots", "json", "none"}},
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
   };

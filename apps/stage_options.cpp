@@ -18,12 +18,15 @@ std::string flag_name(std::string option) {
   return "--" + option;
 }
 
-/// What stands for the value: the unit in capitals, or what it is.
+std::string in_capitals(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+/// What stands for the value: its unit, its name, or N for a bare number.
 std::string placeholder(const OptionRow& row) {
-  std::string unit = row.unit;
-  std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  if (!unit.empty()) return unit;
-  return json_type(row.value) == "string" ? "TEXT" : "N";
+  if (!row.unit.empty()) return in_capitals(row.unit);
+  return json_type(row.value) == "string" ? in_capitals(row.name) : "N";
 }
 
 std::string default_text(const OptionRow& row) {
@@ -34,9 +37,11 @@ std::string default_text(const OptionRow& row) {
   return "";
 }
 
-std::string help(const OptionRow& row) {
-  const std::string value = default_text(row);
-  return value.empty() ? row.field.help : row.field.help + " (default: " + value + ")";
+/// The engine's message with the option as it was typed: --min-prominence, not find_mountain_tops.min_prominence.
+Error as_typed(const Error& error, const std::string& place, const std::string& flag) {
+  std::string problem = error.problem();
+  if (const auto at = problem.find(place); at != std::string::npos) problem.replace(at, place.size(), flag);
+  return Error(error.code(), problem, "", error.hint());
 }
 
 }  // namespace
@@ -58,18 +63,20 @@ std::vector<Argument> StageOptions::arguments() {
     all.push_back({.names = flag_name(option.row.name),
                    .value = placeholder(option.row),
                    .into = &option.given,
-                   .help = help(option.row),
-                   .choices = option.row.field.choices});
+                   .help = option.row.field.help,
+                   .choices = option.row.field.choices,
+                   .otherwise = default_text(option.row)});
   return all;
 }
 
 void StageOptions::apply(Pipeline& pipeline) const {
   for (const Offered& option : offered_) {
     if (option.given.empty()) continue;
+    const std::string place = option.stage + "." + option.row.name;
     try {
-      pipeline.set(option.stage + "." + option.row.name + "=" + option.given);
+      pipeline.set(place + "=" + option.given);
     } catch (const Error& error) {
-      throw Error(error.code(), flag_name(option.row.name) + ": " + error.problem(), error.where(), error.hint());
+      throw as_typed(error, place, flag_name(option.row.name));
     }
   }
 }

@@ -23,7 +23,7 @@ class Export final : public Command {
                            false, {}, {"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}},
                           {"--type", "T", &options_.types, "Landmarks of this type only; may be repeated", false, {},
                            all_types().names()},
-                          {"--crs", "CRS", &options_.crs, "Coordinates of the output (default: the map's)"},
+                          {"--crs", "CRS", &options_.crs, "Coordinates of the output", false, {}, {}, Offer::nothing, "the map's"},
                           {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
             .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
                          {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top", "A table in UTM metres"},

@@ -51,6 +51,7 @@ class Peaks final : public Command {
   MapRequest request_;
   StageOptions options_{{"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation", "load_dem.nodata",
                          "join_mountain_tops.base", "measure_isolation.isolation", "measure_isolation.distance",
+                         "map_mountain_tops.visible_range",
                          "load_dem.crs", "load_dem.height_sd", "load_dem.tile_cells", "load_dem.memory"}};
   bool print_job_ = false;
 };

@@ -17,7 +17,7 @@ class Query final : public Command {
     std::vector<Argument> all{{"", "MAP.gpkg", &map_, "Map to read; it is not changed", true, {}, {}, Offer::file}};
     for (auto& argument : query_arguments(request_)) all.push_back(argument);
     all.push_back({"--format", "FORM", &format_, "How to print them; geojson is always longitude and latitude", false,
-                   {"table", "csv", "json", "geojson"}});
+                   {"table", "csv", "json", "geojson"}, {}, Offer::nothing, "table"});
     return {.name = "query",
             .group = Group::use,
             .summary = "Print the landmarks of a map that meet conditions",

@@ -18,8 +18,8 @@ class Report final : public Command {
             .arguments = {{"", "MAP.gpkg", &map_, "Map to read", true, {}, {}, Offer::file},
                           {"-o,--output", "REPORT.html", &html_, "Report to write; an older one is replaced", true, {}, {},
                            Offer::file},
-                          {"--title", "TEXT", &options_.title, "Title of the page (default: the map's file name)"},
-                          {"--top", "N", &options_.top, "Landmarks listed per type (default: 25)"}},
+                          {"--title", "TEXT", &options_.title, "Title of the page", false, {}, {}, Offer::nothing, "the file's name"},
+                          {"--top", "N", &options_.top, "Landmarks listed per type", false, {}, {}, Offer::nothing, "25"}},
             .examples = {{"waymark report alps.gpkg -o alps.html", "A report to read and to print"}}};
   }
 

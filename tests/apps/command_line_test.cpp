@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(CommandLine, NoCommandIsWrongUsageAndShowsTheCommands) {
+  const Outcome said = waymark({});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_THAT(said.err, HasSubstr("Usage: waymark COMMAND"));
+}
+
+TEST(CommandLine, HelpGoesToStandardOutputAndListsEveryCommand) {
+  const Outcome said = waymark({"--help"});
+  EXPECT_EQ(said.code, 0);
+  EXPECT_EQ(said.err, "");
+  for (const char* command : {"completion", "export", "man", "peaks", "plan", "query", "report", "run", "sensors", "stages",
+                              "types", "validate"})
+    EXPECT_THAT(said.out, HasSubstr("\n  " + std::string(command) + " "));
+  EXPECT_THAT(said.out, HasSubstr("Exit codes:"));
+}
+
+TEST(CommandLine, HelpOfACommandHasUsageOptionsAndExamples) {
+  for (const auto& words : {std::vector<std::string>{"query", "--help"}, {"query", "-h"}, {"-h", "query"}}) {
+    const Outcome said = waymark(words);
+    EXPECT_EQ(said.code, 0);
+    EXPECT_THAT(said.out, StartsWith("Usage: waymark query MAP.gpkg [options]\n"));
+    EXPECT_THAT(said.out, AllOf(HasSubstr("--near X Y RADIUS"), HasSubstr("Examples:"), HasSubstr("--threads N")));
+  }
+}
+
+TEST(CommandLine, VersionIsOneLine) { EXPECT_THAT(waymark({"--version"}).out, testing::MatchesRegex("waymark [0-9.]+\n")); }
+
+TEST(CommandLine, UnknownCommandNamesTheNearest) {
+  const Outcome said = waymark({"pekas", "dem.tif"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_EQ(said.err, "error: waymark has no command 'pekas'\n  did you mean 'peaks'?\n");
+}
+
+TEST(CommandLine, UnknownOptionNamesTheNearest) {
+  EXPECT_EQ(waymark({"query", "map.gpkg", "--tpye", "rock"}).err,
+            "error: waymark query has no option '--tpye'\n  did you mean '--type'?\n");
+  EXPECT_EQ(waymark({"peaks", "dem.tif", "--min-prominense=30"}).err,
+            "error: waymark peaks has no option '--min-prominense'\n  did you mean '--min-prominence'?\n");
+  EXPECT_EQ(waymark({"--verson"}).err, "error: waymark has no option '--verson'\n  did you mean '--version'?\n");
+}
+
+TEST(CommandLine, AWordTooManyIsNamed) {
+  const Outcome said = waymark({"validate", "a.gpkg", "b.gpkg"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_EQ(said.err, "error: waymark validate has no use for the word 'b.gpkg'\n  `waymark validate --help` shows what it takes\n");
+}
+
+TEST(CommandLine, AMissingArgumentIsNamed) {
+  EXPECT_THAT(waymark({"query"}).err, StartsWith("error: waymark query needs MAP.gpkg\n"));
+  EXPECT_THAT(waymark({"report", "map.gpkg"}).err, StartsWith("error: waymark report needs -o REPORT.html\n"));
+  EXPECT_THAT(waymark({"peaks", "dem.tif"}).err, StartsWith("error: the map needs a name: -o MAP.gpkg\n"));
+}
+
+TEST(CommandLine, ValuesAreChecked) {
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--limit", "ten"}).err, "error: --limit must be a whole number, is 'ten'\n");
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--near", "8", "46", "nan"}).err, "error: --near must be a number, is 'nan'\n");
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--bbox", "1", "2", "3"}).err,
+            "error: --bbox takes 4 values (X0 Y0 X1 Y1), has 3\n");
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--format", "cvs"}).err,
+            "error: --format must be one of table, csv, json, geojson, is 'cvs'\n  did you mean 'csv'?\n");
+  EXPECT_EQ(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--nodata", "fil"}).err,
+            "error: --nodata must be one of ocean, unknown, fill, is 'fil'\n  did you mean 'fill'?\n");
+  EXPECT_THAT(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--min-prominence", "high"}).err,
+              StartsWith("error: --min-prominence must be a number, is a string (\"high\")\n"));
+  EXPECT_THAT(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--tile-cells", "5"}).err,
+              StartsWith("error: --tile-cells must be in [64, 16384]"));
+  EXPECT_THAT(waymark({"--threads", "-2", "types"}).err, StartsWith("error: --threads must be 1 or more"));
+  EXPECT_THAT(waymark({"types", "--config", "CACHE"}).err, StartsWith("error: --config takes KEY=VALUE, is 'CACHE'\n"));
+}
+
+TEST(CommandLine, GlobalOptionsStandBeforeOrAfterTheCommand) {
+  EXPECT_EQ(waymark({"--threads", "2", "types"}).code, 0);
+  EXPECT_EQ(waymark({"types", "--threads=2", "-q"}).code, 0);
+}
+
+TEST(CommandLine, AFullStandardOutputIsAnError) {
+  const Outcome said = bash("$WAYMARK man > /dev/full");
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, StartsWith("error: cannot write to standard output\n"));
+}
+
+TEST(Describe, EverythingHasItsFourForms) {
+  for (const std::string kind : {"stages", "types", "sensors"})
+    for (const std::string form : {"text", "json", "schema", "markdown"}) {
+      const Outcome said = waymark({kind, "--as", form});
+      EXPECT_EQ(said.code, 0) << kind << " " << form << ": " << said.err;
+      EXPECT_FALSE(said.out.empty());
+    }
+}
+
+TEST(Describe, OneByNameOrTheNearest) {
+  EXPECT_THAT(waymark({"types", "rock"}).out, HasSubstr("Half the mean width"));
+  EXPECT_THAT(waymark({"stages", "find_mountain_tops"}).out, HasSubstr("min_prominence"));
+  EXPECT_EQ(waymark({"types", "rok"}).err, "error: there is no landmark type 'rok'\n  did you mean 'rock'?\n");
+  EXPECT_EQ(waymark({"types", "rok"}).code, 2);
+}
+
+}  // namespace
+}  // namespace waymark::test
