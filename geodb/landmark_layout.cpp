@@ -159,8 +159,9 @@ void LandmarkLayout::bind(sqlite::Statement& statement, std::int64_t row, const 
   for (const double value : {landmark.confidence, covariance(0, 0), covariance(1, 1), covariance(0, 1), covariance(2, 2)})
     statement.bind(++parameter, value);
   statement.bind(++parameter, landmark.observations);
+  static const AttributeValue none;  // texts are bound in place, so no temporary will do
   for (std::size_t i = 0; i < type_->attributes.size(); ++i)
-    bind_attribute(statement, ++parameter, i < landmark.attributes.size() ? landmark.attributes[i] : AttributeValue{});
+    bind_attribute(statement, ++parameter, i < landmark.attributes.size() ? landmark.attributes[i] : none);
 }
 
 Landmark LandmarkLayout::read(const sqlite::Statement& row) const {
