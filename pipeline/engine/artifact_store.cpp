@@ -25,7 +25,9 @@ void make_folder(const fs::path& folder) {
                 "choose another folder with --work");
 }
 
-fs::path payload_file(const fs::path& result, const std::string& port) { return result / (port + ".bin"); }
+fs::path payload_file(const fs::path& result, const std::string& port) {
+  return result / (port + ".bin");
+}
 
 /// The manifest of a whole and undamaged result; null else.
 Json intact_manifest(const fs::path& result) try {
@@ -52,8 +54,8 @@ struct Undo {
 Artifact::Value load(const fs::path& file, const ErasedCodec& codec, const std::string& stage) try {
   return codec.decode(read_file(file));
 } catch (const std::exception& problem) {
-  throw Error(ErrorCode::input, std::string("cannot read a kept result back: ") + problem.what(), file.string(),
-              "make it again with --rerun-from " + stage);
+  throw Error(ErrorCode::input, std::string("cannot read a kept result back: ") + problem.what(),
+              file.string(), "make it again with --rerun-from " + stage);
 }
 
 /// Renames a whole result to its place. Where another process was first, its equal result stays.
@@ -74,15 +76,23 @@ void publish(const fs::path& aside, const fs::path& result) {
 
 }  // namespace
 
-ArtifactStore::ArtifactStore(fs::path folder) : folder_(std::move(folder)) { make_folder(folder_); }
+ArtifactStore::ArtifactStore(fs::path folder) : folder_(std::move(folder)) {
+  make_folder(folder_);
+}
 
-fs::path ArtifactStore::item_folder(const Unit& unit) const { return folder_ / unit.stage / unit.item; }
-fs::path ArtifactStore::result_folder(const Unit& unit) const { return item_folder(unit) / unit.fingerprint; }
+fs::path ArtifactStore::item_folder(const Unit& unit) const {
+  return folder_ / unit.stage / unit.item;
+}
+fs::path ArtifactStore::result_folder(const Unit& unit) const {
+  return item_folder(unit) / unit.fingerprint;
+}
 fs::path ArtifactStore::failure_file(const Unit& unit) const {
   return item_folder(unit) / (unit.fingerprint + ".failure.json");
 }
 
-bool ArtifactStore::contains(const Unit& unit) const { return fs::exists(result_folder(unit) / kManifest); }
+bool ArtifactStore::contains(const Unit& unit) const {
+  return fs::exists(result_folder(unit) / kManifest);
+}
 
 std::optional<StoredUnit> ArtifactStore::find(const Unit& unit, const StageSpec& spec) const {
   const fs::path result = result_folder(unit);
@@ -94,10 +104,9 @@ std::optional<StoredUnit> ArtifactStore::find(const Unit& unit, const StageSpec&
     stored.warnings = manifest.at("warnings");
     for (const OutputPort& port : spec.outputs) {
       if (!manifest.at("outputs").contains(port.name)) return std::nullopt;
-      stored.artifacts[port.name] = std::make_shared<Artifact>(
-          [file = payload_file(result, port.name), codec = port.codec, stage = spec.name] {
-            return load(file, *codec, stage);
-          });
+      stored.artifacts[port.name] =
+          std::make_shared<Artifact>([file = payload_file(result, port.name), codec = port.codec,
+                                      stage = spec.name] { return load(file, *codec, stage); });
     }
   } catch (const Json::exception&) {
     return std::nullopt;
@@ -142,7 +151,8 @@ void ArtifactStore::remove(const Unit& unit) const {
 void ArtifactStore::save_failure(const Unit& unit, std::string_view message) const {
   make_folder(item_folder(unit));
   const fs::path aside = aside_path(item_folder(unit));
-  write_file(aside, Json{{"unit", unit.id()}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace));
+  write_file(aside, Json{{"unit", unit.id()}, {"message", message}}.dump(2, ' ', false,
+                                                                         Json::error_handler_t::replace));
   std::error_code ignored;  // the report has the failure too
   fs::rename(aside, failure_file(unit), ignored);
 }

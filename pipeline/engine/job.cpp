@@ -52,7 +52,8 @@ Json parse_json(std::string_view text, std::string_view origin) {
   DuplicateKeys duplicates;
   try {
     Json json = Json::parse(text, std::ref(duplicates));
-    if (!duplicates.first().empty()) refuse(fmt::format("the key '{}' is given twice", duplicates.first()), origin);
+    if (!duplicates.first().empty())
+      refuse(fmt::format("the key '{}' is given twice", duplicates.first()), origin);
     return json;
   } catch (const nlohmann::json::parse_error& error) {
     const std::string what = error.what();
@@ -62,7 +63,8 @@ Json parse_json(std::string_view text, std::string_view origin) {
   }
 }
 
-void expect(bool fits, const std::string& place, const char* kind, const Json& found, std::string_view origin) {
+void expect(bool fits, const std::string& place, const char* kind, const Json& found,
+            std::string_view origin) {
   if (!fits) refuse(fmt::format("{} must be {}, is {}", place, kind, found.type_name()), origin);
 }
 
@@ -85,7 +87,8 @@ Job parse_job(std::string_view text, const Registry& registry, std::string_view 
     const std::vector<std::string> keys{"name", "stages"};
     if (std::ranges::find(keys, key) != keys.end()) continue;
     const std::string near = nearest_name(key, keys);
-    refuse(fmt::format("the job has no '{}'{}", key, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
+    refuse(fmt::format("the job has no '{}'{}", key,
+                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
            origin, "a job has a name and stages");
   }
   Job job{.name = {}, .pipeline = Pipeline(registry)};
@@ -96,7 +99,8 @@ Job parse_job(std::string_view text, const Registry& registry, std::string_view 
   if (!json.contains("stages")) refuse("the job has no \"stages\"", origin, "a job has a name and stages");
   expect(json["stages"].is_array(), "stages", "an array", json["stages"], origin);
   try {
-    for (std::size_t i = 0; i < json["stages"].size(); ++i) add_stage(job.pipeline, json["stages"][i], i, origin);
+    for (std::size_t i = 0; i < json["stages"].size(); ++i)
+      add_stage(job.pipeline, json["stages"][i], i, origin);
     job.pipeline.check();
   } catch (const Error& error) {
     throw Error(error.code(), error.problem(), std::string(origin), error.hint());
@@ -122,8 +126,8 @@ std::string job_as_json(std::string_view name, const Pipeline& pipeline) {
       std::visit([&](const auto& value) { stage[row.name] = value; }, row.value);
     stages.push_back(std::move(stage));
   }
-  return Json{{"name", name}, {"stages", std::move(stages)}}
-      .dump(2, ' ', false, Json::error_handler_t::replace);
+  return Json{{"name", name}, {"stages", std::move(stages)}}.dump(2, ' ', false,
+                                                                  Json::error_handler_t::replace);
 }
 
 }  // namespace waymark

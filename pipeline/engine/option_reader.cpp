@@ -42,7 +42,8 @@ class OptionReader final : public OptionVisitor {
 
  private:
   void number(std::string_view name, double& value, std::string_view, const Field& field) override {
-    if (const Json* given = find(name)) value = expect(given->is_number(), name, "a number", *given, field).get<double>();
+    if (const Json* given = find(name))
+      value = expect(given->is_number(), name, "a number", *given, field).get<double>();
   }
   void integer(std::string_view name, std::int64_t& value, const Field& field) override {
     const Json* given = find(name);
@@ -62,7 +63,8 @@ class OptionReader final : public OptionVisitor {
   void texts(std::string_view name, std::vector<std::string>& value, const Field& field) override {
     const Json* given = find(name);
     if (!given) return;
-    const bool strings = given->is_array() && std::ranges::all_of(*given, [](const Json& s) { return s.is_string(); });
+    const bool strings =
+        given->is_array() && std::ranges::all_of(*given, [](const Json& s) { return s.is_string(); });
     value = expect(strings, name, "an array of strings", *given, field).get<std::vector<std::string>>();
   }
 
@@ -70,9 +72,11 @@ class OptionReader final : public OptionVisitor {
     const auto found = object_.find(name);
     return found == object_.end() ? nullptr : &*found;
   }
-  const Json& expect(bool fits, std::string_view name, const char* kind, const Json& given, const Field& field) {
+  const Json& expect(bool fits, std::string_view name, const char* kind, const Json& given,
+                     const Field& field) {
     if (!fits)
-      refuse(place_, fmt::format("{}{} must be {}, is {}", place_.prefix, name, kind, with_article(given)), field.help);
+      refuse(place_, fmt::format("{}{} must be {}, is {}", place_.prefix, name, kind, with_article(given)),
+             field.help);
     return given;
   }
 
@@ -85,8 +89,8 @@ void check_choice(const OptionRow& row, const std::string& text, const Place& pl
   if (choices.empty() || std::ranges::find(choices, text) != choices.end()) return;
   const std::string near = nearest_name(text, choices);
   refuse(place,
-         fmt::format("{}{} must be one of {}, is '{}'{}", place.prefix, row.name, fmt::join(choices, ", "), text,
-                     near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
+         fmt::format("{}{} must be one of {}, is '{}'{}", place.prefix, row.name, fmt::join(choices, ", "),
+                     text, near.empty() ? "" : fmt::format("; did you mean '{}'?", near)),
          row.field.help);
 }
 
@@ -103,7 +107,8 @@ void check_range(const OptionRow& row, double number, const Place& place) {
 void check_values(const Step& step, const Place& place) {
   for (const OptionRow& row : option_table(step)) {
     if (const auto* number = std::get_if<double>(&row.value)) check_range(row, *number, place);
-    if (const auto* count = std::get_if<std::int64_t>(&row.value)) check_range(row, static_cast<double>(*count), place);
+    if (const auto* count = std::get_if<std::int64_t>(&row.value))
+      check_range(row, static_cast<double>(*count), place);
     if (const auto* text = std::get_if<std::string>(&row.value)) check_choice(row, *text, place);
     if (const auto* texts = std::get_if<std::vector<std::string>>(&row.value))
       for (const std::string& text : *texts) check_choice(row, text, place);
@@ -142,13 +147,17 @@ Place place_in_job(const Step& step, std::string_view place) {
 void read_options(Step& step, std::string_view json_object, std::string_view place) {
   const Json object = Json::parse(json_object, nullptr, false);
   if (!object.is_object())
-    refuse({}, fmt::format("the options of {} {} are not a JSON object: {}", place, step.spec().name, json_object), "");
+    refuse(
+        {},
+        fmt::format("the options of {} {} are not a JSON object: {}", place, step.spec().name, json_object),
+        "");
   read_object(step, object, place_in_job(step, place));
 }
 
 void set_option(Step& step, std::string_view option, std::string_view text) {
   const std::string stage = step.spec().name;
-  const Place place{.stage = stage, .prefix = stage + ".", .where = fmt::format("--set {}.{}={}", stage, option, text)};
+  const Place place{
+      .stage = stage, .prefix = stage + ".", .where = fmt::format("--set {}.{}={}", stage, option, text)};
   check_name(step, option, place);
   const auto rows = option_table(step);
   const std::string type = json_type(std::ranges::find(rows, option, &OptionRow::name)->value);
@@ -158,6 +167,8 @@ void set_option(Step& step, std::string_view option, std::string_view text) {
   read_object(step, Json{{std::string(option), value}}, place);
 }
 
-void check_options(const Step& step, std::string_view place) { check_values(step, place_in_job(step, place)); }
+void check_options(const Step& step, std::string_view place) {
+  check_values(step, place_in_job(step, place));
+}
 
 }  // namespace waymark

@@ -10,7 +10,8 @@ namespace waymark {
 /// Throws Error{usage}; `step` may then be half set.
 void read_options(Step& step, std::string_view json_object, std::string_view place);
 
-/// Sets one option from the text of a command line: "25", "true", "ocean"; a list as JSON or as its one entry.
+/// Sets one option from the text of a command line: "25", "true", "ocean"; a list as JSON or as its one
+/// entry.
 void set_option(Step& step, std::string_view option, std::string_view text);
 
 /// Range and choices of every option, NaN included: for options set in C++.

@@ -17,9 +17,13 @@ class TableMaker final : public OptionVisitor {
   void number(std::string_view name, double& value, std::string_view unit, const Field& field) override {
     rows.push_back({std::string(name), std::string(unit), value, field});
   }
-  void integer(std::string_view name, std::int64_t& value, const Field& field) override { add(name, value, field); }
+  void integer(std::string_view name, std::int64_t& value, const Field& field) override {
+    add(name, value, field);
+  }
   void flag(std::string_view name, bool& value, const Field& field) override { add(name, value, field); }
-  void text(std::string_view name, std::string& value, const Field& field) override { add(name, value, field); }
+  void text(std::string_view name, std::string& value, const Field& field) override {
+    add(name, value, field);
+  }
   void texts(std::string_view name, std::vector<std::string>& value, const Field& field) override {
     add(name, value, field);
   }

@@ -10,7 +10,8 @@ namespace waymark {
 
 using OptionValue = std::variant<double, std::int64_t, bool, std::string, std::vector<std::string>>;
 
-/// One option as data: what help, schema, reference pages, command lines and the canonical form are made from.
+/// One option as data: what help, schema, reference pages, command lines and the canonical form are made
+/// from.
 struct OptionRow {
   std::string name;
   std::string unit;   ///< "m", "deg"; empty where there is none

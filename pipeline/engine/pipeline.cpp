@@ -14,7 +14,9 @@ namespace {
 
 using Steps = std::vector<std::unique_ptr<Step>>;
 
-std::string place(std::size_t index) { return fmt::format("stages[{}]", index); }
+std::string place(std::size_t index) {
+  return fmt::format("stages[{}]", index);
+}
 std::string place(const Steps& steps, std::size_t index) {
   return fmt::format("stages[{}] {}", index, steps[index]->spec().name);
 }
@@ -68,7 +70,8 @@ void check_outputs(const Steps& steps, std::size_t second) {
       refuse(fmt::format("{} and {} are the same stage", place(steps, first), place(steps, second)));
     for (const OutputPort& output : steps[second]->spec().outputs)
       if (output_of(*steps[first], output.name))
-        refuse(fmt::format("{} and {} both write '{}'", place(steps, first), place(steps, second), output.name));
+        refuse(
+            fmt::format("{} and {} both write '{}'", place(steps, first), place(steps, second), output.name));
     if (steps[first]->spec().lists && steps[second]->spec().lists)
       refuse(fmt::format("{} and {} both list tiles", place(steps, first), place(steps, second)));
   }
@@ -105,7 +108,8 @@ Pipeline& Pipeline::add(std::unique_ptr<Step> step) {
 Pipeline& Pipeline::set(std::string_view assignment) {
   const std::size_t dot = assignment.find('.'), equals = assignment.find('=');
   if (equals == std::string_view::npos || dot >= equals)
-    refuse(fmt::format("'{}' is not STAGE.OPTION=VALUE", assignment), "as in find_mountain_tops.min_prominence=25");
+    refuse(fmt::format("'{}' is not STAGE.OPTION=VALUE", assignment),
+           "as in find_mountain_tops.min_prominence=25");
   const std::string_view stage = assignment.substr(0, dot);
   std::vector<std::string> names;
   for (const auto& step : steps_) {

@@ -14,8 +14,8 @@ class Pipeline {
   /// The registry must outlive the pipeline.
   explicit Pipeline(const Registry& registry) : registry_(&registry) {}
 
-  /// Appends a stage by name; options as a JSON object, empty for all defaults. Throws Error{usage} naming the
-  /// place in the job, "stages[1].min_prominence".
+  /// Appends a stage by name; options as a JSON object, empty for all defaults. Throws Error{usage} naming
+  /// the place in the job, "stages[1].min_prominence".
   Pipeline& add(std::string_view stage, std::string_view options_json = {});
 
   /// Appends a stage whose type is visible: pipeline.add<FindMountainTops>({.min_prominence = 25_m}).

@@ -10,11 +10,11 @@ namespace waymark {
 /// One stage on one item: the smallest piece of work that is done, kept and done again.
 struct Unit {
   std::string stage;
-  std::string item;          ///< "map" or "tile_000003"
+  std::string item;  ///< "map" or "tile_000003"
   std::optional<Tile> tile;
-  std::string fingerprint;   ///< equal fingerprints, equal results; empty where nothing is kept
+  std::string fingerprint;         ///< equal fingerprints, equal results; empty where nothing is kept
   std::vector<std::size_t> after;  ///< units whose artifacts it reads, ascending indices into Plan::units
-  bool done = false;         ///< its result is in the work folder
+  bool done = false;               ///< its result is in the work folder
 
   std::string id() const { return stage + "/" + item; }
 };

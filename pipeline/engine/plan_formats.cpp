@@ -13,8 +13,9 @@ namespace {
 
 /// One argument of a POSIX shell command.
 std::string shell_quoted(const std::string& text) {
-  if (!text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
-                           std::string::npos)
+  if (!text.empty() &&
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") ==
+          std::string::npos)
     return text;
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -27,7 +28,9 @@ std::string run_command(const PlanCommand& command) {
 }
 
 /// A Python string literal.
-std::string python_string(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string python_string(const std::string& text) {
+  return nlohmann::json(text).dump();
+}
 
 std::string manifest(const Unit& unit, const PlanCommand& command) {
   return python_string(fmt::format("{}/{}/{}/manifest.json", command.work, unit.id(), unit.fingerprint));
@@ -40,12 +43,9 @@ std::string plan_as_jsonl(const Plan& plan) {
   for (const Unit& unit : plan.units) {
     auto after = nlohmann::json::array();
     for (const std::size_t i : unit.after) after.push_back(plan.units[i].id());
-    lines += nlohmann::ordered_json{{"unit", unit.id()},
-                                    {"stage", unit.stage},
-                                    {"item", unit.item},
-                                    {"fingerprint", unit.fingerprint},
-                                    {"done", unit.done},
-                                    {"after", std::move(after)}}
+    lines += nlohmann::ordered_json{{"unit", unit.id()}, {"stage", unit.stage},
+                                    {"item", unit.item}, {"fingerprint", unit.fingerprint},
+                                    {"done", unit.done}, {"after", std::move(after)}}
                  .dump() +
              "\n";
   }
@@ -67,7 +67,8 @@ std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command) {
     // Snakemake formats the shell command: braces in a path would be taken for wildcards.
     std::string shell = fmt::format("{} --unit {}", run_command(command), unit.id());
     for (const char brace : {'{', '}'})
-      for (std::size_t at = 0; (at = shell.find(brace, at)) != std::string::npos; at += 2) shell.insert(at, 1, brace);
+      for (std::size_t at = 0; (at = shell.find(brace, at)) != std::string::npos; at += 2)
+        shell.insert(at, 1, brace);
     text += fmt::format("    output: {}\n    shell: {}\n", manifest(unit, command), python_string(shell));
   }
   return text;
@@ -81,7 +82,8 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
     if (begin == end) continue;
     std::set<std::size_t> after_stages;
     for (const std::size_t read : plan.units[begin].after)
-      after_stages.insert(static_cast<std::size_t>(std::ranges::upper_bound(plan.begins, read) - plan.begins.begin()) - 1);
+      after_stages.insert(
+          static_cast<std::size_t>(std::ranges::upper_bound(plan.begins, read) - plan.begins.begin()) - 1);
     std::string options;
     for (const std::size_t earlier : after_stages)
       options += fmt::format("{}$stage_{}", options.empty() ? " --dependency=afterok:" : ":", earlier);
@@ -91,8 +93,8 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
       options += fmt::format(" --array=1-{}", shares);
       work = fmt::format("{} --shard $SLURM_ARRAY_TASK_ID/{}", run_command(command), shares);
     }
-    script += fmt::format("stage_{}=$(sbatch --parsable --job-name={}{} --wrap {})\n", stage, plan.units[begin].stage,
-                          options, shell_quoted(work));
+    script += fmt::format("stage_{}=$(sbatch --parsable --job-name={}{} --wrap {})\n", stage,
+                          plan.units[begin].stage, options, shell_quoted(work));
   }
   return script;
 }

@@ -14,8 +14,8 @@ namespace waymark {
 namespace {
 
 /// The units a unit reads: of each input the one of the same tile, the only one, or all.
-std::vector<std::size_t> units_read(const Plan& plan, const Pipeline& pipeline, const std::vector<Wire>& wires,
-                                    std::size_t position) {
+std::vector<std::size_t> units_read(const Plan& plan, const Pipeline& pipeline,
+                                    const std::vector<Wire>& wires, std::size_t position) {
   std::vector<std::size_t> read;
   for (const Wire& wire : wires) {
     const std::size_t begin = plan.begins[wire.writer], end = plan.begins[wire.writer + 1];
@@ -58,11 +58,13 @@ void append_units(Plan& plan, const Pipeline& pipeline, const std::vector<Tile>&
   };
   if (spec.scope == Scope::map) append("map", {}, 0);
   if (spec.scope == Scope::tile)
-    for (std::size_t i = 0; i < tiles.size(); ++i) append(fmt::format("tile_{:06}", tiles[i].index), tiles[i], i);
+    for (std::size_t i = 0; i < tiles.size(); ++i)
+      append(fmt::format("tile_{:06}", tiles[i].index), tiles[i], i);
   plan.begins.push_back(plan.units.size());
 }
 
-std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step, const std::vector<InputFile>& files) {
+std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step,
+                           const std::vector<InputFile>& files) {
   auto key = nlohmann::json{{"stage", unit.stage},
                             {"version", step.spec().version},
                             {"halo", step.spec().halo},

@@ -23,6 +23,7 @@ void append_units(Plan& plan, const Pipeline& pipeline, const std::vector<Tile>&
 
 /// What makes the result of a unit the same: stage, version, halo, options that affect it, item, contents of
 /// its input files, fingerprints of what it reads. 32 hex digits.
-std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step, const std::vector<InputFile>& files);
+std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step,
+                           const std::vector<InputFile>& files);
 
 }  // namespace waymark

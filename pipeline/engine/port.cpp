@@ -12,8 +12,8 @@ namespace {
 
 std::string demangled(std::type_index type) {
   int status = 0;
-  const std::unique_ptr<char, void (*)(void*)> name(abi::__cxa_demangle(type.name(), nullptr, nullptr, &status),
-                                                    std::free);
+  const std::unique_ptr<char, void (*)(void*)> name(
+      abi::__cxa_demangle(type.name(), nullptr, nullptr, &status), std::free);
   return status == 0 ? name.get() : type.name();
 }
 
@@ -22,7 +22,8 @@ std::string without_allocators(std::string name) {
   constexpr std::string_view kBegin = ", allocator<";
   for (std::size_t begin = 0; (begin = name.find(kBegin)) != std::string::npos;) {
     std::size_t end = begin + kBegin.size();
-    for (int open = 1; open > 0 && end < name.size(); ++end) open += name[end] == '<' ? 1 : name[end] == '>' ? -1 : 0;
+    for (int open = 1; open > 0 && end < name.size(); ++end)
+      open += name[end] == '<' ? 1 : name[end] == '>' ? -1 : 0;
     name.erase(begin, end - begin);
   }
   return name;
@@ -31,7 +32,8 @@ std::string without_allocators(std::string name) {
 }  // namespace
 
 std::string readable_type(std::type_index type) {
-  static const std::regex string("std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >");
+  static const std::regex string(
+      "std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >");
   static const std::regex scope(R"((\(anonymous namespace\)|\w+)::)");
   static const std::regex constness(R"((\w+) const\b)");
   static const std::regex space(" >");

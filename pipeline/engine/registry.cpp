@@ -26,12 +26,14 @@ std::string contradiction(const StageSpec& spec) {
       return "it declares the output '" + port.name + "' twice";
   }
   if (spec.lists) {
-    if (spec.scope != Scope::map || *spec.lists != Scope::tile) return "a listing stage has map scope, lists tiles";
+    if (spec.scope != Scope::map || *spec.lists != Scope::tile)
+      return "a listing stage has map scope, lists tiles";
     if (!spec.inputs.empty()) return "a listing stage runs while planning: it can read no artifact";
     if (std::ranges::count(spec.outputs, std::type_index(typeid(std::vector<Tile>)), &OutputPort::type) != 1)
       return "a listing stage writes one std::vector<Tile>";
   }
-  if (spec.halo < 0 || (spec.halo > 0 && spec.scope != Scope::tile)) return "only a tile has a halo, >= 0 cells";
+  if (spec.halo < 0 || (spec.halo > 0 && spec.scope != Scope::tile))
+    return "only a tile has a halo, >= 0 cells";
   return {};
 }
 

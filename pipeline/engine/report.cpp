@@ -40,13 +40,15 @@ bool RunReport::complete() const {
 std::string report_as_text(const RunReport& report) {
   std::size_t width = 5;
   for (const StageReport& stage : report.stages) width = std::max(width, stage.stage.size());
-  std::string text =
-      fmt::format("{:<{}}  {:>10}  {:>10}  {:>10}  {:>8}  units\n", "stage", width, "in", "out", "rejected", "seconds");
+  std::string text = fmt::format("{:<{}}  {:>10}  {:>10}  {:>10}  {:>8}  units\n", "stage", width, "in",
+                                 "out", "rejected", "seconds");
   for (const StageReport& stage : report.stages) {
-    text += fmt::format("{:<{}}  {:>10}  {:>10}  {:>10}  {:>8.2f}  {}\n", stage.stage, width, stage.counts.in,
-                        stage.counts.out, stage.counts.rejected_total(), stage.seconds, readable_units(stage));
+    text +=
+        fmt::format("{:<{}}  {:>10}  {:>10}  {:>10}  {:>8.2f}  {}\n", stage.stage, width, stage.counts.in,
+                    stage.counts.out, stage.counts.rejected_total(), stage.seconds, readable_units(stage));
     for (const auto& [reason, n] : stage.counts.rejected) text += fmt::format("    {} {}\n", n, reason);
-    for (const std::string& warning : stage.warnings) text += fmt::format("    warning: {}\n", indented(warning));
+    for (const std::string& warning : stage.warnings)
+      text += fmt::format("    warning: {}\n", indented(warning));
   }
   for (const Failure& failure : report.failures)
     text += fmt::format("failed: {}\n    {}\n", failure.unit, indented(failure.message));
@@ -58,9 +60,17 @@ std::string report_as_json(const RunReport& report) {
   for (const StageReport& s : report.stages) {
     Json rejected = Json::object();
     for (const auto& [reason, n] : s.counts.rejected) rejected[reason] = n;
-    stages.push_back({{"stage", s.stage}, {"units", s.units}, {"made", s.made}, {"reused", s.reused},
-                      {"failed", s.failed}, {"skipped", s.skipped}, {"waiting", s.waiting}, {"in", s.counts.in},
-                      {"out", s.counts.out}, {"rejected", std::move(rejected)}, {"seconds", s.seconds},
+    stages.push_back({{"stage", s.stage},
+                      {"units", s.units},
+                      {"made", s.made},
+                      {"reused", s.reused},
+                      {"failed", s.failed},
+                      {"skipped", s.skipped},
+                      {"waiting", s.waiting},
+                      {"in", s.counts.in},
+                      {"out", s.counts.out},
+                      {"rejected", std::move(rejected)},
+                      {"seconds", s.seconds},
                       {"warnings", s.warnings}});
   }
   Json failures = Json::array();
@@ -70,6 +80,8 @@ std::string report_as_json(const RunReport& report) {
       .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
-std::ostream& operator<<(std::ostream& stream, const RunReport& report) { return stream << report_as_text(report); }
+std::ostream& operator<<(std::ostream& stream, const RunReport& report) {
+  return stream << report_as_text(report);
+}
 
 }  // namespace waymark

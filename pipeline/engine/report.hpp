@@ -12,8 +12,8 @@ namespace waymark {
 struct StageReport {
   std::string stage;
   std::int64_t units = 0;
-  std::int64_t made = 0;     ///< in this run
-  std::int64_t reused = 0;   ///< found in the work folder
+  std::int64_t made = 0;    ///< in this run
+  std::int64_t reused = 0;  ///< found in the work folder
   std::int64_t failed = 0;
   std::int64_t skipped = 0;  ///< because a unit they read failed
   std::int64_t waiting = 0;  ///< left to another share of the work

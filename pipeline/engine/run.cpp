@@ -26,8 +26,9 @@ std::vector<bool> reached_from(const std::string& name, const Pipeline& pipeline
                                const std::vector<std::vector<Wire>>& wires) {
   std::vector<bool> reached(wires.size());
   for (std::size_t stage = 0; stage < wires.size(); ++stage)
-    reached[stage] = pipeline.steps()[stage]->spec().name == name ||
-                     std::ranges::any_of(wires[stage], [&](const Wire& wire) { return reached[wire.writer]; });
+    reached[stage] =
+        pipeline.steps()[stage]->spec().name == name ||
+        std::ranges::any_of(wires[stage], [&](const Wire& wire) { return reached[wire.writer]; });
   return reached;
 }
 
@@ -36,7 +37,8 @@ std::vector<bool> reached_from(const std::string& name, const Pipeline& pipeline
 Run::Run(const Pipeline& pipeline, const RunOptions& options) : pipeline_(pipeline), options_(options) {
   pipeline.check();
   check_run_options(options, pipeline);
-  for (std::size_t stage = 0; stage < pipeline.steps().size(); ++stage) wires_.push_back(wires_of(pipeline, stage));
+  for (std::size_t stage = 0; stage < pipeline.steps().size(); ++stage)
+    wires_.push_back(wires_of(pipeline, stage));
   anew_ = reached_from(options.rerun_from, pipeline, wires_);
   seconds_.resize(wires_.size());
   if (!options.work.empty()) store_.emplace(options.work);
@@ -57,7 +59,8 @@ void Run::name_inputs() {
 }
 
 void Run::hash_inputs() {
-  tbb::parallel_for(std::size_t{0}, inputs_.size(), [&](std::size_t i) { inputs_[i] = options_.hash_file(inputs_[i].path); });
+  tbb::parallel_for(std::size_t{0}, inputs_.size(),
+                    [&](std::size_t i) { inputs_[i] = options_.hash_file(inputs_[i].path); });
 }
 
 void Run::make_plan(bool fingerprints) {
@@ -68,7 +71,8 @@ void Run::make_plan(bool fingerprints) {
     const std::size_t unit = plan_.begins[stage];
     for (const OutputPort& port : step(stage).spec().outputs)
       if (port.type == typeid(std::vector<Tile>))
-        tiles_ = *std::static_pointer_cast<const std::vector<Tile>>(states_[unit].artifacts.at(port.name)->value());
+        tiles_ = *std::static_pointer_cast<const std::vector<Tile>>(
+            states_[unit].artifacts.at(port.name)->value());
   }
   divide_work(plan_, options_, states_);
 }
@@ -100,16 +104,18 @@ void Run::expect_wanted_unit() const {
   if (states_[static_cast<std::size_t>(wanted - plan_.units.begin())].status != Status::waiting) return;
   for (const std::size_t i : wanted->after)
     if (!states_[i].ready())
-      throw Error(ErrorCode::usage,
-                  fmt::format("cannot do {}: it reads {}, which is not done", options_.unit, plan_.units[i].id()),
-                  options_.work.string(), fmt::format("first do --unit {}", plan_.units[i].id()));
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("cannot do {}: it reads {}, which is not done", options_.unit, plan_.units[i].id()),
+          options_.work.string(), fmt::format("first do --unit {}", plan_.units[i].id()));
 }
 
 void Run::run_stage(std::size_t stage) {
   const auto begin = Clock::now();
   const std::size_t first = plan_.begins[stage], end = plan_.begins[stage + 1];
   ProgressMeter progress(options_.progress, step(stage).spec().name, static_cast<std::int64_t>(end - first));
-  tbb::parallel_for(first, end, [&](std::size_t unit) { do_unit(stage, unit, progress); }, tbb::simple_partitioner());
+  tbb::parallel_for(
+      first, end, [&](std::size_t unit) { do_unit(stage, unit, progress); }, tbb::simple_partitioner());
   progress.finish();
   seconds_[stage] = seconds_since(begin);
 }
@@ -205,7 +211,8 @@ void Run::release_read(std::size_t stage) {
     const auto reads_it = [&](const std::vector<Wire>& later) {
       return std::ranges::find(later, wire.port, &Wire::port) != later.end();
     };
-    if (std::any_of(wires_.begin() + static_cast<std::ptrdiff_t>(stage) + 1, wires_.end(), reads_it)) continue;
+    if (std::any_of(wires_.begin() + static_cast<std::ptrdiff_t>(stage) + 1, wires_.end(), reads_it))
+      continue;
     for (std::size_t i = plan_.begins[wire.writer]; i < plan_.begins[wire.writer + 1]; ++i)
       states_[i].artifacts.erase(wire.port);
   }

@@ -26,8 +26,8 @@ std::vector<Artifact::Value> RunResult::find(std::string_view name, std::type_in
       throw Error(first.code, fmt::format("'{}' was not made: {} failed", name, first.unit), first.message);
     }
     if (!report.complete())
-      throw Error(ErrorCode::input, fmt::format("'{}' was not made: part of the work is left to others", name), {},
-                  "run without --shard and --unit to finish the job");
+      throw Error(ErrorCode::input, fmt::format("'{}' was not made: part of the work is left", name), {},
+                  "run without --check, --shard and --unit to finish the job");
     throw std::logic_error(fmt::format("'{}' was released after the last stage that reads it", name));
   }
   return values;

@@ -13,14 +13,17 @@ class WarningList {
  public:
   void add(const std::string& text, const Unit& unit) {
     const auto known = std::ranges::find(entries_, text, &Entry::text);
-    if (known == entries_.end()) entries_.push_back({text, unit.tile ? unit.item : "", 1});
-    else ++known->units;
+    if (known == entries_.end())
+      entries_.push_back({text, unit.tile ? unit.item : "", 1});
+    else
+      ++known->units;
   }
   std::vector<std::string> texts() const {
     std::vector<std::string> texts;
     for (const auto& [text, item, units] : entries_)
-      texts.push_back(item.empty() ? text : units == 1 ? fmt::format("{} ({})", text, item)
-                                                       : fmt::format("{} ({} and {} more)", text, item, units - 1));
+      texts.push_back(item.empty() ? text
+                      : units == 1 ? fmt::format("{} ({})", text, item)
+                                   : fmt::format("{} ({} and {} more)", text, item, units - 1));
     return texts;
   }
 

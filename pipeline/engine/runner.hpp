@@ -77,8 +77,8 @@ class RunResult {
   std::map<std::string, Kept, std::less<>> artifacts_;
 };
 
-/// Runs what is not yet in the work folder. Units of a stage run in parallel; results and report do not depend
-/// on threads. A unit that throws becomes a failure, units that read it are skipped, the others go on.
+/// Runs what is not yet in the work folder. Units of a stage run in parallel; results and report do not
+/// depend on threads. A unit that throws becomes a failure, units that read it are skipped, the others go on.
 /// Throws Error where the job itself is wrong or a listing stage fails, std::logic_error where a stage breaks
 /// its own declaration.
 RunResult run(const Pipeline& pipeline, const RunOptions& options = {});

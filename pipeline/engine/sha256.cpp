@@ -33,6 +33,8 @@ std::string Sha256::hex() {
   return text;
 }
 
-std::string sha256(std::string_view bytes) { return Sha256().add(bytes).hex(); }
+std::string sha256(std::string_view bytes) {
+  return Sha256().add(bytes).hex();
+}
 
 }  // namespace waymark

@@ -24,7 +24,8 @@ void want_unit(const Plan& plan, const std::string& id, std::vector<UnitState>& 
   if (wanted == plan.units.end()) {
     std::vector<std::string> ids;
     for (const Unit& unit : plan.units) ids.push_back(unit.id());
-    refuse(fmt::format("the job has no unit '{}'{}", id, did_you_mean(id, ids)), "waymark plan lists the units");
+    refuse(fmt::format("the job has no unit '{}'{}", id, did_you_mean(id, ids)),
+           "waymark plan lists the units");
   }
   for (UnitState& state : states) state.part = Part::none;
   for (const std::size_t read : wanted->after) states[read].part = Part::others;
@@ -34,9 +35,11 @@ void want_unit(const Plan& plan, const std::string& id, std::vector<UnitState>& 
 }  // namespace
 
 void check_run_options(const RunOptions& options, const Pipeline& pipeline) {
-  if (options.threads < 0) refuse(fmt::format("{} threads cannot run", options.threads), "0 uses all there are");
+  if (options.threads < 0)
+    refuse(fmt::format("{} threads cannot run", options.threads), "0 uses all there are");
   if (options.work.empty() && (options.shard || !options.unit.empty() || !options.rerun_from.empty()))
-    refuse("a share, a unit or a rerun needs the results of other runs", "add --work DIR, the same for all of them");
+    refuse("a share, a unit or a rerun needs the results of other runs",
+           "add --work DIR, the same for all of them");
   if (options.shard && !(1 <= options.shard->index && options.shard->index <= options.shard->count))
     refuse(fmt::format("share {}/{} does not exist", options.shard->index, options.shard->count),
            "shares count from 1: 1/8 to 8/8");

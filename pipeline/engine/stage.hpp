@@ -5,8 +5,8 @@
 //     struct Options { Meters min_prominence{20}; void describe(OptionVisitor& option); };
 //     static constexpr In<DemHandle> dem{"dem"};
 //     static constexpr Out<DivideTree> tree{"divide_tree"};
-//     static StageSpec spec() { return {.name = "find_mountain_tops", ..., .inputs = {dem}, .outputs = {tree}}; }
-//     static void run(const Options& options, StageContext& unit);
+//     static StageSpec spec() { return {.name = "find_mountain_tops", ..., .inputs = {dem}, .outputs =
+//     {tree}}; } static void run(const Options& options, StageContext& unit);
 //   };
 //   void register_stage_find_mountain_tops(Registry& registry) { registry.add<FindMountainTops>(); }
 //

@@ -66,7 +66,9 @@ const Tile& StageContext::tile() const {
   return *inputs_.tile;
 }
 
-Window StageContext::cells_with_halo() const { return grown(tile().cells, spec_.halo); }
+Window StageContext::cells_with_halo() const {
+  return grown(tile().cells, spec_.halo);
+}
 
 std::string StageContext::path(const std::string& option) const {
   return resolve_path(inputs_.base_folder, option);

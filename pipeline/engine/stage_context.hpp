@@ -32,10 +32,10 @@ struct PortInput {
 
 /// What a unit of work is given.
 struct UnitInputs {
-  std::string id = {};                                   ///< "find_mountain_tops/tile_000003"
-  std::optional<Tile> tile = {};                         ///< of a tile-scope unit
+  std::string id = {};            ///< "find_mountain_tops/tile_000003"
+  std::optional<Tile> tile = {};  ///< of a tile-scope unit
   std::map<std::string, PortInput, std::less<>> ports = {};
-  std::filesystem::path base_folder = {};                ///< relative paths of options start here
+  std::filesystem::path base_folder = {};  ///< relative paths of options start here
   int threads = 1;
   std::function<void(double)> progress = {};
 };
@@ -63,7 +63,8 @@ class StageContext {
   template <class T>
   std::vector<std::shared_ptr<const T>> read_all(In<T> port) {
     std::vector<std::shared_ptr<const T>> all;
-    for (auto& value : read_each(port.name, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
+    for (auto& value : read_each(port.name, typeid(T)))
+      all.push_back(std::static_pointer_cast<const T>(value));
     return all;
   }
   /// Once per port; every declared output must be written.

@@ -31,7 +31,8 @@ std::string readable_default(const OptionRow& row) {
 std::string readable_values(const OptionRow& row) {
   if (!row.field.choices.empty()) return fmt::format("{}", fmt::join(row.field.choices, ", "));
   if (const std::string range = readable_range(row); !range.empty()) return range;
-  static constexpr const char* kWords[] = {"any number", "any whole number", "true or false", "text", "list of texts"};
+  static constexpr const char* kWords[] = {"any number", "any whole number", "true or false", "text",
+                                           "list of texts"};
   return kWords[row.value.index()];
 }
 
@@ -51,7 +52,8 @@ std::string readable_scope(const StageSpec& spec) {
 }
 
 Json option_schema(const OptionRow& row) {
-  Json schema{{"type", json_type(row.value)}, {"description", row.field.help}, {"default", as_json(row.value)}};
+  Json schema{
+      {"type", json_type(row.value)}, {"description", row.field.help}, {"default", as_json(row.value)}};
   Json strings = row.field.choices.empty() ? Json::object() : Json{{"enum", row.field.choices}};
   if (schema["type"] == "array") schema["items"] = Json{{"type", "string"}};
   (schema["type"] == "array" ? schema["items"] : schema).update(strings);
@@ -85,29 +87,30 @@ std::string cell(std::string text) {
 
 std::string stage_as_text(const Step& step) {
   const StageSpec& spec = step.spec();
-  std::string text = fmt::format("{}: {}\n\n  works on  {}\n  reads     {}\n  writes    {}\n", spec.name,
-                                 spec.summary, readable_scope(spec), readable_ports(spec.inputs),
-                                 readable_ports(spec.outputs));
+  std::string text =
+      fmt::format("{}: {}\n\n  works on  {}\n  reads     {}\n  writes    {}\n", spec.name, spec.summary,
+                  readable_scope(spec), readable_ports(spec.inputs), readable_ports(spec.outputs));
   const auto rows = option_table(step);
   if (!rows.empty()) text += "\nOptions:\n";
   for (const OptionRow& row : rows)
-    text += fmt::format("  {:<20} {}\n  {:<20} {}; default: {}\n", row.name, row.field.help, "", readable_values(row),
-                        readable_default(row));
+    text += fmt::format("  {:<20} {}\n  {:<20} {}; default: {}\n", row.name, row.field.help, "",
+                        readable_values(row), readable_default(row));
   return text;
 }
 
 std::string stage_as_markdown(const Step& step) {
   const StageSpec& spec = step.spec();
   std::string page = fmt::format(
-      "# {}\n\n{}\n\n| | |\n|---|---|\n| version | {} |\n| works on | {} |\n| reads | {} |\n| writes | {} |\n",
+      "# {}\n\n{}\n\n| | |\n|---|---|\n| version | {} |\n| works on | {} |\n| reads | {} |\n| writes | {} "
+      "|\n",
       spec.name, spec.summary, spec.version, readable_scope(spec), cell(readable_ports(spec.inputs)),
       cell(readable_ports(spec.outputs)));
   const auto rows = option_table(step);
   if (!rows.empty()) page += "\n| option | effect | values | default |\n|---|---|---|---|\n";
   for (const OptionRow& row : rows)
     page += fmt::format("| `{}` | {}{} | {} | {} |\n", row.name, cell(row.field.help),
-                        row.field.affects_result ? "" : " (does not change the result)", cell(readable_values(row)),
-                        cell(readable_default(row)));
+                        row.field.affects_result ? "" : " (does not change the result)",
+                        cell(readable_values(row)), cell(readable_default(row)));
   page += fmt::format("\nIn a job file:\n\n```json\n{{\"stage\": \"{}\"", spec.name);
   for (const OptionRow& row : rows) page += fmt::format(", \"{}\": {}", row.name, as_json(row.value).dump());
   return page + "}\n```\n";

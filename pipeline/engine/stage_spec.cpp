@@ -3,6 +3,8 @@
 
 namespace waymark {
 
-std::string to_string(Scope scope) { return scope == Scope::map ? "map" : "tile"; }
+std::string to_string(Scope scope) {
+  return scope == Scope::map ? "map" : "tile";
+}
 
 }  // namespace waymark

@@ -35,7 +35,9 @@ pid_t local_maker(std::string_view name) {
   return process;
 }
 
-bool is_gone(pid_t process) { return kill(process, 0) != 0 && errno == ESRCH; }
+bool is_gone(pid_t process) {
+  return kill(process, 0) != 0 && errno == ESRCH;
+}
 
 }  // namespace
 
@@ -46,7 +48,8 @@ std::filesystem::path aside_path(const std::filesystem::path& folder) {
 
 void remove_leftovers(const std::filesystem::path& folder) {
   std::error_code ignored;  // another process may be tidying the same folder
-  for (std::filesystem::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+  for (std::filesystem::directory_iterator entry(folder, ignored), end; entry != end;
+       entry.increment(ignored)) {
     const pid_t maker = local_maker(entry->path().filename().string());
     if (maker > 0 && is_gone(maker)) std::filesystem::remove_all(entry->path(), ignored);
   }

@@ -32,13 +32,15 @@ TEST(Job, IsReadWithItsFolder) {
 TEST(Job, ThatIsMissingSaysSo) {
   EXPECT_EQ(message_of([] { read_job("/nowhere/job.json", kRegistry); }),
             "cannot read the job file\n  /nowhere/job.json\n  check the path");
-  EXPECT_EQ(message_of([] { read_job("/tmp", kRegistry); }), "cannot read the job file\n  /tmp\n  check the path");
+  EXPECT_EQ(message_of([] { read_job("/tmp", kRegistry); }),
+            "cannot read the job file\n  /tmp\n  check the path");
 }
 
 TEST(Job, SyntaxErrorsHaveLineAndColumn) {
-  EXPECT_THAT(refusal("{\n  \"name\": \"x\",\n  \"stages\" [\n]}"),
-              testing::AllOf(testing::StartsWith("not valid JSON: syntax error while parsing object separator"),
-                             testing::HasSubstr("\n  alps.json:3:12")));
+  EXPECT_THAT(
+      refusal("{\n  \"name\": \"x\",\n  \"stages\" [\n]}"),
+      testing::AllOf(testing::StartsWith("not valid JSON: syntax error while parsing object separator"),
+                     testing::HasSubstr("\n  alps.json:3:12")));
   EXPECT_THAT(refusal(""), testing::HasSubstr("\n  alps.json:1:1"));
   EXPECT_THAT(refusal("{\"name\": \"\xff\"}"), testing::HasSubstr("invalid string: ill-formed UTF-8 byte"));
 }
@@ -51,11 +53,14 @@ TEST(Job, NamesThePlaceOfEveryOtherError) {
             "the job has no 'stage'; did you mean 'stages'?\n  alps.json\n  a job has a name and stages");
   EXPECT_EQ(refusal(R"({"stages": {}})"), "stages must be an array, is object\n  alps.json");
   EXPECT_EQ(refusal(R"({"stages": ["x"]})"), "stages[0] must be an object, is string\n  alps.json");
-  EXPECT_EQ(refusal(R"({"stages": [{}]})"), "stages[0] has no \"stage\"\n  alps.json\n  add the name of a stage");
-  EXPECT_EQ(refusal(R"({"stages": [{"stage": 1}]})"), "stages[0].stage must be a string, is number\n  alps.json");
+  EXPECT_EQ(refusal(R"({"stages": [{}]})"),
+            "stages[0] has no \"stage\"\n  alps.json\n  add the name of a stage");
+  EXPECT_EQ(refusal(R"({"stages": [{"stage": 1}]})"),
+            "stages[0].stage must be a string, is number\n  alps.json");
   EXPECT_EQ(refusal(R"({"stages": []})"), "the job has no stages\n  alps.json");
   EXPECT_EQ(refusal(R"({"stages": [{"stage": "list_numbers", "tiles": "many"}]})"),
-            "stages[0].tiles must be a whole number, is a string (\"many\")\n  alps.json\n  How many tiles there are");
+            "stages[0].tiles must be a whole number, is a string (\"many\")\n  alps.json\n  How many tiles "
+            "there are");
   EXPECT_EQ(refusal(R"({"stages": [{"stage": "sum_squares"}]})"),
             "stages[0] sum_squares reads 'square', which no stage before it writes\n  alps.json\n"
             "  add before it: square_number");
@@ -64,7 +69,8 @@ TEST(Job, NamesThePlaceOfEveryOtherError) {
 TEST(Job, RefusesAKeyGivenTwice) {
   EXPECT_EQ(refusal(R"({"stages": [{"stage": "list_numbers", "tiles": 1, "tiles": 2}]})"),
             "the key 'tiles' is given twice\n  alps.json");
-  EXPECT_NO_THROW(parse_job(R"({"stages": [{"stage": "list_numbers"}, {"stage": "square_number"}]})", kRegistry));
+  EXPECT_NO_THROW(
+      parse_job(R"({"stages": [{"stage": "list_numbers"}, {"stage": "square_number"}]})", kRegistry));
 }
 
 TEST(Job, WritesItselfWithEveryOption) {

@@ -39,16 +39,20 @@ TEST(OptionReader, NamesTheNearestOption) {
 }
 
 TEST(OptionReader, NamesTheKindItFoundInstead) {
-  EXPECT_EQ(refusal(R"({"power": "high"})"), "stages[1].power must be a number, is a string (\"high\")\n  Exponent");
+  EXPECT_EQ(refusal(R"({"power": "high"})"),
+            "stages[1].power must be a number, is a string (\"high\")\n  Exponent");
   EXPECT_EQ(refusal(R"({"power": null})"), "stages[1].power must be a number, is null\n  Exponent");
-  EXPECT_EQ(refusal(R"({"loud": 1})"), "stages[1].loud must be true or false, is a number (1)\n  Warn in every tile");
+  EXPECT_EQ(refusal(R"({"loud": 1})"),
+            "stages[1].loud must be true or false, is a number (1)\n  Warn in every tile");
   EXPECT_EQ(refusal(R"({"keep": ["all"]})"),
             "stages[1].keep must be a string, is an array ([\"all\"])\n  Which squares are kept");
-  EXPECT_EQ(refusal(R"({"memory": 1.5})"), "stages[1].memory must be a whole number, is a number (1.5)\n  Bytes it may take");
+  EXPECT_EQ(refusal(R"({"memory": 1.5})"),
+            "stages[1].memory must be a whole number, is a number (1.5)\n  Bytes it may take");
   EXPECT_EQ(refusal(R"({"memory": 1e300})"),
             "stages[1].memory must be a whole number, is a number (1e+300)\n  Bytes it may take");
-  EXPECT_EQ(refusal(R"({"memory": 18446744073709551615})"),
-            "stages[1].memory must be a whole number, is a number (18446744073709551615)\n  Bytes it may take");
+  EXPECT_EQ(
+      refusal(R"({"memory": 18446744073709551615})"),
+      "stages[1].memory must be a whole number, is a number (18446744073709551615)\n  Bytes it may take");
   StepOf<toy::ListNumbers> list;
   EXPECT_EQ(message_of([&] { read_options(list, R"({"files": [1]})", "stages[0]"); }),
             "stages[0].files must be an array of strings, is an array ([1])\n  Files that count as read");
@@ -62,7 +66,8 @@ TEST(OptionReader, NamesTheRangeAndItsUnit) {
 
 TEST(OptionReader, NamesTheChoices) {
   EXPECT_EQ(refusal(R"({"keep": "evn"})"),
-            "stages[1].keep must be one of all, even, none, is 'evn'; did you mean 'even'?\n  Which squares are kept");
+            "stages[1].keep must be one of all, even, none, is 'evn'; did you mean 'even'?\n  Which squares "
+            "are kept");
   EXPECT_EQ(refusal(R"({"keep": "everything"})"),
             "stages[1].keep must be one of all, even, none, is 'everything'\n  Which squares are kept");
 }
@@ -96,12 +101,14 @@ TEST(SetOption, ReadsTheCommandLine) {
 TEST(SetOption, SaysWhatWasTyped) {
   SquareStep step;
   EXPECT_EQ(message_of([&] { set_option(step, "power", "high"); }),
-            "square_number.power must be a number, is a string (\"high\")\n  --set square_number.power=high\n  Exponent");
+            "square_number.power must be a number, is a string (\"high\")\n  --set "
+            "square_number.power=high\n  Exponent");
   EXPECT_EQ(message_of([&] { set_option(step, "powr", "3"); }),
             "square_number has no option 'powr'; did you mean 'power'?\n  --set square_number.powr=3\n"
             "  its options: power, keep, height, loud, memory");
   EXPECT_EQ(message_of([&] { set_option(step, "power", "nan"); }),
-            "square_number.power must be a number, is a string (\"nan\")\n  --set square_number.power=nan\n  Exponent");
+            "square_number.power must be a number, is a string (\"nan\")\n  --set square_number.power=nan\n  "
+            "Exponent");
 }
 
 TEST(CanonicalOptions, FillDefaultsInAndLeaveOutWhatHasNoEffect) {
@@ -112,8 +119,10 @@ TEST(CanonicalOptions, FillDefaultsInAndLeaveOutWhatHasNoEffect) {
 
 RC_GTEST_PROP(CanonicalOptions, ReadBackUnchanged, ()) {
   const double power = 0.5 + 3.5 * (*rc::gen::inRange(0, 1 << 30)) / (1 << 30);
-  const SquareStep step({.power = power, .keep = *rc::gen::element<std::string>("all", "even", "none"),
-                   .height = Meters{std::abs(*rc::gen::arbitrary<double>())}, .loud = *rc::gen::arbitrary<bool>()});
+  const SquareStep step({.power = power,
+                         .keep = *rc::gen::element<std::string>("all", "even", "none"),
+                         .height = Meters{std::abs(*rc::gen::arbitrary<double>())},
+                         .loud = *rc::gen::arbitrary<bool>()});
   RC_ASSERT(canonical_after(canonical_options(step)) == canonical_options(step));
 }
 

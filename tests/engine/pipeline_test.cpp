@@ -12,18 +12,25 @@ struct Mistyped {
   struct Options {
     void describe(OptionVisitor&) {}
   };
-  static StageSpec spec() { return {.name = "mistyped", .summary = "", .inputs = {In<std::string>{"square"}}}; }
+  static StageSpec spec() {
+    return {.name = "mistyped", .summary = "", .inputs = {In<std::string>{"square"}}};
+  }
   static void run(const Options&, StageContext&) {}
 };
 /// A second stage that lists tiles.
 struct ListAgain : Mistyped {
   static StageSpec spec() {
-    return {.name = "list_again", .summary = "", .lists = Scope::tile, .outputs = {Out<std::vector<Tile>>{"again"}}};
+    return {.name = "list_again",
+            .summary = "",
+            .lists = Scope::tile,
+            .outputs = {Out<std::vector<Tile>>{"again"}}};
   }
 };
 /// Writes "number" as list_numbers does.
 struct WriteAgain : Mistyped {
-  static StageSpec spec() { return {.name = "write_again", .summary = "", .outputs = {Out<Number>{"number"}}}; }
+  static StageSpec spec() {
+    return {.name = "write_again", .summary = "", .outputs = {Out<Number>{"number"}}};
+  }
 };
 /// A tile-scope stage without inputs.
 struct Lonely : Mistyped {
@@ -48,7 +55,9 @@ class PipelineTest : public testing::Test {
   }
 };
 
-TEST_F(PipelineTest, AcceptsWhatFits) { EXPECT_NO_THROW(toy_pipeline(registry).check()); }
+TEST_F(PipelineTest, AcceptsWhatFits) {
+  EXPECT_NO_THROW(toy_pipeline(registry).check());
+}
 
 TEST_F(PipelineTest, NamesTheMissingWriter) {
   EXPECT_EQ(refusal({"list_numbers", "sum_squares"}),
@@ -67,8 +76,10 @@ TEST_F(PipelineTest, NamesBothTypes) {
 TEST_F(PipelineTest, NamesBothWriters) {
   EXPECT_EQ(refusal({"list_numbers", "write_again"}),
             "stages[0] list_numbers and stages[1] write_again both write 'number'");
-  EXPECT_EQ(refusal({"list_numbers", "list_numbers"}), "stages[0] list_numbers and stages[1] list_numbers are the same stage");
-  EXPECT_EQ(refusal({"list_numbers", "list_again"}), "stages[0] list_numbers and stages[1] list_again both list tiles");
+  EXPECT_EQ(refusal({"list_numbers", "list_numbers"}),
+            "stages[0] list_numbers and stages[1] list_numbers are the same stage");
+  EXPECT_EQ(refusal({"list_numbers", "list_again"}),
+            "stages[0] list_numbers and stages[1] list_again both list tiles");
 }
 
 TEST_F(PipelineTest, NamesTheStagesThatListTiles) {
@@ -89,7 +100,8 @@ TEST_F(PipelineTest, TakesOptionsAsJsonAndAsValues) {
   Pipeline pipeline(registry);
   pipeline.add("list_numbers", R"({"tiles": 2})").add<toy::SquareNumber>({.power = 3}).add<toy::SumSquares>();
   EXPECT_EQ(canonical_options(*pipeline.steps()[0]), R"({"files":[],"tiles":2})");
-  EXPECT_EQ(canonical_options(*pipeline.steps()[1]), R"({"height":20.0,"keep":"all","loud":false,"power":3.0})");
+  EXPECT_EQ(canonical_options(*pipeline.steps()[1]),
+            R"({"height":20.0,"keep":"all","loud":false,"power":3.0})");
   EXPECT_THROW(pipeline.add<toy::SquareNumber>({.power = 9}), Error);
   EXPECT_EQ(pipeline.writer_of("square"), pipeline.steps()[1].get());
   EXPECT_EQ(pipeline.writer_of("tree"), nullptr);

@@ -38,22 +38,27 @@ TEST(Registry, ListsNamesInOrder) {
 
 TEST(Registry, RefusesAStageTwice) {
   Registry registry = toy::registry();
-  EXPECT_EQ(message_of<std::logic_error>([&] { registry.add<toy::SumSquares>(); }), "two stages named sum_squares");
+  EXPECT_EQ(message_of<std::logic_error>([&] { registry.add<toy::SumSquares>(); }),
+            "two stages named sum_squares");
 }
 
 TEST(Registry, RefusesSpecsThatContradictThemselves) {
-  EXPECT_EQ(refusal({.name = "Find Tops", .summary = ""}), "stage 'Find Tops': its name is not [a-z][a-z0-9_]*");
+  EXPECT_EQ(refusal({.name = "Find Tops", .summary = ""}),
+            "stage 'Find Tops': its name is not [a-z][a-z0-9_]*");
   EXPECT_EQ(refusal({.name = "a", .summary = "", .outputs = {Out<Number>{"../x"}}}),
             "stage 'a': its output '../x' is not [a-z][a-z0-9_]*");
   EXPECT_EQ(refusal({.name = "a", .summary = "", .outputs = {Out<Number>{"x"}, Out<Number>{"x"}}}),
             "stage 'a': it declares the output 'x' twice");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .scope = Scope::tile, .lists = Scope::tile, .outputs = {kTiles}}),
-            "stage 'a': a listing stage has map scope, lists tiles");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::tile, .inputs = {kNumber}, .outputs = {kTiles}}),
-            "stage 'a': a listing stage runs while planning: it can read no artifact");
+  EXPECT_EQ(
+      refusal({.name = "a", .summary = "", .scope = Scope::tile, .lists = Scope::tile, .outputs = {kTiles}}),
+      "stage 'a': a listing stage has map scope, lists tiles");
+  EXPECT_EQ(
+      refusal({.name = "a", .summary = "", .lists = Scope::tile, .inputs = {kNumber}, .outputs = {kTiles}}),
+      "stage 'a': a listing stage runs while planning: it can read no artifact");
   EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::tile}),
             "stage 'a': a listing stage writes one std::vector<Tile>");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .halo = 2}), "stage 'a': only a tile has a halo, >= 0 cells");
+  EXPECT_EQ(refusal({.name = "a", .summary = "", .halo = 2}),
+            "stage 'a': only a tile has a halo, >= 0 cells");
 }
 
 TEST(ReadableType, LeavesNamespacesAndAllocatorsOut) {

@@ -12,10 +12,11 @@ constexpr Out<Number> kSquare{"square"};
 class StageContextTest : public testing::Test {
  protected:
   const StageSpec spec = toy::SquareNumber::spec();
-  const UnitInputs inputs{.id = "square_number/tile_000001",
-                          .tile = Tile{.index = 1, .column = 1, .row = 0, .cells = {10, 0, 10, 10}},
-                          .ports = {{"number", {{std::make_shared<Artifact>(std::make_shared<const Number>(7))}}}},
-                          .base_folder = "jobs"};
+  const UnitInputs inputs{
+      .id = "square_number/tile_000001",
+      .tile = Tile{.index = 1, .column = 1, .row = 0, .cells = {10, 0, 10, 10}},
+      .ports = {{"number", {{std::make_shared<Artifact>(std::make_shared<const Number>(7))}}}},
+      .base_folder = "jobs"};
   StageContext unit{spec, inputs};
 };
 
@@ -82,7 +83,8 @@ TEST_F(StageContextTest, ManyTilesAreReadWithReadAll) {
   const UnitInputs gathered{.id = "sum_squares/map", .ports = {{"square", {.items = {}, .all_tiles = true}}}};
   StageContext all(map, gathered);
   EXPECT_TRUE(all.read_all(In<Number>{"square"}).empty());
-  EXPECT_THAT(message_of<std::logic_error>([&] { all.read(In<Number>{"square"}); }), HasSubstr("use read_all"));
+  EXPECT_THAT(message_of<std::logic_error>([&] { all.read(In<Number>{"square"}); }),
+              HasSubstr("use read_all"));
 }
 
 TEST_F(StageContextTest, PathsStartAtTheJob) {

@@ -57,9 +57,11 @@ Options:
 TEST(StagePages, Schema) {
   const auto schema = nlohmann::json::parse(stage_as_schema(kSquare));
   EXPECT_EQ(schema["properties"]["stage"], (nlohmann::json{{"const", "square_number"}}));
-  EXPECT_EQ(schema["properties"]["height"],
-            (nlohmann::json{{"type", "number"}, {"description", "A length | unused"}, {"default", 20.0},
-                            {"x-unit", "m"}, {"minimum", 0.0}}));
+  EXPECT_EQ(schema["properties"]["height"], (nlohmann::json{{"type", "number"},
+                                                            {"description", "A length | unused"},
+                                                            {"default", 20.0},
+                                                            {"x-unit", "m"},
+                                                            {"minimum", 0.0}}));
   EXPECT_EQ(schema["properties"]["keep"]["enum"], (nlohmann::json{"all", "even", "none"}));
   EXPECT_EQ(schema["properties"]["memory"]["x-affects-result"], false);
   EXPECT_EQ(schema["additionalProperties"], false);

@@ -56,13 +56,17 @@ void SquareNumber::run(const Options& options, StageContext& unit) {
   const Number result{std::llround(std::pow(base, options.power))};
   unit.count_in(1);
   const bool keep = options.keep == "all" || (options.keep == "even" && result.value % 2 == 0);
-  if (keep) unit.count_out(1);
-  else unit.reject("not " + options.keep);
+  if (keep)
+    unit.count_out(1);
+  else
+    unit.reject("not " + options.keep);
   if (options.loud) unit.warn("loud");
   unit.write(square, keep ? result : Number{0});
 }
 
-void SumSquares::Options::describe(OptionVisitor& option) { option("sign", sign, {.help = "Between two squares"}); }
+void SumSquares::Options::describe(OptionVisitor& option) {
+  option("sign", sign, {.help = "Between two squares"});
+}
 StageSpec SumSquares::spec() {
   return {.name = "sum_squares", .summary = "Adds the squares up", .inputs = {square}, .outputs = {sum}};
 }

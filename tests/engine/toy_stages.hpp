@@ -24,8 +24,8 @@ namespace toy {
 
 /// What tests do to running stages, and see of them. Reset by ToyTest.
 struct Watch {
-  std::atomic<int> listed = 0, squared = 0, summed = 0;        ///< how often each stage ran
-  std::function<void(const StageContext&)> in_square = {};     ///< called by square_number in every tile
+  std::atomic<int> listed = 0, squared = 0, summed = 0;     ///< how often each stage ran
+  std::function<void(const StageContext&)> in_square = {};  ///< called by square_number in every tile
 };
 Watch& watch();
 

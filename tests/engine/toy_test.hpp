@@ -14,7 +14,8 @@ class ToyTest : public testing::Test {
 
   /// How often each stage ran since the last call: listed, squared, summed.
   std::vector<int> ran() {
-    return {toy::watch().listed.exchange(0), toy::watch().squared.exchange(0), toy::watch().summed.exchange(0)};
+    return {toy::watch().listed.exchange(0), toy::watch().squared.exchange(0),
+            toy::watch().summed.exchange(0)};
   }
   /// The sum the pipeline makes.
   static std::string sum_of(const RunResult& result) { return result.artifact<std::string>("sum"); }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the engine itself costs: a run whose units do nothing.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "pipeline/engine/runner.hpp"
+#include "pipeline/engine/stage.hpp"
+namespace waymark {
+
+template <>
+struct Codec<std::int64_t> {
+  static std::string encode(const std::int64_t& number) { return std::to_string(number); }
+  static std::int64_t decode(std::string_view text) { return std::stoll(std::string(text)); }
+};
+
+namespace {
+
+struct List {
+  struct Options {
+    std::int64_t tiles = 1;
+    void describe(OptionVisitor& option) { option("tiles", tiles, {.help = "How many tiles there are"}); }
+  };
+  static constexpr Out<std::vector<Tile>> tiles{"tiles"};
+  static StageSpec spec() {
+    return {.name = "list", .summary = "", .lists = Scope::tile, .outputs = {tiles}};
+  }
+  static void run(const Options& options, StageContext& unit) {
+    std::vector<Tile> list;
+    for (std::int64_t i = 0; i < options.tiles; ++i)
+      list.push_back({.index = i, .column = i, .row = 0, .cells = {}});
+    unit.write(tiles, std::move(list));
+  }
+};
+
+struct NoOptions {
+  void describe(OptionVisitor&) {}
+};
+
+struct Count {
+  using Options = NoOptions;
+  static constexpr Out<std::int64_t> count{"count"};
+  static StageSpec spec() {
+    return {.name = "count", .summary = "", .scope = Scope::tile, .outputs = {count}};
+  }
+  static void run(const Options&, StageContext& unit) {
+    unit.count_in(1);
+    unit.count_out(1);
+    unit.write(count, unit.tile().index);
+  }
+};
+
+struct Sum {
+  using Options = NoOptions;
+  static constexpr In<std::int64_t> count{"count"};
+  static constexpr Out<std::int64_t> sum{"sum"};
+  static StageSpec spec() { return {.name = "sum", .summary = "", .inputs = {count}, .outputs = {sum}}; }
+  static void run(const Options&, StageContext& unit) {
+    std::int64_t total = 0;
+    for (const auto& part : unit.read_all(count)) total += *part;
+    unit.write(sum, total);
+  }
+};
+
+Pipeline pipeline_of(const Registry& registry, std::int64_t tiles) {
+  Pipeline pipeline(registry);
+  pipeline.add<List>({.tiles = tiles}).add<Count>().add<Sum>();
+  return pipeline;
+}
+
+void run_in_memory(benchmark::State& state) {
+  const Registry registry;
+  const Pipeline pipeline = pipeline_of(registry, state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(run(pipeline, {.threads = 2}));
+}
+BENCHMARK(run_in_memory)->Arg(1)->Arg(16)->Arg(64)->Arg(10'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void run_into_a_work_folder(benchmark::State& state) {
+  const Registry registry;
+  const Pipeline pipeline = pipeline_of(registry, state.range(0));
+  const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
+  for (auto _ : state) {
+    std::filesystem::remove_all(work);
+    benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
+  }
+}
+BENCHMARK(run_into_a_work_folder)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void resume_what_is_done(benchmark::State& state) {
+  const Registry registry;
+  const Pipeline pipeline = pipeline_of(registry, state.range(0));
+  const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
+  std::filesystem::remove_all(work);
+  run(pipeline, {.work = work});
+  for (auto _ : state) benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
+}
+BENCHMARK(resume_what_is_done)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace waymark

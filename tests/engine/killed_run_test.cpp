@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several processes on one work folder, some of them killed. The child is this program itself.
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <random>
+#include <thread>
+
+#include "tests/engine/toy_test.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kWork = "WAYMARK_TEST_WORK";
+constexpr std::int64_t kTiles = 60;
+
+Pipeline long_pipeline(const Registry& registry) {
+  Pipeline pipeline = toy_pipeline(registry);
+  pipeline.set("list_numbers.tiles=" + std::to_string(kTiles));
+  return pipeline;
+}
+
+/// What a child does; disabled because it is no test of its own.
+TEST(KilledRunChild, DISABLED_Runs) {
+  const char* work = std::getenv(kWork);
+  ASSERT_TRUE(work);
+  toy::watch().in_square = [](const StageContext&) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  const Registry registry = toy::registry();
+  EXPECT_TRUE(run(long_pipeline(registry), {.work = work, .threads = 2}).report.complete());
+}
+
+class Child {
+ public:
+  explicit Child(const fs::path& work) {
+    const std::string work_variable = std::string(kWork) + "=" + work.string();
+    std::string program = fs::read_symlink("/proc/self/exe"), filter = "--gtest_filter=KilledRunChild.*",
+                disabled = "--gtest_also_run_disabled_tests", brief = "--gtest_brief=1";
+    char* arguments[] = {program.data(), filter.data(), disabled.data(), brief.data(), nullptr};
+    std::string variable = work_variable;
+    char* environment[] = {variable.data(), nullptr};
+    if (posix_spawn(&process_, program.c_str(), nullptr, nullptr, arguments, environment) != 0)
+      ADD_FAILURE() << "cannot start " << program;
+  }
+  void kill() const { ::kill(process_, SIGKILL); }
+  /// Exit code, or -1 where it was killed.
+  int wait() const {
+    int status = 0;
+    waitpid(process_, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+ private:
+  pid_t process_ = 0;
+};
+
+class KilledRun : public ToyTest {
+ protected:
+  std::string sum_in_memory() const { return sum_of(run(long_pipeline(registry))); }
+  std::string resumed_sum() const { return sum_of(run(long_pipeline(registry), {.work = work})); }
+  int leftovers() const { return count_below(work, ".part-"); }
+  int results() const { return count_below(work, "manifest.json"); }
+
+ private:
+  /// Entries whose names begin so; the folder may change meanwhile.
+  static int count_below(const fs::path& folder, std::string_view begin) {
+    int count = 0;
+    std::error_code ignored;
+    for (fs::recursive_directory_iterator entry(folder, ignored), end; !ignored && entry != end;
+         entry.increment(ignored))
+      count += entry->path().filename().string().starts_with(begin);
+    return count;
+  }
+};
+
+// Each child is killed at a random moment after it has made at least one more result.
+TEST_F(KilledRun, GoesOnWhereItWas) {
+  const std::string expected = sum_in_memory();
+  std::mt19937 random(7);
+  for (int round = 0; round < 8; ++round) {
+    const int before = results();
+    const Child child(work);
+    while (results() == before) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 8'000));
+    child.kill();
+    child.wait();
+    if (results() > kTiles) fs::remove_all(work / "square_number");  // it was too quick: begin again
+  }
+  const int left = results();
+  EXPECT_GT(left, 0);
+  ran();
+  EXPECT_EQ(resumed_sum(), expected);
+  EXPECT_LT(ran()[1], kTiles) << "killed runs have left results";
+  EXPECT_EQ(run(long_pipeline(registry), {.work = work}).report.stages[1].reused, kTiles);
+  EXPECT_EQ(leftovers(), 0);
+}
+
+TEST_F(KilledRun, LeavesNothingForGood) {
+  fs::create_directories(work / "sum_squares/map");
+  std::array<char, 256> host{};
+  gethostname(host.data(), host.size() - 1);
+  const std::string leftover = ".part-" + std::to_string(999'999'999) + "-0-" + host.data();
+  fs::create_directories(work / "sum_squares/map" / leftover);
+  fs::create_directories(work / "sum_squares/map/.part-999999999-0-another-machine");
+  resumed_sum();
+  EXPECT_FALSE(fs::exists(work / "sum_squares/map" / leftover));
+  EXPECT_TRUE(fs::exists(work / "sum_squares/map/.part-999999999-0-another-machine"))
+      << "it may be alive there";
+}
+
+TEST_F(KilledRun, TwoProcessesFinishTheSameFolder) {
+  for (int round = 0; round < 3; ++round) {
+    fs::remove_all(work);
+    const Child one(work), other(work);
+    EXPECT_EQ(one.wait(), 0);
+    EXPECT_EQ(other.wait(), 0);
+    ran();
+    EXPECT_EQ(resumed_sum(), sum_in_memory());
+    EXPECT_EQ(leftovers(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace waymark
