@@ -41,4 +41,17 @@ void sort_along_hilbert_curve(std::span<std::uint32_t> indices, std::span<const 
   std::ranges::transform(places, indices.begin(), &Place::index);
 }
 
+void fetch_ahead(std::span<const Landmark> landmarks, std::span<const std::uint32_t> indices, std::size_t at) {
+  constexpr std::size_t kFar = 16, kNear = 8, kLine = 64;  // steps, steps, bytes
+  const auto fetch = [](const void* begin, std::size_t bytes) {
+    for (std::size_t i = 0; i < bytes; i += kLine) __builtin_prefetch(static_cast<const std::byte*>(begin) + i);
+  };
+  if (at + kFar < indices.size()) fetch(&landmarks[indices[at + kFar]], sizeof(Landmark));
+  if (at + kNear >= indices.size()) return;
+  const Landmark& near = landmarks[indices[at + kNear]];
+  fetch(near.features.data(), near.features.size() * sizeof(FeatureValue));
+  fetch(near.quality.of_feature.data(), near.quality.of_feature.size() * sizeof(std::optional<double>));
+  fetch(near.uid.data(), near.uid.size());
+}
+
 }  // namespace waymark

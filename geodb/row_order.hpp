@@ -14,4 +14,7 @@ Envelope extent_of(std::span<const Landmark> landmarks, std::span<const std::uin
 void sort_along_hilbert_curve(std::span<std::uint32_t> indices, std::span<const Landmark> landmarks,
                               const Envelope& extent);
 
+/// Along the curve landmarks lie scattered in memory; asks for those soon after `at` before they are needed.
+void fetch_ahead(std::span<const Landmark> landmarks, std::span<const std::uint32_t> indices, std::size_t at);
+
 }  // namespace waymark

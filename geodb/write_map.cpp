@@ -104,8 +104,10 @@ class MapWriter {
     points.reserve(of_type_[old_id].size());
     sqlite::Statement insert = database_->prepare(layout.insert());
     std::int64_t row = layout.type_id() * kRowsPerType;
-    for (const std::uint32_t index : of_type_[old_id]) {
-      const Landmark& landmark = contents_->landmarks[index];
+    const std::vector<std::uint32_t>& order = of_type_[old_id];
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      fetch_ahead(contents_->landmarks, order, i);
+      const Landmark& landmark = contents_->landmarks[order[i]];
       const PointBlob geometry = point_blob(landmark.position.xyz, srs_id_);
       layout.bind(insert, ++row, landmark, geometry);
       insert.run();
