@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "landmarks/sensor_profile.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+FeatureSpec feature(const std::string& name) {
+  return {.name = name, .unit = "m", .summary = {}};
+}
+
+const LandmarkType kPost{.name = "post", .summary = {}, .features = {feature("height"), feature("width")}};
+
+Landmark post(std::optional<double> height, std::optional<double> width) {
+  Landmark landmark;
+  landmark.quality = {.seen = 4, .visible = 5, .of_feature = {height, width}};
+  return landmark;
+}
+
+TEST(SensorProfile, FeaturesNotListedWeighNothing) {
+  EXPECT_THAT(weights_for({"laser", "", {{"post", "width", 2}}}, kPost), ElementsAre(0, 2));
+}
+
+TEST(SensorProfile, ATypeNotListedHasEqualWeights) {
+  EXPECT_THAT(weights_for({"laser", "", {{"rock", "radius", 1}}}, kPost), ElementsAre(1, 1));
+}
+
+TEST(SensorProfile, QualityIsThatOfWhatTheSensorSees) {  // eq. 8: 4/5 times the weighted mean
+  const SensorProfile laser{"laser", "", {{"post", "height", 1}, {"post", "width", 3}}};
+  EXPECT_DOUBLE_EQ(quality_for(laser, kPost, post(0.5, 0.9)).value(), 0.8 * (0.5 + 3 * 0.9) / 4);
+  EXPECT_DOUBLE_EQ(quality_of(kPost, post(0.5, 0.9)).value(), 0.8 * 0.7);
+}
+
+TEST(SensorProfile, AnUnknownConfidenceNeitherHelpsNorHurts) {
+  const SensorProfile laser{"laser", "", {{"post", "height", 1}, {"post", "width", 3}}};
+  EXPECT_DOUBLE_EQ(quality_for(laser, kPost, post({}, 0.9)).value(), 0.8 * 0.9);
+  EXPECT_DOUBLE_EQ(quality_for(laser, kPost, post({}, {})).value(), 0.8);
+}
+
+TEST(SensorProfile, ALandmarkNobodyCouldSeeHasNoQuality) {
+  EXPECT_EQ(quality_of(kPost, Landmark{}), std::nullopt);
+}
+
+TEST(SensorRegistry, RefusesNonsense) {
+  SensorRegistry sensors;
+  sensors.add({"laser", "", {}});
+  EXPECT_THROW(sensors.add({"laser", "", {}}), std::logic_error);
+  EXPECT_THROW(sensors.add({"", "", {}}), std::logic_error);
+  EXPECT_THROW(sensors.add({"odd", "", {{"post", "height", -1}}}), std::logic_error);
+}
+
+TEST(SensorRegistry, NamesTheNearest) {
+  SensorRegistry sensors;
+  register_sensor_profiles(sensors);
+  try {
+    sensors.at("stereo_camra");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_THAT(error.what(), HasSubstr("did you mean 'stereo_camera'?"));
+  }
+}
+
+TEST(SensorRegistry, ShippedProfilesNameFeaturesThatExist) {
+  SensorRegistry sensors;
+  register_sensor_profiles(sensors);
+  TypeRegistry types;
+  register_landmark_types(types);
+  EXPECT_THAT(sensors.names(), ElementsAre("bearing_camera", "descent_camera", "harvester_laser",
+                                           "horizontal_laser", "stereo_camera"));
+  for (const SensorProfile& sensor : sensors)
+    for (const FeatureWeight& weight : sensor.weights)
+      EXPECT_NO_THROW(feature_index(types[types.id(weight.type)], weight.feature)) << sensor.name;
+}
+
+}  // namespace
+}  // namespace waymark
