@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/terrain/mountain_tops.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/pipeline/survey.hpp"
+
+namespace waymark::testing {
+namespace {
+
+const TypeRegistry& types() {
+  static const TypeRegistry all = [] {
+    TypeRegistry registry;
+    register_landmark_types(registry);
+    return registry;
+  }();
+  return all;
+}
+
+ReliefPyramid pyramid_of(const DemSource& dem) {
+  const Window all{0, 0, dem.geometry().columns, dem.geometry().rows};
+  const std::shared_ptr<const BlockRelief> tiles[] = {
+      std::make_shared<const BlockRelief>(block_relief(dem.read({-1, -1, all.columns + 2, all.rows + 2}), all))};
+  return {tiles, all.columns, all.rows};
+}
+
+std::vector<Landmark> tops_of(const DemSource& dem, const MountainTopOptions& options = {}) {
+  const auto summits = survey(dem, 64);
+  std::vector<HighPoint> points;
+  for (const Summit& s : summits) points.push_back({s.cell, s.height});
+  return mountain_tops(summits, measure_isolation(points, dem, pyramid_of(dem), {}), dem, types(), options);
+}
+
+double feature(const Landmark& l, std::string_view name) {
+  return l.features.at(feature_index(types()[l.type], name)).value;
+}
+AttributeValue attribute(const Landmark& l, std::string_view name) {
+  return l.attributes.at(attribute_index(types()[l.type], name));
+}
+
+// Three summits in a row on a 30 m grid in UTM: 9, then 5 beside 7.
+const MemoryDem kThree(dem_art("0 0 0 0 0 0 0 0 / 0 9 2 5 4 7 0 0 / 0 0 0 0 0 0 0 0"),
+                       {Crs::from_text("EPSG:32632"), 500000, 5000000, 30, -30});
+
+TEST(MountainTops, CarryFeaturesAndWhereTheyComeFrom) {
+  const auto tops = tops_of(kThree);
+  ASSERT_EQ(tops.size(), 3u);  // in row order: 9, 5, 7
+  const Landmark &nine = tops[0], &five = tops[1], &seven = tops[2];
+  EXPECT_TRUE(nine.position.xyz.isApprox(Eigen::Vector3d(500030, 4999970, 9)));
+  EXPECT_EQ(feature(nine, "prominence"), 9);
+  EXPECT_FALSE(nine.features[feature_index(types()[nine.type], "isolation")].known());
+  EXPECT_EQ(attribute(nine, "saddle_elevation"), AttributeValue{});
+  EXPECT_EQ(attribute(nine, "parent_uid"), AttributeValue{});
+  EXPECT_EQ(feature(five, "prominence"), 1);
+  EXPECT_EQ(attribute(five, "saddle_x"), AttributeValue{500120.0});
+  EXPECT_EQ(attribute(five, "parent_uid"), AttributeValue{seven.uid});
+  EXPECT_EQ(attribute(seven, "parent_uid"), AttributeValue{nine.uid});
+  EXPECT_NEAR(feature(seven, "isolation"), 120, 0.1);  // 4 cells; UTM metres are 0.9996 of ground metres here
+  EXPECT_EQ(attribute(seven, "higher_x"), AttributeValue{500030.0});
+}
+
+TEST(MountainTops, WhoseParentIsLeftOutNameTheGrandparent) {
+  // 7 is 4 cells from 9 and goes; 5, two cells from 7, would go too, so ask for less than its 60 m
+  const auto all = tops_of(kThree);
+  const auto kept = tops_of(kThree, {.min_isolation = Meters{59}});
+  EXPECT_EQ(kept.size(), 3u);
+  // a far, low hill whose parent is a near shoulder of the highest
+  const MemoryDem dem(dem_art("0 0 0 0 0 0 0 0 0 0 0 / 0 9 7 8 2 2 2 2 2 5 0 / 0 0 0 0 0 0 0 0 0 0 0"),
+                      kThree.geometry().where);
+  const auto far = tops_of(dem, {.min_isolation = Meters{100}});
+  ASSERT_EQ(far.size(), 2u);
+  EXPECT_EQ(attribute(far[1], "parent_uid"), AttributeValue{far[0].uid});
+}
+
+TEST(MountainTops, KnowHowMuchOfTheirProminenceIsCertain) {
+  const MemoryDem dem(dem_art("0 0 0 0 0 0 / 0 9 3 7 5 4 / 0 0 0 0 0 0"), kThree.geometry().where);
+  const auto tops = tops_of(dem);
+  EXPECT_EQ(attribute(tops[1], "prominence_low"), AttributeValue{3.0});
+  EXPECT_DOUBLE_EQ(tops[1].confidence, 0.75);
+}
+
+TEST(MountainTops, HaveTheVarianceOfTheirCell) {
+  const auto utm = tops_of(kThree);
+  EXPECT_NEAR(utm[0].covariance(0, 0), 75, 1e-9);  // 30^2 / 12
+  const MemoryDem degrees(kThree.heights(), {Crs::from_text("EPSG:4326"), 8, 60, 0.01, -0.01});
+  const auto north = tops_of(degrees);
+  EXPECT_NEAR(std::sqrt(12 * north[0].covariance(0, 0)), 556, 3);  // 0.01 degrees at 60 north
+  EXPECT_NEAR(std::sqrt(12 * north[0].covariance(1, 1)), 1112, 3);
+}
+
+TEST(MountainTops, HaveNamesThatDoNotDependOnTheOthers) {
+  const auto all = tops_of(kThree);
+  const auto some = tops_of(kThree, {.min_isolation = Meters{100}});
+  ASSERT_EQ(some.size(), 2u);
+  EXPECT_EQ(some[0].uid, all[0].uid);
+  EXPECT_EQ(some[1].uid, all[2].uid);
+}
+
+TEST(MountainTops, OnNoBodyHaveNoVisibility) {
+  const MemoryDem local(kThree.heights(), {Crs::local(), 0, 0, 30, -30});
+  EXPECT_EQ(attribute(tops_of(local)[0], "visibility"), AttributeValue{});
+  EXPECT_NE(attribute(tops_of(kThree)[0], "visibility"), AttributeValue{});
+}
+
+}  // namespace
+}  // namespace waymark::testing
