@@ -29,14 +29,16 @@ constexpr auto kTail = R"(  esac
 complete -F _waymark waymark
 )";
 
-/// Assignments that make the script offer a value of `argument`.
-std::string offer(const Argument& argument) {
-  const auto& words = argument.choices.empty() ? argument.suggestions : argument.choices;
-  std::string text;
-  if (!words.empty()) text += fmt::format("words='{}' ", fmt::join(words, " "));
-  if (argument.offer == Offer::file) text += "path=file ";
-  if (argument.offer == Offer::folder) text += "path=directory ";
-  return text + ";;\n";
+/// Assignments that make the script offer values for these arguments.
+std::string offer(std::span<const Argument> arguments) {
+  std::vector<std::string> words;
+  std::string path;
+  for (const Argument& argument : arguments) {
+    const auto& more = argument.choices.empty() ? argument.suggestions : argument.choices;
+    words.insert(words.end(), more.begin(), more.end());
+    if (argument.offer != Offer::nothing) path = argument.offer == Offer::file ? " path=file" : " path=directory";
+  }
+  return fmt::format("words='{}'{}", fmt::join(words, " "), path);
 }
 
 std::string alternatives(std::string names) {
@@ -57,15 +59,9 @@ std::string branches(std::span<const Argument> arguments) {
   std::vector<Argument> words, named;
   for (const Argument& argument : arguments) (argument.positional() ? words : named).push_back(argument);
   for (const Argument& argument : named)
-    if (!argument.flag()) text += "      " + alternatives(argument.names) + ") " + offer(argument);
-  text += "      *) if [[ $cur == -* ]]; then words='" + options(named) + "'; else\n";
-  for (const Argument& argument : words)
-    text += fmt::format("           words+=' {}' path=${{path:-{}}}\n",
-                        fmt::join(argument.choices.empty() ? argument.suggestions : argument.choices, " "),
-                        argument.offer == Offer::file     ? "file"
-                        : argument.offer == Offer::folder ? "directory"
-                                                          : "");
-  return text + "           :; fi ;;\n";
+    if (!argument.flag()) text += "      " + alternatives(argument.names) + ") " + offer(std::span(&argument, 1)) + " ;;\n";
+  text += "      *) if [[ $cur == -* ]]; then words='" + options(named) + "'; else " + offer(words) + "; fi ;;\n";
+  return "case $prev in\n" + text + "    esac ;;\n";
 }
 
 }  // namespace
@@ -79,12 +75,12 @@ std::string bash_completion(std::span<const CommandSpec> commands, std::span<con
   for (const CommandSpec& command : commands) {
     std::vector<Argument> arguments = command.arguments;
     arguments.insert(arguments.end(), globals.begin(), globals.end());
-    text += "    " + command.name + ") case $prev in\n" + branches(arguments) + "    esac ;;\n";
+    text += "    " + command.name + ") " + branches(arguments);
   }
   const Argument command{.names = "", .value = "COMMAND", .into = {}, .help = "", .suggestions = names};
   std::vector<Argument> before(globals.begin(), globals.end());
   before.push_back(command);
-  return text + "    '') case $prev in\n" + branches(before) + "    esac ;;\n" + kTail;
+  return text + "    '') " + branches(before) + kTail;
 }
 
 }  // namespace waymark

@@ -24,9 +24,7 @@ double fraction(const Progress& progress) {
 
 bool finished(const Progress& progress) { return !(progress.done < static_cast<double>(progress.total)); }
 
-std::string speed(const Progress& progress) {
-  return fmt::format("{:.3g} {}/s", progress.rate, progress.total == 1 ? "unit" : "units");
-}
+std::string speed(const Progress& progress) { return fmt::format("{:.3g} units/s", progress.rate); }
 
 std::size_t terminal_width() {
   winsize size{};
@@ -41,7 +39,7 @@ void draw_bar(const Progress& progress) {
   const auto full = static_cast<std::size_t>(part * kBar);
   std::string line = fmt::format("{:<22} [{}{}] {:3.0f} %", progress.stage, std::string(full, '#'),
                                  std::string(kBar - full, '.'), std::floor(100 * part));
-  if (progress.rate > 0) line += "  " + speed(progress);
+  if (progress.rate > 0 && progress.total > 1) line += "  " + speed(progress);
   if (!finished(progress)) line += "  " + clock_time(seconds_left(progress)) + " left";
   line.resize(std::min(line.size(), terminal_width() - 1));
   fmt::print(stderr, "\r{}\x1b[K{}", line, finished(progress) ? "\n" : "");
@@ -61,8 +59,7 @@ class Dots {
       ++drawn_;
       drawn_ % 4 == 0 ? fmt::print(stderr, "{}", drawn_ / 4 * 10) : fmt::print(stderr, ".");
     }
-    if (finished(progress) && reached == kSteps && !done_) fmt::print(stderr, " - done.\n");
-    done_ = reached == kSteps;
+    if (finished(progress)) fmt::print(stderr, " - done.\n");
     std::fflush(stderr);
   }
 
@@ -70,7 +67,6 @@ class Dots {
   static constexpr int kSteps = 40;
   std::string stage_;
   int drawn_ = -1;
-  bool done_ = false;
 };
 
 void print_json(const Progress& progress) {
@@ -97,14 +93,23 @@ class SparseLines {
   Clock::time_point last_ = Clock::now();
 };
 
+/// Passes on what is news: a stage may be told twice that it is done.
+std::function<void(const Progress&)> without_repeats(std::function<void(const Progress&)> draw) {
+  return [draw = std::move(draw), last = Progress()](const Progress& progress) mutable {
+    if (progress.stage == last.stage && !(progress.done > last.done)) return;
+    last = progress;
+    draw(progress);
+  };
+}
+
 }  // namespace
 
 std::function<void(const Progress&)> progress_renderer(const Session& session) {
   const bool automatic = session.progress == "auto";
   if (session.progress == "none" || (automatic && session.quiet)) return {};
-  if (session.progress == "bar" || (automatic && isatty(STDERR_FILENO))) return draw_bar;
-  if (session.progress == "dots") return Dots();
-  if (session.progress == "json") return print_json;
+  if (session.progress == "bar" || (automatic && isatty(STDERR_FILENO))) return without_repeats(draw_bar);
+  if (session.progress == "dots") return without_repeats(Dots());
+  if (session.progress == "json") return without_repeats(print_json);
   return SparseLines();
 }
 

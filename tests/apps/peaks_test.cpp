@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "made_dem.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Peaks : public testing::Test {
+ protected:
+  /// Runs `waymark peaks` and returns the whole table of the map as CSV.
+  std::string table(const std::vector<std::string>& more, const std::string& map = "map.gpkg") {
+    std::vector<std::string> words{"peaks", "-o", folder_ / map};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome made = waymark(words);
+    EXPECT_EQ(made.code, 0) << made.err;
+    last_summary_ = made.err;
+    return csv(map);
+  }
+  std::string csv(const std::string& map) { return waymark({"query", folder_ / map, "--format", "csv"}).out; }
+  std::string twins() { return make_dem(folder_ / "twins.tif", twin_peaks()); }
+  std::string rolling() { return make_dem(folder_ / "hills.tif", hills(300, 200)); }
+
+  TempFolder folder_;
+  std::string last_summary_;
+};
+
+TEST_F(Peaks, TwinPeaksEndToEnd) {
+  table({twins(), "--distance", "planar"});
+  const Outcome said = waymark({"query", folder_ / "map.gpkg", "--largest", "prominence", "--format", "json"});
+  const json tops = json::parse(said.out);
+  ASSERT_EQ(tops.size(), 2);
+  EXPECT_EQ(tops[0]["elevation"], 900);
+  EXPECT_EQ(tops[0]["prominence"], 900);  // from the sea
+  EXPECT_EQ(tops[0]["isolation"], nullptr);
+  EXPECT_EQ(tops[0]["x"], 501500);  // centre of the second cell
+  EXPECT_EQ(tops[0]["y"], 5198500);
+  EXPECT_EQ(tops[1]["elevation"], 700);
+  EXPECT_EQ(tops[1]["prominence"], 300);
+  EXPECT_EQ(tops[1]["isolation"], 4000);
+  EXPECT_EQ(tops[1]["saddle_elevation"], 400);
+  EXPECT_EQ(tops[1]["saddle_x"], 503500);
+  EXPECT_EQ(tops[1]["parent_uid"], tops[0]["uid"]);
+}
+
+TEST_F(Peaks, SummaryTellsStagesCountsSpeedAndTheMap) {
+  table({twins()});
+  EXPECT_THAT(last_summary_, AllOf(HasSubstr("find_mountain_tops"), HasSubstr("rejected"), HasSubstr("cells/s"),
+                                   HasSubstr("map.gpkg: 2 mountain_top")));
+}
+
+TEST_F(Peaks, QuietSaysNothing) {
+  table({twins(), "-q"});
+  EXPECT_EQ(last_summary_, "");
+}
+
+TEST_F(Peaks, OptionsReachTheStages) {
+  EXPECT_THAT(table({twins(), "--min-prominence", "400"}), Not(HasSubstr(",700,")));
+  EXPECT_THAT(table({twins(), "--min-isolation=5000"}), Not(HasSubstr(",700,")));
+  EXPECT_THAT(table({twins(), "--base", "none"}), HasSubstr(",900,,,,"));
+}
+
+TEST_F(Peaks, TilesAndThreadsDoNotChangeTheTable) {
+  const std::string dem = rolling();
+  const std::string one = table({dem, "--threads", "1", "--tile-cells", "16384"});
+  EXPECT_GT(std::ranges::count(one, '\n'), 50);
+  EXPECT_EQ(table({dem, "--threads", "2", "--tile-cells", "64"}), one);
+  EXPECT_EQ(table({dem, "--threads", "1", "--tile-cells", "100"}), one);
+}
+
+TEST_F(Peaks, PrintedJobGivesTheSameMap) {
+  const std::string dem = rolling();
+  const std::string direct = table({dem, "--min-prominence", "50", "--nodata", "unknown"});
+  const Outcome printed = waymark({"peaks", dem, "--min-prominence", "50", "--nodata", "unknown", "--print-job"});
+  write_text(folder_ / "job.json", printed.out);
+  ASSERT_EQ(waymark({"run", folder_ / "job.json", "-o", folder_ / "job.gpkg"}).code, 0);
+  EXPECT_EQ(csv("job.gpkg"), direct);
+}
+
+TEST_F(Peaks, SettingsOverrideTheJob) {
+  write_text(folder_ / "job.json", waymark({"peaks", twins(), "--print-job"}).out);
+  const Outcome said = waymark({"run", folder_ / "job.json", "-o", folder_ / "map.gpkg", "--set",
+                                "find_mountain_tops.min_prominence=400"});
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(csv("map.gpkg"), Not(HasSubstr(",700,")));
+  EXPECT_THAT(waymark({"run", folder_ / "job.json", "--check", "--set", "find_mountain_tops.min_prominense=4"}).err,
+              HasSubstr("'min_prominence'"));
+}
+
+TEST_F(Peaks, CheckMakesNothing) {
+  const Outcome said = waymark({"peaks", twins(), "--check"});
+  EXPECT_EQ(said.code, 0);
+  EXPECT_THAT(said.err, HasSubstr("the job is sound: 5 stages, 5 units of work, 0 of them done"));
+  EXPECT_EQ(waymark({"peaks", folder_ / "no.tif", "--check"}).code, 1);
+}
+
+TEST_F(Peaks, WorkFolderIsUsedAgain) {
+  const std::string dem = rolling();
+  const std::vector<std::string> words{dem, "--work", folder_ / "work", "--tile-cells", "100", "--check"};
+  const std::string first = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
+  const std::string second = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
+  EXPECT_EQ(first, second);
+  EXPECT_THAT(waymark({"peaks", dem, "--work", folder_ / "work", "--tile-cells", "100", "--check"}).err,
+              HasSubstr("10 units of work, 10 of them done"));
+}
+
+TEST_F(Peaks, SharesMeetInTheWorkFolder) {
+  const std::string dem = rolling(), job = folder_ / "job.json", work = folder_ / "work";
+  write_text(job, waymark({"peaks", dem, "--tile-cells", "100", "--print-job"}).out);
+  ASSERT_EQ(waymark({"run", job, "--work", work, "--shard", "2/2"}).code, 0);
+  ASSERT_EQ(waymark({"run", job, "--work", work, "--shard", "1/2"}).code, 0);
+  ASSERT_EQ(waymark({"run", job, "--work", work, "-o", folder_ / "shares.gpkg"}).code, 0);
+  EXPECT_EQ(csv("shares.gpkg"), table({dem}));
+}
+
+TEST_F(Peaks, PlanNamesEveryUnit) {
+  write_text(folder_ / "job.json", waymark({"peaks", rolling(), "--tile-cells", "100", "--print-job"}).out);
+  const auto plan = [&](const std::string& form) {
+    return waymark({"plan", folder_ / "job.json", "--as", form, "--work", folder_ / "work"}).out;
+  };
+  EXPECT_EQ(std::ranges::count(plan("jsonl"), '\n'), 10);
+  EXPECT_THAT(plan("snakemake"), HasSubstr("rule "));
+  EXPECT_THAT(plan("slurm"), HasSubstr("sbatch"));
+}
+
+TEST_F(Peaks, ProgressHasItsForms) {
+  const std::string dem = twins();
+  const auto said = [&](const std::string& form) {
+    return waymark({"peaks", dem, "-o", folder_ / "map.gpkg", "--progress", form}).err;
+  };
+  EXPECT_THAT(said("dots"), HasSubstr("find_mountain_tops: 0...10...20...30...40...50...60...70...80...90...100 - done.\n"));
+  EXPECT_THAT(said("bar"), HasSubstr("[########################] 100 %"));
+  EXPECT_THAT(said("json"), HasSubstr(R"({"stage":"find_mountain_tops","done":1.0,"total":1,)"));
+  EXPECT_EQ(said("none"), said("auto"));  // no terminal here
+}
+
+TEST_F(Peaks, RunIsRecordedInTheMap) {
+  table({twins(), "--min-prominence", "30"});
+  const std::string run = bash("ogrinfo -q " + (folder_ / "map.gpkg") + " run 2>&1").out;
+  if (run.empty()) GTEST_SKIP() << "ogrinfo is not installed";
+  EXPECT_THAT(run, AllOf(HasSubstr("waymark peaks"), HasSubstr("--min-prominence 30"), HasSubstr("find_mountain_tops"),
+                         HasSubstr("twins.tif")));
+}
+
+TEST_F(Peaks, ValidMapExportsAndReports) {
+  table({twins(), "--with-dem"});
+  const std::string map = folder_ / "map.gpkg";
+  const Outcome valid = waymark({"validate", map});
+  EXPECT_EQ(valid.code, 0) << valid.out;
+  EXPECT_EQ(valid.out, "");
+  const std::string geojson = folder_ / "tops.geojson";
+  EXPECT_EQ(waymark({"export", map, geojson}).code, 0);
+  EXPECT_EQ(json::parse(text_of(geojson))["features"].size(), 2);
+  const Outcome again = waymark({"export", map, geojson});
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, AllOf(HasSubstr("exists"), HasSubstr("--overwrite")));
+  EXPECT_EQ(waymark({"export", map, geojson, "--overwrite", "-of", "GeoJSON"}).code, 0);
+  EXPECT_EQ(waymark({"report", map, "-o", folder_ / "report.html"}).code, 0);
+  EXPECT_THAT(text_of(folder_ / "report.html"), HasSubstr("mountain_top"));
+}
+
+}  // namespace
+}  // namespace waymark::test
