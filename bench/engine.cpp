@@ -98,3 +98,5 @@ BENCHMARK(resume_what_is_done)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecon
 
 }  // namespace
 }  // namespace waymark
+
+BENCHMARK_MAIN();

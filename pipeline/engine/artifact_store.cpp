@@ -29,9 +29,14 @@ fs::path payload_file(const fs::path& result, const std::string& port) {
   return result / (port + ".bin");
 }
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;  // what cannot be seen is not there for us
+  return fs::exists(path, ignored);
+}
+
 /// The manifest of a whole and undamaged result; null else.
 Json intact_manifest(const fs::path& result) try {
-  if (!fs::exists(result / kManifest)) return nullptr;
+  if (!is_there(result / kManifest)) return nullptr;
   Json manifest = Json::parse(read_file(result / kManifest));
   for (const auto& [port, sum] : manifest.at("outputs").items())
     if (sha256(read_file(payload_file(result, port))) != sum.get<std::string>()) return nullptr;
@@ -91,7 +96,7 @@ fs::path ArtifactStore::failure_file(const Unit& unit) const {
 }
 
 bool ArtifactStore::contains(const Unit& unit) const {
-  return fs::exists(result_folder(unit) / kManifest);
+  return is_there(result_folder(unit) / kManifest);
 }
 
 std::optional<StoredUnit> ArtifactStore::find(const Unit& unit, const StageSpec& spec) const {

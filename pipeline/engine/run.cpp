@@ -99,8 +99,8 @@ void Run::run_stages() {
 }
 
 void Run::expect_wanted_unit() const {
+  if (options_.unit.empty()) return;
   const auto wanted = std::ranges::find(plan_.units, options_.unit, &Unit::id);
-  if (wanted == plan_.units.end()) return;
   if (states_[static_cast<std::size_t>(wanted - plan_.units.begin())].status != Status::waiting) return;
   for (const std::size_t i : wanted->after)
     if (!states_[i].ready())
@@ -166,7 +166,8 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   if (options_.progress) inputs.progress = [&](double done) { progress.reach(done); };
   StageContext context(spec, inputs);
   try {
-    step(stage).run(context);
+    // Isolated: a thread that waits inside a stage must not begin another unit on top of it.
+    tbb::this_task_arena::isolate([&] { step(stage).run(context); });
   } catch (const std::logic_error&) {
     throw;  // a stage that breaks its declaration is a bug, not a bad input
   } catch (const std::exception& problem) {
