@@ -10,6 +10,7 @@ function(waymark_tests)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules GTest::gmock
                         GTest::gtest_main)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)  # tests compile longer than they run
   gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
 endfunction()
