@@ -36,8 +36,7 @@ std::string text_or_empty(const char* text) {
               "give it as EPSG:4326, IAU_2015:49900, a PROJ string or WKT");
 }
 
-// The part that says where x and y are: compound, bound and three-dimensional systems reduced to two
-// dimensions.
+// The part that says where x and y are, of compound, bound and three-dimensional systems.
 ProjObject horizontal_part(ProjObject crs) {
   for (;;) {
     PJ* part = nullptr;

@@ -7,8 +7,7 @@ namespace waymark {
 
 /// East, north, up in metres about an origin: the frame robots drive in. On a body it is the plane that
 /// touches the ellipsoid there (GeographicLib::LocalCartesian), exact at any distance; in a local CRS it is a
-/// shift. z of the map is taken as height above the ellipsoid. Copies share a mutex where the CRS is
-/// projected.
+/// shift. z of the map is taken as height above the ellipsoid. May be asked from many threads.
 class LocalFrame {
  public:
   LocalFrame(const Crs& crs, const Point<MapCrs>& origin);

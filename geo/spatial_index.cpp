@@ -76,8 +76,7 @@ std::vector<std::size_t> SpatialIndex::within(const Eigen::Vector3d& centre, dou
   return sorted_indices(tree_->in_ball(centre, radius));
 }
 
-// The tree breaks ties as it likes: the distance of the last one it gives decides, and all that close are
-// ordered.
+// The tree breaks ties as it likes: the distance of the last one counts, and all that near are put in order.
 std::vector<std::size_t> SpatialIndex::nearest(const Eigen::Vector3d& centre, std::size_t count) const {
   if (count == 0 || size() == 0) return {};
   std::vector<Entry> found;

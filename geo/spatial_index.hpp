@@ -25,8 +25,7 @@ class SpatialIndex {
   /// Points at most `radius` away, ascending.
   std::vector<std::size_t> within(const Eigen::Vector3d& centre, double radius) const;
 
-  /// The `count` nearest points, nearest first; of equal distances the lower index first. Fewer if there are
-  /// fewer.
+  /// The `count` nearest points, or all if there are fewer; nearest first, equal distances by index.
   std::vector<std::size_t> nearest(const Eigen::Vector3d& centre, std::size_t count) const;
 
  private:

@@ -20,8 +20,7 @@ struct Block {
 /// Throws Error{input} where the file is damaged.
 Block read_block(GDALDataset& dataset, const RasterHeader& header, int block_column, int block_row);
 
-/// Gives heights to those cells of `into` that have none yet, from the block's cells [first, first +
-/// into.size()).
+/// Gives heights to those cells of `into` that have none yet, from the block's cells `first` and following.
 void copy_heights(const Block& block, std::size_t first, const HeightScale& scale, std::span<double> into);
 
 }  // namespace waymark

@@ -20,8 +20,7 @@ class GdalListener {
   ~GdalListener();
   GdalListener(GdalListener&&) = delete;
 
-  /// The first error, which names the cause; empty if there was none. `path` is left out where GDAL puts it
-  /// first.
+  /// The first error, which names the cause; empty if there was none. A leading `path` is left out.
   std::string error_about(const std::string& path) const;
 
  private:

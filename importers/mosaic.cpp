@@ -79,31 +79,29 @@ void Mosaic::add_file(std::size_t file, const Window& part, const Window& window
   const RasterHeader& header = headers_[file];
   const Window& place = layout_.files[file];
   const std::int64_t wide = header.block_columns, tall = header.block_rows;
-  const auto file_row = [&](std::int64_t row) {
-    return header.south_up ? header.rows - 1 - (row - place.row) : row - place.row;
-  };
-  const std::int64_t left = part.column - place.column, right = part.end_column() - place.column;
-  const auto [top, bottom] = std::minmax({file_row(part.row), file_row(part.end_row() - 1)});
   const std::int64_t blocks_across = (header.columns + wide - 1) / wide;
+  const auto turned = [&](std::int64_t row) { return header.south_up ? header.rows - 1 - row : row; };
+  // The part in columns and rows of the file; the last ones included.
+  const std::int64_t left = part.column - place.column, right = left + part.columns - 1;
+  const auto [top, bottom] =
+      std::minmax({turned(part.row - place.row), turned(part.end_row() - 1 - place.row)});
   std::optional<RasterHandles::Lease> open;
   for (std::int64_t block_row = top / tall; block_row <= bottom / tall; ++block_row)
-    for (std::int64_t block_column = left / wide; block_column * wide < right; ++block_column) {
-      const BlockCache::Key key{static_cast<std::uint32_t>(file),
-                                static_cast<std::uint64_t>(block_row * blocks_across + block_column)};
-      const auto block = cache_.get(key, [&] {
+    for (std::int64_t block_column = left / wide; block_column <= right / wide; ++block_column) {
+      const auto number = static_cast<std::uint64_t>(block_row * blocks_across + block_column);
+      const auto block = cache_.get({static_cast<std::uint32_t>(file), number}, [&] {
         if (!open) open.emplace(handles_, file);
         return read_block(**open, header, static_cast<int>(block_column), static_cast<int>(block_row));
       });
-      const std::int64_t from = std::max(left, block_column * wide),
-                         to = std::min(right, (block_column + 1) * wide);
-      const std::int64_t last_row = std::min(bottom, (block_row + 1) * tall - 1);
-      for (std::int64_t row = std::max(top, block_row * tall); row <= last_row; ++row) {
-        const std::int64_t grid_row = place.row + (header.south_up ? header.rows - 1 - row : row);
-        const std::int64_t first = (row - block_row * tall) * wide + from - block_column * wide;
-        copy_heights(*block, static_cast<std::size_t>(first), header.heights,
-                     heights.row(grid_row - window.row)
-                         .subspan(static_cast<std::size_t>(from + place.column - window.column),
-                                  static_cast<std::size_t>(to - from)));
+      const Window held{block_column * wide, block_row * tall, wide, tall};
+      const Window wanted = common(held, {left, top, right - left + 1, bottom - top + 1});
+      for (std::int64_t row = wanted.row; row < wanted.end_row(); ++row) {
+        const std::int64_t first = (row - held.row) * wide + wanted.column - held.column;
+        const std::int64_t column = place.column + wanted.column - window.column;
+        copy_heights(
+            *block, static_cast<std::size_t>(first), header.heights,
+            heights.row(place.row + turned(row) - window.row)
+                .subspan(static_cast<std::size_t>(column), static_cast<std::size_t>(wanted.columns)));
       }
     }
 }

@@ -8,8 +8,7 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// Places on the ground, for distances: on a body longitude and latitude in degrees, in a local CRS its x and
-/// y.
+/// Places on the ground, for distances: longitude and latitude in degrees, or x and y of a local CRS.
 class Ground {
  public:
   explicit Ground(const Crs& crs);

@@ -20,8 +20,7 @@ struct LandmarkFilter {
   const SensorProfile* sensor = nullptr;  ///< whose quality (eq. 8); null: equal weights
 };
 
-/// Corners of a box in the map's CRS, inclusive. In a geographic CRS west > east goes across the
-/// antimeridian.
+/// Corners of a box in the map's CRS, inclusive. In degrees, west > east goes across the antimeridian.
 struct MapBox {
   double west = 0, south = 0, east = 0, north = 0;
 };

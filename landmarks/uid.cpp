@@ -9,8 +9,7 @@
 namespace waymark {
 namespace {
 
-// FNV-1a (Fowler, Noll, Vo), 64 bits, then the finaliser of MurmurHash3, so that near positions differ in all
-// digits.
+// FNV-1a (Fowler, Noll, Vo), 64 bits, then MurmurHash3's finaliser: near positions differ in all digits.
 std::uint64_t hash(std::string_view text) {
   std::uint64_t h = 0xcbf29ce484222325u;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
