@@ -9,7 +9,7 @@ namespace waymark {
 
 /// A promise a map file breaks.
 struct Finding {
-  std::string code;                 ///< stable, for scripts: "rtree.missing", "quality.range"; see docs/validate.md
+  std::string code;                 ///< stable, for scripts: "rtree.missing", "quality.range"
   std::string table;                ///< empty: the file as a whole
   std::optional<std::int64_t> row;  ///< primary key
   std::string text;                 ///< one sentence with the numbers

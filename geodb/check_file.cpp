@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "geodb/map_checks.hpp"
+#include "geodb/sql_text.hpp"
+
+namespace waymark {
+namespace {
+
+bool is_sha256(std::string_view text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+void check_runs(const sqlite::Database& database, FindingList& findings) {
+  if (database.integer("SELECT count(*) FROM run") == 0)
+    findings.add("run.missing", "run", std::nullopt, "the map does not say how it came to be");
+  sqlite::Statement row = database.prepare("SELECT id, job, inputs, report FROM run");
+  while (row.step()) {
+    for (const int column : {1, 2, 3})
+      if (!nlohmann::json::accept(row.text(column)))
+        findings.add("run.json", "run", row.integer(0), fmt::format("column {} is not JSON", column == 1 ? "job" : column == 2 ? "inputs" : "report"));
+    const auto inputs = nlohmann::json::parse(row.text(2), nullptr, /*allow_exceptions=*/false);
+    for (const auto& input : inputs)
+      if (!input.is_object() || !is_sha256(input.value("sha256", "")))
+        findings.add("run.hash", "run", row.integer(0), "an input file has no SHA-256");
+  }
+}
+
+void check_layer(const sqlite::Database& database, const std::string& table, FindingList& findings) {
+  const auto missing = [&](std::string_view where) {
+    sqlite::Statement row = database.prepare(fmt::format("SELECT 1 FROM {} = ?", where));
+    row.bind(1, table);
+    return !row.step();
+  };
+  if (missing("gpkg_contents WHERE table_name"))
+    findings.add("layer.unregistered", table, std::nullopt, "the table is not in gpkg_contents");
+  if (missing("gpkg_geometry_columns WHERE table_name"))
+    findings.add("layer.unregistered", table, std::nullopt, "the table is not in gpkg_geometry_columns");
+  if (missing("layer_styles WHERE useAsDefault AND f_table_name"))
+    findings.add("style.missing", table, std::nullopt, "the layer has no default style");
+}
+
+}  // namespace
+
+void find_rows(const sqlite::Database& database, FindingList& findings, const std::string& code,
+               const std::string& table, const std::string& sql) {
+  sqlite::Statement row = database.prepare(sql);
+  while (row.step())
+    findings.add(code, table, row.null(0) ? std::nullopt : std::optional(row.integer(0)), std::string(row.text(1)));
+}
+
+void check_file(const sqlite::Database& database, const TypeRegistry& types, FindingList& findings) {
+  sqlite::Statement integrity = database.prepare("PRAGMA quick_check");
+  while (integrity.step())
+    if (integrity.text(0) != "ok") findings.add("file.damaged", "", std::nullopt, std::string(integrity.text(0)));
+  find_rows(database, findings, "file.foreign_key", "",
+            "SELECT rowid, 'in table ' || \"table\" || ' refers to a missing row of ' || parent FROM pragma_foreign_key_check");
+  if (!database.has_table("landmark") && types.size() > 0)
+    findings.add("view.missing", "landmark", std::nullopt, "the view over all types is missing");
+  for (const auto& type : types) check_layer(database, type.name, findings);
+  check_runs(database, findings);
+}
+
+bool check_columns(const sqlite::Database& database, const LandmarkLayout& layout, FindingList& findings) {
+  const std::string& table = layout.type().name;
+  if (!database.has_table(table)) {
+    findings.add("table.missing", table, std::nullopt, "the map declares this type but has no table for it");
+    return false;
+  }
+  bool all = true;
+  for (const auto& column : layout.columns()) {
+    sqlite::Statement known = database.prepare("SELECT 1 FROM pragma_table_info(?) WHERE name = ?");
+    known.bind_all(table, column.name);
+    if (known.step()) continue;
+    findings.add("column.missing", table, std::nullopt, "column '" + column.name + "' is missing");
+    all = false;
+  }
+  return all;
+}
+
+}  // namespace waymark

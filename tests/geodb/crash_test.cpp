@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Processes that are killed, share a map, or run out of disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <thread>
+
+#include "core/error.hpp"
+#include "geodb/map_editor.hpp"
+#include "geodb/validate_map.hpp"
+#include "geodb/write_map.hpp"
+#include "tests/geodb/map_scenes.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+pid_t in_child(const auto& work) {
+  const pid_t child = ::fork();
+  if (child != 0) return child;
+  try {
+    work();
+  } catch (...) {
+    ::_exit(1);
+  }
+  ::_exit(0);
+}
+
+/// Kills the child at some moment within 60 ms, spread evenly over the calls.
+void kill_after(pid_t child, int step) {
+  std::this_thread::sleep_for(std::chrono::microseconds(1 + step * 7919 % 60'000));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
+std::ptrdiff_t files_in(const TemporaryFolder& folder) {
+  return std::distance(std::filesystem::directory_iterator(folder.path()), {});
+}
+
+TEST(Killed, AWriterLeavesTheOldMapOrTheNewOne) {
+  const TemporaryFolder folder;
+  const MapContents before = scattered({.landmarks = 100}), after = scattered({.landmarks = 3000});
+  write_map(folder / "map.gpkg", before);
+  const std::string old_bytes = file_bytes(folder / "map.gpkg");
+  write_map(folder / "new.gpkg", after);
+  const std::string new_bytes = file_bytes(folder / "new.gpkg");
+  std::filesystem::remove(folder / "new.gpkg");
+  for (int step = 0; step < 40; ++step) {
+    kill_after(in_child([&] { write_map(folder / "map.gpkg", after); }), step);
+    const std::string bytes = file_bytes(folder / "map.gpkg");
+    ASSERT_TRUE(bytes == old_bytes || bytes == new_bytes) << step;
+    if (bytes == new_bytes) write_map(folder / "map.gpkg", before);
+  }
+  write_map(folder / "map.gpkg", before);
+  EXPECT_EQ(files_in(folder), 1) << "the next writer clears away what the killed ones left";
+}
+
+TEST(Killed, AnEditorLeavesTheMapAsItWas) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  for (int step = 0; step < 30; ++step) {
+    kill_after(in_child([&] {
+                 MapEditor editor = MapEditor::open(folder / "map.gpkg");
+                 for (;;)
+                   editor.together([&] {  // one goes, one comes: always a thousand
+                     Landmark landmark = editor.map().query({.limit = 1}).at(0);
+                     editor.remove(landmark.uid);
+                     landmark.uid += "'";
+                     editor.insert(landmark);
+                   });
+               }), step);
+    ASSERT_EQ(MapStore::open(folder / "map.gpkg").count(), 1000) << step;
+    ASSERT_THAT(validate_map(folder / "map.gpkg"), IsEmpty()) << step;
+  }
+}
+
+TEST(Sharing, ReadersWorkBesideAWriter) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  const auto read = [&] {
+    for (int i = 0; i < 50; ++i)
+      if (MapStore::open(folder / "map.gpkg").query({}).size() != 1000) ::_exit(2);
+  };
+  const pid_t readers[] = {in_child(read), in_child(read)};
+  MapEditor editor = MapEditor::open(folder / "map.gpkg");
+  int edits = 0;
+  for (const pid_t reader : readers) {
+    int status = 0;
+    while (::waitpid(reader, &status, WNOHANG) == 0) {
+      Landmark landmark = *editor.map().find("lp-" + std::to_string(edits % 1000));
+      landmark.position.xyz.x() += 1;
+      editor.update(landmark);
+      ++edits;
+    }
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+  }
+  EXPECT_GT(edits, 0);
+}
+
+TEST(Sharing, AnOpenReaderKeepsItsMapWhenAnotherReplacesIt) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({.landmarks = 10}));
+  const MapStore old = MapStore::open(folder / "map.gpkg");
+  write_map(folder / "map.gpkg", scattered({.landmarks = 20}));
+  EXPECT_EQ(old.query({}).size(), 10u);
+  EXPECT_EQ(MapStore::open(folder / "map.gpkg").query({}).size(), 20u);
+}
+
+TEST(DiskFull, KeepsTheOldMapAndSaysSo) {
+  const TemporaryFolder folder;
+  const std::filesystem::path disk = folder / "disk";
+  std::filesystem::create_directory(disk);
+  if (run_program("mount -t tmpfs -o size=1m tmpfs " + disk.string()).exit_code != 0)
+    GTEST_SKIP() << "needs the right to mount a small tmpfs";
+  std::string message;
+  write_map(disk / "map.gpkg", scattered({.landmarks = 100}));
+  const std::string before = file_bytes(disk / "map.gpkg");
+  try {
+    write_map(disk / "map.gpkg", scattered({.landmarks = 20'000}));
+  } catch (const Error& error) {
+    message = error.what();
+    EXPECT_EQ(error.code(), ErrorCode::output);
+  }
+  const bool kept = file_bytes(disk / "map.gpkg") == before;
+  const auto files = std::distance(std::filesystem::directory_iterator(disk), {});
+  run_program("umount " + disk.string());
+  EXPECT_THAT(message, HasSubstr("the disk is full\n  " + (disk / "map.gpkg").string()));
+  EXPECT_TRUE(kept);
+  EXPECT_EQ(files, 1);
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/map_query.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "geodb/map_store.hpp"
+#include "geodb/search_windows.hpp"
+#include "geodb/write_map.hpp"
+#include "landmarks/sensor_profile.hpp"
+#include "tests/geodb/map_scenes.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<std::string> uids(const std::vector<Landmark>& landmarks) {
+  std::vector<std::string> names;
+  for (const Landmark& landmark : landmarks) names.push_back(landmark.uid);
+  return names;
+}
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::ranges::sort(names);
+  return names;
+}
+
+/// A map on the disk and its landmarks in memory, for slow and obvious answers.
+struct Twin {
+  explicit Twin(const Scene& scene) : contents(scattered(scene)), ruler(contents.crs) {
+    write_map(folder / "map.gpkg", contents);
+    map = std::make_unique<MapStore>(MapStore::open(folder / "map.gpkg"));
+  }
+  std::vector<std::string> by_definition(const auto& wanted) const {
+    std::vector<std::string> names;
+    for (const Landmark& landmark : contents.landmarks)
+      if (wanted(landmark)) names.push_back(landmark.uid);
+    return sorted(names);
+  }
+  double distance(const Landmark& l, double x, double y) const { return ruler(x, y, l.position.xyz.x(), l.position.xyz.y()); }
+
+  TemporaryFolder folder;
+  MapContents contents;
+  GroundRuler ruler;
+  std::unique_ptr<MapStore> map;
+};
+
+Scene whole_body(const std::string& crs, double west) {
+  return {.crs = crs, .min_x = west, .min_y = -90, .max_x = west + 360, .max_y = 90, .landmarks = 3000};
+}
+
+struct Place {
+  double x, y, radius;
+};
+// Ordinary places, both sides of the antimeridian, the poles and their neighbourhood, circles round a pole, all.
+const Place kPlaces[] = {{10, 45, 1e6},   {179.9, 0, 8e5},   {-179.9, 60, 1e6}, {540, 10, 1e6},   {0, 90, 1e6},  {77, -90, 5e5},
+                         {123, 88, 1e6},  {-20, -85, 2e6},   {0, 0, 1.2e7},     {200, 30, 3e5},   {5, 5, 3e7},   {5, 5, 0}};
+
+class OnABody : public ::testing::TestWithParam<Scene> {};
+
+TEST_P(OnABody, RadiusQueriesAgreeWithTheDefinition) {
+  const Twin twin(GetParam());
+  for (const auto& [x, y, radius] : kPlaces) {
+    const auto found = twin.map->query({.near = MapQuery::Near{x, y, Meters{radius}}});
+    EXPECT_EQ(sorted(uids(found)), twin.by_definition([&](const Landmark& l) { return twin.distance(l, x, y) <= radius; }))
+        << x << " " << y << " " << radius;
+    EXPECT_TRUE(std::ranges::is_sorted(found, {}, [&](const Landmark& l) { return twin.distance(l, x, y); }));
+  }
+}
+
+TEST_P(OnABody, NearestAgreeWithTheDefinition) {
+  const Twin twin(GetParam());
+  for (const auto& place : kPlaces) {
+    std::vector<Landmark> all = twin.contents.landmarks;
+    std::ranges::stable_sort(all, {}, [&](const Landmark& l) { return twin.distance(l, place.x, place.y); });
+    all.resize(7);
+    EXPECT_EQ(uids(twin.map->query({.nearest = MapQuery::NearestK{place.x, place.y, 7}})), uids(all));
+  }
+}
+
+TEST_P(OnABody, BoxesMayCrossTheAntimeridian) {
+  const Twin twin(GetParam());
+  const MapQuery::Box box{170, -30, -160, 40};  // 30 degrees wide
+  const auto inside_box = [&](const Landmark& l) {
+    const double east = std::fmod(l.position.xyz.x() - 170 + 720, 360);
+    return east <= 30 && l.position.xyz.y() >= -30 && l.position.xyz.y() <= 40;
+  };
+  const auto found = sorted(uids(twin.map->query({.box = box})));
+  EXPECT_GT(found.size(), 20u);
+  EXPECT_EQ(found, twin.by_definition(inside_box));
+}
+
+INSTANTIATE_TEST_SUITE_P(EarthAndMars, OnABody,
+                         ::testing::Values(whole_body("EPSG:4326", -180), whole_body("EPSG:4326", 0),
+                                           whole_body("IAU_2015:49900", 0), whole_body("IAU_2015:49902", -180)));
+
+TEST(MapQuery, BoxesAndRadiiInThePlaneAgreeWithTheDefinition) {
+  const Twin twin({.landmarks = 2000});
+  const MapQuery::Box box{420'000, 5'020'000, 440'000, 5'060'000};
+  const auto in_box = [&](const Landmark& l) { return inside({box}, l.position.xyz.x(), l.position.xyz.y()); };
+  EXPECT_EQ(sorted(uids(twin.map->query({.box = box}))), twin.by_definition(in_box));
+  const auto both = twin.map->query({.box = box, .near = MapQuery::Near{430'000, 5'030'000, Meters{9'000}}});
+  EXPECT_EQ(sorted(uids(both)), twin.by_definition([&](const Landmark& l) { return in_box(l) && twin.distance(l, 430'000, 5'030'000) <= 9'000; }));
+}
+
+TEST(MapQuery, EdgesOfABoxBelongToItThoughTheIndexIsFloat32) {
+  const Twin twin({.crs = "", .min_x = 8'100'000, .min_y = 8'100'000, .max_x = 8'100'010, .max_y = 8'100'010, .landmarks = 300});
+  for (const Landmark& landmark : twin.contents.landmarks) {
+    const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
+    EXPECT_EQ(uids(twin.map->query({.box = MapQuery::Box{x, y, x, y}})), std::vector{landmark.uid});
+  }
+}
+
+TEST(MapQuery, FeatureRangesLeaveOutTheUnknown) {
+  const Twin twin({});
+  const auto found = twin.map->query({.features = {{.feature = "diameter", .lowest = 0.2, .highest = 0.3}, {.feature = "height", .lowest = 5}}});
+  EXPECT_GT(found.size(), 20u);
+  EXPECT_EQ(sorted(uids(found)), twin.by_definition([](const Landmark& l) {
+              return l.features[1].known() && l.features[1].value >= 0.2 && l.features[1].value <= 0.3 && l.features[0].value >= 5;
+            }));
+}
+
+TEST(MapQuery, LargestFirstGivesTheForemost) {
+  const Twin twin({.landmarks = 5000});
+  std::vector<Landmark> all = twin.contents.landmarks;
+  std::ranges::sort(all, std::greater{}, [](const Landmark& l) { return l.features[0].value; });
+  all.resize(25);
+  EXPECT_EQ(uids(twin.map->query({.largest_first = "height", .limit = 25})), uids(all));
+  EXPECT_EQ(twin.map->query({.limit = 10}).size(), 10u);
+  EXPECT_TRUE(twin.map->query({.limit = 0}).empty());
+}
+
+TEST(MapQuery, QualityDependsOnTheSensor) {
+  const Twin twin({});  // q_# = 3/4, q of height 0.9, of diameter unknown
+  EXPECT_EQ(twin.map->query({.min_quality = 0.67}).size(), 1000u);
+  EXPECT_TRUE(twin.map->query({.min_quality = 0.68}).empty());
+  const SensorProfile blind{.name = "blind", .summary = "", .weights = {{"lamp_post", "diameter", 1}}};
+  EXPECT_EQ(twin.map->query({.min_quality = 0.74, .sensor = &blind}).size(), 1000u);
+}
+
+std::string message(const MapStore& map, const MapQuery& query) {
+  try {
+    map.query(query);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(MapQuery, SlipsOfThePenAreErrors) {
+  const Twin twin({});
+  EXPECT_THAT(message(*twin.map, {.types = {"lamp_pots"}}), HasSubstr("did you mean 'lamp_post'?"));
+  EXPECT_THAT(message(*twin.map, {.types = {"x"}}), HasSubstr("it has: lamp_post"));
+  EXPECT_THAT(message(*twin.map, {.features = {{.feature = "heigth"}}}), HasSubstr("did you mean 'height'?"));
+  EXPECT_THAT(message(*twin.map, {.largest_first = "prominence"}), HasSubstr("has a feature 'prominence'"));
+  EXPECT_THAT(message(*twin.map, {.near = MapQuery::Near{}, .nearest = MapQuery::NearestK{}}), HasSubstr("cannot be combined"));
+}
+
+}  // namespace
+}  // namespace waymark

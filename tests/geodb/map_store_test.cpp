@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opening: what is refused, what is migrated, and that reading leaves no trace.
+#include "geodb/map_store.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "core/error.hpp"
+#include "geodb/map_editor.hpp"
+#include "geodb/sqlite.hpp"
+#include "geodb/validate_map.hpp"
+#include "geodb/write_map.hpp"
+#include "tests/geodb/map_scenes.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::string message_of_opening(const std::filesystem::path& path) {
+  try {
+    MapStore::open(path);
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(path.string()));
+    return error.what();
+  }
+  return "opened";
+}
+
+TEST(OpenMap, RefusesWhatIsNotAMap) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of_opening(folder / "missing.gpkg"), HasSubstr("there is no such map"));
+  EXPECT_THAT(message_of_opening(folder.path()), HasSubstr("this is not a file"));
+  std::ofstream(folder / "empty.gpkg");
+  EXPECT_THAT(message_of_opening(folder / "empty.gpkg"), HasSubstr("this file is empty"));
+  std::ofstream(folder / "text.gpkg") << std::string(5000, 'x');
+  EXPECT_THAT(message_of_opening(folder / "text.gpkg"), HasSubstr("this is not a GeoPackage"));
+  run_program("ogr2ogr -f SQLite " + (folder / "plain.gpkg").string() + " /vsistdin/ </dev/null");
+  sqlite::Database(folder / "other.gpkg", sqlite::OpenMode::create).execute("CREATE TABLE t (x)");
+  EXPECT_THAT(message_of_opening(folder / "other.gpkg"), HasSubstr("this is not a GeoPackage"));
+}
+
+TEST(OpenMap, RefusesForeignGeoPackages) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "points.csv") << "x,y\n1,2\n";
+  const auto made = run_program("ogr2ogr -f GPKG " + (folder / "points.gpkg").string() + " " + (folder / "points.csv").string() +
+                                " -oo X_POSSIBLE_NAMES=x -oo Y_POSSIBLE_NAMES=y");
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_THAT(message_of_opening(folder / "points.gpkg"), HasSubstr("this GeoPackage is not a Waymark map"));
+}
+
+TEST(OpenMap, RefusesNewerMaps) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  execute_sql(folder / "map.gpkg", "INSERT INTO waymark_schema VALUES (99, 'from the future')");
+  EXPECT_THAT(message_of_opening(folder / "map.gpkg"), HasSubstr("schema version 99, this program knows up to 2"));
+}
+
+TEST(OpenMap, RefusesATruncatedMap) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  std::filesystem::resize_file(folder / "map.gpkg", 9000);
+  EXPECT_THAT(message_of_opening(folder / "map.gpkg"), HasSubstr("this map is damaged"));
+}
+
+/// The old map of tests/geodb/version_1.sql (see make_version_1.sh).
+void make_version_1(const std::filesystem::path& path) {
+  sqlite::Database(path, sqlite::OpenMode::create).execute(file_bytes(WAYMARK_SOURCE_DIR "/tests/geodb/version_1.sql"));
+}
+
+TEST(Migration, AnOldMapIsReadWithoutChangingIt) {
+  const TemporaryFolder folder;
+  make_version_1(folder / "old.gpkg");
+  const std::string before = file_bytes(folder / "old.gpkg");
+  const MapStore map = MapStore::open(folder / "old.gpkg");
+  EXPECT_EQ(map.schema_version(), 1);
+  EXPECT_EQ(map.count("lamp_post"), 3);
+  ASSERT_EQ(map.runs().size(), 1u);
+  EXPECT_EQ(map.runs()[0].report_json, "{}");
+  EXPECT_EQ(map.images().at(0).taken_utc, "");
+  EXPECT_THAT(validate_map(folder / "old.gpkg"), IsEmpty());
+  EXPECT_TRUE(file_bytes(folder / "old.gpkg") == before);
+}
+
+TEST(Migration, AnEditorMigratesInPlace) {
+  const TemporaryFolder folder;
+  make_version_1(folder / "old.gpkg");
+  MapEditor::open(folder / "old.gpkg").remove("lp-1");
+  const MapStore map = MapStore::open(folder / "old.gpkg");
+  EXPECT_EQ(map.schema_version(), 2);
+  EXPECT_EQ(map.count(), 2);
+  EXPECT_EQ(run_program("/usr/bin/python3 -m osgeo_utils.samples.validate_gpkg -k --extra " + (folder / "old.gpkg").string()).output, "");
+}
+
+void use_it(const MapStore& map) {
+  map.query({.nearest = MapQuery::NearestK{450'000, 5'050'000, 5}});
+  map.observations();
+  map.runs();
+}
+
+TEST(Reading, LeavesNoTrace) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  for (const char* mode : {"DELETE", "WAL"}) {
+    execute_sql(folder / "map.gpkg", std::string("PRAGMA journal_mode = ") + mode);
+    const std::string before = file_bytes(folder / "map.gpkg");
+    const auto time = std::filesystem::last_write_time(folder / "map.gpkg");
+    use_it(MapStore::open(folder / "map.gpkg"));
+    EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
+    EXPECT_TRUE(file_bytes(folder / "map.gpkg") == before) << mode;
+    EXPECT_EQ(std::filesystem::last_write_time(folder / "map.gpkg"), time);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1) << mode;
+  }
+}
+
+TEST(Reading, SeesWhatAWriteAheadLogHolds) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  const sqlite::Database other(folder / "map.gpkg", sqlite::OpenMode::update);
+  other.execute("PRAGMA journal_mode = WAL; DELETE FROM lamp_post WHERE uid = 'lp-9'");
+  EXPECT_EQ(MapStore::open(folder / "map.gpkg").count(), 999);
+}
+
+}  // namespace
+}  // namespace waymark
