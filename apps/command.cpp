@@ -5,6 +5,40 @@
 
 namespace waymark {
 
+Argument Argument::needed() const {
+  Argument same = *this;
+  same.required = true;
+  return same;
+}
+
+Argument Argument::one_of(std::vector<std::string> only) const {
+  Argument same = *this;
+  same.choices = std::move(only);
+  return same;
+}
+
+Argument Argument::offering(std::vector<std::string> words) const {
+  Argument same = *this;
+  same.suggestions = std::move(words);
+  return same;
+}
+
+Argument Argument::offering(Offer paths) const {
+  Argument same = *this;
+  same.offer = paths;
+  return same;
+}
+
+Argument Argument::or_else(std::string value_not_given) const {
+  Argument same = *this;
+  same.otherwise = std::move(value_not_given);
+  return same;
+}
+
+Argument file_word(std::string placeholder, Target into, std::string help) {
+  return Argument{"", std::move(placeholder), into, std::move(help)}.needed().offering(Offer::file);
+}
+
 Command& CommandTable::find(std::string_view name) const {
   std::vector<std::string> names;
   for (const auto& command : commands_) {

@@ -21,19 +21,29 @@ enum class Offer { nothing, file, folder };
 /// One word or option of a command. Parsing, help, completion and man page read this and nothing else.
 struct Argument {
   std::string names;  ///< "-o,--output"; a positional word has none of its own: ""
-  std::string value;  ///< what stands for the value: "MAP.gpkg"; "X Y RADIUS" takes three; "DEM..." one or more;
-                      ///< empty for a flag
+  std::string value;  ///< what stands for the value: "MAP.gpkg"; "X Y RADIUS" takes three; "DEM..." one or
+                      ///< more; empty for a flag
   Target into;
-  std::string help;   ///< the effect, one sentence without a full stop
+  std::string help;  ///< the effect, one sentence without a full stop
   bool required = false;
   std::vector<std::string> choices = {};      ///< the only values allowed; empty: any
   std::vector<std::string> suggestions = {};  ///< values the shell offers, others are allowed
   Offer offer = Offer::nothing;
-  std::string otherwise = {};                 ///< what holds where it is not given; empty: nothing to tell
+  std::string otherwise = {};  ///< what holds where it is not given; empty: nothing to tell
 
   bool positional() const { return names.empty(); }
   bool flag() const { return std::holds_alternative<bool*>(into); }
+
+  // The same argument with one more thing said about it.
+  Argument needed() const;
+  Argument one_of(std::vector<std::string> only) const;
+  Argument offering(std::vector<std::string> words) const;
+  Argument offering(Offer paths) const;
+  Argument or_else(std::string value_not_given) const;
 };
+
+/// A word that names a file and must be there.
+Argument file_word(std::string placeholder, Target into, std::string help);
 
 struct Example {
   std::string command_line;
@@ -47,7 +57,7 @@ enum class Group { make, use, look_up };
 struct CommandSpec {
   std::string name;
   Group group = Group::use;
-  std::string summary;  ///< one line without a full stop
+  std::string summary;     ///< one line without a full stop
   std::string about = {};  ///< paragraphs separated by an empty line; no line breaks inside
   std::vector<Argument> arguments = {};
   std::vector<Example> examples = {};

@@ -36,7 +36,8 @@ std::string offer(std::span<const Argument> arguments) {
   for (const Argument& argument : arguments) {
     const auto& more = argument.choices.empty() ? argument.suggestions : argument.choices;
     words.insert(words.end(), more.begin(), more.end());
-    if (argument.offer != Offer::nothing) path = argument.offer == Offer::file ? " path=file" : " path=directory";
+    if (argument.offer != Offer::nothing)
+      path = argument.offer == Offer::file ? " path=file" : " path=directory";
   }
   return fmt::format("words='{}'{}", fmt::join(words, " "), path);
 }
@@ -59,8 +60,10 @@ std::string branches(std::span<const Argument> arguments) {
   std::vector<Argument> words, named;
   for (const Argument& argument : arguments) (argument.positional() ? words : named).push_back(argument);
   for (const Argument& argument : named)
-    if (!argument.flag()) text += "      " + alternatives(argument.names) + ") " + offer(std::span(&argument, 1)) + " ;;\n";
-  text += "      *) if [[ $cur == -* ]]; then words='" + options(named) + "'; else " + offer(words) + "; fi ;;\n";
+    if (!argument.flag())
+      text += "      " + alternatives(argument.names) + ") " + offer(std::span(&argument, 1)) + " ;;\n";
+  text +=
+      "      *) if [[ $cur == -* ]]; then words='" + options(named) + "'; else " + offer(words) + "; fi ;;\n";
   return "case $prev in\n" + text + "    esac ;;\n";
 }
 
@@ -77,9 +80,8 @@ std::string bash_completion(std::span<const CommandSpec> commands, std::span<con
     arguments.insert(arguments.end(), globals.begin(), globals.end());
     text += "    " + command.name + ") " + branches(arguments);
   }
-  const Argument command{.names = "", .value = "COMMAND", .into = {}, .help = "", .suggestions = names};
   std::vector<Argument> before(globals.begin(), globals.end());
-  before.push_back(command);
+  before.push_back(Argument{"", "COMMAND", {}, ""}.offering(names));
   return text + "    '') " + branches(before) + kTail;
 }
 

@@ -17,7 +17,9 @@ const std::string& form(const Described& one, const std::string& as) {
   return as == "json" ? one.json : as == "schema" ? one.schema : as == "markdown" ? one.markdown : one.text;
 }
 
-std::string with_end(const std::string& text) { return text.ends_with('\n') ? text : text + '\n'; }
+std::string with_end(const std::string& text) {
+  return text.ends_with('\n') ? text : text + '\n';
+}
 
 const Described& find(std::span<const Described> all, const std::string& kind, const std::string& name) {
   std::vector<std::string> names;
@@ -63,13 +65,15 @@ std::vector<Described> described(const Registry& stages) {
 }
 
 std::vector<Argument> describe_arguments(DescribeWhat& what, std::vector<std::string> names) {
-  return {{"", "NAME", &what.name, "Only this one, in full", false, {}, std::move(names)},
-          {"--as", "FORM", &what.as, "How to print it", false, {"text", "json", "schema", "markdown"}, {}, Offer::nothing,
-           "text"}};
+  return {Argument{"", "NAME", &what.name, "Only this one, in full"}.offering(std::move(names)),
+          Argument{"--as", "FORM", &what.as, "How to print it"}
+              .one_of({"text", "json", "schema", "markdown"})
+              .or_else("text")};
 }
 
 void print_described(std::span<const Described> all, const std::string& kind, const DescribeWhat& what) {
-  std::cout << with_end(what.name.empty() ? everything(all, what.as) : form(find(all, kind, what.name), what.as));
+  std::cout << with_end(what.name.empty() ? everything(all, what.as)
+                                          : form(find(all, kind, what.name), what.as));
 }
 
 }  // namespace waymark

@@ -26,8 +26,8 @@ struct DescribeWhat {
 };
 std::vector<Argument> describe_arguments(DescribeWhat& what, std::vector<std::string> names);
 
-/// To standard output. All of them are a list as text, and an object by name as json and schema. Throws Error{usage}
-/// with the nearest name where there is no such `kind`.
+/// To standard output. All of them are a list as text, and an object by name as json and schema. Throws
+/// Error{usage} with the nearest name where there is no such `kind`.
 void print_described(std::span<const Described> all, const std::string& kind, const DescribeWhat& what);
 
 }  // namespace waymark

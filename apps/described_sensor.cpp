@@ -11,15 +11,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string as_text(const SensorProfile& sensor) {
-  std::string text = fmt::format("{}: {}\n\nWeight of a feature in the quality of a landmark (types not listed: all alike):\n",
-                                 sensor.name, sensor.summary);
+  std::string text = fmt::format(
+      "{}: {}\n\nWeight of a feature in the quality of a landmark (types not listed: all alike):\n",
+      sensor.name, sensor.summary);
   for (const FeatureWeight& feature : sensor.weights)
     text += fmt::format("  {:<14} {:<18} {:g}\n", feature.type, feature.feature, feature.weight);
   return text;
 }
 
 std::string as_markdown(const SensorProfile& sensor) {
-  std::string text = fmt::format("# {}\n\n{}.\n\n| type | feature | weight |\n|---|---|---|\n", sensor.name, sensor.summary);
+  std::string text =
+      fmt::format("# {}\n\n{}.\n\n| type | feature | weight |\n|---|---|---|\n", sensor.name, sensor.summary);
   for (const FeatureWeight& feature : sensor.weights)
     text += fmt::format("| {} | `{}` | {:g} |\n", feature.type, feature.feature, feature.weight);
   return text;
@@ -27,7 +29,8 @@ std::string as_markdown(const SensorProfile& sensor) {
 
 std::string as_json(const SensorProfile& sensor) {
   Json json{{"name", sensor.name}, {"summary", sensor.summary}, {"weights", Json::object()}};
-  for (const FeatureWeight& feature : sensor.weights) json["weights"][feature.type][feature.feature] = feature.weight;
+  for (const FeatureWeight& feature : sensor.weights)
+    json["weights"][feature.type][feature.feature] = feature.weight;
   return json.dump(2);
 }
 

@@ -22,11 +22,16 @@ std::string word(AttributeSpec::Kind kind) {
 
 std::string word(Solid solid) {
   switch (solid) {
-    case Solid::point: return "point";
-    case Solid::sphere: return "sphere";
-    case Solid::cylinder: return "cylinder";
-    case Solid::cone: return "cone";
-    case Solid::bowl: return "bowl";
+    case Solid::point:
+      return "point";
+    case Solid::sphere:
+      return "sphere";
+    case Solid::cylinder:
+      return "cylinder";
+    case Solid::cone:
+      return "cone";
+    case Solid::bowl:
+      return "bowl";
   }
   return "";
 }
@@ -48,11 +53,12 @@ std::string as_text(const LandmarkType& type) {
 }
 
 std::string as_markdown(const LandmarkType& type) {
-  std::string text = fmt::format("# {}\n\n{}.\n\n| feature | unit | scale | plausible | meaning |\n|---|---|---|---|---|\n",
-                                 type.name, type.summary);
+  std::string text =
+      fmt::format("# {}\n\n{}.\n\n| feature | unit | scale | plausible | meaning |\n|---|---|---|---|---|\n",
+                  type.name, type.summary);
   for (const FeatureSpec& feature : type.features)
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", feature.name, feature.unit, word(feature.scale), range(feature),
-                        feature.summary);
+    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", feature.name, feature.unit, word(feature.scale),
+                        range(feature), feature.summary);
   if (!type.attributes.empty()) text += "\n| attribute | unit | kind | meaning |\n|---|---|---|---|\n";
   for (const AttributeSpec& attribute : type.attributes)
     text += fmt::format("| `{}` | {} | {} | {} |\n", attribute.name, attribute.unit, word(attribute.kind),
@@ -61,16 +67,21 @@ std::string as_markdown(const LandmarkType& type) {
 }
 
 std::string as_json(const LandmarkType& type) {
-  Json json{{"name", type.name}, {"summary", type.summary}, {"features", Json::array()}, {"attributes", Json::array()},
-            {"drawn_as", word(type.drawn_as)}, {"colour", type.colour}};
+  Json json{{"name", type.name},           {"summary", type.summary},         {"features", Json::array()},
+            {"attributes", Json::array()}, {"drawn_as", word(type.drawn_as)}, {"colour", type.colour}};
   for (const FeatureSpec& feature : type.features) {
-    Json entry{{"name", feature.name}, {"unit", feature.unit}, {"scale", word(feature.scale)}, {"summary", feature.summary}};
+    Json entry{{"name", feature.name},
+               {"unit", feature.unit},
+               {"scale", word(feature.scale)},
+               {"summary", feature.summary}};
     if (std::isfinite(feature.lowest)) entry["lowest"] = feature.lowest;
     if (std::isfinite(feature.highest)) entry["highest"] = feature.highest;
     json["features"].push_back(entry);
   }
   for (const AttributeSpec& attribute : type.attributes)
-    json["attributes"].push_back({{"name", attribute.name}, {"unit", attribute.unit}, {"kind", word(attribute.kind)},
+    json["attributes"].push_back({{"name", attribute.name},
+                                  {"unit", attribute.unit},
+                                  {"kind", word(attribute.kind)},
                                   {"summary", attribute.summary}});
   return json.dump(2);
 }
@@ -87,7 +98,8 @@ std::string as_schema(const LandmarkType& type) {
     properties[feature.name] = entry;
   }
   for (const AttributeSpec& attribute : type.attributes) {
-    properties[attribute.name] = {{"type", {word(attribute.kind), "null"}}, {"description", attribute.summary}};
+    properties[attribute.name] = {{"type", {word(attribute.kind), "null"}},
+                                  {"description", attribute.summary}};
     if (!attribute.unit.empty()) properties[attribute.name]["x-unit"] = attribute.unit;
   }
   return Json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
@@ -104,7 +116,8 @@ std::string as_schema(const LandmarkType& type) {
 std::vector<Described> described(const TypeRegistry& types) {
   std::vector<Described> all;
   for (const LandmarkType& type : types)
-    all.push_back({type.name, type.summary, as_text(type), as_json(type), as_schema(type), as_markdown(type)});
+    all.push_back(
+        {type.name, type.summary, as_text(type), as_json(type), as_schema(type), as_markdown(type)});
   return all;
 }
 

@@ -41,7 +41,8 @@ std::string entry(const std::string& name, const std::string& text) {
 
 std::string entry(const Argument& argument) {
   std::string left = argument.positional() ? argument.value : argument.names;
-  if (const auto comma = left.find(','); !argument.positional() && comma != std::string::npos) left.insert(comma + 1, " ");
+  if (const auto comma = left.find(','); !argument.positional() && comma != std::string::npos)
+    left.insert(comma + 1, " ");
   if (!argument.positional() && !argument.flag()) left += " " + argument.value;
   return entry(left, full_help(argument));
 }
@@ -62,9 +63,12 @@ std::string usage(const CommandSpec& command) {
 
 std::string heading(Group group) {
   switch (group) {
-    case Group::make: return "Make a map";
-    case Group::use: return "Use a map";
-    case Group::look_up: return "Look up";
+    case Group::make:
+      return "Make a map";
+    case Group::use:
+      return "Use a map";
+    case Group::look_up:
+      return "Look up";
   }
   return "";
 }

@@ -15,8 +15,10 @@ using Json = nlohmann::ordered_json;
 Json json_of(const AttributeValue& value) {
   return std::visit(
       [](const auto& held) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) return nullptr;
-        else return held;
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::monostate>)
+          return nullptr;
+        else
+          return held;
       },
       value);
 }
@@ -47,15 +49,19 @@ std::string heading(const RowColumn& column) {
   return column.unit.empty() ? column.name : column.name + " [" + column.unit + "]";
 }
 
-void print_line(std::ostream& out, const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) {
+void print_line(std::ostream& out, const std::vector<std::string>& cells,
+                const std::vector<std::size_t>& widths) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    line += i < 2 ? fmt::format("{:<{}}  ", cells[i], widths[i]) : fmt::format("{:>{}}  ", cells[i], widths[i]);
+    line +=
+        i < 2 ? fmt::format("{:<{}}  ", cells[i], widths[i]) : fmt::format("{:>{}}  ", cells[i], widths[i]);
   line.erase(line.find_last_not_of(' ') + 1);
   out << line << '\n';
 }
 
-double rounded(double degrees) { return std::round(degrees * 1e9) / 1e9; }  // 0.1 mm, and no 8.100000000000001
+double rounded(double degrees) {
+  return std::round(degrees * 1e9) / 1e9;
+}  // 0.1 mm, and no 8.100000000000001
 
 }  // namespace
 
@@ -81,7 +87,8 @@ void print_csv(std::ostream& out, std::span<const RowColumn> columns, std::span<
   for (std::size_t i = 0; i < columns.size(); ++i) out << (i ? "," : "") << columns[i].name;
   out << '\n';
   for (const Landmark& landmark : landmarks) {
-    for (std::size_t i = 0; i < columns.size(); ++i) out << (i ? "," : "") << csv_cell(columns[i].value(landmark));
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      out << (i ? "," : "") << csv_cell(columns[i].value(landmark));
     out << '\n';
   }
 }
@@ -98,7 +105,8 @@ void print_json(std::ostream& out, std::span<const RowColumn> columns, std::span
   out << "\n]\n";
 }
 
-void print_geojson(std::ostream& out, std::span<const RowColumn> columns, std::span<const Landmark> landmarks) {
+void print_geojson(std::ostream& out, std::span<const RowColumn> columns,
+                   std::span<const Landmark> landmarks) {
   const char* before = "\n";
   out << R"({"type": "FeatureCollection", "features": [)";
   for (const Landmark& landmark : landmarks) {

@@ -32,7 +32,8 @@ Value by_type(std::map<TypeId, Value> values) {
 Value quality_column(const RowContext& context) {
   return [context](const Landmark& landmark) {
     const LandmarkType& type = (*context.types)[landmark.type];
-    return or_null(context.sensor ? quality_for(*context.sensor, type, landmark) : quality_of(type, landmark));
+    return or_null(context.sensor ? quality_for(*context.sensor, type, landmark)
+                                  : quality_of(type, landmark));
   };
 }
 
@@ -45,7 +46,8 @@ bool is_feature(const LandmarkType& type, const std::string& name) {
 std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const RowContext& context) {
   const TypeRegistry& types = *context.types;
   std::vector<RowColumn> columns{
-      {"type", "", true, [&types](const Landmark& landmark) { return AttributeValue(types[landmark.type].name); }},
+      {"type", "", true,
+       [&types](const Landmark& landmark) { return AttributeValue(types[landmark.type].name); }},
       {"uid", "", true, [](const Landmark& landmark) { return AttributeValue(landmark.uid); }},
       {"x", "", true, coordinate(0)},
       {"y", "", true, coordinate(1)},
@@ -57,7 +59,8 @@ std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const
     for (const ExportColumn& column : export_columns(types[id])) {
       if (column.name == "uid") continue;
       if (!values.contains(column.name))
-        more.push_back({column.name, column.unit, is_feature(types[id], column.name) || column.name == "quality", {}});
+        more.push_back(
+            {column.name, column.unit, is_feature(types[id], column.name) || column.name == "quality", {}});
       values[column.name][id] = column.name == "quality" ? quality_column(context) : column.value;
     }
   }

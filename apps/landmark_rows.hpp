@@ -12,7 +12,7 @@ namespace waymark {
 /// A column of printed landmarks of one type or several.
 struct RowColumn {
   std::string name, unit;
-  bool brief = false;  ///< worth its place in a table for people
+  bool brief = false;                                    ///< worth its place in a table for people
   std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate where the landmark has none
 };
 
@@ -20,11 +20,12 @@ struct RowColumn {
 struct RowContext {
   const TypeRegistry* types = nullptr;    ///< of the map
   const SensorProfile* sensor = nullptr;  ///< whose quality is shown; null: equal weights
-  std::function<double(const Landmark&)> distance = {};  ///< metres, from the point asked for; empty: no such column
+  std::function<double(const Landmark&)> distance =
+      {};  ///< metres, from the point asked for; empty: no such column
 };
 
-/// type, uid, x, y, z, then the columns of the map for every type that is chosen, equal names once; `distance` last.
-/// The registry and the sensor must outlive them.
+/// type, uid, x, y, z, then the columns of the map for every type that is chosen, equal names once;
+/// `distance` last. The registry and the sensor must outlive them.
 std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const RowContext& context);
 
 }  // namespace waymark

@@ -11,7 +11,8 @@ namespace {
 
 spdlog::logger& log() {
   static const auto logger = [] {
-    auto made = std::make_shared<spdlog::logger>("waymark", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    auto made =
+        std::make_shared<spdlog::logger>("waymark", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
     made->set_pattern("%^%l:%$ %v");
     made->set_level(spdlog::level::warn);
     return made;
@@ -27,11 +28,19 @@ void set_log_level(LogLevel level) {
                                                 : spdlog::level::debug);
 }
 
-bool quiet_log() { return log().level() > spdlog::level::warn; }
+bool quiet_log() {
+  return log().level() > spdlog::level::warn;
+}
 
-void log_error(std::string_view text) { log().error(text); }
-void log_warning(std::string_view text) { log().warn(text); }
-void log_detail(std::string_view text) { log().debug(text); }
+void log_error(std::string_view text) {
+  log().error(text);
+}
+void log_warning(std::string_view text) {
+  log().warn(text);
+}
+void log_detail(std::string_view text) {
+  log().debug(text);
+}
 
 void say(std::string_view text) {
   if (!quiet_log()) std::fwrite(text.data(), 1, text.size(), stderr);

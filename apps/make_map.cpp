@@ -27,12 +27,14 @@ void check_request(const Job& job, const MapRequest& request, const RunOptions& 
   if (share && request.work.empty())
     throw Error(ErrorCode::usage, "a share of a job needs --work DIR, where all shares meet");
   if (request.map.empty() && !share && !request.check)
-    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg", "", "--check looks at the job without making a map");
+    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg", "",
+                "--check looks at the job without making a map");
   if (request.map.empty()) return;
   for (const char* artifact : {"dem", "landmarks"})
     if (!job.pipeline.writer_of(artifact))
-      throw Error(ErrorCode::usage, std::string("no stage of the job writes '") + artifact + "', so there is no map",
-                  job.name, "`waymark peaks DEM --print-job` shows a job that makes one");
+      throw Error(ErrorCode::usage,
+                  std::string("no stage of the job writes '") + artifact + "', so there is no map", job.name,
+                  "`waymark peaks DEM --print-job` shows a job that makes one");
   check_map_output(request.map);
 }
 
@@ -54,20 +56,25 @@ std::string count_by_type(const Landmarks& landmarks) {
   std::map<std::string, std::int64_t> counts;
   for (const Landmark& landmark : landmarks) ++counts[all_types()[landmark.type].name];
   std::string text;
-  for (const auto& [type, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
+  for (const auto& [type, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
   return text.empty() ? "no landmarks" : text;
 }
 
-/// Where the map is, and how fast it was made. A rate is told only where nothing was taken from an earlier run.
+std::string cell_count(double cells) {
+  return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
+}
+
+/// Where the map is, and how fast it was made: no rate where results of an earlier run were used again.
 std::string summary(const RunResult& result, const std::string& map) {
-  const std::int64_t cells = result.artifact<DemHandle>("dem")->geometry().cells();
-  std::string text = fmt::format("{}: {}\n{:.4g} M cells, {:.2f} s", map,
-                                 count_by_type(result.artifact<Landmarks>("landmarks")),
-                                 static_cast<double>(cells) / 1e6, result.report.seconds);
+  const auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
+  std::string text =
+      fmt::format("{}: {}\n{}, {:.2f} s", map, count_by_type(result.artifact<Landmarks>("landmarks")),
+                  cell_count(cells), result.report.seconds);
   std::int64_t reused = 0;
   for (const StageReport& stage : result.report.stages) reused += stage.reused;
   if (reused == 0 && result.report.seconds > 0)
-    text += fmt::format(", {:.3g} M cells/s", static_cast<double>(cells) / 1e6 / result.report.seconds);
+    text += fmt::format(", {:.2g} M cells/s", cells / 1e6 / result.report.seconds);
   return text + "\n";
 }
 
@@ -96,8 +103,8 @@ int check(const Job& job, const RunOptions& options) {
   std::int64_t done = 0;
   const Plan units = plan(job.pipeline, options);
   for (const Unit& unit : units.units) done += unit.done ? 1 : 0;
-  say(fmt::format("the job is sound: {} stages, {} units of work, {} of them done\n", job.pipeline.steps().size(),
-                  units.units.size(), done));
+  say(fmt::format("the job is sound: {} stages, {} units of work, {} of them done\n",
+                  job.pipeline.steps().size(), units.units.size(), done));
   return 0;
 }
 
@@ -105,17 +112,18 @@ int check(const Job& job, const RunOptions& options) {
 
 std::vector<Argument> map_arguments(MapRequest& request) {
   return {
-      {.names = "-o,--output", .value = "MAP.gpkg", .into = &request.map,
-       .help = "Map to write; an older map of that name is replaced when the new one is whole, any other file is kept",
-       .offer = Offer::file},
-      {.names = "--work", .value = "DIR", .into = &request.work,
-       .help = "Keep finished work here, so that a killed or changed run does only what is missing",
-       .offer = Offer::folder},
-      {.names = "--rerun-from", .value = "STAGE", .into = &request.rerun_from,
-       .help = "Make this stage and all that depends on it anew, whatever is in --work",
-       .suggestions = all_stages().names()},
-      {.names = "--with-dem", .value = "", .into = &request.with_dem, .help = "Store the DEM in the map as a gridded coverage"},
-      {.names = "--check", .value = "", .into = &request.check, .help = "Check options, wiring and files, then stop"},
+      Argument{"-o,--output", "MAP.gpkg", &request.map,
+               "Map to write; an older map of that name is replaced when the new one is whole, any other "
+               "file is kept"}
+          .offering(Offer::file),
+      Argument{"--work", "DIR", &request.work,
+               "Keep finished work here, so that a killed or changed run does only what is missing"}
+          .offering(Offer::folder),
+      Argument{"--rerun-from", "STAGE", &request.rerun_from,
+               "Make this stage and all that depends on it anew, whatever is in --work"}
+          .offering(all_stages().names()),
+      {"--with-dem", "", &request.with_dem, "Store the DEM in the map as a gridded coverage"},
+      {"--check", "", &request.check, "Check options, wiring and files, then stop"},
   };
 }
 

@@ -14,16 +14,24 @@ namespace {
 std::string plain(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '\\') safe += "\\e";
-    else if (c == '-') safe += "\\-";
-    else if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n')) safe += std::string("\\&") + c;
-    else safe += c;
+    if (c == '\\')
+      safe += "\\e";
+    else if (c == '-')
+      safe += "\\-";
+    else if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n'))
+      safe += std::string("\\&") + c;
+    else
+      safe += c;
   }
   return safe;
 }
 
-std::string bold(const std::string& text) { return "\\fB" + plain(text) + "\\fR"; }
-std::string italic(const std::string& text) { return "\\fI" + plain(text) + "\\fR"; }
+std::string bold(const std::string& text) {
+  return "\\fB" + plain(text) + "\\fR";
+}
+std::string italic(const std::string& text) {
+  return "\\fI" + plain(text) + "\\fR";
+}
 
 std::string paragraphs(const std::string& text) {
   std::string result;
@@ -33,11 +41,13 @@ std::string paragraphs(const std::string& text) {
 }
 
 std::string entry(const Argument& argument) {
-  if (argument.positional()) return ".TP\n" + italic(argument.value) + "\n" + plain(full_help(argument)) + ".\n";
+  if (argument.positional())
+    return ".TP\n" + italic(argument.value) + "\n" + plain(full_help(argument)) + ".\n";
   std::string names, name;
   std::istringstream all(argument.names);
   while (std::getline(all, name, ',')) names += (names.empty() ? "" : ", ") + bold(name);
-  return ".TP\n" + names + (argument.flag() ? "" : " " + italic(argument.value)) + "\n" + plain(full_help(argument)) + ".\n";
+  return ".TP\n" + names + (argument.flag() ? "" : " " + italic(argument.value)) + "\n" +
+         plain(full_help(argument)) + ".\n";
 }
 
 std::string section(const CommandSpec& command) {
@@ -48,16 +58,18 @@ std::string section(const CommandSpec& command) {
   if (!command.about.empty()) text += ".PP\n" + paragraphs(command.about);
   for (const Argument& argument : command.arguments) text += entry(argument);
   for (const Example& example : command.examples)
-    text += ".PP\n" + plain(example.says) + ":\n.PP\n.nf\n.RS\n" + plain(example.command_line) + "\n.RE\n.fi\n";
+    text +=
+        ".PP\n" + plain(example.says) + ":\n.PP\n.nf\n.RS\n" + plain(example.command_line) + "\n.RE\n.fi\n";
   return text;
 }
 
 }  // namespace
 
 std::string man_page(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
-  std::string text = ".TH WAYMARK 1 \"\" \"" + program_version() +
-                     "\" \"User commands\"\n.SH NAME\nwaymark \\- semantic navigation maps from elevation models\n"
-                     ".SH SYNOPSIS\n.B waymark\n.I COMMAND\n[arguments and options]\n.SH COMMANDS\n";
+  std::string text =
+      ".TH WAYMARK 1 \"\" \"" + program_version() +
+      "\" \"User commands\"\n.SH NAME\nwaymark \\- semantic navigation maps from elevation models\n"
+      ".SH SYNOPSIS\n.B waymark\n.I COMMAND\n[arguments and options]\n.SH COMMANDS\n";
   for (const CommandSpec& command : commands) text += section(command);
   text += ".SH OPTIONS OF EVERY COMMAND\n";
   for (const Argument& argument : globals) text += entry(argument);

@@ -16,25 +16,28 @@ namespace fs = std::filesystem;
 
 void check_folder(const fs::path& folder, const fs::path& map) {
   if (!fs::exists(folder))
-    throw Error(ErrorCode::output, "the folder of the output does not exist: " + folder.string(), map.string(),
-                "make it with: mkdir -p " + folder.string());
+    throw Error(ErrorCode::output, "the folder of the output does not exist: " + folder.string(),
+                map.string(), "make it with: mkdir -p " + folder.string());
   if (!fs::is_directory(folder))
     throw Error(ErrorCode::output, folder.string() + " is no folder", map.string(), "choose another -o");
   if (access(folder.c_str(), W_OK | X_OK) != 0)
-    throw Error(ErrorCode::output,
-                "the folder of the output cannot be written: " + folder.string() + " (" + std::strerror(errno) + ")",
-                map.string(), "choose another -o, or change its permissions");
+    throw Error(
+        ErrorCode::output,
+        "the folder of the output cannot be written: " + folder.string() + " (" + std::strerror(errno) + ")",
+        map.string(), "choose another -o, or change its permissions");
 }
 
 /// An older map is replaced; anything else that has its name is somebody's work.
 void check_old(const fs::path& map) {
   if (fs::is_directory(map))
-    throw Error(ErrorCode::output, "the output is a folder", map.string(), "name a file in it: -o " + (map / "map.gpkg").string());
+    throw Error(ErrorCode::output, "the output is a folder", map.string(),
+                "name a file in it: -o " + (map / "map.gpkg").string());
   if (!fs::exists(map)) return;
   try {
     MapStore::open(map);
   } catch (const Error& error) {
-    throw Error(ErrorCode::output, "the output exists and is no map of this version, so it is not replaced: " + error.problem(),
+    throw Error(ErrorCode::output,
+                "the output exists and is no map of this version, so it is not replaced: " + error.problem(),
                 map.string(), "remove it, or choose another -o");
   }
 }

@@ -17,7 +17,9 @@ int words_of(const Argument& argument) {
   return 1 + static_cast<int>(std::ranges::count(argument.value, ' '));
 }
 
-bool repeatable(const Argument& argument) { return std::holds_alternative<std::vector<std::string>*>(argument.into); }
+bool repeatable(const Argument& argument) {
+  return std::holds_alternative<std::vector<std::string>*>(argument.into);
+}
 
 template <class Number>
 Number number(const std::string& what, const std::string& word, const char* kind) {
@@ -43,7 +45,9 @@ struct Store {
   const std::vector<std::string>& words;
 
   void operator()(bool* flag) const { *flag = true; }
-  void operator()(std::int64_t* into) const { *into = number<std::int64_t>(display_name(argument), words[0], "whole number"); }
+  void operator()(std::int64_t* into) const {
+    *into = number<std::int64_t>(display_name(argument), words[0], "whole number");
+  }
   void operator()(double* into) const { *into = to_number(display_name(argument), words[0]); }
   void operator()(std::optional<double>* into) const { *into = to_number(display_name(argument), words[0]); }
   void operator()(std::string* into) const { *into = one_of(argument, words[0]); }
@@ -59,20 +63,25 @@ struct Store {
 void store(const Argument& argument, const std::vector<std::string>& words) {
   const auto wanted = static_cast<std::size_t>(words_of(argument));
   if (!argument.flag() && !repeatable(argument) && words.size() != wanted)
-    throw Error(ErrorCode::usage,
-                display_name(argument) + " takes " + std::to_string(wanted) + (wanted == 1 ? " value (" : " values (") +
-                    argument.value + "), has " + std::to_string(words.size()));
+    throw Error(ErrorCode::usage, display_name(argument) + " takes " + std::to_string(wanted) +
+                                      (wanted == 1 ? " value (" : " values (") + argument.value + "), has " +
+                                      std::to_string(words.size()));
   std::visit(Store{argument, words}, argument.into);
 }
 
-std::vector<std::string> names_of(const Argument& argument) { return CLI::detail::split(argument.names, ','); }
+std::vector<std::string> names_of(const Argument& argument) {
+  return CLI::detail::split(argument.names, ',');
+}
 
 /// GDAL's `-of`, which CLI11 would read as `-o f`.
-bool gdal_style(const std::string& name) { return name.size() > 2 && name[0] == '-' && name[1] != '-'; }
+bool gdal_style(const std::string& name) {
+  return name.size() > 2 && name[0] == '-' && name[1] != '-';
+}
 
 std::string name_for_cli11(const Argument& argument) {
   std::string all;
-  for (const auto& name : names_of(argument)) all += (all.empty() ? "" : ",") + (gdal_style(name) ? "-" + name : name);
+  for (const auto& name : names_of(argument))
+    all += (all.empty() ? "" : ",") + (gdal_style(name) ? "-" + name : name);
   return all;
 }
 
@@ -87,8 +96,9 @@ void add(CLI::App& app, const Argument& argument) {
     return true;
   };
   const bool many_words = argument.value.ends_with("...");
-  app.add_option(argument.positional() ? "word" + std::to_string(app.get_options().size()) : name_for_cli11(argument),
-                 callback)
+  app.add_option(
+         argument.positional() ? "word" + std::to_string(app.get_options().size()) : name_for_cli11(argument),
+         callback)
       ->type_name(argument.value)
       ->expected(1, many_words || repeatable(argument) ? kAnyNumber : words_of(argument))
       ->allow_extra_args(many_words || words_of(argument) > 1)
@@ -104,7 +114,8 @@ std::vector<std::string> option_names(std::span<const Argument> arguments) {
 }
 
 /// The words CLI11 did not know.
-std::vector<std::string> leftover(CLI::App& app, std::span<const Argument> arguments, std::vector<std::string> words) {
+std::vector<std::string> leftover(CLI::App& app, std::span<const Argument> arguments,
+                                  std::vector<std::string> words) {
   const std::vector<std::string> names = option_names(arguments);
   for (auto& word : words)
     if (gdal_style(word) && std::ranges::count(names, word)) word = "-" + word;
@@ -138,7 +149,8 @@ bool empty(const Target& into) {
 
 }  // namespace
 
-std::vector<std::string> parse_leading(std::span<const Argument> options, const std::vector<std::string>& words) {
+std::vector<std::string> parse_leading(std::span<const Argument> options,
+                                       const std::vector<std::string>& words) {
   CLI::App app;
   app.prefix_command();
   std::vector<std::string> rest = leftover(app, options, words);
@@ -146,7 +158,8 @@ std::vector<std::string> parse_leading(std::span<const Argument> options, const 
   return rest;
 }
 
-void parse(const std::string& name, std::span<const Argument> arguments, const std::vector<std::string>& words) {
+void parse(const std::string& name, std::span<const Argument> arguments,
+           const std::vector<std::string>& words) {
   CLI::App app;
   app.allow_extras();
   std::vector<std::string> rest = leftover(app, arguments, words);
@@ -162,7 +175,9 @@ void require(const std::string& name, std::span<const Argument> arguments) {
                   argument.help + "; `waymark " + name + " --help` shows examples");
 }
 
-double to_number(const std::string& what, const std::string& word) { return number<double>(what, word, "number"); }
+double to_number(const std::string& what, const std::string& word) {
+  return number<double>(what, word, "number");
+}
 
 std::string synopsis(const Argument& argument) {
   if (argument.positional()) return argument.required ? argument.value : "[" + argument.value + "]";

@@ -7,12 +7,14 @@
 namespace waymark {
 
 /// Reads the options at the head of `words` and returns the words from the first that is none of them.
-std::vector<std::string> parse_leading(std::span<const Argument> options, const std::vector<std::string>& words);
+std::vector<std::string> parse_leading(std::span<const Argument> options,
+                                       const std::vector<std::string>& words);
 
 /// Reads all words of the command `name` into the targets of its arguments.
-/// Throws Error{usage}: unknown option (with the nearest name), a word too many, a value that is no number or none
-/// of the choices.
-void parse(const std::string& name, std::span<const Argument> arguments, const std::vector<std::string>& words);
+/// Throws Error{usage}: unknown option (with the nearest name), a word too many, a value that is no number or
+/// none of the choices.
+void parse(const std::string& name, std::span<const Argument> arguments,
+           const std::vector<std::string>& words);
 
 /// Throws Error{usage} naming the first required argument that has no value.
 void require(const std::string& name, std::span<const Argument> arguments);

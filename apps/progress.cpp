@@ -22,9 +22,13 @@ double fraction(const Progress& progress) {
   return progress.total > 0 ? std::clamp(progress.done / static_cast<double>(progress.total), 0.0, 1.0) : 1.0;
 }
 
-bool finished(const Progress& progress) { return !(progress.done < static_cast<double>(progress.total)); }
+bool finished(const Progress& progress) {
+  return !(progress.done < static_cast<double>(progress.total));
+}
 
-std::string speed(const Progress& progress) { return fmt::format("{:.3g} units/s", progress.rate); }
+std::string speed(const Progress& progress) {
+  return fmt::format("{:.3g} units/s", progress.rate);
+}
 
 std::size_t terminal_width() {
   winsize size{};
@@ -85,8 +89,8 @@ class SparseLines {
     const auto now = Clock::now();
     if (now - last_ < std::chrono::seconds(30)) return;
     last_ = now;
-    fmt::print(stderr, "{}: {:.0f} %, {}, {} left\n", progress.stage, 100 * fraction(progress), speed(progress),
-               clock_time(seconds_left(progress)));
+    fmt::print(stderr, "{}: {:.0f} %, {}, {} left\n", progress.stage, 100 * fraction(progress),
+               speed(progress), clock_time(seconds_left(progress)));
   }
 
  private:

@@ -7,9 +7,9 @@ namespace waymark {
 
 struct Session;
 
-/// Draws the progress of a run on standard error in the way `--progress` names: a bar, GDAL's dots, JSON lines, or
-/// nothing. `auto` is a bar on a terminal and else a line every half minute; with --quiet it is nothing.
-/// Empty where nothing is to be drawn.
+/// Draws the progress of a run on standard error in the way `--progress` names: a bar, GDAL's dots, JSON
+/// lines, or nothing. `auto` is a bar on a terminal and else a line every half minute; with --quiet it is
+/// nothing. Empty where nothing is to be drawn.
 std::function<void(const Progress&)> progress_renderer(const Session& session);
 
 /// Seconds until the stage is done at its present rate; negative where that is not known yet.

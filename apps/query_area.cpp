@@ -31,7 +31,8 @@ MapQuery::Box covering_box(const MapQuery::Box& box, const Crs& from, const Crs&
                std::max(cover.max_y, at.y)};
     }
   if (!(cover.min_x <= cover.max_x))
-    throw Error(ErrorCode::usage, "the box of --bbox has no place in the map's CRS, " + map.id(), "--crs " + from.id());
+    throw Error(ErrorCode::usage, "the box of --bbox has no place in the map's CRS, " + map.id(),
+                "--crs " + from.id());
   const double x = kMargin * (cover.max_x - cover.min_x), y = kMargin * (cover.max_y - cover.min_y);
   return {cover.min_x - x, cover.min_y - y, cover.max_x + x, cover.max_y + y};
 }
@@ -43,8 +44,8 @@ bool inside(const MapQuery::Box& box, const Point<MapCrs>& point, const Crs& crs
   return x >= box.min_x && x <= east && point.xyz.y() >= box.min_y && point.xyz.y() <= box.max_y;
 }
 
-std::vector<Landmark> in_crs(const std::vector<Landmark>& landmarks, const TypeRegistry& types, const Crs& from,
-                             const Crs& to) {
+std::vector<Landmark> in_crs(const std::vector<Landmark>& landmarks, const TypeRegistry& types,
+                             const Crs& from, const Crs& to) {
   if (from.same_as(to)) return landmarks;
   std::vector<std::vector<Landmark>> of_type(types.size());
   for (const Landmark& landmark : landmarks) of_type[landmark.type].push_back(landmark);

@@ -35,16 +35,20 @@ CrsTransform::XY in_map(const std::vector<double>& point, const Crs& from, const
 
 std::vector<Argument> query_arguments(QueryRequest& request) {
   return {
-      {"--type", "T", &request.types, "Landmarks of this type; may be repeated", false, {}, all_types().names(),
-       Offer::nothing, "all"},
+      Argument{"--type", "T", &request.types, "Landmarks of this type; may be repeated"}
+          .offering(all_types().names())
+          .or_else("all"),
       {"--bbox", "X0 Y0 X1 Y1", &request.bbox, "Landmarks in this box; X0 > X1 crosses the antimeridian"},
       {"--near", "X Y RADIUS", &request.near, "Landmarks within RADIUS metres of X Y, nearest first"},
       {"--nearest", "X Y COUNT", &request.nearest, "The COUNT landmarks nearest to X Y"},
-      {"--min", "FEATURE=VALUE", &request.lowest, "Landmarks whose feature is at least this; may be repeated"},
-      {"--max", "FEATURE=VALUE", &request.highest, "Landmarks whose feature is at most this; may be repeated"},
-      {"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed", false, {}, {}, Offer::nothing, "the map's"},
-      {"--sensor", "NAME", &request.sensor, "Quality as this sensor sees it; `waymark sensors` lists them", false, {},
-       all_sensors().names()},
+      {"--min", "FEATURE=VALUE", &request.lowest,
+       "Landmarks whose feature is at least this; may be repeated"},
+      {"--max", "FEATURE=VALUE", &request.highest,
+       "Landmarks whose feature is at most this; may be repeated"},
+      Argument{"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed"}.or_else("the map's"),
+      Argument{"--sensor", "NAME", &request.sensor,
+               "Quality as this sensor sees it; `waymark sensors` lists them"}
+          .offering(all_sensors().names()),
       {"--min-quality", "Q", &request.min_quality, "Landmarks of at least this quality, 0 to 1"},
       {"--largest", "FEATURE", &request.largest, "Largest values of this feature, or of quality, first"},
       {"--limit", "N", &request.limit, "At most this many"},
@@ -54,7 +58,8 @@ std::vector<Argument> query_arguments(QueryRequest& request) {
 MapQuestion::MapQuestion(const QueryRequest& request, const MapStore& map)
     : crs_(request.crs.empty() ? map.crs() : Crs::from_text(request.crs)),
       limit_(static_cast<std::size_t>(at_least_zero("--limit", static_cast<double>(request.limit)))) {
-  for (const std::string& type : request.types) static_cast<void>(map.types().id(type));  // throws the nearest name
+  for (const std::string& type : request.types)
+    static_cast<void>(map.types().id(type));  // throws the nearest name
   query_.types = request.types;
   query_.min_quality = request.min_quality;
   query_.largest_first = request.largest;
@@ -75,7 +80,8 @@ MapQuestion::MapQuestion(const QueryRequest& request, const MapStore& map)
 void MapQuestion::ask_near(const QueryRequest& request, const MapStore& map) {
   if (!request.near.empty()) {
     const auto centre = in_map(request.near, crs_, map);
-    query_.near = MapQuery::Near{centre.x, centre.y, Meters{at_least_zero("RADIUS of --near", request.near[2])}};
+    query_.near =
+        MapQuery::Near{centre.x, centre.y, Meters{at_least_zero("RADIUS of --near", request.near[2])}};
   }
   if (!request.nearest.empty()) {
     const auto centre = in_map(request.nearest, crs_, map);
@@ -88,7 +94,8 @@ void MapQuestion::ask_box(const QueryRequest& request, const MapStore& map) {
   if (request.bbox.empty()) return;
   const MapQuery::Box box{request.bbox[0], request.bbox[1], request.bbox[2], request.bbox[3]};
   if (box.min_y > box.max_y || (box.min_x > box.max_x && crs_.kind() != CrsKind::geographic))
-    throw Error(ErrorCode::usage, "--bbox takes the lower left and the upper right corner: X0 <= X1, Y0 <= Y1");
+    throw Error(ErrorCode::usage,
+                "--bbox takes the lower left and the upper right corner: X0 <= X1, Y0 <= Y1");
   query_.box = box;
   if (crs_.same_as(map.crs())) return;
   outline_ = box;

@@ -24,13 +24,14 @@ std::vector<Argument> global_arguments(Session& session) {
       {"-h,--help", "", &session.help, "Show what a command does, its options and examples"},
       {"--version", "", &session.version, "Show the version"},
       {"-q,--quiet", "", &session.quiet, "Say nothing but errors"},
-      {"-v,--verbose", "", &session.verbose, "Say more: every unit of work, every input file"},
-      {"--threads", "N", &session.threads, "Threads to compute with", false, {}, {}, Offer::nothing,
-       "one per processor"},
-      {"--progress", "HOW", &session.progress,
-       "Show progress on standard error; auto is a bar on a terminal and a line now and then elsewhere, dots are "
-       "GDAL's",
-       false, {"auto", "bar", "dots", "json", "none"}},
+      {"-v,--verbose", "", &session.verbose, "Say more: every input file with its SHA-256"},
+      Argument{"--threads", "N", &session.threads, "Threads to compute with"}.or_else("one per processor"),
+      Argument{"--progress", "HOW", &session.progress,
+               "Show progress on standard error; auto is a bar on a terminal and a line now and then "
+               "elsewhere, dots "
+               "are GDAL's"}
+          .one_of({"auto", "bar", "dots", "json", "none"})
+          .or_else("auto"),
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
   };
 }
@@ -55,6 +56,8 @@ std::string quoted(const std::vector<std::string>& words) {
   return line;
 }
 
-std::string program_version() { return "waymark " WAYMARK_VERSION; }
+std::string program_version() {
+  return "waymark " WAYMARK_VERSION;
+}
 
 }  // namespace waymark

@@ -19,7 +19,8 @@ std::string flag_name(std::string option) {
 }
 
 std::string in_capitals(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
 }
 
@@ -37,7 +38,8 @@ std::string default_text(const OptionRow& row) {
   return "";
 }
 
-/// The engine's message with the option as it was typed: --min-prominence, not find_mountain_tops.min_prominence.
+/// The engine's message with the option as it was typed: --min-prominence, not
+/// find_mountain_tops.min_prominence.
 Error as_typed(const Error& error, const std::string& place, const std::string& flag) {
   std::string problem = error.problem();
   if (const auto at = problem.find(place); at != std::string::npos) problem.replace(at, place.size(), flag);
@@ -60,12 +62,10 @@ StageOptions::StageOptions(const std::vector<std::string_view>& names) {
 std::vector<Argument> StageOptions::arguments() {
   std::vector<Argument> all;
   for (Offered& option : offered_)
-    all.push_back({.names = flag_name(option.row.name),
-                   .value = placeholder(option.row),
-                   .into = &option.given,
-                   .help = option.row.field.help,
-                   .choices = option.row.field.choices,
-                   .otherwise = default_text(option.row)});
+    all.push_back(
+        Argument{flag_name(option.row.name), placeholder(option.row), &option.given, option.row.field.help}
+            .one_of(option.row.field.choices)
+            .or_else(default_text(option.row)));
   return all;
 }
 

@@ -8,8 +8,8 @@
 #include "pipeline/engine/pipeline.hpp"
 namespace waymark {
 
-/// Options of stages that a shortcut offers on its command line: load_dem.tile_cells as --tile-cells. Unit, range,
-/// choices, default and help are the stage's own.
+/// Options of stages that a shortcut offers on its command line: load_dem.tile_cells as --tile-cells. Unit,
+/// range, choices, default and help are the stage's own.
 class StageOptions {
  public:
   /// "load_dem.tile_cells"; throws std::logic_error where the stage has no such option.

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-/// A subcommand with its words: parsed twice, since global options stand before or after its name.
+/// Parses the words after the command's name; global options may stand there too.
 int run_command(const CommandTable& commands, Session& session, const std::vector<std::string>& words) {
   Command& command = commands.find(words[0]);
   const CommandSpec spec = command.describe();
@@ -51,7 +51,8 @@ int run_program(const std::vector<std::string>& words) {
 int guarded(const std::vector<std::string>& words) {
   try {
     const int code = run_program(words);
-    if (!std::cout.flush()) throw Error(ErrorCode::output, "cannot write to standard output", "", "is the disk full?");
+    if (!std::cout.flush())
+      throw Error(ErrorCode::output, "cannot write to standard output", "", "is the disk full?");
     return code;
   } catch (const Error& error) {
     log_error(error.what());

@@ -16,7 +16,7 @@ class Completion final : public Command {
             .group = Group::look_up,
             .summary = "Print a script that completes waymark's command lines in a shell",
             .about = "It completes commands, options, values and file names.",
-            .arguments = {{"", "SHELL", &shell_, "Shell to complete in", true, {"bash"}}},
+            .arguments = {Argument{"", "SHELL", &shell_, "Shell to complete in"}.needed().one_of({"bash"})},
             .examples = {{"source <(waymark completion bash)", "Completion for this shell"},
                          {"waymark completion bash > ~/.local/share/bash-completion/completions/waymark",
                           "Completion for every shell to come"}}};
@@ -37,6 +37,8 @@ class Completion final : public Command {
 }  // namespace
 
 void register_command_completion(CommandTable& commands);
-void register_command_completion(CommandTable& commands) { commands.add<Completion>(); }
+void register_command_completion(CommandTable& commands) {
+  commands.add<Completion>();
+}
 
 }  // namespace waymark

@@ -13,21 +13,25 @@ namespace {
 class Export final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "export",
-            .group = Group::use,
-            .summary = "Write the landmarks of a map in another format",
-            .about = "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.",
-            .arguments = {{"", "MAP.gpkg", &map_, "Map to read", true, {}, {}, Offer::file},
-                          {"", "OUT", &out_, "File to write; its extension tells the format", true, {}, {}, Offer::file},
-                          {"-of,--format", "OGR_DRIVER", &options_.driver, "Format by GDAL's name, where the extension does not tell",
-                           false, {}, {"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}},
-                          {"--type", "T", &options_.types, "Landmarks of this type only; may be repeated", false, {},
-                           all_types().names()},
-                          {"--crs", "CRS", &options_.crs, "Coordinates of the output", false, {}, {}, Offer::nothing, "the map's"},
-                          {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
-            .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
-                         {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top", "A table in UTM metres"},
-                         {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"}}};
+    return {
+        .name = "export",
+        .group = Group::use,
+        .summary = "Write the landmarks of a map in another format",
+        .about = "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.",
+        .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
+                      file_word("OUT", &out_, "File to write; its extension tells the format"),
+                      Argument{"-of,--format", "OGR_DRIVER", &options_.driver,
+                               "Format by GDAL's name, where the extension does not tell"}
+                          .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
+                      Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
+                          .offering(all_types().names()),
+                      Argument{"--crs", "CRS", &options_.crs, "Coordinates of the output"}.or_else(
+                          "the map's"),
+                      {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
+        .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
+                     {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
+                      "A table in UTM metres"},
+                     {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"}}};
   }
 
   int run(const Session&) override {
@@ -46,6 +50,8 @@ class Export final : public Command {
 }  // namespace
 
 void register_command_export(CommandTable& commands);
-void register_command_export(CommandTable& commands) { commands.add<Export>(); }
+void register_command_export(CommandTable& commands) {
+  commands.add<Export>();
+}
 
 }  // namespace waymark

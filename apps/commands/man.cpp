@@ -30,6 +30,8 @@ class Man final : public Command {
 }  // namespace
 
 void register_command_man(CommandTable& commands);
-void register_command_man(CommandTable& commands) { commands.add<Man>(); }
+void register_command_man(CommandTable& commands) {
+  commands.add<Man>();
+}
 
 }  // namespace waymark

@@ -12,22 +12,29 @@ namespace {
 class Peaks final : public Command {
  public:
   CommandSpec describe() override {
-    std::vector<Argument> all{{"", "DEM...", &files_,
-                               "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins",
-                               true, {}, {}, Offer::file}};
+    std::vector<Argument> all{
+        file_word("DEM...", &files_,
+                  "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")};
     for (auto& argument : map_arguments(request_)) all.push_back(argument);
     for (auto& argument : options_.arguments()) all.push_back(argument);
-    all.push_back({"--print-job", "", &print_job_, "Print the job instead of running it: the start of one of your own"});
-    return {.name = "peaks",
-            .group = Group::make,
-            .summary = "Find the mountain tops of a DEM, with exact prominence and isolation",
-            .about = "Several files that touch or overlap are one DEM. The result does not depend on --threads or "
-                     "--tile-cells. Every height that hidden ground could change comes with a certified lower bound.",
-            .arguments = all,
-            .examples = {{"waymark peaks alps.tif -o alps.gpkg --min-prominence 30", "A map of the summits that rise 30 m"},
-                         {"waymark peaks N41E001.hgt N42E001.hgt -o pyrenees.gpkg --nodata fill", "Two tiles with voids filled"},
-                         {"waymark peaks mola.tif -o mars.gpkg --base lowest --min-isolation 50000", "A global grid of Mars"},
-                         {"waymark peaks alps.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
+    all.push_back({"--print-job", "", &print_job_,
+                   "Print the job instead of running it: the start of one of your own"});
+    return {
+        .name = "peaks",
+        .group = Group::make,
+        .summary = "Find the mountain tops of a DEM, with exact prominence and isolation",
+        .about =
+            "Several files that touch or overlap are one DEM. The result does not depend on --threads or "
+            "--tile-cells. Every height that hidden ground could change comes with a certified lower bound.",
+        .arguments = all,
+        .examples = {
+            {"waymark peaks alps.tif -o alps.gpkg --min-prominence 30",
+             "A map of the summits that rise 30 m"},
+            {"waymark peaks N41E001.hgt N42E001.hgt -o pyrenees.gpkg --nodata fill",
+             "Two tiles with voids filled"},
+            {"waymark peaks mola.tif -o mars.gpkg --base lowest --min-isolation 50000",
+             "A global grid of Mars"},
+            {"waymark peaks alps.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
   }
 
   int run(const Session& session) override {
@@ -41,7 +48,8 @@ class Peaks final : public Command {
   Job make_job() const {
     Pipeline pipeline(all_stages());
     pipeline.add("load_dem", nlohmann::json{{"files", files_}}.dump());
-    for (const char* stage : {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
+    for (const char* stage :
+         {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
       pipeline.add(stage);
     options_.apply(pipeline);
     return {"peaks", std::move(pipeline)};
@@ -49,16 +57,18 @@ class Peaks final : public Command {
 
   std::vector<std::string> files_;
   MapRequest request_;
-  StageOptions options_{{"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation", "load_dem.nodata",
-                         "join_mountain_tops.base", "measure_isolation.isolation", "measure_isolation.distance",
-                         "map_mountain_tops.visible_range",
-                         "load_dem.crs", "load_dem.height_sd", "load_dem.tile_cells", "load_dem.memory"}};
+  StageOptions options_{{"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation",
+                         "load_dem.nodata", "join_mountain_tops.base", "measure_isolation.isolation",
+                         "measure_isolation.distance", "map_mountain_tops.visible_range", "load_dem.crs",
+                         "load_dem.height_sd", "load_dem.tile_cells", "load_dem.memory"}};
   bool print_job_ = false;
 };
 
 }  // namespace
 
 void register_command_peaks(CommandTable& commands);
-void register_command_peaks(CommandTable& commands) { commands.add<Peaks>(); }
+void register_command_peaks(CommandTable& commands) {
+  commands.add<Peaks>();
+}
 
 }  // namespace waymark

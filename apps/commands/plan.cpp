@@ -13,24 +13,33 @@ namespace {
 class PlanJob final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "plan",
-            .group = Group::make,
-            .summary = "Print the units of work of a job, for a scheduler",
-            .about = "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines that "
-                     "share the --work folder need nothing else in common.",
-            .arguments = {{"", "JOB.json", &job_, "Job file", true, {}, {}, Offer::file},
-                          {"--as", "FORM", &as_, "JSON lines, a Snakefile, or a script of sbatch calls", false,
-                           {"jsonl", "snakemake", "slurm"}, {}, Offer::nothing, "jsonl"},
-                          {"--work", "DIR", &work_, "Folder all units share", false, {}, {}, Offer::folder, "work"},
-                          {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
-            .examples = {{"waymark plan job.json --as jsonl", "One unit per line, done or not"},
-                         {"waymark plan job.json --as snakemake > Snakefile && snakemake -j 8", "Run by Snakemake"},
-                         {"waymark plan job.json --as slurm | bash", "Run on a Slurm cluster"}}};
+    return {
+        .name = "plan",
+        .group = Group::make,
+        .summary = "Print the units of work of a job, for a scheduler",
+        .about =
+            "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines "
+            "that "
+            "share the --work folder need nothing else in common.",
+        .arguments = {file_word("JOB.json", &job_, "Job file"),
+                      Argument{"--as", "FORM", &as_, "JSON lines, a Snakefile, or a script of sbatch calls"}
+                          .one_of({"jsonl", "snakemake", "slurm"})
+                          .or_else("jsonl"),
+                      Argument{"--work", "DIR", &work_, "Folder all units share"}
+                          .offering(Offer::folder)
+                          .or_else("work"),
+                      {"--set", "STAGE.OPTION=VALUE", &settings_,
+                       "Change an option of the job; may be repeated"}},
+        .examples = {
+            {"waymark plan job.json --as jsonl", "One unit per line, done or not"},
+            {"waymark plan job.json --as snakemake > Snakefile && snakemake -j 8", "Run by Snakemake"},
+            {"waymark plan job.json --as slurm | bash", "Run on a Slurm cluster"}}};
   }
 
   int run(const Session& session) override {
     if (!settings_.empty() && as_ != "jsonl")
-      throw Error(ErrorCode::usage, "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
+      throw Error(ErrorCode::usage,
+                  "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
                   "write the options into " + job_);
     Job job = read_job(job_, all_stages());
     for (const std::string& setting : settings_) job.pipeline.set(setting);
@@ -52,6 +61,8 @@ class PlanJob final : public Command {
 }  // namespace
 
 void register_command_plan(CommandTable& commands);
-void register_command_plan(CommandTable& commands) { commands.add<PlanJob>(); }
+void register_command_plan(CommandTable& commands) {
+  commands.add<PlanJob>();
+}
 
 }  // namespace waymark

@@ -14,21 +14,27 @@ namespace {
 class Query final : public Command {
  public:
   CommandSpec describe() override {
-    std::vector<Argument> all{{"", "MAP.gpkg", &map_, "Map to read; it is not changed", true, {}, {}, Offer::file}};
+    std::vector<Argument> all{file_word("MAP.gpkg", &map_, "Map to read; it is not changed")};
     for (auto& argument : query_arguments(request_)) all.push_back(argument);
-    all.push_back({"--format", "FORM", &format_, "How to print them; geojson is always longitude and latitude", false,
-                   {"table", "csv", "json", "geojson"}, {}, Offer::nothing, "table"});
-    return {.name = "query",
-            .group = Group::use,
-            .summary = "Print the landmarks of a map that meet conditions",
-            .about = "Distances are metres on the ground, also across the antimeridian and at the poles. The table shows "
-                     "the features; csv, json and geojson have every column of the map.",
-            .arguments = all,
-            .examples = {{"waymark query alps.gpkg --largest prominence --limit 10", "The ten most prominent summits"},
-                         {"waymark query alps.gpkg --near 8.0 46.5 5000 --type mountain_top", "All within 5 km"},
-                         {"waymark query alps.gpkg --min prominence=300 --format csv > tops.csv", "A table for a script"},
-                         {"waymark query site.gpkg --sensor stereo_camera --min-quality 0.6",
-                          "What a stereo camera can rely on"}}};
+    all.push_back(
+        Argument{"--format", "FORM", &format_, "How to print them; geojson is always longitude and latitude"}
+            .one_of({"table", "csv", "json", "geojson"})
+            .or_else("table"));
+    return {
+        .name = "query",
+        .group = Group::use,
+        .summary = "Print the landmarks of a map that meet conditions",
+        .about =
+            "Distances are metres on the ground, also across the antimeridian and at the poles. The table "
+            "shows "
+            "the features; csv, json and geojson have every column of the map.",
+        .arguments = all,
+        .examples = {
+            {"waymark query alps.gpkg --largest prominence --limit 10", "The ten most prominent summits"},
+            {"waymark query alps.gpkg --near 8.0 46.5 5000 --type mountain_top", "All within 5 km"},
+            {"waymark query alps.gpkg --min prominence=300 --format csv > tops.csv", "A table for a script"},
+            {"waymark query site.gpkg --sensor stereo_camera --min-quality 0.6",
+             "What a stereo camera can rely on"}}};
   }
 
   int run(const Session&) override {
@@ -54,7 +60,8 @@ class Query final : public Command {
     return [by_uid = std::move(by_uid)](const Landmark& landmark) { return by_uid.at(landmark.uid); };
   }
 
-  void print(const std::vector<RowColumn>& columns, const std::vector<Landmark>& landmarks, const Crs& crs) const {
+  void print(const std::vector<RowColumn>& columns, const std::vector<Landmark>& landmarks,
+             const Crs& crs) const {
     if (format_ == "csv") return print_csv(std::cout, columns, landmarks);
     if (format_ == "json") return print_json(std::cout, columns, landmarks);
     if (format_ == "geojson") return print_geojson(std::cout, columns, landmarks);
@@ -68,6 +75,8 @@ class Query final : public Command {
 }  // namespace
 
 void register_command_query(CommandTable& commands);
-void register_command_query(CommandTable& commands) { commands.add<Query>(); }
+void register_command_query(CommandTable& commands) {
+  commands.add<Query>();
+}
 
 }  // namespace waymark

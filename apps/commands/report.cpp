@@ -12,14 +12,20 @@ class Report final : public Command {
     return {.name = "report",
             .group = Group::use,
             .summary = "Write a report of a map as one HTML file",
-            .about = "Shaded relief with the landmarks, the foremost of each type, histograms, what the run read and did. "
-                     "It needs no network and no other file. The relief comes from the DEM in the map, or from the run's "
-                     "input files where they are still there.",
-            .arguments = {{"", "MAP.gpkg", &map_, "Map to read", true, {}, {}, Offer::file},
-                          {"-o,--output", "REPORT.html", &html_, "Report to write; an older one is replaced", true, {}, {},
-                           Offer::file},
-                          {"--title", "TEXT", &options_.title, "Title of the page", false, {}, {}, Offer::nothing, "the file's name"},
-                          {"--top", "N", &options_.top, "Landmarks listed per type", false, {}, {}, Offer::nothing, "25"}},
+            .about =
+                "Shaded relief with the landmarks, the foremost of each type, histograms, what the run read "
+                "and did. "
+                "It needs no network and no other file. The relief comes from the DEM in the map, or from "
+                "the run's "
+                "input files where they are still there.",
+            .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
+                          Argument{"-o,--output", "REPORT.html", &html_,
+                                   "Report to write; an older one is replaced"}
+                              .needed()
+                              .offering(Offer::file),
+                          Argument{"--title", "TEXT", &options_.title, "Title of the page"}.or_else(
+                              "the file's name"),
+                          Argument{"--top", "N", &options_.top, "Landmarks listed per type"}.or_else("25")},
             .examples = {{"waymark report alps.gpkg -o alps.html", "A report to read and to print"}}};
   }
 
@@ -37,6 +43,8 @@ class Report final : public Command {
 }  // namespace
 
 void register_command_report(CommandTable& commands);
-void register_command_report(CommandTable& commands) { commands.add<Report>(); }
+void register_command_report(CommandTable& commands) {
+  commands.add<Report>();
+}
 
 }  // namespace waymark

@@ -21,23 +21,29 @@ Shard shard_of(const std::string& text) {
 class Run final : public Command {
  public:
   CommandSpec describe() override {
-    std::vector<Argument> all{{"", "JOB.json", &job_, "Stages in order, each with its options; `waymark stages` lists them",
-                               true, {}, {}, Offer::file}};
+    std::vector<Argument> all{
+        file_word("JOB.json", &job_, "Stages in order, each with its options; `waymark stages` lists them")};
     for (auto& argument : map_arguments(request_)) all.push_back(argument);
-    all.push_back({"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
-    all.push_back({"--shard", "I/N", &shard_, "Do the I-th of N shares; all shares use the same --work folder"});
+    all.push_back(
+        {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
+    all.push_back(
+        {"--shard", "I/N", &shard_, "Do the I-th of N shares; all shares use the same --work folder"});
     all.push_back({"--unit", "ID", &unit_, "Do this unit of work only; `waymark plan` lists them"});
-    return {.name = "run",
-            .group = Group::make,
-            .summary = "Run a job file and write the map",
-            .about = "Paths in the job file start at its folder. With --work every finished unit of work is kept under "
-                     "a fingerprint of its options and inputs: a second run does only what is missing or has changed.",
-            .arguments = all,
-            .examples = {{"waymark run job.json -o map.gpkg --work work", "Run, and be able to go on after a stop"},
-                         {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
-                          "The same job with another threshold"},
-                         {"waymark run job.json --check", "Is the job sound?"},
-                         {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"}}};
+    return {
+        .name = "run",
+        .group = Group::make,
+        .summary = "Run a job file and write the map",
+        .about =
+            "Paths in the job file start at its folder. With --work every finished unit of work is kept "
+            "under "
+            "a fingerprint of its options and inputs: a second run does only what is missing or has changed.",
+        .arguments = all,
+        .examples = {
+            {"waymark run job.json -o map.gpkg --work work", "Run, and be able to go on after a stop"},
+            {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
+             "The same job with another threshold"},
+            {"waymark run job.json --check", "Is the job sound?"},
+            {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"}}};
   }
 
   int run(const Session& session) override {
@@ -58,6 +64,8 @@ class Run final : public Command {
 }  // namespace
 
 void register_command_run(CommandTable& commands);
-void register_command_run(CommandTable& commands) { commands.add<Run>(); }
+void register_command_run(CommandTable& commands) {
+  commands.add<Run>();
+}
 
 }  // namespace waymark

@@ -8,13 +8,15 @@ namespace {
 class Sensors final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "sensors",
-            .group = Group::look_up,
-            .summary = "List the sensor profiles, or describe one with its weights",
-            .about = "A sensor profile says how much each feature helps that sensor to tell landmarks apart. "
-                     "`waymark query --sensor NAME` ranks landmarks by it.",
-            .arguments = describe_arguments(what_, all_sensors().names()),
-            .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
+    return {
+        .name = "sensors",
+        .group = Group::look_up,
+        .summary = "List the sensor profiles, or describe one with its weights",
+        .about =
+            "A sensor profile says how much each feature helps that sensor to tell landmarks apart. "
+            "`waymark query --sensor NAME` ranks landmarks by it.",
+        .arguments = describe_arguments(what_, all_sensors().names()),
+        .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
   }
 
   int run(const Session&) override {
@@ -29,6 +31,8 @@ class Sensors final : public Command {
 }  // namespace
 
 void register_command_sensors(CommandTable& commands);
-void register_command_sensors(CommandTable& commands) { commands.add<Sensors>(); }
+void register_command_sensors(CommandTable& commands) {
+  commands.add<Sensors>();
+}
 
 }  // namespace waymark

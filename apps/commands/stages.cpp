@@ -8,12 +8,13 @@ namespace {
 class Stages final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "stages",
-            .group = Group::look_up,
-            .summary = "List the stages a job can name, or describe one with all its options",
-            .arguments = describe_arguments(what_, all_stages().names()),
-            .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
-                         {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
+    return {
+        .name = "stages",
+        .group = Group::look_up,
+        .summary = "List the stages a job can name, or describe one with all its options",
+        .arguments = describe_arguments(what_, all_stages().names()),
+        .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
+                     {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
   }
 
   int run(const Session&) override {
@@ -28,6 +29,8 @@ class Stages final : public Command {
 }  // namespace
 
 void register_command_stages(CommandTable& commands);
-void register_command_stages(CommandTable& commands) { commands.add<Stages>(); }
+void register_command_stages(CommandTable& commands) {
+  commands.add<Stages>();
+}
 
 }  // namespace waymark

@@ -28,6 +28,8 @@ class Types final : public Command {
 }  // namespace
 
 void register_command_types(CommandTable& commands);
-void register_command_types(CommandTable& commands) { commands.add<Types>(); }
+void register_command_types(CommandTable& commands) {
+  commands.add<Types>();
+}
 
 }  // namespace waymark

@@ -16,10 +16,13 @@ class Validate final : public Command {
     return {.name = "validate",
             .group = Group::use,
             .summary = "Check that a map keeps its promises",
-            .about = "RTree against geometry, evidence links, quality ranges and all else a GeoPackage validator does not "
-                     "know. Each fault is a line of tab-separated text: code, table, row, what is wrong. The exit code is "
-                     "1 where there are faults.",
-            .arguments = {{"", "MAP.gpkg", &map_, "Map to check; it is not changed", true, {}, {}, Offer::file}},
+            .about =
+                "RTree against geometry, evidence links, quality ranges and all else a GeoPackage validator "
+                "does not "
+                "know. Each fault is a line of tab-separated text: code, table, row, what is wrong. The exit "
+                "code is "
+                "1 where there are faults.",
+            .arguments = {file_word("MAP.gpkg", &map_, "Map to check; it is not changed")},
             .examples = {{"waymark validate alps.gpkg", "Nothing on standard output: the map is sound"}}};
   }
 
@@ -39,6 +42,8 @@ class Validate final : public Command {
 }  // namespace
 
 void register_command_validate(CommandTable& commands);
-void register_command_validate(CommandTable& commands) { commands.add<Validate>(); }
+void register_command_validate(CommandTable& commands) {
+  commands.add<Validate>();
+}
 
 }  // namespace waymark

@@ -31,13 +31,17 @@ class BadInput : public testing::Test {
     EXPECT_THAT(said.err, AllOf(StartsWith("error: "), HasSubstr(dem)));
     return said.err;
   }
-  std::string made(const MadeDem& dem, const std::string& name = "dem.tif") { return make_dem(folder_ / name, dem); }
+  std::string made(const MadeDem& dem, const std::string& name = "dem.tif") {
+    return make_dem(folder_ / name, dem);
+  }
   std::string map() { return folder_ / "map.gpkg"; }
 
   TempFolder folder_;
 };
 
-TEST_F(BadInput, MissingFile) { EXPECT_THAT(refusal(folder_ / "no.tif"), HasSubstr("there is no such file")); }
+TEST_F(BadInput, MissingFile) {
+  EXPECT_THAT(refusal(folder_ / "no.tif"), HasSubstr("there is no such file"));
+}
 
 TEST_F(BadInput, EmptyFile) {
   write_text(folder_ / "dem.tif", "");
@@ -47,21 +51,30 @@ TEST_F(BadInput, EmptyFile) {
 TEST_F(BadInput, TruncatedFile) {
   const std::string dem = made(hills(300, 300));
   std::filesystem::resize_file(dem, 200'000);
-  const Outcome said = peaks({dem});
-  EXPECT_NE(said.code, 0);
+  EXPECT_THAT(refusal(dem), HasSubstr("truncated or damaged"));
+}
+
+TEST_F(BadInput, DamagedInTheMiddleOtherTilesGoOn) {
+  MadeDem dem = hills(1300, 1300);
+  dem.compressed_blocks = true;
+  const std::string file = made(dem);
+  damage(file, 0.85);
+  const Outcome said = peaks({file, "--tile-cells", "256"});
+  EXPECT_EQ(said.code, 3) << said.err;
+  EXPECT_THAT(said.err, AllOf(HasSubstr("find_mountain_tops/tile_"), HasSubstr("truncated or damaged"),
+                              HasSubstr("map.gpkg is not written")));
   EXPECT_FALSE(std::filesystem::exists(map()));
-  EXPECT_THAT(said.err, HasSubstr(dem));
 }
 
 TEST_F(BadInput, NotARaster) {
   write_text(folder_ / "dem.tif", "Dear diary, today I climbed a hill.\n");
-  EXPECT_THAT(refusal(folder_ / "dem.tif"), HasSubstr("raster"));
+  EXPECT_THAT(refusal(folder_ / "dem.tif"), HasSubstr("not a raster"));
 }
 
 TEST_F(BadInput, ThreeBands) {
   MadeDem dem = twin_peaks();
   dem.bands = 3;
-  EXPECT_THAT(refusal(made(dem)), HasSubstr("3 bands"));
+  EXPECT_THAT(refusal(made(dem)), HasSubstr("has 3"));
 }
 
 TEST_F(BadInput, ComplexCells) {
@@ -77,7 +90,9 @@ TEST_F(BadInput, NoCrs) {
   EXPECT_EQ(peaks({folder_ / "dem.tif", "--crs", "local"}).code, 0);
 }
 
-TEST_F(BadInput, UnknownCrs) { EXPECT_THAT(peaks({made(twin_peaks()), "--crs", "EPSG:0"}).err, HasSubstr("EPSG:0")); }
+TEST_F(BadInput, UnknownCrs) {
+  EXPECT_THAT(peaks({made(twin_peaks()), "--crs", "EPSG:0"}).err, HasSubstr("EPSG:0"));
+}
 
 TEST_F(BadInput, Rotated) {
   MadeDem dem = twin_peaks();
@@ -128,7 +143,8 @@ TEST_F(BadInput, NanAndInfinityHaveNoHeight) {
     return ridge(column, row);
   };
   EXPECT_EQ(peaks({made(dem)}).code, 0);
-  EXPECT_THAT(waymark({"query", map(), "--format", "csv"}).out, AllOf(HasSubstr(",900,"), Not(HasSubstr("inf"))));
+  EXPECT_THAT(waymark({"query", map(), "--format", "csv"}).out,
+              AllOf(HasSubstr(",900,"), Not(HasSubstr("inf"))));
 }
 
 TEST_F(BadInput, ForeignGeoPackageIsRefused) {
@@ -164,7 +180,8 @@ TEST_F(BadJob, WrongTypeNamesThePlace) {
 TEST_F(BadJob, UnknownOptionNamesTheNearest) {
   const Outcome said = run(R"({"stages": [{"stage": "find_mountain_tops", "min_prominense": 5}]})");
   EXPECT_EQ(said.code, 2);
-  EXPECT_THAT(said.err, AllOf(HasSubstr("stages[0]"), HasSubstr("min_prominense"), HasSubstr("'min_prominence'")));
+  EXPECT_THAT(said.err,
+              AllOf(HasSubstr("stages[0]"), HasSubstr("min_prominense"), HasSubstr("'min_prominence'")));
 }
 
 TEST_F(BadJob, UnknownStageNamesTheNearest) {

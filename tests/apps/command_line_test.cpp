@@ -21,8 +21,8 @@ TEST(CommandLine, HelpGoesToStandardOutputAndListsEveryCommand) {
   const Outcome said = waymark({"--help"});
   EXPECT_EQ(said.code, 0);
   EXPECT_EQ(said.err, "");
-  for (const char* command : {"completion", "export", "man", "peaks", "plan", "query", "report", "run", "sensors", "stages",
-                              "types", "validate"})
+  for (const char* command : {"completion", "export", "man", "peaks", "plan", "query", "report", "run",
+                              "sensors", "stages", "types", "validate"})
     EXPECT_THAT(said.out, HasSubstr("\n  " + std::string(command) + " "));
   EXPECT_THAT(said.out, HasSubstr("Exit codes:"));
 }
@@ -32,11 +32,14 @@ TEST(CommandLine, HelpOfACommandHasUsageOptionsAndExamples) {
     const Outcome said = waymark(words);
     EXPECT_EQ(said.code, 0);
     EXPECT_THAT(said.out, StartsWith("Usage: waymark query MAP.gpkg [options]\n"));
-    EXPECT_THAT(said.out, AllOf(HasSubstr("--near X Y RADIUS"), HasSubstr("Examples:"), HasSubstr("--threads N")));
+    EXPECT_THAT(said.out,
+                AllOf(HasSubstr("--near X Y RADIUS"), HasSubstr("Examples:"), HasSubstr("--threads N")));
   }
 }
 
-TEST(CommandLine, VersionIsOneLine) { EXPECT_THAT(waymark({"--version"}).out, testing::MatchesRegex("waymark [0-9.]+\n")); }
+TEST(CommandLine, VersionIsOneLine) {
+  EXPECT_THAT(waymark({"--version"}).out, testing::MatchesRegex("waymark [0-9.]+\n"));
+}
 
 TEST(CommandLine, UnknownCommandNamesTheNearest) {
   const Outcome said = waymark({"pekas", "dem.tif"});
@@ -49,24 +52,30 @@ TEST(CommandLine, UnknownOptionNamesTheNearest) {
             "error: waymark query has no option '--tpye'\n  did you mean '--type'?\n");
   EXPECT_EQ(waymark({"peaks", "dem.tif", "--min-prominense=30"}).err,
             "error: waymark peaks has no option '--min-prominense'\n  did you mean '--min-prominence'?\n");
-  EXPECT_EQ(waymark({"--verson"}).err, "error: waymark has no option '--verson'\n  did you mean '--version'?\n");
+  EXPECT_EQ(waymark({"--verson"}).err,
+            "error: waymark has no option '--verson'\n  did you mean '--version'?\n");
 }
 
 TEST(CommandLine, AWordTooManyIsNamed) {
   const Outcome said = waymark({"validate", "a.gpkg", "b.gpkg"});
   EXPECT_EQ(said.code, 2);
-  EXPECT_EQ(said.err, "error: waymark validate has no use for the word 'b.gpkg'\n  `waymark validate --help` shows what it takes\n");
+  EXPECT_EQ(said.err,
+            "error: waymark validate has no use for the word 'b.gpkg'\n  `waymark validate --help` shows "
+            "what it takes\n");
 }
 
 TEST(CommandLine, AMissingArgumentIsNamed) {
   EXPECT_THAT(waymark({"query"}).err, StartsWith("error: waymark query needs MAP.gpkg\n"));
-  EXPECT_THAT(waymark({"report", "map.gpkg"}).err, StartsWith("error: waymark report needs -o REPORT.html\n"));
+  EXPECT_THAT(waymark({"report", "map.gpkg"}).err,
+              StartsWith("error: waymark report needs -o REPORT.html\n"));
   EXPECT_THAT(waymark({"peaks", "dem.tif"}).err, StartsWith("error: the map needs a name: -o MAP.gpkg\n"));
 }
 
 TEST(CommandLine, ValuesAreChecked) {
-  EXPECT_EQ(waymark({"query", "m.gpkg", "--limit", "ten"}).err, "error: --limit must be a whole number, is 'ten'\n");
-  EXPECT_EQ(waymark({"query", "m.gpkg", "--near", "8", "46", "nan"}).err, "error: --near must be a number, is 'nan'\n");
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--limit", "ten"}).err,
+            "error: --limit must be a whole number, is 'ten'\n");
+  EXPECT_EQ(waymark({"query", "m.gpkg", "--near", "8", "46", "nan"}).err,
+            "error: --near must be a number, is 'nan'\n");
   EXPECT_EQ(waymark({"query", "m.gpkg", "--bbox", "1", "2", "3"}).err,
             "error: --bbox takes 4 values (X0 Y0 X1 Y1), has 3\n");
   EXPECT_EQ(waymark({"query", "m.gpkg", "--format", "cvs"}).err,
@@ -78,7 +87,8 @@ TEST(CommandLine, ValuesAreChecked) {
   EXPECT_THAT(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--tile-cells", "5"}).err,
               StartsWith("error: --tile-cells must be in [64, 16384]"));
   EXPECT_THAT(waymark({"--threads", "-2", "types"}).err, StartsWith("error: --threads must be 1 or more"));
-  EXPECT_THAT(waymark({"types", "--config", "CACHE"}).err, StartsWith("error: --config takes KEY=VALUE, is 'CACHE'\n"));
+  EXPECT_THAT(waymark({"types", "--config", "CACHE"}).err,
+              StartsWith("error: --config takes KEY=VALUE, is 'CACHE'\n"));
 }
 
 TEST(CommandLine, GlobalOptionsStandBeforeOrAfterTheCommand) {
@@ -104,7 +114,8 @@ TEST(Describe, EverythingHasItsFourForms) {
 TEST(Describe, OneByNameOrTheNearest) {
   EXPECT_THAT(waymark({"types", "rock"}).out, HasSubstr("Half the mean width"));
   EXPECT_THAT(waymark({"stages", "find_mountain_tops"}).out, HasSubstr("min_prominence"));
-  EXPECT_EQ(waymark({"types", "rok"}).err, "error: there is no landmark type 'rok'\n  did you mean 'rock'?\n");
+  EXPECT_EQ(waymark({"types", "rok"}).err,
+            "error: there is no landmark type 'rok'\n  did you mean 'rock'?\n");
   EXPECT_EQ(waymark({"types", "rok"}).code, 2);
 }
 

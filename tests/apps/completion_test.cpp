@@ -14,8 +14,9 @@ using testing::IsSupersetOf;
 
 /// What bash would offer for the last of these words.
 std::vector<std::string> offered(const std::string& words, const std::string& folder = ".") {
-  const Outcome said = bash("cd " + folder + "; source <($WAYMARK completion bash); COMP_WORDS=(waymark " + words +
-                            "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _waymark; printf '%s\\n' \"${COMPREPLY[@]}\"");
+  const Outcome said =
+      bash("cd " + folder + "; source <($WAYMARK completion bash); COMP_WORDS=(waymark " + words +
+           "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _waymark; printf '%s\\n' \"${COMPREPLY[@]}\"");
   EXPECT_EQ(said.code, 0) << said.err;
   std::istringstream lines(said.out);
   std::vector<std::string> all;
@@ -23,7 +24,9 @@ std::vector<std::string> offered(const std::string& words, const std::string& fo
   return all;
 }
 
-TEST(Completion, IsSoundBash) { EXPECT_EQ(bash("$WAYMARK completion bash | bash -n").err, ""); }
+TEST(Completion, IsSoundBash) {
+  EXPECT_EQ(bash("$WAYMARK completion bash | bash -n").err, "");
+}
 
 TEST(Completion, Commands) {
   EXPECT_THAT(offered("pl"), ElementsAre("plan"));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <gdal.h>
 #include <array>
 #include <functional>
 #include <string>
-#include <gdal.h>
 namespace waymark::test {
 
 /// A GeoTIFF to be made. Cells of 1 km in UTM unless said otherwise.
@@ -15,8 +15,12 @@ struct MadeDem {
   std::string crs = "EPSG:32632";  ///< empty: none
   std::array<double, 6> geotransform = {500000, 1000, 0, 5200000, 0, -1000};
   double nodata = -9999;
+  bool compressed_blocks = false;  ///< of 256 x 256 cells
 };
 std::string make_dem(const std::string& file, const MadeDem& dem);
+
+/// Overwrites a stretch of the file, at `part` of its length, with zeros.
+void damage(const std::string& file, double part);
 
 /// Two summits: 900 m, and 700 m behind a saddle of 400 m, 4 km apart.
 ///   0 0 0 0 0 0 0

@@ -27,7 +27,8 @@ class Output : public testing::Test {
 };
 
 TEST_F(Output, MissingFolderIsRefusedBeforeAnyWork) {
-  const Outcome said = peaks(folder_ / "no.tif", folder_ / "no/map.gpkg");  // the DEM is missing too: not looked at
+  const Outcome said =
+      peaks(folder_ / "no.tif", folder_ / "no/map.gpkg");  // the DEM is missing too: not looked at
   EXPECT_EQ(said.code, 1);
   EXPECT_THAT(said.err, AllOf(HasSubstr("the folder of the output does not exist"), HasSubstr("mkdir -p")));
 }
@@ -80,14 +81,27 @@ TEST_F(Output, KilledRunLeavesTheOldMapAndTheNextOneGoesOn) {
   const std::string map = folder_ / "map.gpkg", dem = make_dem(folder_ / "hills.tif", hills(1500, 1500));
   ASSERT_EQ(peaks(twins(), map).code, 0);
   const std::string old = text_of(map);
-  const std::vector<std::string> words{"peaks", dem,  "-o",      map,       "--work", folder_ / "work", "--tile-cells", "128",
-                                       "-q",    "--threads", "1", "--min-prominence", "0"};
+  const std::vector<std::string> words{"peaks",
+                                       dem,
+                                       "-o",
+                                       map,
+                                       "--work",
+                                       folder_ / "work",
+                                       "--tile-cells",
+                                       "128",
+                                       "-q",
+                                       "--threads",
+                                       "1",
+                                       "--min-prominence",
+                                       "0"};
   for (const int milliseconds : {60, 100, 150, 220, 300}) {
     const pid_t run = start_waymark(words);
     std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
     kill(run, SIGKILL);
     waitpid(run, nullptr, 0);
-    if (text_of(map) != old) ASSERT_EQ(waymark({"validate", map}).code, 0) << "killed after " << milliseconds << " ms";
+    if (text_of(map) != old) {
+      ASSERT_EQ(waymark({"validate", map}).code, 0) << "killed after " << milliseconds << " ms";
+    }
   }
   ASSERT_EQ(waymark(words).code, 0);
   ASSERT_EQ(waymark({"peaks", dem, "-o", folder_ / "fresh.gpkg", "--min-prominence", "0"}).code, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "made_dem.hpp"
@@ -34,7 +35,8 @@ class Peaks : public testing::Test {
 
 TEST_F(Peaks, TwinPeaksEndToEnd) {
   table({twins(), "--distance", "planar"});
-  const Outcome said = waymark({"query", folder_ / "map.gpkg", "--largest", "prominence", "--format", "json"});
+  const Outcome said =
+      waymark({"query", folder_ / "map.gpkg", "--largest", "prominence", "--format", "json"});
   const json tops = json::parse(said.out);
   ASSERT_EQ(tops.size(), 2);
   EXPECT_EQ(tops[0]["elevation"], 900);
@@ -52,8 +54,8 @@ TEST_F(Peaks, TwinPeaksEndToEnd) {
 
 TEST_F(Peaks, SummaryTellsStagesCountsSpeedAndTheMap) {
   table({twins()});
-  EXPECT_THAT(last_summary_, AllOf(HasSubstr("find_mountain_tops"), HasSubstr("rejected"), HasSubstr("cells/s"),
-                                   HasSubstr("map.gpkg: 2 mountain_top")));
+  EXPECT_THAT(last_summary_, AllOf(HasSubstr("find_mountain_tops"), HasSubstr("rejected"),
+                                   HasSubstr("cells/s"), HasSubstr("map.gpkg: 2 mountain_top")));
 }
 
 TEST_F(Peaks, QuietSaysNothing) {
@@ -78,7 +80,8 @@ TEST_F(Peaks, TilesAndThreadsDoNotChangeTheTable) {
 TEST_F(Peaks, PrintedJobGivesTheSameMap) {
   const std::string dem = rolling();
   const std::string direct = table({dem, "--min-prominence", "50", "--nodata", "unknown"});
-  const Outcome printed = waymark({"peaks", dem, "--min-prominence", "50", "--nodata", "unknown", "--print-job"});
+  const Outcome printed =
+      waymark({"peaks", dem, "--min-prominence", "50", "--nodata", "unknown", "--print-job"});
   write_text(folder_ / "job.json", printed.out);
   ASSERT_EQ(waymark({"run", folder_ / "job.json", "-o", folder_ / "job.gpkg"}).code, 0);
   EXPECT_EQ(csv("job.gpkg"), direct);
@@ -90,8 +93,9 @@ TEST_F(Peaks, SettingsOverrideTheJob) {
                                 "find_mountain_tops.min_prominence=400"});
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(csv("map.gpkg"), Not(HasSubstr(",700,")));
-  EXPECT_THAT(waymark({"run", folder_ / "job.json", "--check", "--set", "find_mountain_tops.min_prominense=4"}).err,
-              HasSubstr("'min_prominence'"));
+  EXPECT_THAT(
+      waymark({"run", folder_ / "job.json", "--check", "--set", "find_mountain_tops.min_prominense=4"}).err,
+      HasSubstr("'min_prominence'"));
 }
 
 TEST_F(Peaks, CheckMakesNothing) {
@@ -103,7 +107,6 @@ TEST_F(Peaks, CheckMakesNothing) {
 
 TEST_F(Peaks, WorkFolderIsUsedAgain) {
   const std::string dem = rolling();
-  const std::vector<std::string> words{dem, "--work", folder_ / "work", "--tile-cells", "100", "--check"};
   const std::string first = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
   const std::string second = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
   EXPECT_EQ(first, second);
@@ -135,7 +138,9 @@ TEST_F(Peaks, ProgressHasItsForms) {
   const auto said = [&](const std::string& form) {
     return waymark({"peaks", dem, "-o", folder_ / "map.gpkg", "--progress", form}).err;
   };
-  EXPECT_THAT(said("dots"), HasSubstr("find_mountain_tops: 0...10...20...30...40...50...60...70...80...90...100 - done.\n"));
+  EXPECT_THAT(
+      said("dots"),
+      HasSubstr("find_mountain_tops: 0...10...20...30...40...50...60...70...80...90...100 - done.\n"));
   EXPECT_THAT(said("bar"), HasSubstr("[########################] 100 %"));
   EXPECT_THAT(said("json"), HasSubstr(R"({"stage":"find_mountain_tops","done":1.0,"total":1,)"));
   EXPECT_EQ(said("none"), said("auto"));  // no terminal here
@@ -145,8 +150,8 @@ TEST_F(Peaks, RunIsRecordedInTheMap) {
   table({twins(), "--min-prominence", "30"});
   const std::string run = bash("ogrinfo -q " + (folder_ / "map.gpkg") + " run 2>&1").out;
   if (run.empty()) GTEST_SKIP() << "ogrinfo is not installed";
-  EXPECT_THAT(run, AllOf(HasSubstr("waymark peaks"), HasSubstr("--min-prominence 30"), HasSubstr("find_mountain_tops"),
-                         HasSubstr("twins.tif")));
+  EXPECT_THAT(run, AllOf(HasSubstr("waymark peaks"), HasSubstr("--min-prominence 30"),
+                         HasSubstr("find_mountain_tops"), HasSubstr("twins.tif")));
 }
 
 TEST_F(Peaks, ValidMapExportsAndReports) {

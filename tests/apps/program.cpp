@@ -13,7 +13,8 @@
 namespace waymark::test {
 namespace {
 
-[[noreturn]] void become(const std::vector<std::string>& words, const std::string& out, const std::string& err) {
+[[noreturn]] void become(const std::vector<std::string>& words, const std::string& out,
+                         const std::string& err) {
   const auto redirect = [](const std::string& file, int descriptor) {
     dup2(open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), descriptor);
   };
@@ -53,7 +54,9 @@ TempFolder::~TempFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-Outcome waymark(const std::vector<std::string>& words) { return run(after_program(words)); }
+Outcome waymark(const std::vector<std::string>& words) {
+  return run(after_program(words));
+}
 
 Outcome bash(const std::string& line) {
   setenv("WAYMARK", WAYMARK_PROGRAM, 1);

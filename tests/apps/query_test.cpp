@@ -51,7 +51,8 @@ TEST_F(Query, ByBox) {
 }
 
 TEST_F(Query, ByBoxInDegrees) {
-  // 9 degrees east is x = 500000: the peaks lie 1.5 and 5.5 km east of it, 0.0198 and 0.0724 degrees at 46.9 N.
+  // 9 degrees east is x = 500000: the peaks lie 1.5 and 5.5 km east of it, 0.0198 and 0.0724 degrees at 46.9
+  // N.
   EXPECT_THAT(elevations({"--crs", "EPSG:4326", "--bbox", "9", "46", "9.05", "47"}), ElementsAre(900));
 }
 
