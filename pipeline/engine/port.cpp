@@ -3,8 +3,8 @@
 
 #include <cxxabi.h>
 
+#include <cctype>
 #include <cstdlib>
-#include <regex>
 #include <string_view>
 
 namespace waymark {
@@ -17,8 +17,27 @@ std::string demangled(std::type_index type) {
   return status == 0 ? name.get() : type.name();
 }
 
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+bool is_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+}
+
+/// "std::vector<(anonymous namespace)::Number>" becomes "vector<Number>".
+void erase_scopes(std::string& name) {
+  for (std::size_t colons; (colons = name.find("::")) != std::string::npos;) {
+    std::size_t begin = colons;
+    if (begin > 0 && name[begin - 1] == ')') begin = name.rfind('(', begin);
+    while (begin > 0 && is_word(name[begin - 1])) --begin;
+    name.erase(begin, colons + 2 - begin);
+  }
+}
+
 /// "vector<Number, allocator<Number>>" becomes "vector<Number>", however deep the brackets nest.
-std::string without_allocators(std::string name) {
+void erase_allocators(std::string& name) {
   constexpr std::string_view kBegin = ", allocator<";
   for (std::size_t begin = 0; (begin = name.find(kBegin)) != std::string::npos;) {
     std::size_t end = begin + kBegin.size();
@@ -26,22 +45,30 @@ std::string without_allocators(std::string name) {
       open += name[end] == '<' ? 1 : name[end] == '>' ? -1 : 0;
     name.erase(begin, end - begin);
   }
-  return name;
+}
+
+/// "shared_ptr<Number const>" becomes "shared_ptr<const Number>".
+void move_const_forward(std::string& name) {
+  constexpr std::string_view kConst = " const";
+  for (std::size_t at; (at = name.find(kConst)) != std::string::npos;) {
+    std::size_t begin = at;
+    while (begin > 0 && is_word(name[begin - 1])) --begin;
+    if (begin == at) return;  // not after a plain word: leave the rest alone
+    name.erase(at, kConst.size()).insert(begin, "const ");
+  }
 }
 
 }  // namespace
 
 std::string readable_type(std::type_index type) {
-  static const std::regex string(
-      "std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >");
-  static const std::regex scope(R"((\(anonymous namespace\)|\w+)::)");
-  static const std::regex constness(R"((\w+) const\b)");
-  static const std::regex space(" >");
-  std::string name = std::regex_replace(demangled(type), string, "string");
-  name = std::regex_replace(name, scope, "");
-  name = std::regex_replace(name, constness, "const $1");
-  name = std::regex_replace(name, space, ">");
-  return without_allocators(name);
+  std::string name = demangled(type);
+  replace_all(name, "std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >",
+              "string");
+  erase_scopes(name);
+  replace_all(name, " >", ">");
+  move_const_forward(name);
+  erase_allocators(name);
+  return name;
 }
 
 }  // namespace waymark
