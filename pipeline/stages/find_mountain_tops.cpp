@@ -33,10 +33,11 @@ struct FindMountainTops {
     const HeightWindow heights = source.read(unit.cells_with_halo());
     unit.progress(0.5);
     unit.write(block_relief_out, block_relief(heights, unit.tile().cells));
-    unit.write(divide_tree,
-               build_divide_tree(heights, unit.tile().cells, source.geometry(),
-                                 {.min_prominence = options.min_prominence.value,
-                                  .voids_hide_ground = source.nodata_policy() != NodataPolicy::ocean}));
+    auto tree = build_divide_tree(heights, unit.tile().cells, source.geometry(),
+                                  {.min_prominence = options.min_prominence.value,
+                                   .voids_hide_ground = source.nodata_policy() != NodataPolicy::ocean});
+    unit.count_out(tree.maxima);  // a source: what goes in are cells
+    unit.write(divide_tree, std::move(tree));
   }
 };
 

@@ -36,6 +36,8 @@ struct MeasureIsolation {
     const auto& tops = unit.read(summits);
     std::vector<HighPoint> points;
     for (const Summit& top : tops) points.push_back({top.cell, top.height});
+    unit.count_in(static_cast<std::int64_t>(tops.size()));
+    unit.count_out(static_cast<std::int64_t>(tops.size()));
     unit.write(isolation_out,
                measure_isolation(
                    points, *unit.read(dem), unit.read(relief),
