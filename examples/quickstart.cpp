@@ -29,7 +29,8 @@ int main(int argc, char** argv) try {
   const MapStore store = MapStore::open("quickstart.gpkg");
   const std::size_t prominence = feature_index(store.types()[store.types().id("mountain_top")], "prominence");
   const MapQuery::Near around_jacksboro{-84.18, 36.33, 12'000_m};
-  for (const Landmark& top : store.query({.near = around_jacksboro, .largest_first = "prominence", .limit = 3}))
+  for (const Landmark& top :
+       store.query({.near = around_jacksboro, .largest_first = "prominence", .limit = 3}))
     std::cout << top.uid << ": " << top.features[prominence].value << " m above its key saddle, "
               << store.distance(top, around_jacksboro.x, around_jacksboro.y) << " m away\n";
 } catch (const Error& error) {

@@ -32,7 +32,8 @@ TEST(PlugIn, TypeFromOutsideStandsBesideOurs) {
 TEST(PlugIn, StageFromOutsideHasItsPages) {
   const Registry stages = all_stages();
   EXPECT_THAT(stages.names(), Contains("place_weather_stations"));
-  EXPECT_THAT(stage_as_markdown(stages.at("place_weather_stations")), HasSubstr("Lowest summit that gets a station"));
+  EXPECT_THAT(stage_as_markdown(stages.at("place_weather_stations")),
+              HasSubstr("Lowest summit that gets a station"));
 }
 
 TEST(PlugIn, StageFromOutsideRunsInAJobAndIsCounted) {

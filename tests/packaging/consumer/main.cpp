@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses the installed package as a stranger would: prints the summits of a DEM and the landmark types it knows.
+// Uses the installed package as a stranger would: prints the summits of a DEM and the landmark types it
+// knows.
 #include <iostream>
 #include <waymark/waymark.hpp>
 
@@ -28,6 +29,7 @@ int main(int, char** argv) {
   write_map("consumer.gpkg", map, {.empty_tables = {"boulder_field"}});
 
   const MapStore store = MapStore::open("consumer.gpkg");
-  std::cout << store.count("mountain_top") << " summits, " << store.count("boulder_field") << " boulder fields\n";
+  std::cout << store.count("mountain_top") << " summits, " << store.count("boulder_field")
+            << " boulder fields\n";
   return store.count("mountain_top") > 0 ? 0 : 1;
 }

@@ -10,14 +10,17 @@ struct PlaceWeatherStations {
   struct Options {
     Meters min_elevation{500};
     void describe(OptionVisitor& option) {
-      option("min_elevation", min_elevation, {.help = "Lowest summit that gets a station", .min = -500, .max = 9000});
+      option("min_elevation", min_elevation,
+             {.help = "Lowest summit that gets a station", .min = -500, .max = 9000});
     }
   };
   static constexpr In<std::vector<Landmark>> summits{"landmarks"};
   static constexpr Out<Stations> stations{"stations"};
   static StageSpec spec() {
-    return {.name = "place_weather_stations", .summary = "Puts weather stations on summits",
-            .inputs = {summits}, .outputs = {stations}};
+    return {.name = "place_weather_stations",
+            .summary = "Puts weather stations on summits",
+            .inputs = {summits},
+            .outputs = {stations}};
   }
   static void run(const Options& options, StageContext& unit) {
     Stations placed;
@@ -37,6 +40,8 @@ struct PlaceWeatherStations {
 }  // namespace
 
 void register_stage_place_weather_stations(Registry& registry);
-void register_stage_place_weather_stations(Registry& registry) { registry.add<PlaceWeatherStations>(); }
+void register_stage_place_weather_stations(Registry& registry) {
+  registry.add<PlaceWeatherStations>();
+}
 
 }  // namespace waymark
