@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A landmark type of one's own. Merging, quality, map columns, style and queries follow from this
-// declaration.
+// A landmark type of one's own: merging, quality, map columns, style and queries follow from one declaration.
 #include <array>
 #include <iostream>
 #include <waymark/waymark.hpp>
