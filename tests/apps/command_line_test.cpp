@@ -85,7 +85,7 @@ TEST(CommandLine, ValuesAreChecked) {
   EXPECT_THAT(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--min-prominence", "high"}).err,
               StartsWith("error: --min-prominence must be a number, is a string (\"high\")\n"));
   EXPECT_THAT(waymark({"peaks", "dem.tif", "-o", "m.gpkg", "--tile-cells", "5"}).err,
-              StartsWith("error: --tile-cells must be in [64, 16384]"));
+              StartsWith("error: --tile-cells = 5 is outside [64, 16384]\n"));
   EXPECT_THAT(waymark({"--threads", "-2", "types"}).err, StartsWith("error: --threads must be 1 or more"));
   EXPECT_THAT(waymark({"types", "--config", "CACHE"}).err,
               StartsWith("error: --config takes KEY=VALUE, is 'CACHE'\n"));

@@ -43,9 +43,10 @@ std::string make_dem(const std::string& file, const MadeDem& dem) {
 }
 
 void damage(const std::string& file, double part) {
+  const auto size = static_cast<double>(std::filesystem::file_size(file));
   std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
-  bytes.seekp(static_cast<std::streamoff>(part * static_cast<double>(std::filesystem::file_size(file))));
-  bytes << std::string(2000, '\0');
+  bytes.seekp(static_cast<std::streamoff>(part * size));
+  bytes << std::string(static_cast<std::size_t>(0.1 * size), '\0');
 }
 
 MadeDem twin_peaks() {

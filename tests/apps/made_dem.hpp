@@ -19,7 +19,7 @@ struct MadeDem {
 };
 std::string make_dem(const std::string& file, const MadeDem& dem);
 
-/// Overwrites a stretch of the file, at `part` of its length, with zeros.
+/// Overwrites a tenth of the file, beginning at `part` of its length, with zeros.
 void damage(const std::string& file, double part);
 
 /// Two summits: 900 m, and 700 m behind a saddle of 400 m, 4 km apart.
