@@ -42,7 +42,7 @@ AsideFolder::AsideFolder(const fs::path& output) : folder_(folder_of(output)) {
   std::error_code ignored;
   if (!fs::is_directory(folder_, ignored))
     throw Error(ErrorCode::output, "cannot write " + output.filename().string() + ": its folder does not exist",
-                folder_.string(), "make the folder, or write somewhere else");
+                folder_.string(), "make the folder, or write elsewhere");
   std::string pattern = (folder_ / ".waymark-XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr) fail_output(output, system_reason(errno));
   path_ = pattern;
@@ -69,15 +69,15 @@ std::vector<fs::path> AsideFolder::publish() {
   return files;
 }
 
-void fail_output(const fs::path& output, const std::string& reason) {
+void fail_output(const fs::path& output, const std::string& reason, const std::string& hint) {
   std::error_code unknown;
   const fs::space_info space = fs::space(folder_of(output), unknown);
-  if (!unknown && space.available < kFullDisk)
+  if (!unknown && space.capacity > 0 && space.available < kFullDisk)  // /proc has no capacity
     throw Error(ErrorCode::output, fmt::format("cannot write {}: the disk is full", output.filename().string()),
                 fmt::format("{}: {} bytes free of {}", output.string(), space.available, space.capacity),
                 "free some space, or write to another disk; an older file is left as it was");
   throw Error(ErrorCode::output, fmt::format("cannot write {}: {}", output.filename().string(), reason),
-              output.string(), "check that the folder can be written to, or write somewhere else");
+              output.string(), hint);
 }
 
 void write_file(const fs::path& output, const std::string& content) {

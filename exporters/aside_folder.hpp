@@ -25,8 +25,9 @@ class AsideFolder {
 };
 
 /// Error{output} for a result that could not be written. `reason` is what the system or a library said; a full disk
-/// is recognised by itself, whatever the reason.
-[[noreturn]] void fail_output(const std::filesystem::path& output, const std::string& reason);
+/// is recognised by itself, whatever the reason and hint.
+[[noreturn]] void fail_output(const std::filesystem::path& output, const std::string& reason,
+                              const std::string& hint = "check that the folder can be written to, or write elsewhere");
 
 /// Writes one file aside, flushes and renames it. Throws Error{output}.
 void write_file(const std::filesystem::path& output, const std::string& content);

@@ -16,15 +16,12 @@ namespace waymark {
 
 std::vector<std::string> check_export(const VectorFormat& format, const std::string& path, const std::string& shown_as,
                                       const Crs& crs, std::int64_t landmarks) {
+  if (!format.can_be_read) return {};
   GdalMessages messages;
   const char* only[] = {format.driver.c_str(), nullptr};
   const std::unique_ptr<GDALDataset> dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, only, nullptr, nullptr));
-  if (!dataset) {
-    const bool readable = GetGDALDriverManager()->GetDriverByName(only[0])->GetMetadataItem(GDAL_DCAP_OPEN) != nullptr;
-    if (readable) fail_output(shown_as, messages.cause("it cannot be read again"));
-    return {};
-  }
+  if (!dataset) fail_output(shown_as, messages.cause("it cannot be read again"));
   std::int64_t found = 0;
   for (OGRLayer* layer : dataset->GetLayers()) found += layer->GetFeatureCount();
   if (found < landmarks)

@@ -6,10 +6,12 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "exporters/aside_folder.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 #include "exporters/place_text.hpp"
 
 namespace waymark {
@@ -17,30 +19,33 @@ namespace {
 
 /// A column and the field it is written to.
 struct Field {
-  LandmarkColumn column;
+  ExportColumn column;
   int index = 0;
 };
 
-OGRFieldType field_type(AttributeSpec::Kind kind) {
-  switch (kind) {
-    case AttributeSpec::Kind::real: return OFTReal;
-    case AttributeSpec::Kind::integer: return OFTInteger64;
-    case AttributeSpec::Kind::text: return OFTString;
-  }
-  return OFTString;
+/// Many formats have no 64-bit integers, or make texts of them: only values that need them get them.
+OGRFieldType field_type(const ExportColumn& column, const std::vector<Landmark>& landmarks) {
+  if (column.kind == AttributeSpec::Kind::real) return OFTReal;
+  if (column.kind == AttributeSpec::Kind::text) return OFTString;
+  const bool wide = std::any_of(landmarks.begin(), landmarks.end(), [&](const Landmark& landmark) {
+    const AttributeValue value = column.value(landmark);
+    const auto* integer = std::get_if<std::int64_t>(&value);
+    return integer != nullptr && *integer != static_cast<std::int32_t>(*integer);
+  });
+  return wide ? OFTInteger64 : OFTInteger;
 }
 
-LandmarkColumn coordinate(const char* name, Eigen::Index axis) {
+ExportColumn coordinate(const char* name, Eigen::Index axis) {
   return {name, "", "Position", AttributeSpec::Kind::real,
           [axis](const Landmark& l) { return AttributeValue(l.position.xyz[axis]); }};
 }
 
-LandmarkColumn text(const std::string& name, std::function<std::string(const Landmark&)> of) {
+ExportColumn text(const std::string& name, std::function<std::string(const Landmark&)> of) {
   return {name, "", "", AttributeSpec::Kind::text, [of](const Landmark& l) { return AttributeValue(of(l)); }};
 }
 
-std::vector<LandmarkColumn> columns_of(const VectorFormat& format, const LandmarkType& type) {
-  std::vector<LandmarkColumn> columns = landmark_columns(type);
+std::vector<ExportColumn> columns_of(const VectorFormat& format, const LandmarkType& type) {
+  std::vector<ExportColumn> columns = export_columns(type);
   if (format.is_table)
     columns.insert(columns.begin() + 1, {coordinate("x", 0), coordinate("y", 1), coordinate("z", 2)});
   if (!format.place_name.empty())
@@ -57,6 +62,7 @@ CPLStringList layer_options(const VectorFormat& format, const Crs& crs) {
     options.SetNameValue("ID_FIELD", "uid");
     options.SetNameValue("SIGNIFICANT_FIGURES", "12");
   }
+  if (format.driver == "CSV") options.SetNameValue("STRING_QUOTING", "IF_NEEDED");  // or integers get quotes
   if (format.driver == "ESRI Shapefile") options.SetNameValue("ENCODING", "UTF-8");
   return options;
 }
@@ -98,17 +104,20 @@ struct OgrOutput::File {
   std::unique_ptr<GDALDataset> dataset;
   std::vector<std::string> warnings;
 
-  [[noreturn]] void fail(const std::string& otherwise) { fail_output(shown_as, messages.cause(otherwise)); }
+  [[noreturn]] void fail(const std::string& otherwise) {
+    fail_output(shown_as, messages.cause(otherwise),
+                "if the folder can be written to, the format is at fault: try .gpkg, .geojson or .csv");
+  }
 
-  std::vector<Field> add_fields(OGRLayer& layer, const LandmarkType& type) {
+  std::vector<Field> add_fields(OGRLayer& layer, const LandmarkType& type, const std::vector<Landmark>& landmarks) {
     std::vector<std::string> names, refused, shortened;
     const auto columns = columns_of(format, type);
-    for (const LandmarkColumn& column : columns) names.push_back(column.name);
+    for (const ExportColumn& column : columns) names.push_back(column.name);
     const auto fitting = fitting_names(format, names);
     std::vector<Field> fields;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const GdalMessages quiet;  // a format that lacks a column is warned of below
-      OGRFieldDefn definition(fitting[i].c_str(), field_type(columns[i].kind));
+      OGRFieldDefn definition(fitting[i].c_str(), field_type(columns[i], landmarks));
       int index = layer.GetLayerDefn()->GetFieldIndex(fitting[i].c_str());
       if (index < 0 && layer.CreateField(&definition) == OGRERR_NONE)
         index = layer.GetLayerDefn()->GetFieldIndex(fitting[i].c_str());
@@ -145,8 +154,8 @@ void OgrOutput::add_layer(const LandmarkType& type, const std::vector<Landmark>&
   OGRLayer* layer = file.dataset->CreateLayer(type.name.c_str(), srs.get(),
                                               file.format.is_table ? wkbNone : wkbPoint25D, options.List());
   if (layer == nullptr) file.fail(file.format.driver + " could not make a layer of points");
-  const std::vector<Field> fields = file.add_fields(*layer, type);
-  const std::string style = fmt::format("SYMBOL(c:{})", type.colour);
+  const std::vector<Field> fields = file.add_fields(*layer, type, landmarks);
+  const std::string style = fmt::format("SYMBOL(s:0.8,c:{})", type.colour);  // GDAL 3.6's LIBKML needs the size
   const bool one_transaction = layer->StartTransaction() == OGRERR_NONE;
   for (const Landmark& landmark : landmarks) {
     OGRFeature feature(layer->GetLayerDefn());

@@ -16,7 +16,7 @@ class OgrOutput {
   OgrOutput(const VectorFormat& format, const std::string& path, std::string shown_as);
   ~OgrOutput();
 
-  /// Writes a layer of points with the columns of landmark_columns(). Formats with a name and a description for
+  /// Writes a layer of points with the columns of export_columns(). Formats with a name and a description for
   /// every place (KML, GPX, GeoRSS) get them. Throws Error{output} for what cannot be written.
   void add_layer(const LandmarkType& type, const std::vector<Landmark>& landmarks, const Crs& crs);
 

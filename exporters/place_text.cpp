@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 #include "exporters/wording.hpp"
 
 namespace waymark {

@@ -19,6 +19,7 @@ namespace {
 
 // Formats whose definition says WGS 84. GDAL has no flag for it.
 constexpr std::array kOnlyWgs84 = {"KML", "LIBKML", "GPX", "GeoRSS", "GPSBabel", "GeoJSONSeq"};  // RFC 8142
+constexpr std::array kOneLayer = {"DXF", "DGN"};  // GDAL says they hold several
 constexpr std::size_t kDbfName = 10;  // dBASE III field names
 
 bool has(GDALDriver& driver, const char* key) { return driver.GetMetadataItem(key) != nullptr; }
@@ -38,6 +39,8 @@ std::vector<GDALDriver*> writers() {
   }
   // An extension that several drivers claim belongs to the one that does nothing but vectors: .xml is GML, not PDS4.
   std::stable_partition(found.begin(), found.end(), [](GDALDriver* d) { return !has(*d, GDAL_DCAP_RASTER); });
+  // LIBKML's time grows with the square of the places (GDAL 3.6: 70 s for 2000): .kml goes to the plain KML driver.
+  std::stable_partition(found.begin(), found.end(), [](GDALDriver* d) { return !EQUAL(d->GetDescription(), "LIBKML"); });
   return found;
 }
 
@@ -99,13 +102,16 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   const auto all = writers();
   GDALDriver& driver = driver_name.empty() ? driver_for(out, all) : driver_called(driver_name, all);
   VectorFormat format{.driver = driver.GetDescription()};
-  const bool only_wgs84 = std::find(kOnlyWgs84.begin(), kOnlyWgs84.end(), format.driver) != kOnlyWgs84.end();
+  const auto is_in = [&](const auto& names) {
+    return std::find(names.begin(), names.end(), format.driver) != names.end();
+  };
   format.is_file = !has(driver, GDAL_DMD_CONNECTION_PREFIX) || has(driver, GDAL_DMD_EXTENSIONS);
-  format.one_layer = !has(driver, GDAL_DCAP_MULTIPLE_VECTOR_LAYERS);
+  format.one_layer = !has(driver, GDAL_DCAP_MULTIPLE_VECTOR_LAYERS) || is_in(kOneLayer);
+  format.can_be_read = has(driver, GDAL_DCAP_OPEN) && format.driver != "MVT";  // a tree of tiles
   format.is_table = has(driver, GDAL_DCAP_NONSPATIAL) || format.driver == "CSV";
-  format.only_wgs84 = only_wgs84;
-  format.earth_only = only_wgs84 || format.driver == "GeoJSON";
-  if (format.driver.ends_with("KML")) format.place_name = "name", format.place_description = "description";
+  format.only_wgs84 = is_in(kOnlyWgs84);
+  format.earth_only = format.only_wgs84 || format.driver == "GeoJSON";
+  if (format.driver.ends_with("KML")) format.place_name = "Name", format.place_description = "Description";
   if (format.driver == "GPX") format.place_name = "name", format.place_description = "desc";
   if (format.driver == "GeoRSS") format.place_name = "title", format.place_description = "description";
   format.longest_name = format.driver == "ESRI Shapefile" ? kDbfName : 0;

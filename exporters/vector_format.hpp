@@ -10,6 +10,7 @@ struct VectorFormat {
   std::string driver;               ///< OGR's short name
   bool is_file = true;              ///< false: a database, written in place
   bool one_layer = false;           ///< a file holds the landmarks of one type only
+  bool can_be_read = true;          ///< by this GDAL, as one file: what is written can be checked
   bool is_table = false;            ///< no geometry: positions become columns x, y, z in the CRS of the export
   bool earth_only = false;          ///< means longitude and latitude on WGS 84 by its definition
   bool only_wgs84 = false;          ///< and cannot say otherwise

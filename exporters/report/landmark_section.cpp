@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <limits>
 
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/wording.hpp"
 

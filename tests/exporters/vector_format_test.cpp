@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 TEST(VectorFormat, FollowsTheExtension) {
   EXPECT_EQ(vector_format("a/b.geojson", "").driver, "GeoJSON");
   EXPECT_EQ(vector_format("b.GPKG", "").driver, "GPKG");
-  EXPECT_EQ(vector_format("b.kml", "").driver, "LIBKML");
+  EXPECT_EQ(vector_format("b.kml", "").driver, "KML");
   EXPECT_EQ(vector_format("b.shp", "").driver, "ESRI Shapefile");
   EXPECT_EQ(vector_format("b.fgb", "").driver, "FlatGeobuf");
   EXPECT_EQ(vector_format("b.xml", "").driver, "GML");  // and not PDS4, a raster format
@@ -65,7 +65,7 @@ TEST(OutputCrs, IsTheMapsUnlessTheFormatMeansAnother) {
 TEST(OutputCrs, KmlOnMarsSaysWhatKeepsTheCrs) {
   const std::string message = error_of(
       [] { output_crs(vector_format("b.kml", ""), Crs::from_text("IAU_2015:49900"), "", "mars.gpkg"); });
-  EXPECT_THAT(message, HasSubstr("LIBKML holds positions on Earth only; this map is on Mars"));
+  EXPECT_THAT(message, HasSubstr("KML holds positions on Earth only; this map is on Mars"));
   EXPECT_THAT(message, HasSubstr("mars.gpkg: IAU_2015:49900"));
   EXPECT_THAT(message, HasSubstr("write .gpkg, .fgb or .shp"));
 }
@@ -87,7 +87,7 @@ TEST(OutputCrs, KmlInMetresIsRefused) {
   EXPECT_THAT(error_of([] {
                 output_crs(vector_format("b.kml", ""), Crs::from_text("EPSG:4326"), "EPSG:32719", "map.gpkg");
               }),
-              HasSubstr("LIBKML holds EPSG:4326 only, not EPSG:32719\n  --crs EPSG:32719\n  leave out --crs"));
+              HasSubstr("KML holds EPSG:4326 only, not EPSG:32719\n  --crs EPSG:32719\n  leave out --crs"));
 }
 
 TEST(FittingNames, KeepShortEndingsAndStayUnique) {

@@ -9,15 +9,15 @@
 namespace waymark {
 
 /// One column of a table of landmarks, named as in the map.
-struct LandmarkColumn {
+struct ExportColumn {
   std::string name, unit, summary;
   AttributeSpec::Kind kind = AttributeSpec::Kind::real;
   std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate where the landmark has none
 };
 
-/// The columns of a type without the geometry: uid; per feature its value, spread (`_sd`, standard deviation) and
-/// confidence (`_q`); the attributes; then counts, qualities and the covariance (square metres).
-std::vector<LandmarkColumn> landmark_columns(const LandmarkType& type);
+/// The columns of a type without the geometry, in the order of the map's table: uid; per feature its value, spread
+/// (`_sd`, standard deviation) and confidence (`_q`); counts, qualities, covariance (square metres); the attributes.
+std::vector<ExportColumn> export_columns(const LandmarkType& type);
 
 /// Landmark quality (eq. 8) with equal weights; absent where nothing is known about it.
 std::optional<double> equal_weight_quality(const Landmark& landmark);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/landmark_columns.hpp"
+#include "exporters/export_columns.hpp"
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ AttributeValue or_null(std::optional<double> value) {
   return value && std::isfinite(*value) ? AttributeValue(*value) : AttributeValue();
 }
 
-void add_feature(std::vector<LandmarkColumn>& columns, const FeatureSpec& feature, std::size_t i) {
+void add_feature(std::vector<ExportColumn>& columns, const FeatureSpec& feature, std::size_t i) {
   const auto known = [i](const Landmark& l) { return i < l.features.size() && l.features[i].known(); };
   columns.push_back({feature.name, feature.unit, feature.summary, Kind::real, [=](const Landmark& l) {
                        return known(l) ? or_null(l.features[i].value) : AttributeValue();
@@ -29,20 +29,20 @@ void add_feature(std::vector<LandmarkColumn>& columns, const FeatureSpec& featur
                      }});
 }
 
-void add_attribute(std::vector<LandmarkColumn>& columns, const AttributeSpec& attribute, std::size_t i) {
+void add_attribute(std::vector<ExportColumn>& columns, const AttributeSpec& attribute, std::size_t i) {
   columns.push_back({attribute.name, attribute.unit, attribute.summary, attribute.kind, [i](const Landmark& l) {
                        return i < l.attributes.size() ? l.attributes[i] : AttributeValue();
                      }});
 }
 
-void add_count(std::vector<LandmarkColumn>& columns, const char* name, const char* summary,
+void add_count(std::vector<ExportColumn>& columns, const char* name, const char* summary,
                int (*count)(const Landmark&)) {
   columns.push_back({name, "", summary, Kind::integer, [count](const Landmark& l) {
                        return AttributeValue(static_cast<std::int64_t>(count(l)));
                      }});
 }
 
-void add_real(std::vector<LandmarkColumn>& columns, const char* name, const char* unit, const char* summary,
+void add_real(std::vector<ExportColumn>& columns, const char* name, const char* unit, const char* summary,
               std::optional<double> (*value)(const Landmark&)) {
   columns.push_back({name, unit, summary, Kind::real, [value](const Landmark& l) { return or_null(value(l)); }});
 }
@@ -53,12 +53,11 @@ std::optional<double> multiplicity(const Landmark& l) {
 
 }  // namespace
 
-std::vector<LandmarkColumn> landmark_columns(const LandmarkType& type) {
+std::vector<ExportColumn> export_columns(const LandmarkType& type) {
   using Real = std::optional<double>;
-  std::vector<LandmarkColumn> columns;
+  std::vector<ExportColumn> columns;
   columns.push_back({"uid", "", "Stable name", Kind::text, [](const Landmark& l) { return AttributeValue(l.uid); }});
   for (std::size_t i = 0; i < type.features.size(); ++i) add_feature(columns, type.features[i], i);
-  for (std::size_t i = 0; i < type.attributes.size(); ++i) add_attribute(columns, type.attributes[i], i);
   add_count(columns, "seen", "Images or surveys that detected it", [](const Landmark& l) { return l.quality.seen; });
   add_count(columns, "visible", "Images or surveys that could have", [](const Landmark& l) { return l.quality.visible; });
   add_real(columns, "q_multiplicity", "", "Share of them that did", multiplicity);
@@ -69,6 +68,7 @@ std::vector<LandmarkColumn> landmark_columns(const LandmarkType& type) {
   add_real(columns, "cov_xy", "m2", "Covariance east-north", [](const Landmark& l) { return Real(l.covariance(0, 1)); });
   add_real(columns, "var_z", "m2", "Variance of the height", [](const Landmark& l) { return Real(l.covariance(2, 2)); });
   add_count(columns, "observations", "Observations merged into it", [](const Landmark& l) { return l.observations; });
+  for (std::size_t i = 0; i < type.attributes.size(); ++i) add_attribute(columns, type.attributes[i], i);
   return columns;
 }
 

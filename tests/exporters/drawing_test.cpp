@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include "exporters/report/histogram.hpp"
+#include "exporters/report/map_markers.hpp"
+#include "exporters/report/map_view.hpp"
+#include "small_map.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST(Histogram, CountsEveryValueOnce) {
+  const Histogram h = histogram_of({0, 1, 2, 3, 4, 5, 6}, Scale::interval);
+  EXPECT_THAT(h.counts, ElementsAre(1, 1, 1, 1, 1, 2));  // the last bin includes its upper edge
+  EXPECT_FALSE(h.logarithmic);
+}
+
+TEST(Histogram, WideRatiosAreLogarithmic) {
+  EXPECT_TRUE(histogram_of({20, 50, 6000}, Scale::ratio).logarithmic);
+  EXPECT_FALSE(histogram_of({20, 50, 500}, Scale::ratio).logarithmic);
+  EXPECT_FALSE(histogram_of({0, 50, 6000}, Scale::ratio).logarithmic);
+  EXPECT_FALSE(histogram_of({20, 50, 6000}, Scale::interval).logarithmic);
+}
+
+TEST(Histogram, EqualValuesAreOneBin) { EXPECT_THAT(histogram_of({5, 5, 5}, Scale::ratio).counts, ElementsAre(3)); }
+
+TEST(RoundLength, IsOneTwoOrFive) {
+  EXPECT_EQ(round_length(9.9), 5);
+  EXPECT_EQ(round_length(4.9), 2);
+  EXPECT_EQ(round_length(1900), 1000);
+  EXPECT_DOUBLE_EQ(round_length(0.2), 0.2);
+}
+
+TEST(MapView, KeepsTheProportionsOfTheGround) {
+  const MapView view = view_of(Crs::from_text("EPSG:4326"), {10, 59, 12, 61});  // cos 60 = 1/2
+  EXPECT_NEAR(view.width, 500, 1e-9);
+  EXPECT_NEAR(view.height, 1000, 1e-9);
+  EXPECT_NEAR(view.metres_per_unit(), 222.39, 0.01);
+}
+
+TEST(MapView, LongitudesComeRound) {
+  const MapView view = view_of(Crs::from_text("EPSG:4326"), {179, -1, 181, 1});
+  EXPECT_EQ(view.unwrapped(-179.5), 180.5);
+}
+
+TEST(PositionText, SpeaksTheLanguageOfTheCrs) {
+  EXPECT_EQ(position_text(Crs::from_text("EPSG:4326"), 289.9875, -32.65), "32.6500\u00b0\u00a0S 70.0125\u00b0\u00a0W");
+  EXPECT_EQ(position_text(Crs::from_text("IAU_2015:49900"), 226.2, 18.65), "18.6500\u00b0\u00a0N 226.2000\u00b0\u00a0E");
+  EXPECT_EQ(position_text(Crs::local(), 1, 2), "x\u00a01.00 y\u00a02.00");
+}
+
+TEST(NorthArrow, TurnsWithThePolarMap) {
+  // South of the pole along 90 E in north polar stereographic (EPSG:3413, central meridian 45 W): up is not north.
+  const MapView view = view_of(Crs::from_text("EPSG:3413"), {999000, -1000, 1001000, 1000});
+  EXPECT_THAT(svg_north_arrow(view), HasSubstr("rotate(-90.0)"));
+}
+
+TEST(DrawMarkers, ForemostComesLastAndLabelled) {
+  const MapContents map = test::three_summits("EPSG:4326", -70, -32, 0.1);
+  const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
+  const MapView view = view_of(map.crs, {-70.2, -32.2, -69.8, -31.8});
+  const MapMarkers markers = draw_markers(view, {section});
+  EXPECT_EQ(markers.drawn, 3u);
+  EXPECT_GT(markers.svg.find("mt-one"), markers.svg.find("mt-three"));
+  EXPECT_THAT(markers.svg, HasSubstr(">3000</text>"));
+}
+
+}  // namespace
+}  // namespace waymark
