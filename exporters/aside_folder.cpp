@@ -69,13 +69,19 @@ std::vector<fs::path> AsideFolder::publish() {
   return files;
 }
 
-void fail_output(const fs::path& output, const std::string& reason, const std::string& hint) {
+bool disk_is_full(const fs::path& output) {
   std::error_code unknown;
   const fs::space_info space = fs::space(folder_of(output), unknown);
-  if (!unknown && space.capacity > 0 && space.available < kFullDisk)  // /proc has no capacity
-    throw Error(ErrorCode::output, fmt::format("cannot write {}: the disk is full", output.filename().string()),
-                fmt::format("{}: {} bytes free of {}", output.string(), space.available, space.capacity),
-                "free some space, or write to another disk; an older file is left as it was");
+  return !unknown && space.capacity > 0 && space.available < kFullDisk;  // /proc has no capacity
+}
+
+void fail_full_disk(const fs::path& output) {
+  throw Error(ErrorCode::output, fmt::format("cannot write {}: the disk is full", output.filename().string()),
+              output.string(), "free some space, or write to another disk; an older file is left as it was");
+}
+
+void fail_output(const fs::path& output, const std::string& reason, const std::string& hint) {
+  if (disk_is_full(output)) fail_full_disk(output);
   throw Error(ErrorCode::output, fmt::format("cannot write {}: {}", output.filename().string(), reason),
               output.string(), hint);
 }

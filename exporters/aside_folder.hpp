@@ -24,6 +24,10 @@ class AsideFolder {
   std::filesystem::path folder_, path_;
 };
 
+/// So little space is left where `output` would be that this is the cause of whatever failed.
+bool disk_is_full(const std::filesystem::path& output);
+[[noreturn]] void fail_full_disk(const std::filesystem::path& output);
+
 /// Error{output} for a result that could not be written. `reason` is what the system or a library said; a full disk
 /// is recognised by itself, whatever the reason and hint.
 [[noreturn]] void fail_output(const std::filesystem::path& output, const std::string& reason,

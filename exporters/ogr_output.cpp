@@ -173,7 +173,9 @@ void OgrOutput::add_layer(const LandmarkType& type, const std::vector<Landmark>&
 std::vector<std::string> OgrOutput::close() {
   File& file = *file_;
   file.dataset->FlushCache();
+  const bool full = disk_is_full(file.shown_as);  // closing may remove the temporary file that filled it
   file.dataset.reset();
+  if (!file.messages.failures().empty() && full) fail_full_disk(file.shown_as);
   if (!file.messages.failures().empty()) file.fail("closing it failed");
   std::vector<std::string> warnings = file.warnings;
   for (const std::string& said : file.messages.warnings()) warnings.push_back(file.format.driver + ": " + said);
