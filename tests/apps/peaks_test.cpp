@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -170,6 +171,19 @@ TEST_F(Peaks, ValidMapExportsAndReports) {
   EXPECT_EQ(waymark({"export", map, geojson, "--overwrite", "-of", "GeoJSON"}).code, 0);
   EXPECT_EQ(waymark({"report", map, "-o", folder_ / "report.html"}).code, 0);
   EXPECT_THAT(text_of(folder_ / "report.html"), HasSubstr("mountain_top"));
+}
+
+TEST_F(Peaks, ValidateNamesTheFaultsAndFails) {
+  table({twins()});
+  const std::string map = folder_ / "map.gpkg";
+  sqlite3* file = nullptr;
+  ASSERT_EQ(sqlite3_open(map.c_str(), &file), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(file, "DELETE FROM rtree_mountain_top_geom WHERE id = 1", nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(file);
+  const Outcome said = waymark({"validate", map});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.out, testing::StartsWith("rtree.row\tmountain_top\t1\t"));
 }
 
 }  // namespace

@@ -111,6 +111,20 @@ TEST_F(Query, GeoJsonIsLongitudeAndLatitude) {
   EXPECT_EQ(top["id"], top["properties"]["uid"]);
 }
 
+TEST_F(Query, GeoJsonIsOfEarthOnly) {
+  const TempFolder folder;
+  MadeDem mars = twin_peaks();
+  mars.crs = "IAU_2015:49900";
+  mars.geotransform = {137, 0.01, 0, -4, 0, -0.01};
+  const std::string map = folder / "mars.gpkg";
+  ASSERT_EQ(waymark({"peaks", make_dem(folder / "mars.tif", mars), "-o", map, "--base", "lowest"}).code, 0);
+  const Outcome said = waymark({"query", map, "--format", "geojson"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.err, HasSubstr("GeoJSON holds positions on Earth only; this map is on Mars"));
+  EXPECT_THAT(waymark({"query", map, "--crs", "EPSG:4326"}).err, HasSubstr("Mars"));
+  EXPECT_THAT(waymark({"query", map}).out, HasSubstr("137.015000  -4.015000"));
+}
+
 TEST_F(Query, AMapThatIsNotThere) {
   const Outcome said = waymark({"query", "/no/such/map.gpkg"});
   EXPECT_EQ(said.code, 1);
