@@ -45,8 +45,9 @@ std::string facts(const std::vector<LandmarkSection>& sections, const std::vecto
 }
 
 std::string place_of(const Crs& crs) {
-  return crs.kind() == CrsKind::local ? "Local metres, on no body"
-                                      : fmt::format("{} \u00b7 {} ({})", crs.body().name, crs.name(), crs.id());
+  if (crs.kind() == CrsKind::local) return "Local metres, on no body";
+  const std::string code = crs.authority().empty() ? "" : " (" + crs.id() + ")";
+  return crs.body().name + " \u00b7 " + crs.name() + code;
 }
 
 std::string section_html(const LandmarkSection& section, const Crs& crs, std::int64_t top) {

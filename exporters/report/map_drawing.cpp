@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Room around the frame for coordinates: left, top, right, bottom.
-constexpr double kLeft = 78, kTop = 8, kRight = 14, kBottom = 34;
+constexpr double kLeft = 78, kTop = 8, kRight = 26, kBottom = 34;
 
 std::string tint_legend(const HeightTint& tint) {
   std::string stops;

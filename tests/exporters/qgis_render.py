@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Opens a map in headless QGIS, checks what a user would see, and writes it as a picture.
+
+    QT_QPA_PLATFORM=offscreen python3 qgis_render.py MAP.gpkg PICTURE.png [DEM]
+
+Checks that every landmark layer is valid, has a valid CRS and got the style stored in the map.
+Exit codes: 0 done, 1 a check failed, 77 QGIS is not installed.
+"""
+
+import os
+import sys
+
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+try:
+    from osgeo import ogr
+    from qgis.core import (QgsApplication, QgsHillshadeRenderer, QgsMapRendererSequentialJob, QgsMapSettings,
+                           QgsRasterLayer, QgsSingleSymbolRenderer, QgsVectorLayer)
+    from qgis.PyQt.QtCore import QSize
+    from qgis.PyQt.QtGui import QColor
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+
+def layer_names(path):
+    """Tables with a style of their own: the landmark types."""
+    source = ogr.Open(path)
+    styles = source.ExecuteSQL("SELECT DISTINCT f_table_name FROM layer_styles ORDER BY 1")
+    names = [row.GetField(0) for row in styles]
+    source.ReleaseResultSet(styles)
+    return [name for name in names if name not in ("landmark", "image")]
+
+
+def complaints(layer):
+    """What a user would find wrong with a layer on opening it."""
+    if not layer.isValid():
+        return ["the layer is not valid"]
+    found = []
+    if not layer.crs().isValid():
+        found.append("its CRS is not valid")
+    renderer = layer.renderer()
+    if isinstance(renderer, QgsSingleSymbolRenderer) and renderer.symbol().symbolLayer(0).layerType() == "SimpleMarker" \
+            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled():
+        found.append("the style of the map is not applied")
+    return found
+
+
+def shaded_dem(path):
+    layer = QgsRasterLayer(path, "dem")
+    layer.setRenderer(QgsHillshadeRenderer(layer.dataProvider(), 1, 315, 45))
+    layer.renderer().setZFactor(1 / 111000 if layer.crs().isGeographic() else 1)
+    layer.renderer().setOpacity(0.55)
+    return layer
+
+
+def render(layers, picture):
+    settings = QgsMapSettings()
+    settings.setLayers(layers)
+    settings.setDestinationCrs(layers[-1].crs())
+    settings.setBackgroundColor(QColor("#f4f1ea"))
+    extent = layers[-1].extent()
+    extent.scale(1.05)
+    settings.setExtent(extent)
+    settings.setOutputSize(QSize(900, int(900 * min(1.4, max(0.5, extent.height() / extent.width())))))
+    job = QgsMapRendererSequentialJob(settings)
+    job.start()
+    job.waitForFinished()
+    return job.renderedImage().save(picture)
+
+
+def main(path, picture, dem=None):
+    application = QgsApplication([], False)
+    application.initQgis()
+    failed = False
+    layers = []
+    for name in layer_names(path):
+        layer = QgsVectorLayer(f"{path}|layername={name}", name, "ogr")
+        for complaint in complaints(layer):
+            print(f"{name}: {complaint}")
+            failed = True
+        print(f"{name}: {layer.featureCount()} landmarks, {layer.crs().authid() or layer.crs().description()}, "
+              f"{layer.renderer().type()}, labels {'on' if layer.labelsEnabled() else 'off'}")
+        if layer.isValid() and layer.featureCount() > 0:
+            layers.append(layer)
+    if dem:
+        layers.append(shaded_dem(dem))
+    if not layers or not render(layers, picture):
+        print("nothing was drawn")
+        failed = True
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.stdout.flush()
+    code = main(*sys.argv[1:4])
+    sys.stdout.flush()
+    os._exit(code)  # QGIS 3.22 crashes while it takes itself down under Python

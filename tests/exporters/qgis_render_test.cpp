@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+
+#include "small_map.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr int kNoQgis = 77;
+
+/// QGIS opens a map with a valid CRS and the map's own style; see qgis_render.py.
+void expect_qgis_draws(const std::filesystem::path& map, const std::filesystem::path& picture) {
+  const std::string script = WAYMARK_SOURCE_DIR "/tests/exporters/qgis_render.py";
+  const std::string log = picture.string() + ".log";
+  const std::string command =
+      "/usr/bin/python3 '" + script + "' '" + map.string() + "' '" + picture.string() + "' > '" + log + "' 2>&1";
+  const int status = std::system(command.c_str());
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (code == kNoQgis || code == 127) GTEST_SKIP() << "QGIS is not installed (python3-qgis)";
+  EXPECT_EQ(code, 0) << test::content_of(log);
+  EXPECT_EQ(test::content_of(picture).substr(1, 3), "PNG");
+}
+
+TEST(QgisRender, DrawsAnEarthMapWithItsStyle) {
+  const test::TemporaryFolder folder;
+  test::write_two_type_map(folder / "map.gpkg");
+  expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
+}
+
+TEST(QgisRender, KnowsThePlanetaryCrs) {
+  const test::TemporaryFolder folder;
+  test::write_mars_map(folder / "map.gpkg");
+  expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
+}
+
+}  // namespace
+}  // namespace waymark
