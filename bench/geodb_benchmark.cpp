@@ -73,7 +73,8 @@ void NearestTen(benchmark::State& state) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> place(0, kSide);
   for (auto _ : state)
-    benchmark::DoNotOptimize(map.query({.nearest = MapQuery::NearestK{400'000 + place(random), 5'000'000 + place(random), 10}}));
+    benchmark::DoNotOptimize(
+        map.query({.nearest = MapQuery::NearestK{400'000 + place(random), 5'000'000 + place(random), 10}}));
 }
 BENCHMARK(NearestTen)->Unit(benchmark::kMicrosecond);
 

@@ -23,8 +23,9 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 [[noreturn]] void cannot_write(const std::filesystem::path& file, int cause) {
   const bool full = cause == ENOSPC || cause == EDQUOT;
-  throw Error(ErrorCode::output, full ? "the disk is full" : std::string("cannot write: ") + std::strerror(cause),
-              file.string(), full ? "free some space, or write to another disk" : "check the folder and its permissions");
+  throw Error(ErrorCode::output,
+              full ? "the disk is full" : std::string("cannot write: ") + std::strerror(cause), file.string(),
+              full ? "free some space, or write to another disk" : "check the folder and its permissions");
 }
 
 // Only a file whose writer is dead can be locked.
@@ -55,7 +56,8 @@ AsideFile::AsideFile(std::filesystem::path final_path) : final_path_(std::move(f
   const std::filesystem::path folder = folder_of(final_path_);
   const std::string prefix = "." + final_path_.filename().string() + ".";
   remove_abandoned(folder, prefix);
-  path_ = folder / (prefix + std::to_string(::getpid()) + "-" + std::to_string(made++) + std::string(kSuffix));
+  path_ =
+      folder / (prefix + std::to_string(::getpid()) + "-" + std::to_string(made++) + std::string(kSuffix));
   lock_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (lock_ < 0) cannot_write(final_path_, errno);
   ::flock(lock_, LOCK_EX | LOCK_NB);

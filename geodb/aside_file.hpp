@@ -3,9 +3,9 @@
 #include <filesystem>
 namespace waymark {
 
-/// A file written beside its final place and moved there when it is whole: readers see the old file or the new one,
-/// never a part. Without keep() it vanishes. What a killed process left behind is removed by the next one that
-/// writes the same file: a living writer holds a lock (flock) on its own.
+/// A file written beside its final place and moved there when it is whole: readers see the old file or the
+/// new one, never a part. Without keep() it vanishes. What a killed process left behind is removed by the
+/// next one that writes the same file: a living writer holds a lock (flock) on its own.
 class AsideFile {
  public:
   /// Makes an empty file ".<name>.<process>-<number>.part" in the folder of `final_path`.

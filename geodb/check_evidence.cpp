@@ -36,7 +36,8 @@ void check_evidence(const sqlite::Database& database, const TypeRegistry& types,
             "SELECT id, 'type ' || type || ' is not a type of the map' FROM observation"
             "  WHERE type NOT IN (SELECT name FROM waymark_type)");
   find_rows(database, findings, "evidence.weight", "observation",
-            "SELECT id, 'weight ' || weight || ' is outside (0, 1]' FROM observation WHERE NOT (weight > 0 AND weight <= 1)");
+            "SELECT id, 'weight ' || weight || ' is outside (0, 1]' FROM observation WHERE NOT (weight > 0 "
+            "AND weight <= 1)");
   find_rows(database, findings, "evidence.image", "observation",
             "SELECT id, 'has a pixel in ' || source || ', which is no image of the map' FROM observation"
             "  WHERE pixel_x NOT NULL AND source NOT IN (SELECT name FROM image)");

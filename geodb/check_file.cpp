@@ -20,7 +20,10 @@ void check_runs(const sqlite::Database& database, FindingList& findings) {
   while (row.step()) {
     for (const int column : {1, 2, 3})
       if (!nlohmann::json::accept(row.text(column)))
-        findings.add("run.json", "run", row.integer(0), fmt::format("column {} is not JSON", column == 1 ? "job" : column == 2 ? "inputs" : "report"));
+        findings.add("run.json", "run", row.integer(0),
+                     fmt::format("column {} is not JSON", column == 1   ? "job"
+                                                          : column == 2 ? "inputs"
+                                                                        : "report"));
     const auto inputs = nlohmann::json::parse(row.text(2), nullptr, /*allow_exceptions=*/false);
     for (const auto& input : inputs)
       if (!input.is_object() || !is_sha256(input.value("sha256", "")))
@@ -48,15 +51,18 @@ void find_rows(const sqlite::Database& database, FindingList& findings, const st
                const std::string& table, const std::string& sql) {
   sqlite::Statement row = database.prepare(sql);
   while (row.step())
-    findings.add(code, table, row.null(0) ? std::nullopt : std::optional(row.integer(0)), std::string(row.text(1)));
+    findings.add(code, table, row.null(0) ? std::nullopt : std::optional(row.integer(0)),
+                 std::string(row.text(1)));
 }
 
 void check_file(const sqlite::Database& database, const TypeRegistry& types, FindingList& findings) {
   sqlite::Statement integrity = database.prepare("PRAGMA quick_check");
   while (integrity.step())
-    if (integrity.text(0) != "ok") findings.add("file.damaged", "", std::nullopt, std::string(integrity.text(0)));
+    if (integrity.text(0) != "ok")
+      findings.add("file.damaged", "", std::nullopt, std::string(integrity.text(0)));
   find_rows(database, findings, "file.foreign_key", "",
-            "SELECT rowid, 'in table ' || \"table\" || ' refers to a missing row of ' || parent FROM pragma_foreign_key_check");
+            "SELECT rowid, 'in table ' || \"table\" || ' refers to a missing row of ' || parent FROM "
+            "pragma_foreign_key_check");
   if (!database.has_table("landmark") && types.size() > 0)
     findings.add("view.missing", "landmark", std::nullopt, "the view over all types is missing");
   for (const auto& type : types) check_layer(database, type.name, findings);

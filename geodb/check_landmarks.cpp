@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // of quotients and sums that are stored and computed anew
 
-bool is_share(double value) { return value >= 0 && value <= 1; }
+bool is_share(double value) {
+  return value >= 0 && value <= 1;
+}
 
 /// Checks one row after the other; findings are named after it.
 class RowCheck {
@@ -34,7 +36,8 @@ class RowCheck {
     check_geometry(LandmarkLayout::geometry(row));
     if (LandmarkLayout::uid(row).empty()) find("uid.empty", "the landmark has no uid");
     const auto& features = layout_->type().features;
-    for (std::size_t i = 0; i < features.size(); ++i) check_feature(row, features[i], 3 + 3 * static_cast<int>(i));
+    for (std::size_t i = 0; i < features.size(); ++i)
+      check_feature(row, features[i], 3 + 3 * static_cast<int>(i));
     check_quality(row);
     check_covariance(row);
     check_bounds(row);
@@ -47,7 +50,8 @@ class RowCheck {
 
   void check_geometry(std::span<const std::byte> blob) {
     const auto point = point_of(blob);
-    if (!point || !has_z(blob) || !point->allFinite()) return find("geometry.bad", "the geometry is not a PointZ");
+    if (!point || !has_z(blob) || !point->allFinite())
+      return find("geometry.bad", "the geometry is not a PointZ");
     if (srs_id_of(blob) != srs_id_)
       find("geometry.crs", fmt::format("the geometry has srs_id {}, the map {}", *srs_id_of(blob), srs_id_));
   }
@@ -55,33 +59,44 @@ class RowCheck {
   void check_feature(const sqlite::Statement& row, const FeatureSpec& spec, int column) {
     const auto value = row.optional_real(column), deviation = row.optional_real(column + 1),
                confidence = row.optional_real(column + 2);
-    if (!value && (deviation || confidence)) find("feature.spread", spec.name + " is unknown, but has a spread or a confidence");
+    if (!value && (deviation || confidence))
+      find("feature.spread", spec.name + " is unknown, but has a spread or a confidence");
     if (value && !(spec.lowest <= *value && *value <= spec.highest))
-      find("feature.range", fmt::format("{} = {} is outside [{}, {}] {}", spec.name, *value, spec.lowest, spec.highest, spec.unit));
-    if (deviation && !(*deviation >= 0)) find("feature.spread", fmt::format("{}_sd = {} is negative", spec.name, *deviation));
-    if (confidence && !is_share(*confidence)) find("quality.range", fmt::format("{}_q = {} is outside [0, 1]", spec.name, *confidence));
+      find("feature.range", fmt::format("{} = {} is outside [{}, {}] {}", spec.name, *value, spec.lowest,
+                                        spec.highest, spec.unit));
+    if (deviation && !(*deviation >= 0))
+      find("feature.spread", fmt::format("{}_sd = {} is negative", spec.name, *deviation));
+    if (confidence && !is_share(*confidence))
+      find("quality.range", fmt::format("{}_q = {} is outside [0, 1]", spec.name, *confidence));
   }
 
   void check_quality(const sqlite::Statement& row) {
     const Landmark landmark = layout_->read(row);
     const auto& [seen, visible, of_feature] = landmark.quality;
-    if (seen < 0 || visible < seen) find("quality.counts", fmt::format("seen {} of {} times it was visible", seen, visible));
+    if (seen < 0 || visible < seen)
+      find("quality.counts", fmt::format("seen {} of {} times it was visible", seen, visible));
     expect_stored(row.optional_real(common_ + 2), multiplicity_confidence(seen, visible), "q_multiplicity");
     expect_stored(row.optional_real(common_ + 3), quality_of(layout_->type(), landmark), "quality");
-    if (!is_share(landmark.confidence)) find("quality.range", fmt::format("confidence = {} is outside [0, 1]", landmark.confidence));
-    if (landmark.observations < 0) find("quality.counts", fmt::format("observations = {} is negative", landmark.observations));
+    if (!is_share(landmark.confidence))
+      find("quality.range", fmt::format("confidence = {} is outside [0, 1]", landmark.confidence));
+    if (landmark.observations < 0)
+      find("quality.counts", fmt::format("observations = {} is negative", landmark.observations));
   }
 
   void expect_stored(std::optional<double> stored, std::optional<double> right, const char* name) {
-    if (stored && !is_share(*stored)) return find("quality.range", fmt::format("{} = {} is outside [0, 1]", name, *stored));
+    if (stored && !is_share(*stored))
+      return find("quality.range", fmt::format("{} = {} is outside [0, 1]", name, *stored));
     if (stored.has_value() != right.has_value() || (stored && !(std::abs(*stored - *right) <= kRounding)))
-      find("quality.stale", fmt::format("{} is {}, its parts give {}", name, stored.value_or(NAN), right.value_or(NAN)));
+      find("quality.stale",
+           fmt::format("{} is {}, its parts give {}", name, stored.value_or(NAN), right.value_or(NAN)));
   }
 
   void check_covariance(const sqlite::Statement& row) {
-    const double xx = row.real(common_ + 5), yy = row.real(common_ + 6), xy = row.real(common_ + 7), zz = row.real(common_ + 8);
+    const double xx = row.real(common_ + 5), yy = row.real(common_ + 6), xy = row.real(common_ + 7),
+                 zz = row.real(common_ + 8);
     if (!(xx >= 0 && yy >= 0 && zz >= 0 && xy * xy <= xx * yy * (1 + kRounding)))
-      find("covariance.bad", fmt::format("var_x {}, var_y {}, cov_xy {}, var_z {} are no covariance", xx, yy, xy, zz));
+      find("covariance.bad",
+           fmt::format("var_x {}, var_y {}, cov_xy {}, var_z {} are no covariance", xx, yy, xy, zz));
   }
 
   /// An attribute <feature>_low is a certified lower bound of the feature.
@@ -91,7 +106,9 @@ class RowCheck {
       for (std::size_t f = 0; f < type.features.size(); ++f) {
         if (type.attributes[a].name != type.features[f].name + "_low") continue;
         const double low = row.real(first_attribute_ + static_cast<int>(a)), value = layout_->feature(row, f);
-        if (low > value) find("bound.above", fmt::format("{} = {} is above the value {}", type.attributes[a].name, low, value));
+        if (low > value)
+          find("bound.above",
+               fmt::format("{} = {} is above the value {}", type.attributes[a].name, low, value));
       }
   }
 
@@ -111,13 +128,18 @@ void check_landmarks(const sqlite::Database& database, const LandmarkLayout& lay
   while (row.step()) check.check(row);
 
   const std::string& table = layout.type().name;
-  find_rows(database, findings, "uid.twice", table,
-            fill_in(R"(SELECT min(id), 'uid ' || uid || ' is used ' || count(*) || ' times' FROM "{t}" GROUP BY uid HAVING count(*) > 1)", {{"t", table}}));
+  find_rows(
+      database, findings, "uid.twice", table,
+      fill_in(
+          R"(SELECT min(id), 'uid ' || uid || ' is used ' || count(*) || ' times' FROM "{t}" GROUP BY uid HAVING count(*) > 1)",
+          {{"t", table}}));
   for (const auto& attribute : layout.type().attributes)
     if (attribute.name.ends_with("_uid"))
-      find_rows(database, findings, "uid.dangling", table,
-                fill_in(R"(SELECT id, '{a} ' || "{a}" || ' is no landmark' FROM "{t}" WHERE "{a}" <> '' AND "{a}" NOT IN (SELECT uid FROM "{t}"))",
-                        {{"t", table}, {"a", attribute.name}}));
+      find_rows(
+          database, findings, "uid.dangling", table,
+          fill_in(
+              R"(SELECT id, '{a} ' || "{a}" || ' is no landmark' FROM "{t}" WHERE "{a}" <> '' AND "{a}" NOT IN (SELECT uid FROM "{t}"))",
+              {{"t", table}, {"a", attribute.name}}));
 }
 
 }  // namespace waymark

@@ -33,7 +33,8 @@ void check_spatial_index(const sqlite::Database& database, const std::string& ta
   if (!database.has_table(index))
     return findings.add("rtree.missing", table, std::nullopt, "the table has no spatial index");
   for (const char* trigger : kTriggers) {
-    sqlite::Statement known = database.prepare("SELECT 1 FROM sqlite_master WHERE type = 'trigger' AND name = ?");
+    sqlite::Statement known =
+        database.prepare("SELECT 1 FROM sqlite_master WHERE type = 'trigger' AND name = ?");
     const std::string name = index + "_" + trigger;
     known.bind(1, name);
     if (!known.step()) findings.add("rtree.trigger", table, std::nullopt, "trigger " + name + " is missing");
@@ -41,7 +42,7 @@ void check_spatial_index(const sqlite::Database& database, const std::string& ta
   sqlite::Statement sound = database.prepare("SELECT rtreecheck(?)");
   sound.bind(1, index);
   if (sound.step() && sound.text(0) != "ok")
-    findings.add("rtree.damaged", table, std::nullopt, std::string(sound.text(0)));
+    return findings.add("rtree.damaged", table, std::nullopt, std::string(sound.text(0)));
   sound.reset();
   for (const auto& [code, sql] : {std::pair("rtree.row", kMissing), std::pair("rtree.orphan", kOrphan),
                                   std::pair("rtree.box", kWrong), std::pair("layer.extent", kOutside)})

@@ -46,12 +46,19 @@ std::int32_t write_crs(const sqlite::Database& database, const Crs& crs) {
   sqlite::Statement insert =
       database.prepare("INSERT OR IGNORE INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, ?, ?)");
   const auto store = [&](const Row& row) {
-    insert.bind_all(row.name, std::int64_t{row.srs_id}, row.organization, row.code, row.wkt1, row.description, row.wkt2);
+    insert.bind_all(row.name, std::int64_t{row.srs_id}, row.organization, row.code, row.wkt1, row.description,
+                    row.wkt2);
     insert.run();
     return row.srs_id;
   };
-  store({.name = "Undefined Cartesian SRS", .srs_id = kCartesian, .code = kCartesian, .description = "metres on no body"});
-  store({.name = "Undefined geographic SRS", .srs_id = kGeographic, .code = kGeographic, .description = "degrees"});
+  store({.name = "Undefined Cartesian SRS",
+         .srs_id = kCartesian,
+         .code = kCartesian,
+         .description = "metres on no body"});
+  store({.name = "Undefined geographic SRS",
+         .srs_id = kGeographic,
+         .code = kGeographic,
+         .description = "degrees"});
   store(row_of(Crs::from_text("EPSG:4326")));
   return crs.kind() == CrsKind::local ? kCartesian : store(row_of(crs));
 }

@@ -5,8 +5,8 @@
 #include "geodb/sqlite.hpp"
 namespace waymark {
 
-/// Stores `crs`, with the three definitions every GeoPackage has, and gives its srs_id: the EPSG code, 100000 for
-/// a CRS of any other authority or none, -1 ("undefined Cartesian") for a local one. WKT 2 goes to
+/// Stores `crs`, with the three definitions every GeoPackage has, and gives its srs_id: the EPSG code, 100000
+/// for a CRS of any other authority or none, -1 ("undefined Cartesian") for a local one. WKT 2 goes to
 /// definition_12_063: for the planets it is the only definition QGIS accepts.
 std::int32_t write_crs(const sqlite::Database& database, const Crs& crs);
 

@@ -12,8 +12,8 @@
 namespace waymark {
 namespace {
 
-constexpr std::int64_t kSide = 256;                                 // cells of a tile
-constexpr float kNoData = std::numeric_limits<float>::lowest();     // far below any height of any body
+constexpr std::int64_t kSide = 256;                              // cells of a tile
+constexpr float kNoData = std::numeric_limits<float>::lowest();  // far below any height of any body
 
 using Tile = Grid<float>;
 
@@ -33,10 +33,13 @@ float mean_of(std::initializer_list<float> four) {
 class Pyramid {
  public:
   Pyramid(const sqlite::Database& database, const DemSource& dem)
-      : dem_(&dem), database_(&database),
-        tile_(database.prepare("INSERT INTO dem (zoom_level, tile_column, tile_row, tile_data) VALUES (?, ?, ?, ?)")),
-        ancillary_(database.prepare("INSERT INTO gpkg_2d_gridded_tile_ancillary (tpudt_name, tpudt_id, min, max, mean)"
-                                    "  VALUES ('dem', ?, ?, ?, ?)")) {
+      : dem_(&dem),
+        database_(&database),
+        tile_(database.prepare(
+            "INSERT INTO dem (zoom_level, tile_column, tile_row, tile_data) VALUES (?, ?, ?, ?)")),
+        ancillary_(database.prepare(
+            "INSERT INTO gpkg_2d_gridded_tile_ancillary (tpudt_name, tpudt_id, min, max, mean)"
+            "  VALUES ('dem', ?, ?, ?, ?)")) {
     const GridGeometry& grid = dem.geometry();
     const auto tiles = static_cast<std::uint64_t>((std::max(grid.columns, grid.rows) + kSide - 1) / kSide);
     finest_ = static_cast<int>(std::bit_width(tiles - 1));
@@ -124,21 +127,24 @@ void write_dem_coverage(const sqlite::Database& database, const DemSource& dem, 
   const std::int64_t across = kSide << pyramid.finest();  // the tiles may reach beyond the DEM
 
   sqlite::Statement contents = database.prepare(
-      "INSERT INTO gpkg_contents VALUES ('dem', '2d-gridded-coverage', 'dem', 'Elevation model the map was made from',"
+      "INSERT INTO gpkg_contents VALUES ('dem', '2d-gridded-coverage', 'dem', 'Elevation model the map was "
+      "made from',"
       "  ?, ?, ?, ?, ?, ?)");
   contents.bind_all(changed, left, bottom(grid.rows), right(grid.columns), top, std::int64_t{srs_id});
   contents.run();
   sqlite::Statement set = database.prepare("INSERT INTO gpkg_tile_matrix_set VALUES ('dem', ?, ?, ?, ?, ?)");
   set.bind_all(std::int64_t{srs_id}, left, bottom(across), right(across), top);
   set.run();
-  sqlite::Statement matrix = database.prepare("INSERT INTO gpkg_tile_matrix VALUES ('dem', ?1, ?2, ?2, ?3, ?3, ?4, ?5)");
+  sqlite::Statement matrix =
+      database.prepare("INSERT INTO gpkg_tile_matrix VALUES ('dem', ?1, ?2, ?2, ?3, ?3, ?4, ?5)");
   for (int zoom = 0; zoom <= pyramid.finest(); ++zoom) {
     const double cells = std::ldexp(1.0, pyramid.finest() - zoom);
     matrix.bind_all(zoom, std::int64_t{1} << zoom, kSide, where.dx * cells, -where.dy * cells);
     matrix.run();
   }
   sqlite::Statement ancillary = database.prepare(
-      "INSERT INTO gpkg_2d_gridded_coverage_ancillary (tile_matrix_set_name, datatype, precision, data_null, uom)"
+      "INSERT INTO gpkg_2d_gridded_coverage_ancillary (tile_matrix_set_name, datatype, precision, data_null, "
+      "uom)"
       "  VALUES ('dem', 'float', NULL, ?, 'm')");
   ancillary.bind(1, static_cast<double>(kNoData));
   ancillary.run();

@@ -45,12 +45,15 @@ std::optional<std::string_view> unless_empty(std::string_view text) {
 }  // namespace
 
 EvidenceWriter::EvidenceWriter(const sqlite::Database& database, const TypeRegistry& types)
-    : database_(&database), types_(&types),
-      insert_(database.prepare(
-          "INSERT INTO observation (type, uid, source, pixel_x, pixel_y, x, y, z, var_x, var_y, cov_xy, var_z, weight,"
-          "  features, rejected) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {
+    : database_(&database),
+      types_(&types),
+      insert_(
+          database.prepare("INSERT INTO observation (type, uid, source, pixel_x, pixel_y, x, y, z, var_x, "
+                           "var_y, cov_xy, var_z, weight,"
+                           "  features, rejected) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")) {
   for (const auto& type : types)
-    link_.push_back(database.prepare("INSERT INTO " + sql_name(type.name + "_observation") + " VALUES (?, ?)"));
+    link_.push_back(
+        database.prepare("INSERT INTO " + sql_name(type.name + "_observation") + " VALUES (?, ?)"));
 }
 
 void EvidenceWriter::add(const Observation& o, std::optional<std::int64_t> landmark) {
@@ -58,9 +61,9 @@ void EvidenceWriter::add(const Observation& o, std::optional<std::int64_t> landm
   const std::string features = features_json(type, o.features);
   const auto pixel = [&](int axis) { return o.pixel ? std::optional((*o.pixel)[axis]) : std::nullopt; };
   const Eigen::Vector3d& at = o.position.xyz;
-  insert_.bind_all(type.name, unless_empty(o.landmark_uid), o.source, pixel(0), pixel(1), at.x(), at.y(), at.z(),
-                   o.covariance(0, 0), o.covariance(1, 1), o.covariance(0, 1), o.covariance(2, 2), o.confidence,
-                   features, unless_empty(o.rejected));
+  insert_.bind_all(type.name, unless_empty(o.landmark_uid), o.source, pixel(0), pixel(1), at.x(), at.y(),
+                   at.z(), o.covariance(0, 0), o.covariance(1, 1), o.covariance(0, 1), o.covariance(2, 2),
+                   o.confidence, features, unless_empty(o.rejected));
   insert_.run();
   if (!landmark) return;
   link_[o.type].bind_all(*landmark, database_->last_id());
@@ -70,8 +73,10 @@ void EvidenceWriter::add(const Observation& o, std::optional<std::int64_t> landm
 std::vector<Observation> read_evidence(const sqlite::Database& database, const TypeRegistry& types,
                                        std::string_view where, std::string_view parameter) {
   sqlite::Statement row = database.prepare(
-      "SELECT type, uid, source, pixel_x, pixel_y, x, y, z, var_x, var_y, cov_xy, var_z, weight, features, rejected"
-      "  FROM observation o " + std::string(where) + " ORDER BY o.id");
+      "SELECT type, uid, source, pixel_x, pixel_y, x, y, z, var_x, var_y, cov_xy, var_z, weight, features, "
+      "rejected"
+      "  FROM observation o " +
+      std::string(where) + " ORDER BY o.id");
   if (!parameter.empty()) row.bind(1, parameter);
   std::vector<Observation> all;
   while (row.step()) {

@@ -8,7 +8,8 @@ std::string fill_in(std::string_view text,
   std::string filled(text);
   for (const auto& [key, value] : values) {
     const std::string place = "{" + std::string(key) + "}";
-    for (std::size_t at = filled.find(place); at != std::string::npos; at = filled.find(place, at + value.size()))
+    for (std::size_t at = filled.find(place); at != std::string::npos;
+         at = filled.find(place, at + value.size()))
       filled.replace(at, place.size(), value);
   }
   return filled;

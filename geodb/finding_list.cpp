@@ -10,7 +10,8 @@ constexpr std::int64_t kMostOfOneKind = 100;
 
 }  // namespace
 
-void FindingList::add(std::string code, std::string table, std::optional<std::int64_t> row, std::string text) {
+void FindingList::add(std::string code, std::string table, std::optional<std::int64_t> row,
+                      std::string text) {
   if (++count_[{code, table}] <= kMostOfOneKind)
     findings_.push_back({std::move(code), std::move(table), row, std::move(text)});
 }
@@ -18,7 +19,8 @@ void FindingList::add(std::string code, std::string table, std::optional<std::in
 std::vector<Finding> FindingList::take() {
   for (const auto& [kind, count] : count_)
     if (count > kMostOfOneKind)
-      findings_.push_back({kind.first, kind.second, std::nullopt, fmt::format("and {} more of these", count - kMostOfOneKind)});
+      findings_.push_back({kind.first, kind.second, std::nullopt,
+                           fmt::format("and {} more of these", count - kMostOfOneKind)});
   return std::move(findings_);
 }
 

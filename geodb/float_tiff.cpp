@@ -25,7 +25,8 @@ void append(std::vector<std::byte>& bytes, T value) {
 }  // namespace
 
 std::vector<std::byte> float_tiff(const Grid<float>& cells) {
-  const auto width = static_cast<std::uint32_t>(cells.columns()), height = static_cast<std::uint32_t>(cells.rows());
+  const auto width = static_cast<std::uint32_t>(cells.columns()),
+             height = static_cast<std::uint32_t>(cells.rows());
   const std::uint32_t byte_count = width * height * 4;
   constexpr std::uint32_t kEntries = 10, kHeader = 8, kDirectory = 2 + kEntries * 12 + 4;
   const std::array<Entry, kEntries> entries{{
@@ -38,7 +39,7 @@ std::vector<std::byte> float_tiff(const Grid<float>& cells) {
       {277, Field::number16, 1},                     // samples per pixel
       {278, Field::number32, height},                // rows per strip
       {279, Field::number32, byte_count},
-      {339, Field::number16, 3},                     // IEEE float
+      {339, Field::number16, 3},  // IEEE float
   }};
   std::vector<std::byte> tiff;
   tiff.reserve(kHeader + kDirectory + byte_count);

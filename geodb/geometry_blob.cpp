@@ -162,7 +162,8 @@ PointBlob point_blob(const Eigen::Vector3d& point, std::int32_t srs_id) {
   return blob;
 }
 
-std::vector<std::byte> polygons_blob(std::span<const std::vector<Eigen::Vector2d>> rings, std::int32_t srs_id) {
+std::vector<std::byte> polygons_blob(std::span<const std::vector<Eigen::Vector2d>> rings,
+                                     std::int32_t srs_id) {
   std::vector<std::byte> blob;
   append_header(blob, rings.empty() ? 0 : 1, rings.empty(), srs_id);
   Envelope box;
@@ -186,7 +187,8 @@ std::optional<Envelope> envelope(std::span<const std::byte> blob) {
   if (!wkb) return std::nullopt;
   Cursor cursor(*wkb);
   Envelope box;
-  walk(cursor, [&](double x, double y, double) { box.add(x, y); }, kNoRings);
+  walk(
+      cursor, [&](double x, double y, double) { box.add(x, y); }, kNoRings);
   if (!cursor.ok()) return std::nullopt;
   return box;  // an empty point is NaN, NaN in WKB and adds nothing
 }
@@ -204,7 +206,12 @@ std::optional<Eigen::Vector3d> point_of(std::span<const std::byte> blob) {
   if (next_type(kind).kind != kPoint) return std::nullopt;
   Cursor cursor(*wkb);
   Eigen::Vector3d point;
-  walk(cursor, [&](double x, double y, double z) { point = {x, y, z}; }, kNoRings);
+  walk(
+      cursor,
+      [&](double x, double y, double z) {
+        point = {x, y, z};
+      },
+      kNoRings);
   if (!cursor.ok() || !std::isfinite(point.x()) || !std::isfinite(point.y())) return std::nullopt;
   return point;
 }
@@ -223,7 +230,10 @@ std::vector<std::vector<Eigen::Vector2d>> polygons_of(std::span<const std::byte>
   bool keep = false;
   Cursor cursor(*wkb);
   walk(
-      cursor, [&](double x, double y, double) { if (keep) outer.back().emplace_back(x, y); },
+      cursor,
+      [&](double x, double y, double) {
+        if (keep) outer.back().emplace_back(x, y);
+      },
       [&](std::uint32_t ring) {
         keep = ring == 0;
         if (keep) outer.emplace_back();

@@ -17,7 +17,8 @@ using PointBlob = std::array<std::byte, 37>;
 PointBlob point_blob(const Eigen::Vector3d& point, std::int32_t srs_id);
 
 /// A MULTIPOLYGON of one closed ring per part, with its envelope.
-std::vector<std::byte> polygons_blob(std::span<const std::vector<Eigen::Vector2d>> rings, std::int32_t srs_id);
+std::vector<std::byte> polygons_blob(std::span<const std::vector<Eigen::Vector2d>> rings,
+                                     std::int32_t srs_id);
 
 struct Envelope {
   double min_x = std::numeric_limits<double>::infinity(), min_y = min_x;

@@ -10,7 +10,8 @@ namespace {
 
 std::optional<Envelope> envelope_of(sqlite3_value* value) {
   const void* bytes = sqlite3_value_blob(value);
-  return envelope({static_cast<const std::byte*>(bytes), static_cast<std::size_t>(sqlite3_value_bytes(value))});
+  return envelope(
+      {static_cast<const std::byte*>(bytes), static_cast<std::size_t>(sqlite3_value_bytes(value))});
 }
 
 void is_empty(sqlite3_context* result, int, sqlite3_value** geometry) {
@@ -28,8 +29,8 @@ void bound(sqlite3_context* result, int, sqlite3_value** geometry) {
 
 void add_geometry_functions(sqlite3* database) {
   const auto add = [database](const char* name, auto function) {
-    sqlite3_create_function_v2(database, name, 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS, nullptr,
-                               function, nullptr, nullptr, nullptr);
+    sqlite3_create_function_v2(database, name, 1, SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_INNOCUOUS,
+                               nullptr, function, nullptr, nullptr, nullptr);
   };
   add("ST_IsEmpty", is_empty);
   add("ST_MinX", bound<&Envelope::min_x>);

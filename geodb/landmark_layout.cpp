@@ -30,9 +30,12 @@ void check_name(const std::string& table) {
 
 const char* sql_type(AttributeSpec::Kind kind) {
   switch (kind) {
-    case AttributeSpec::Kind::real: return "DOUBLE";
-    case AttributeSpec::Kind::integer: return "INTEGER";
-    case AttributeSpec::Kind::text: return "TEXT";
+    case AttributeSpec::Kind::real:
+      return "DOUBLE";
+    case AttributeSpec::Kind::integer:
+      return "INTEGER";
+    case AttributeSpec::Kind::text:
+      return "TEXT";
   }
   return "";
 }
@@ -77,9 +80,12 @@ void bind_attribute(sqlite::Statement& statement, int parameter, const Attribute
 AttributeValue read_attribute(const sqlite::Statement& row, int column, AttributeSpec::Kind kind) {
   if (row.null(column)) return {};
   switch (kind) {
-    case AttributeSpec::Kind::real: return row.real(column);
-    case AttributeSpec::Kind::integer: return row.integer(column);
-    case AttributeSpec::Kind::text: return std::string(row.text(column));
+    case AttributeSpec::Kind::real:
+      return row.real(column);
+    case AttributeSpec::Kind::integer:
+      return row.integer(column);
+    case AttributeSpec::Kind::text:
+      return std::string(row.text(column));
   }
   return {};
 }
@@ -98,8 +104,9 @@ LandmarkLayout::LandmarkLayout(const LandmarkType& type, TypeId id) : type_(&typ
               {"uid", "TEXT NOT NULL", "uid", "Name that stays the same over runs"}};
   for (const auto& f : type.features) {
     columns_.push_back({f.name, "DOUBLE", with_unit(f.name, f.unit), f.summary});
-    columns_.push_back({f.name + "_sd", "DOUBLE", with_unit(f.name + " spread", f.unit),
-                        "Standard deviation of the observations; NULL where one observation gives no spread"});
+    columns_.push_back(
+        {f.name + "_sd", "DOUBLE", with_unit(f.name + " spread", f.unit),
+         "Standard deviation of the observations; NULL where one observation gives no spread"});
     columns_.push_back({f.name + "_q", "DOUBLE", "q of " + f.name,
                         "Variance confidence, 0 to 1; NULL where one observation gives no spread"});
   }
@@ -111,8 +118,8 @@ LandmarkLayout::LandmarkLayout(const LandmarkType& type, TypeId id) : type_(&typ
   for (const auto& column : columns_)
     if (!names.insert(column.name).second)
       throw Error(ErrorCode::usage,
-                  fmt::format("landmark type '{}' would have two columns named '{}'", type.name, column.name), "",
-                  "rename the feature or attribute");
+                  fmt::format("landmark type '{}' would have two columns named '{}'", type.name, column.name),
+                  "", "rename the feature or attribute");
 }
 
 std::string LandmarkLayout::create_table() const {
@@ -124,7 +131,8 @@ std::string LandmarkLayout::create_table() const {
 std::string LandmarkLayout::insert() const {
   std::string places = "?";
   for (std::size_t i = 1; i < columns_.size(); ++i) places += ", ?";
-  return fmt::format("INSERT INTO {} ({}) VALUES ({})", sql_name(type_->name), names_of(columns_, ""), places);
+  return fmt::format("INSERT INTO {} ({}) VALUES ({})", sql_name(type_->name), names_of(columns_, ""),
+                     places);
 }
 
 std::string LandmarkLayout::update() const {
@@ -156,7 +164,8 @@ void LandmarkLayout::bind(sqlite::Statement& statement, std::int64_t row, const 
   statement.bind(++parameter, visible);
   statement.bind(++parameter, multiplicity_confidence(seen, visible));
   statement.bind(++parameter, quality_of(*type_, landmark));
-  for (const double value : {landmark.confidence, covariance(0, 0), covariance(1, 1), covariance(0, 1), covariance(2, 2)})
+  for (const double value :
+       {landmark.confidence, covariance(0, 0), covariance(1, 1), covariance(0, 1), covariance(2, 2)})
     statement.bind(++parameter, value);
   statement.bind(++parameter, landmark.observations);
   static const AttributeValue none;  // texts are bound in place, so no temporary will do

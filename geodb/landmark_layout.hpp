@@ -7,8 +7,8 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
-/// Rows of the table of type number k (from 0) have ids from k * kRowsPerType + 1, so that an id is unique in the
-/// view over all types, also after other programs have added rows.
+/// Rows of the table of type number k (from 0) have ids from k * kRowsPerType + 1, so that an id is unique in
+/// the view over all types, also after other programs have added rows.
 inline constexpr std::int64_t kRowsPerType = 1'000'000'000;
 
 /// One column of a type's table.
@@ -17,10 +17,10 @@ struct LandmarkColumn {
 };
 
 /// The table of a landmark type: its columns in order, and how a landmark becomes a row and back.
-///   id, geom, uid; per feature <name>, <name>_sd, <name>_q; seen, visible, q_multiplicity, quality, confidence,
-///   var_x, var_y, cov_xy, var_z, observations; the type's attributes.
-/// A row does not keep cov_xz and cov_yz, nor the count of observations of each feature: it reads back as that of
-/// the landmark, or 1 where there is no spread.
+///   id, geom, uid; per feature <name>, <name>_sd, <name>_q; seen, visible, q_multiplicity, quality,
+///   confidence, var_x, var_y, cov_xy, var_z, observations; the type's attributes.
+/// A row does not keep cov_xz and cov_yz, nor the count of observations of each feature: it reads back as
+/// that of the landmark, or 1 where there is no spread.
 class LandmarkLayout {
  public:
   /// Throws Error{usage} where a table or two columns would share a name.
@@ -36,13 +36,16 @@ class LandmarkLayout {
   std::string select(std::string_view where) const;  ///< of table t; `where` may join and order
 
   /// Valid until `landmark` changes.
-  void bind(sqlite::Statement& statement, std::int64_t row, const Landmark& landmark, std::span<const std::byte> geometry) const;
+  void bind(sqlite::Statement& statement, std::int64_t row, const Landmark& landmark,
+            std::span<const std::byte> geometry) const;
   Landmark read(const sqlite::Statement& row) const;
 
   static std::int64_t row_id(const sqlite::Statement& row) { return row.integer(0); }
   static std::span<const std::byte> geometry(const sqlite::Statement& row) { return row.blob(1); }
   static std::string_view uid(const sqlite::Statement& row) { return row.text(2); }
-  double feature(const sqlite::Statement& row, std::size_t index) const { return row.real(kFirst + 3 * static_cast<int>(index)); }
+  double feature(const sqlite::Statement& row, std::size_t index) const {
+    return row.real(kFirst + 3 * static_cast<int>(index));
+  }
 
  private:
   static constexpr int kFirst = 3;  ///< column of the first feature

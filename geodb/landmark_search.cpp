@@ -13,7 +13,9 @@ namespace {
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr std::size_t kFewest = 1000;  // finds worth cutting down
 
-double falling(double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : -value; }
+double falling(double value) {
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : -value;
+}
 
 }  // namespace
 
@@ -47,9 +49,12 @@ LandmarkSearch::LandmarkSearch(const Crs& crs, const GroundRuler& ruler, const M
   for (const auto& range : query.features) ranges_.push_back(feature_column(range.feature));
 }
 
-bool LandmarkSearch::possible() const { return std::ranges::count(ranges_, kNone) == 0; }
+bool LandmarkSearch::possible() const {
+  return std::ranges::count(ranges_, kNone) == 0;
+}
 
-void LandmarkSearch::look_at(const LandmarkLayout& layout, const sqlite::Statement& row, BestLandmarks& best) const {
+void LandmarkSearch::look_at(const LandmarkLayout& layout, const sqlite::Statement& row,
+                             BestLandmarks& best) const {
   const auto point = point_of(LandmarkLayout::geometry(row));
   if (!point || (query_->box && !inside(box_, point->x(), point->y()))) return;
   if (!meets_ranges(layout, row)) return;
@@ -64,7 +69,8 @@ void LandmarkSearch::look_at(const LandmarkLayout& layout, const sqlite::Stateme
 
   Landmark landmark = layout.read(row);
   if (by_quality || query_->min_quality > 0) {
-    const auto quality = query_->sensor ? quality_for(*query_->sensor, *type_, landmark) : quality_of(*type_, landmark);
+    const auto quality =
+        query_->sensor ? quality_for(*query_->sensor, *type_, landmark) : quality_of(*type_, landmark);
     if (query_->min_quality > 0 && !(quality.value_or(-1) >= query_->min_quality)) return;
     if (by_quality) rank = falling(quality.value_or(std::nan("")));
   }

@@ -15,7 +15,9 @@ struct FoundLandmark {
   std::int64_t row = 0;
   Landmark landmark;
 
-  bool operator<(const FoundLandmark& other) const { return rank != other.rank ? rank < other.rank : row < other.row; }
+  bool operator<(const FoundLandmark& other) const {
+    return rank != other.rank ? rank < other.rank : row < other.row;
+  }
 };
 
 /// Keeps the best `limit` of any number of finds, rows deciding between equal ranks; memory is twice that.

@@ -47,16 +47,18 @@ void create_spatial_index(const sqlite::Database& database, std::string_view tab
 
 void describe_columns(const sqlite::Database& database, const LandmarkLayout& layout) {
   const LandmarkType& type = layout.type();
-  sqlite::Statement constraint = database.prepare(
-      "INSERT INTO gpkg_data_column_constraints VALUES (?, 'range', NULL, ?, 1, ?, 1, ?)");
-  const auto range_name = [&](std::string_view column) { return fmt::format("{}_{}_range", type.name, column); };
+  sqlite::Statement constraint =
+      database.prepare("INSERT INTO gpkg_data_column_constraints VALUES (?, 'range', NULL, ?, 1, ?, 1, ?)");
+  const auto range_name = [&](std::string_view column) {
+    return fmt::format("{}_{}_range", type.name, column);
+  };
   for (const auto& f : type.features) {
     const std::string name = range_name(f.name);
     constraint.bind_all(name, representable(f.lowest), representable(f.highest), "plausible values");
     constraint.run();
   }
-  sqlite::Statement column = database.prepare(
-      "INSERT INTO gpkg_data_columns VALUES (?, ?, ?, ?, ?, NULL, ?)");
+  sqlite::Statement column =
+      database.prepare("INSERT INTO gpkg_data_columns VALUES (?, ?, ?, ?, ?, NULL, ?)");
   for (const auto& c : layout.columns()) {
     const bool feature = std::ranges::find(type.features, c.name, &FeatureSpec::name) != type.features.end();
     const std::optional<std::string> range = feature ? std::optional(range_name(c.name)) : std::nullopt;
@@ -88,7 +90,8 @@ void create_evidence_links(const sqlite::Database& database, const std::string& 
 void store_style(const sqlite::Database& database, const LandmarkType& type, std::string_view changed) {
   const std::string qml = qml_style(type), sld = sld_style(type);
   sqlite::Statement style = database.prepare(
-      "INSERT INTO layer_styles (f_table_name, f_geometry_column, styleName, styleQML, styleSLD, useAsDefault,"
+      "INSERT INTO layer_styles (f_table_name, f_geometry_column, styleName, styleQML, styleSLD, "
+      "useAsDefault,"
       "  description, update_time) VALUES (?1, 'geom', ?1, ?2, ?3, 1, ?4, ?5)");
   style.bind_all(type.name, qml, sld, type.summary, changed);
   style.run();

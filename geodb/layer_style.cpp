@@ -17,11 +17,16 @@ struct Marker {
 // The body seen from above; a cone is drawn as the triangle maps use for summits.
 Marker marker_of(Solid solid) {
   switch (solid) {
-    case Solid::point: return {"diamond", "square", true};
-    case Solid::sphere: return {"circle", "circle", true};
-    case Solid::cylinder: return {"hexagon", "circle", true};
-    case Solid::cone: return {"triangle", "triangle", true};
-    case Solid::bowl: return {"circle", "circle", false};
+    case Solid::point:
+      return {"diamond", "square", true};
+    case Solid::sphere:
+      return {"circle", "circle", true};
+    case Solid::cylinder:
+      return {"hexagon", "circle", true};
+    case Solid::cone:
+      return {"triangle", "triangle", true};
+    case Solid::bowl:
+      return {"circle", "circle", false};
   }
   return {"circle", "circle", true};
 }
@@ -58,7 +63,8 @@ std::string label_expression(const std::string& feature) {
 
 std::string qml_symbol(const LandmarkType& type) {
   const Marker marker = marker_of(type.drawn_as);
-  const std::string size = type.size_feature.empty() ? "" : property("size", size_expression(type.size_feature));
+  const std::string size =
+      type.size_feature.empty() ? "" : property("size", size_expression(type.size_feature));
   return fmt::format(R"(  <renderer-v2 type="singleSymbol" forceraster="0" symbollevels="0" enableorderby="0">
     <symbols>
       <symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">

@@ -10,7 +10,8 @@ namespace waymark {
 /// SQLite's own checks, registered tables and styles, provenance.
 void check_file(const sqlite::Database& database, const TypeRegistry& types, FindingList& findings);
 
-/// The columns of a type's table are those the map declares; without them no further check is possible: false.
+/// The columns of a type's table are those the map declares; without them no further check is possible:
+/// false.
 bool check_columns(const sqlite::Database& database, const LandmarkLayout& layout, FindingList& findings);
 
 /// Every row: geometry, uid, features, quality, covariance, certified bounds.

@@ -42,7 +42,7 @@ struct MapStore::Connection {
   std::int32_t srs_id;
   Crs crs;
   GroundRuler ruler;
-  Envelope extent;  ///< of all landmarks, when the map was opened
+  Envelope extent;                   ///< of all landmarks, when the map was opened
   std::deque<LandmarkTable> tables;  ///< by TypeId
 };
 

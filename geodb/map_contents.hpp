@@ -15,27 +15,28 @@ namespace waymark {
 
 /// How a map came to be: enough to make it again.
 struct RunRecord {
-  std::string version;              ///< of Waymark
-  std::string command_line;         ///< as a shell would take it
-  std::string job_json;             ///< stages with all options, defaults filled in
-  std::string started_utc;          ///< ISO 8601, "2026-11-21T07:21:14Z"; also the time stamp of every table
-  std::string report_json;          ///< per stage: in, out, rejected by reason, seconds, warnings
-  double seconds = 0;               ///< wall clock
-  std::int64_t seed = 0;            ///< of all random generators
+  std::string version;       ///< of Waymark
+  std::string command_line;  ///< as a shell would take it
+  std::string job_json;      ///< stages with all options, defaults filled in
+  std::string started_utc;   ///< ISO 8601, "2026-11-21T07:21:14Z"; also the time stamp of every table
+  std::string report_json;   ///< per stage: in, out, rejected by reason, seconds, warnings
+  double seconds = 0;        ///< wall clock
+  std::int64_t seed = 0;     ///< of all random generators
   std::vector<InputFile> inputs;
   friend bool operator==(const RunRecord&, const RunRecord&) = default;
 };
 
 /// An image landmarks were seen in.
 struct ImageRecord {
-  using Ring = std::vector<Eigen::Vector2d>;  ///< x, y in the map's CRS; closed or not, at least three corners
-  std::string name;                           ///< unique in the map; Observation::source refers to it
-  std::vector<Ring> footprint;                ///< ground it shows, one ring per part; empty: unknown
-  std::string camera_json;                    ///< camera model and pose
-  std::string taken_utc;                      ///< ISO 8601; empty: unknown
-  std::optional<Degrees> sun_azimuth;         ///< clockwise from map north
-  std::optional<Degrees> sun_elevation;       ///< above the horizon
-  std::optional<Meters> gsd;                  ///< ground sample distance
+  using Ring =
+      std::vector<Eigen::Vector2d>;      ///< x, y in the map's CRS; closed or not, at least three corners
+  std::string name;                      ///< unique in the map; Observation::source refers to it
+  std::vector<Ring> footprint;           ///< ground it shows, one ring per part; empty: unknown
+  std::string camera_json;               ///< camera model and pose
+  std::string taken_utc;                 ///< ISO 8601; empty: unknown
+  std::optional<Degrees> sun_azimuth;    ///< clockwise from map north
+  std::optional<Degrees> sun_elevation;  ///< above the horizon
+  std::optional<Meters> gsd;             ///< ground sample distance
   friend bool operator==(const ImageRecord&, const ImageRecord&) = default;
 };
 

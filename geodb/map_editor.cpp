@@ -23,7 +23,8 @@ void check_landmark(const Connection& map, const Landmark& landmark) {
 
 Connection::Found must_find(Connection& map, std::string_view uid) {
   auto found = map.find(uid);
-  if (!found) throw Error(ErrorCode::input, "the map has no landmark '" + std::string(uid) + "'", map.path.string());
+  if (!found)
+    throw Error(ErrorCode::input, "the map has no landmark '" + std::string(uid) + "'", map.path.string());
   return std::move(*found);
 }
 
@@ -47,7 +48,8 @@ void store(const Connection& map, const LandmarkTable& table, const std::string&
   statement.run();
   Envelope box;
   box.add(at.x(), at.y());
-  for (const std::string_view layer : {std::string_view(table.layout.type().name), std::string_view("landmark")})
+  for (const std::string_view layer :
+       {std::string_view(table.layout.type().name), std::string_view("landmark")})
     widen_extent(map, layer, box);
 }
 
@@ -67,9 +69,11 @@ void MapEditor::insert(const Landmark& landmark) {
     table.of_uid.bind(1, landmark.uid);
     if (table.of_uid.step()) {
       table.of_uid.reset();
-      throw Error(ErrorCode::input, "the map has a landmark '" + landmark.uid + "' already", map.path.string(), "update it");
+      throw Error(ErrorCode::input, "the map has a landmark '" + landmark.uid + "' already",
+                  map.path.string(), "update it");
     }
-    const std::int64_t last = map.database.integer("SELECT max(id) FROM " + sql_name(table.layout.type().name));
+    const std::int64_t last =
+        map.database.integer("SELECT max(id) FROM " + sql_name(table.layout.type().name));
     store(map, table, table.layout.insert(), std::max(last, landmark.type * kRowsPerType) + 1, landmark);
   });
 }
@@ -91,13 +95,15 @@ void MapEditor::remove(std::string_view uid) {
     Connection& map = *map_.connection_;
     const auto found = must_find(map, uid);
     const std::string& table = found.table->layout.type().name;
-    for (const char* sql : {R"(DELETE FROM "{t}" WHERE id = ?)", R"(DELETE FROM "{t}_observation" WHERE base_id = ?)"}) {
+    for (const char* sql :
+         {R"(DELETE FROM "{t}" WHERE id = ?)", R"(DELETE FROM "{t}_observation" WHERE base_id = ?)"}) {
       sqlite::Statement statement = map.database.prepare(fill_in(sql, {{"t", table}}));
       statement.bind(1, found.row);
       statement.run();
     }
     sqlite::Statement reject = map.database.prepare(
-        "UPDATE observation SET rejected = 'landmark removed' WHERE type = ? AND uid = ? AND rejected IS NULL");
+        "UPDATE observation SET rejected = 'landmark removed' WHERE type = ? AND uid = ? AND rejected IS "
+        "NULL");
     reject.bind_all(table, uid);
     reject.run();
   });
@@ -111,8 +117,8 @@ void MapEditor::add_evidence(const Observation& observation) {
     if (kept) {
       const auto found = must_find(map, observation.landmark_uid);
       row = found.row;
-      sqlite::Statement count = map.database.prepare(
-          "UPDATE " + sql_name(found.table->layout.type().name) + " SET observations = observations + 1 WHERE id = ?");
+      sqlite::Statement count = map.database.prepare("UPDATE " + sql_name(found.table->layout.type().name) +
+                                                     " SET observations = observations + 1 WHERE id = ?");
       count.bind(1, *row);
       count.run();
     }

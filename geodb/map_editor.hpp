@@ -11,8 +11,8 @@ namespace waymark {
 /// RTree and extents follow by the triggers any GeoPackage tool uses. One editor at a time; readers may stay.
 class MapEditor {
  public:
-  /// Migrates a map of an older schema version in place. Throws Error as MapStore::open does, and for a file that
-  /// cannot be written.
+  /// Migrates a map of an older schema version in place. Throws Error as MapStore::open does, and for a file
+  /// that cannot be written.
   static MapEditor open(const std::filesystem::path& path);
 
   const MapStore& map() const { return map_; }

@@ -72,11 +72,14 @@ std::vector<Landmark> MapStore::query(const MapQuery& query) const {
   const Tables tables = tables_for(*connection_, query);
   check_features(query, tables);
   if (query.nearest && (query.near || !query.largest_first.empty()))
-    throw Error(ErrorCode::usage, "'nearest' cannot be combined with 'near' or an order", "", "ask for one of them");
+    throw Error(ErrorCode::usage, "'nearest' cannot be combined with 'near' or an order", "",
+                "ask for one of them");
   if (query.nearest) return nearest(*connection_, tables, query);
   SearchWindows windows = everywhere();
-  if (query.near) windows = windows_of(connection_->crs, *query.near);
-  else if (query.box) windows = windows_of(connection_->crs, *query.box);
+  if (query.near)
+    windows = windows_of(connection_->crs, *query.near);
+  else if (query.box)
+    windows = windows_of(connection_->crs, *query.box);
   return search(*connection_, tables, query, windows).take();
 }
 

@@ -22,7 +22,8 @@ std::int32_t srs_id_of_map(const sqlite::Database& database) {
 
 Envelope extent_of_map(const sqlite::Database& database) {
   sqlite::Statement row = database.prepare(
-      "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'landmark' AND min_x NOT NULL");
+      "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'landmark' AND min_x NOT "
+      "NULL");
   if (!row.step()) return {};
   return {row.real(0), row.real(1), row.real(2), row.real(3)};
 }
@@ -46,9 +47,14 @@ LandmarkTable::LandmarkTable(const sqlite::Database& database, const LandmarkTyp
       of_uid(database.prepare(layout.select("WHERE t.uid = ?"))) {}
 
 MapStore::Connection::Connection(std::filesystem::path file, OpenMap map)
-    : path(std::move(file)), database(std::move(map.database)), version(map.version), types(read_types(database)),
-      srs_id(srs_id_of_map(database)), crs(read_crs(database, srs_id)),
-      ruler(crs), extent(extent_of_map(database)) {
+    : path(std::move(file)),
+      database(std::move(map.database)),
+      version(map.version),
+      types(read_types(database)),
+      srs_id(srs_id_of_map(database)),
+      crs(read_crs(database, srs_id)),
+      ruler(crs),
+      extent(extent_of_map(database)) {
   for (TypeId id = 0; id < types.size(); ++id) tables.emplace_back(database, types[id], id);
 }
 
@@ -66,8 +72,8 @@ LandmarkTable& MapStore::Connection::table(std::string_view type) {
   const std::string nearest = nearest_name(type, types.names());
   std::string names;
   for (const auto& name : types.names()) names += (names.empty() ? "" : ", ") + name;
-  throw Error(ErrorCode::usage, "this map has no landmarks of type '" + std::string(type) + "'", path.string(),
-              nearest.empty() ? "it has: " + names : "did you mean '" + nearest + "'?");
+  throw Error(ErrorCode::usage, "this map has no landmarks of type '" + std::string(type) + "'",
+              path.string(), nearest.empty() ? "it has: " + names : "did you mean '" + nearest + "'?");
 }
 
 std::optional<MapStore::Connection::Found> MapStore::Connection::find(std::string_view uid) {
@@ -90,10 +96,18 @@ MapStore::~MapStore() = default;
 MapStore::MapStore(MapStore&&) noexcept = default;
 MapStore& MapStore::operator=(MapStore&&) noexcept = default;
 
-const std::filesystem::path& MapStore::path() const { return connection_->path; }
-int MapStore::schema_version() const { return connection_->version; }
-const TypeRegistry& MapStore::types() const { return connection_->types; }
-const Crs& MapStore::crs() const { return connection_->crs; }
+const std::filesystem::path& MapStore::path() const {
+  return connection_->path;
+}
+int MapStore::schema_version() const {
+  return connection_->version;
+}
+const TypeRegistry& MapStore::types() const {
+  return connection_->types;
+}
+const Crs& MapStore::crs() const {
+  return connection_->crs;
+}
 
 std::int64_t MapStore::count() const {
   std::int64_t total = 0;
@@ -123,8 +137,14 @@ std::vector<Observation> MapStore::observations_of(std::string_view uid) const {
 std::vector<Observation> MapStore::observations() const {
   return read_evidence(connection_->database, types(), "");
 }
-std::vector<ImageRecord> MapStore::images() const { return read_images(connection_->database); }
-std::vector<RunRecord> MapStore::runs() const { return read_runs(connection_->database); }
-bool MapStore::has_dem_coverage() const { return connection_->database.has_table("dem"); }
+std::vector<ImageRecord> MapStore::images() const {
+  return read_images(connection_->database);
+}
+std::vector<RunRecord> MapStore::runs() const {
+  return read_runs(connection_->database);
+}
+bool MapStore::has_dem_coverage() const {
+  return connection_->database.has_table("dem");
+}
 
 }  // namespace waymark

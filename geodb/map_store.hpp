@@ -11,13 +11,13 @@
 #include "geodb/map_query.hpp"
 namespace waymark {
 
-/// A map file opened for reading; it is never written to, and nothing is left beside it. Any number of readers,
-/// and one MapEditor, may have the file open. Movable; one thread at a time: open one per thread.
+/// A map file opened for reading; it is never written to, and nothing is left beside it. Any number of
+/// readers, and one MapEditor, may have the file open. Movable; one thread at a time: open one per thread.
 class MapStore {
  public:
-  /// A map of an older schema version is migrated in a private copy; one whose last update was killed is rolled
-  /// back there. Throws Error: no such file, not a GeoPackage, a GeoPackage that is not a Waymark map, a map of a
-  /// newer version.
+  /// A map of an older schema version is migrated in a private copy; one whose last update was killed is
+  /// rolled back there. Throws Error: no such file, not a GeoPackage, a GeoPackage that is not a Waymark map,
+  /// a map of a newer version.
   static MapStore open(const std::filesystem::path& path);
   ~MapStore();
   MapStore(MapStore&&) noexcept;
@@ -39,8 +39,8 @@ class MapStore {
   std::vector<Observation> observations_of(std::string_view uid) const;  ///< kept ones, in order of storing
   std::vector<Observation> observations() const;                         ///< all, rejected ones too
   std::vector<ImageRecord> images() const;
-  std::vector<RunRecord> runs() const;                                   ///< oldest first
-  bool has_dem_coverage() const;  ///< read it with GDAL as "GPKG:<path>:dem"
+  std::vector<RunRecord> runs() const;  ///< oldest first
+  bool has_dem_coverage() const;        ///< read it with GDAL as "GPKG:<path>:dem"
 
   struct Connection;  ///< private to geodb
 

@@ -23,16 +23,19 @@ void create_schema(const sqlite::Database& database, std::string_view changed) {
 
 int schema_version(const sqlite::Database& database) {
   if (database.integer("PRAGMA application_id") != kGeoPackage || !database.has_table("gpkg_contents"))
-    throw Error(ErrorCode::input, "this is not a GeoPackage", "", "a map is made by `waymark run` or `waymark peaks`");
+    throw Error(ErrorCode::input, "this is not a GeoPackage", "",
+                "a map is made by `waymark run` or `waymark peaks`");
   if (!database.has_table("waymark_schema"))
     throw Error(ErrorCode::input, "this GeoPackage is not a Waymark map: it has no table waymark_schema", "",
                 "a map is made by `waymark run` or `waymark peaks`");
   const auto version = static_cast<int>(database.integer("SELECT max(version) FROM waymark_schema"));
   if (version > kSchemaVersion)
-    throw Error(ErrorCode::input,
-                fmt::format("this map has schema version {}, this program knows up to {}", version, kSchemaVersion), "",
-                "use a newer Waymark");
-  if (version < 1) throw Error(ErrorCode::input, "the map's schema version is missing", "table waymark_schema");
+    throw Error(
+        ErrorCode::input,
+        fmt::format("this map has schema version {}, this program knows up to {}", version, kSchemaVersion),
+        "", "use a newer Waymark");
+  if (version < 1)
+    throw Error(ErrorCode::input, "the map's schema version is missing", "table waymark_schema");
   return version;
 }
 

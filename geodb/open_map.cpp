@@ -13,14 +13,19 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_is_file(const fs::path& path) {
-  if (!fs::exists(path)) throw Error(ErrorCode::input, "there is no such map", path.string(), "check the name");
+  if (!fs::exists(path))
+    throw Error(ErrorCode::input, "there is no such map", path.string(), "check the name");
   if (!fs::is_regular_file(path))
-    throw Error(ErrorCode::input, "this is not a file", path.string(), "a map is one file that ends in .gpkg");
+    throw Error(ErrorCode::input, "this is not a file", path.string(),
+                "a map is one file that ends in .gpkg");
   if (fs::file_size(path) == 0)
-    throw Error(ErrorCode::input, "this file is empty", path.string(), "a map is made by `waymark run` or `waymark peaks`");
+    throw Error(ErrorCode::input, "this file is empty", path.string(),
+                "a map is made by `waymark run` or `waymark peaks`");
 }
 
-fs::path beside(const fs::path& path, const char* suffix) { return path.string() + suffix; }
+fs::path beside(const fs::path& path, const char* suffix) {
+  return path.string() + suffix;
+}
 
 bool has_content(const fs::path& path) {
   std::error_code none;
@@ -57,10 +62,11 @@ OpenMap open_private_copy(const fs::path& original) {
     fs::copy_file(original, copy);
     fs::permissions(copy, fs::perms::owner_read | fs::perms::owner_write);
     for (const char* suffix : {"-journal", "-wal"})
-      if (has_content(beside(original, suffix))) fs::copy_file(beside(original, suffix), beside(copy, suffix));
+      if (has_content(beside(original, suffix)))
+        fs::copy_file(beside(original, suffix), beside(copy, suffix));
   } catch (const fs::filesystem_error& e) {
-    throw Error(ErrorCode::environment, "cannot make a private copy of the map: " + e.code().message(), original.string(),
-                "set TMPDIR to a folder with room for it");
+    throw Error(ErrorCode::environment, "cannot make a private copy of the map: " + e.code().message(),
+                original.string(), "set TMPDIR to a folder with room for it");
   }
   OpenMap map{sqlite::Database(copy, sqlite::OpenMode::update)};
   map.version = schema_version(map.database);  // the first read rolls back
@@ -76,8 +82,8 @@ auto with_path(const fs::path& path, const auto& open) {
     return open();
   } catch (const Error& e) {
     const bool placed = e.where().find(path.string()) != std::string::npos;
-    throw Error(e.code(), e.problem(), placed ? e.where() : path.string() + (e.where().empty() ? "" : ", " + e.where()),
-                e.hint());
+    throw Error(e.code(), e.problem(),
+                placed ? e.where() : path.string() + (e.where().empty() ? "" : ", " + e.where()), e.hint());
   }
 }
 
@@ -89,8 +95,8 @@ OpenMap open_for_reading(const fs::path& path) {
     OpenMap map{sqlite::Database(path, sqlite::OpenMode::read)};
     try {
       map.version = schema_version(map.database);
-    } catch (const Error&) {
-      if (!has_content(beside(path, "-journal"))) throw;
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::output || !has_content(beside(path, "-journal"))) throw;
       return open_private_copy(path);  // a killed transaction, which only a writer may roll back
     }
     return map.version < kSchemaVersion ? open_private_copy(path) : std::move(map);

@@ -14,8 +14,8 @@
 namespace waymark {
 namespace {
 
-// A node is: depth of the tree (only in the root, node 1), count of cells, then per cell the rowid (leaf) or child
-// node and min x, max x, min y, max y; all big-endian; zeros to the end.
+// A node is: depth of the tree (only in the root, node 1), count of cells, then per cell the rowid (leaf) or
+// child node and min x, max x, min y, max y; all big-endian; zeros to the end.
 constexpr std::size_t kCellBytes = 8 + 4 * 4;
 constexpr std::size_t kHeaderBytes = 4;
 constexpr std::int64_t kRoot = 1;
@@ -29,7 +29,9 @@ float rounded_down(double v) {
   const auto f = static_cast<float>(v);
   return static_cast<double>(f) > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
 }
-float rounded_up(double v) { return -rounded_down(-v); }
+float rounded_up(double v) {
+  return -rounded_down(-v);
+}
 
 std::array<float, 4> around(std::span<const Cell> cells) {
   auto box = cells[0].box;
@@ -53,8 +55,8 @@ class Packer {
       : node_(database.prepare("INSERT OR REPLACE INTO " + sql_name(index + "_node") + " VALUES (?, ?)")),
         parent_(database.prepare("INSERT INTO " + sql_name(index + "_parent") + " VALUES (?, ?)")),
         rowid_(database.prepare("INSERT INTO " + sql_name(index + "_rowid") + " VALUES (?, ?)")),
-        bytes_(static_cast<std::size_t>(database.integer(
-            "SELECT length(data) FROM " + sql_name(index + "_node") + " WHERE nodeno = 1"))) {}
+        bytes_(static_cast<std::size_t>(database.integer("SELECT length(data) FROM " +
+                                                         sql_name(index + "_node") + " WHERE nodeno = 1"))) {}
 
   /// Writes one level of the tree and gives the cells of the next.
   std::vector<Cell> pack(std::span<const Cell> cells, int depth) {
@@ -63,7 +65,8 @@ class Packer {
     std::vector<Cell> above;
     above.reserve(nodes);
     for (std::size_t i = 0; i < nodes; ++i) {  // evenly filled: none is nearly empty
-      const auto part = cells.subspan(i * cells.size() / nodes, (i + 1) * cells.size() / nodes - i * cells.size() / nodes);
+      const auto part =
+          cells.subspan(i * cells.size() / nodes, (i + 1) * cells.size() / nodes - i * cells.size() / nodes);
       const std::int64_t number = nodes == 1 ? kRoot : next_node_++;
       write(number, part, nodes == 1 ? depth : 0);
       sqlite::Statement& link = depth == 0 ? rowid_ : parent_;
@@ -97,7 +100,8 @@ class Packer {
 
 }  // namespace
 
-void fill_rtree(const sqlite::Database& database, std::string_view table, std::span<const IndexedPoint> points) {
+void fill_rtree(const sqlite::Database& database, std::string_view table,
+                std::span<const IndexedPoint> points) {
   if (points.empty()) return;
   std::vector<Cell> level;
   level.reserve(points.size());

@@ -11,10 +11,11 @@ struct IndexedPoint {
   double x = 0, y = 0;
 };
 
-/// Fills the empty RTree "rtree_<table>_geom" from below, by writing its _node, _parent and _rowid tables: about
-/// ten times faster than inserting, and nodes are full. Points that follow each other share a node, so they should
-/// come in Hilbert order, and with growing ids. Boxes are float32, rounded outwards.
-/// The format is that of SQLite's ext/rtree/rtree.c; `rtreecheck` accepts the result, and inserts go on from there.
-void fill_rtree(const sqlite::Database& database, std::string_view table, std::span<const IndexedPoint> points);
+/// Fills the empty RTree "rtree_<table>_geom" from below, by writing its _node, _parent and _rowid tables:
+/// about ten times faster than inserting, and nodes are full. Points that follow each other share a node, so
+/// they should come in Hilbert order, and with growing ids. Boxes are float32, rounded outwards. The format
+/// is that of SQLite's ext/rtree/rtree.c; `rtreecheck` accepts the result, and inserts go on from there.
+void fill_rtree(const sqlite::Database& database, std::string_view table,
+                std::span<const IndexedPoint> points);
 
 }  // namespace waymark

@@ -27,19 +27,26 @@ std::vector<InputFile> inputs_from(std::string_view text) {
   const auto list = ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
   for (const auto& file : list)
     if (file.is_object())
-      inputs.push_back({file.value("path", ""), file.value("bytes", std::uint64_t{0}), file.value("sha256", "")});
+      inputs.push_back(
+          {file.value("path", ""), file.value("bytes", std::uint64_t{0}), file.value("sha256", "")});
   return inputs;
 }
 
-std::string json_or(const std::string& text, const char* empty) { return text.empty() ? empty : text; }
+std::string json_or(const std::string& text, const char* empty) {
+  return text.empty() ? empty : text;
+}
 
 std::string xml(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else
+      out += c;
   }
   return out;
 }
@@ -84,7 +91,8 @@ std::vector<RunRecord> read_runs(const sqlite::Database& database) {
 
 void write_image(const sqlite::Database& database, const ImageRecord& image, std::int32_t srs_id) {
   sqlite::Statement insert = database.prepare(
-      "INSERT INTO image (geom, name, camera, taken, sun_azimuth, sun_elevation, gsd) VALUES (?, ?, ?, ?, ?, ?, ?)");
+      "INSERT INTO image (geom, name, camera, taken, sun_azimuth, sun_elevation, gsd) VALUES (?, ?, ?, ?, ?, "
+      "?, ?)");
   const std::vector<std::byte> footprint = polygons_blob(image.footprint, srs_id);
   const std::string camera = json_or(image.camera_json, "{}"), taken = time_stamp(image.taken_utc);
   insert.bind_all(std::span<const std::byte>(footprint), image.name, camera, taken, number(image.sun_azimuth),
@@ -123,8 +131,8 @@ void write_metadata(const sqlite::Database& database, const RunRecord& run, std:
       "INSERT INTO gpkg_metadata VALUES (1, 'dataset', 'http://purl.org/dc/terms/', 'text/xml', ?)");
   insert.bind(1, document);
   insert.run();
-  sqlite::Statement reference =
-      database.prepare("INSERT INTO gpkg_metadata_reference VALUES ('geopackage', NULL, NULL, NULL, ?, 1, NULL)");
+  sqlite::Statement reference = database.prepare(
+      "INSERT INTO gpkg_metadata_reference VALUES ('geopackage', NULL, NULL, NULL, ?, 1, NULL)");
   reference.bind(1, changed);
   reference.run();
 }
@@ -140,7 +148,8 @@ std::string time_stamp(std::string_view iso_8601) {
 
 std::string time_stamp_now() {
   const auto now = std::chrono::system_clock::now();
-  return time_stamp(fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now))));
+  return time_stamp(
+      fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now))));
 }
 
 }  // namespace waymark

@@ -33,7 +33,8 @@ void sort_along_hilbert_curve(std::span<std::uint32_t> indices, std::span<const 
   for (const std::uint32_t i : indices) {
     const auto& at = landmarks[i].position.xyz;
     places.push_back({hilbert_index(scaled(at.x(), extent.min_x, extent.max_x),
-                                    scaled(at.y(), extent.min_y, extent.max_y)), i});
+                                    scaled(at.y(), extent.min_y, extent.max_y)),
+                      i});
   }
   std::ranges::sort(places, [&](const Place& a, const Place& b) {
     return a.along != b.along ? a.along < b.along : landmarks[a.index].uid < landmarks[b.index].uid;
@@ -41,10 +42,12 @@ void sort_along_hilbert_curve(std::span<std::uint32_t> indices, std::span<const 
   std::ranges::transform(places, indices.begin(), &Place::index);
 }
 
-void fetch_ahead(std::span<const Landmark> landmarks, std::span<const std::uint32_t> indices, std::size_t at) {
+void fetch_ahead(std::span<const Landmark> landmarks, std::span<const std::uint32_t> indices,
+                 std::size_t at) {
   constexpr std::size_t kFar = 16, kNear = 8, kLine = 64;  // steps, steps, bytes
   const auto fetch = [](const void* begin, std::size_t bytes) {
-    for (std::size_t i = 0; i < bytes; i += kLine) __builtin_prefetch(static_cast<const std::byte*>(begin) + i);
+    for (std::size_t i = 0; i < bytes; i += kLine)
+      __builtin_prefetch(static_cast<const std::byte*>(begin) + i);
   };
   if (at + kFar < indices.size()) fetch(&landmarks[indices[at + kFar]], sizeof(Landmark));
   if (at + kNear >= indices.size()) return;

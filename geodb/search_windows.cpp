@@ -25,7 +25,9 @@ SearchWindows repeated(double west, double width, double south, double north) {
 
 }  // namespace
 
-SearchWindows everywhere() { return {{-kEverywhere, -kEverywhere, kEverywhere, kEverywhere}}; }
+SearchWindows everywhere() {
+  return {{-kEverywhere, -kEverywhere, kEverywhere, kEverywhere}};
+}
 
 SearchWindows windows_of(const Crs& crs, const MapQuery::Box& box) {
   if (crs.kind() != CrsKind::geographic) return {box};
@@ -39,8 +41,8 @@ SearchWindows windows_of(const Crs& crs, const MapQuery::Near& near) {
     return {{near.x - radius, near.y - radius, near.x + radius, near.y + radius}};
   }
   // A path of length r stays between two parallels, since a degree of latitude is never shorter than at the
-  // equator, b^2 / a radians; and within them a degree of longitude is never shorter than a cos(latitude) at the
-  // outer one. So no point within r lies outside this window. 1e-9 degrees (0.1 mm) cover rounding.
+  // equator, b^2 / a radians; and within them a degree of longitude is never shorter than a cos(latitude) at
+  // the outer one. So no point within r lies outside this window. 1e-9 degrees (0.1 mm) cover rounding.
   const Body& body = crs.body();
   const double shortest = std::pow(body.polar_radius(), 2) / body.equatorial_radius;
   const double up = to_degrees(Radians{near.radius.value / shortest}).value + 1e-9;

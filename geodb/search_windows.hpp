@@ -7,8 +7,8 @@
 #include "geodb/map_query.hpp"
 namespace waymark {
 
-/// Boxes in map coordinates that together hold all of a region, none twice. On a geographic CRS one for each way
-/// longitudes may be written (-180..180, 0..360), split where the region crosses the antimeridian.
+/// Boxes in map coordinates that together hold all of a region, none twice. On a geographic CRS one for each
+/// way longitudes may be written (-180..180, 0..360), split where the region crosses the antimeridian.
 using SearchWindows = std::vector<MapQuery::Box>;
 
 /// All of the plane.
@@ -19,7 +19,8 @@ SearchWindows windows_of(const Crs& crs, const MapQuery::Near& near);
 
 bool inside(const SearchWindows& windows, double x, double y);
 
-/// Metres on the ground between two points in map coordinates: geodesic on a geographic CRS, planar otherwise.
+/// Metres on the ground between two points in map coordinates: geodesic on a geographic CRS, planar
+/// otherwise.
 class GroundRuler {
  public:
   explicit GroundRuler(const Crs& crs);

@@ -9,7 +9,8 @@ namespace waymark {
 /// The text of geodb/sql/<name>.sql, compiled in.
 std::string_view sql_text(std::string_view name);
 
-/// `text` with every {key} replaced by its value. Values are identifiers and time stamps of ours, never input.
+/// `text` with every {key} replaced by its value. Values are identifiers and time stamps of ours, never
+/// input.
 std::string fill_in(std::string_view text,
                     std::initializer_list<std::pair<std::string_view, std::string_view>> values);
 

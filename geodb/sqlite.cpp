@@ -14,9 +14,16 @@
 namespace waymark::sqlite {
 namespace {
 
-constexpr int kPatience = 10'000;  // ms to wait for another program's commit
+// Asks often for a lock another program holds, for half a minute: SQLite's own handler soon asks so rarely
+// that a busy writer can shut a reader out.
+int wait_for_lock(void*, int tries) {
+  constexpr int kPause = 2, kPatience = 30'000;  // ms
+  sqlite3_sleep(kPause);
+  return tries < kPatience / kPause;
+}
 
-// Bytes 18 and 19 of an SQLite file are 2 where it keeps a write-ahead log (https://sqlite.org/fileformat.html).
+// Bytes 18 and 19 of an SQLite file are 2 where it keeps a write-ahead log
+// (https://sqlite.org/fileformat.html).
 bool keeps_log(const std::filesystem::path& path) {
   std::array<char, 20> header{};
   std::ifstream(path, std::ios::binary).read(header.data(), header.size());
@@ -39,18 +46,36 @@ std::string uri(const std::filesystem::path& path, std::string_view query) {
 
 int open_flags(OpenMode mode) {
   switch (mode) {
-    case OpenMode::read: return SQLITE_OPEN_READONLY;
-    case OpenMode::update: return SQLITE_OPEN_READWRITE;
-    case OpenMode::create: return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+    case OpenMode::read:
+      return SQLITE_OPEN_READONLY;
+    case OpenMode::update:
+      return SQLITE_OPEN_READWRITE;
+    case OpenMode::create:
+      return SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
   }
   return 0;
 }
 
+// A reader that meets the journal of a writer which is just finishing takes it for one left by a killed
+// process, which it may not roll back. A moment later it is gone. SQLite finds out before the first row.
+int patiently(sqlite3* database, const auto& action) {
+  constexpr int kTries = 50;
+  int result = action();
+  for (int i = 0; i < kTries && result == SQLITE_READONLY; ++i) {
+    if (sqlite3_extended_errcode(database) != SQLITE_READONLY_ROLLBACK) break;
+    sqlite3_sleep(2);
+    result = action();
+  }
+  return result;
+}
+
 const char* settings(OpenMode mode) {
   switch (mode) {
-    case OpenMode::read: return "PRAGMA query_only = ON;";
+    case OpenMode::read:
+      return "PRAGMA query_only = ON;";
     // Without spilling, readers are shut out only while the transaction commits.
-    case OpenMode::update: return "PRAGMA foreign_keys = ON; PRAGMA cache_spill = OFF;";
+    case OpenMode::update:
+      return "PRAGMA foreign_keys = ON; PRAGMA cache_spill = OFF;";
     case OpenMode::create:
       return "PRAGMA page_size = 4096; PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
              "PRAGMA locking_mode = EXCLUSIVE; PRAGMA cache_size = -65536; PRAGMA temp_store = MEMORY;";
@@ -62,39 +87,59 @@ const char* settings(OpenMode mode) {
 
 Statement::Statement(sqlite3* database, std::string_view sql) {
   sqlite3_stmt* statement = nullptr;
-  check(database, sqlite3_prepare_v3(database, sql.data(), static_cast<int>(sql.size()), SQLITE_PREPARE_PERSISTENT,
-                                     &statement, nullptr));
+  check(database, patiently(database, [&] {
+          return sqlite3_prepare_v3(database, sql.data(), static_cast<int>(sql.size()),
+                                    SQLITE_PREPARE_PERSISTENT, &statement, nullptr);
+        }));
   statement_.reset(statement);
 }
 
-void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
+  sqlite3_finalize(statement);
+}
 
-void Statement::bind(int parameter, double value) { sqlite3_bind_double(statement_.get(), parameter, value); }
-void Statement::bind(int parameter, std::int64_t value) { sqlite3_bind_int64(statement_.get(), parameter, value); }
-void Statement::bind(int parameter, std::nullptr_t) { sqlite3_bind_null(statement_.get(), parameter); }
+void Statement::bind(int parameter, double value) {
+  sqlite3_bind_double(statement_.get(), parameter, value);
+}
+void Statement::bind(int parameter, std::int64_t value) {
+  sqlite3_bind_int64(statement_.get(), parameter, value);
+}
+void Statement::bind(int parameter, std::nullptr_t) {
+  sqlite3_bind_null(statement_.get(), parameter);
+}
 void Statement::bind(int parameter, std::string_view text) {
-  sqlite3_bind_text64(statement_.get(), parameter, text.empty() ? "" : text.data(), text.size(), SQLITE_STATIC,
-                      SQLITE_UTF8);
+  sqlite3_bind_text64(statement_.get(), parameter, text.empty() ? "" : text.data(), text.size(),
+                      SQLITE_STATIC, SQLITE_UTF8);
 }
 void Statement::bind(int parameter, std::span<const std::byte> blob) {
   sqlite3_bind_blob64(statement_.get(), parameter, blob.data(), blob.size(), SQLITE_STATIC);
 }
 
 bool Statement::step() {
-  const int result = sqlite3_step(statement_.get());
+  const int result =
+      patiently(sqlite3_db_handle(statement_.get()), [&] { return sqlite3_step(statement_.get()); });
   if (result == SQLITE_ROW) return true;
+  sqlite3_reset(statement_.get());  // lets locks go, and keeps the error
   if (result != SQLITE_DONE) fail(sqlite3_db_handle(statement_.get()));
-  sqlite3_reset(statement_.get());
   return false;
 }
-void Statement::reset() { sqlite3_reset(statement_.get()); }
+void Statement::reset() {
+  sqlite3_reset(statement_.get());
+}
 
-bool Statement::null(int column) const { return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL; }
-double Statement::real(int column) const { return null(column) ? std::nan("") : sqlite3_column_double(statement_.get(), column); }
-std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_.get(), column); }
+bool Statement::null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+double Statement::real(int column) const {
+  return null(column) ? std::nan("") : sqlite3_column_double(statement_.get(), column);
+}
+std::int64_t Statement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
 std::string_view Statement::text(int column) const {
   const void* bytes = sqlite3_column_text(statement_.get(), column);
-  return {static_cast<const char*>(bytes), static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+  return {static_cast<const char*>(bytes),
+          static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
 }
 std::span<const std::byte> Statement::blob(int column) const {
   const void* bytes = sqlite3_column_blob(statement_.get(), column);
@@ -115,12 +160,14 @@ Database::Database(const std::filesystem::path& path, OpenMode mode) {
   if (!handle) throw Error(ErrorCode::environment, "out of memory", path.string());
   check(handle, result);
   sqlite3_extended_result_codes(handle, 0);
-  sqlite3_busy_timeout(handle, kPatience);
+  sqlite3_busy_handler(handle, wait_for_lock, nullptr);
   add_geometry_functions(handle);
   execute(settings(mode));
 }
 
-void Database::Close::operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+void Database::Close::operator()(sqlite3* database) const {
+  sqlite3_close_v2(database);
+}
 
 void Database::close() {
   sqlite3* handle = handle_.release();
@@ -139,7 +186,9 @@ std::int64_t Database::integer(std::string_view sql) const {
   return statement.step() ? statement.integer(0) : 0;
 }
 
-std::int64_t Database::last_id() const { return sqlite3_last_insert_rowid(handle_.get()); }
+std::int64_t Database::last_id() const {
+  return sqlite3_last_insert_rowid(handle_.get());
+}
 
 bool Database::has_table(std::string_view name) const {
   Statement statement = prepare("SELECT 1 FROM sqlite_master WHERE type IN ('table', 'view') AND name = ?");
@@ -147,7 +196,9 @@ bool Database::has_table(std::string_view name) const {
   return statement.step();
 }
 
-Transaction::Transaction(const Database& database) : database_(&database) { database.execute("BEGIN IMMEDIATE"); }
+Transaction::Transaction(const Database& database) : database_(&database) {
+  database.execute("BEGIN IMMEDIATE");
+}
 Transaction::~Transaction() {
   if (!open_) return;
   try {

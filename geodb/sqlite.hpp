@@ -33,8 +33,10 @@ class Statement {
     (bind(++parameter, values), ...);
   }
 
-  bool step();   ///< true: there is a row to read; false: done, and the statement is reset
-  void run() { while (step()) continue; }
+  bool step();  ///< true: there is a row to read; false: done, and the statement is reset
+  void run() {
+    while (step()) continue;
+  }
   void reset();
 
   bool null(int column) const;
@@ -53,9 +55,9 @@ class Statement {
 };
 
 enum class OpenMode {
-  read,       ///< never writes; a file in WAL mode that nobody has open is read without its log
-  update,     ///< the file must exist
-  create,     ///< a new file nobody else reads yet: no journal, no locks, no waiting for the disk
+  read,    ///< never writes; a file in WAL mode that nobody has open is read without its log
+  update,  ///< the file must exist
+  create,  ///< a new file nobody else reads yet: no journal, no locks, no waiting for the disk
 };
 
 /// A connection that knows the geometry functions GeoPackage triggers call.
@@ -65,10 +67,11 @@ class Database {
 
   Statement prepare(std::string_view sql) const { return Statement(handle_.get(), sql); }
   void execute(std::string_view script) const;  ///< any number of statements
-  std::int64_t integer(std::string_view sql) const;  ///< the first column of the first row; 0 where there is none
+  std::int64_t integer(
+      std::string_view sql) const;  ///< the first column of the first row; 0 where there is none
   std::int64_t last_id() const;
   bool has_table(std::string_view name) const;  ///< or view
-  void close();  ///< reports what a destructor could not
+  void close();                                 ///< reports what a destructor could not
 
  private:
   struct Close {

@@ -28,18 +28,21 @@ Explanation explain(sqlite3* database) {
       return {ErrorCode::environment, "another program is changing this map", "close it, or try again later"};
     case SQLITE_READONLY:
     case SQLITE_PERM:
-      return {ErrorCode::output, "this map cannot be changed: " + said, "check the permissions of file and folder"};
+      return {ErrorCode::output, "this map cannot be changed: " + said,
+              "check the permissions of file and folder"};
     case SQLITE_NOTADB:
       return {ErrorCode::input, "this is not a GeoPackage", "a map ends in .gpkg and is an SQLite file"};
     case SQLITE_CORRUPT:
-      return {ErrorCode::input, "this map is damaged: " + said, "restore it from a copy, or run its job again"};
+      return {ErrorCode::input, "this map is damaged: " + said,
+              "restore it from a copy, or run its job again"};
     case SQLITE_CANTOPEN:
       return {ErrorCode::input, "cannot open the map: " + said, "check that it is there and may be read"};
     case SQLITE_IOERR: {
       const int cause = sqlite3_system_errno(database);
       if (cause == ENOSPC || cause == EDQUOT)
         return {ErrorCode::output, "the disk is full", "free some space, or write to another disk"};
-      return {ErrorCode::environment, fmt::format("reading or writing failed: {} ({})", said, std::strerror(cause)),
+      return {ErrorCode::environment,
+              fmt::format("reading or writing failed: {} ({})", said, std::strerror(cause)),
               "check the disk"};
     }
     case SQLITE_NOMEM:

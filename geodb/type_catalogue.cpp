@@ -39,9 +39,9 @@ std::vector<FeatureSpec> read_features(const sqlite::Database& database, std::st
   row.bind(1, type);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   while (row.step())
-    features.push_back({std::string(row.text(0)), std::string(row.text(1)), from_word<Scale>(row.text(2), kScales),
-                        row.optional_real(3).value_or(-infinity), row.optional_real(4).value_or(infinity),
-                        std::string(row.text(5)), row.real(6)});
+    features.push_back({std::string(row.text(0)), std::string(row.text(1)),
+                        from_word<Scale>(row.text(2), kScales), row.optional_real(3).value_or(-infinity),
+                        row.optional_real(4).value_or(infinity), std::string(row.text(5)), row.real(6)});
   return features;
 }
 
@@ -60,20 +60,21 @@ std::vector<AttributeSpec> read_attributes(const sqlite::Database& database, std
 
 void write_types(const sqlite::Database& database, const TypeRegistry& types) {
   sqlite::Statement insert_type = database.prepare(
-      "INSERT INTO waymark_type (name, summary, drawn_as, colour, label_feature, size_feature) VALUES (?, ?, ?, ?, ?, ?)");
+      "INSERT INTO waymark_type (name, summary, drawn_as, colour, label_feature, size_feature) VALUES (?, ?, "
+      "?, ?, ?, ?)");
   sqlite::Statement insert_feature = database.prepare(
       "INSERT INTO waymark_feature (type, position, name, unit, scale, lowest, highest, reference, summary)"
       "  VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   sqlite::Statement insert_attribute = database.prepare(
       "INSERT INTO waymark_attribute (type, position, name, unit, kind, summary) VALUES (?, ?, ?, ?, ?, ?)");
   for (const auto& type : types) {
-    insert_type.bind_all(type.name, type.summary, word(type.drawn_as, kSolids), type.colour, type.label_feature,
-                         type.size_feature);
+    insert_type.bind_all(type.name, type.summary, word(type.drawn_as, kSolids), type.colour,
+                         type.label_feature, type.size_feature);
     insert_type.run();
     int position = 0;
     for (const auto& f : type.features) {
-      insert_feature.bind_all(type.name, position++, f.name, f.unit, word(f.scale, kScales), bounded(f.lowest),
-                              bounded(f.highest), f.reference, f.summary);
+      insert_feature.bind_all(type.name, position++, f.name, f.unit, word(f.scale, kScales),
+                              bounded(f.lowest), bounded(f.highest), f.reference, f.summary);
       insert_feature.run();
     }
     position = 0;

@@ -28,7 +28,8 @@ namespace {
 using RowOfUid = std::unordered_map<std::string_view, std::int64_t>;
 
 [[noreturn]] void refuse(std::string problem, std::string where) {
-  throw Error(ErrorCode::input, std::move(problem), std::move(where), "this comes from the stage that made the landmarks");
+  throw Error(ErrorCode::input, std::move(problem), std::move(where),
+              "this comes from the stage that made the landmarks");
 }
 
 /// Landmarks by type: positions in MapContents::landmarks.
@@ -47,8 +48,11 @@ std::vector<std::vector<std::uint32_t>> landmarks_by_type(const MapContents& con
 class MapWriter {
  public:
   MapWriter(const sqlite::Database& database, const MapContents& contents, const WriteMapOptions& options)
-      : database_(&database), contents_(&contents), changed_(time_stamp(contents.run.started_utc)),
-        of_type_(landmarks_by_type(contents)), row_of_uid_(contents.types.size()) {
+      : database_(&database),
+        contents_(&contents),
+        changed_(time_stamp(contents.run.started_utc)),
+        of_type_(landmarks_by_type(contents)),
+        row_of_uid_(contents.types.size()) {
     choose_types(options.empty_tables);
   }
 
@@ -91,8 +95,13 @@ class MapWriter {
     create_spatial_index(*database_, type.name);
     fill_rtree(*database_, type.name, points);
 
-    register_layer(*database_, {.table = type.name, .description = type.summary, .geometry_type = "POINT", .z = true,
-                                .extent = extent, .srs_id = srs_id_, .changed = changed_});
+    register_layer(*database_, {.table = type.name,
+                                .description = type.summary,
+                                .geometry_type = "POINT",
+                                .z = true,
+                                .extent = extent,
+                                .srs_id = srs_id_,
+                                .changed = changed_});
     describe_columns(*database_, layout);
     create_evidence_links(*database_, type.name);
     store_style(*database_, type, changed_);
@@ -121,7 +130,8 @@ class MapWriter {
     try {
       database_->execute(fill_in("CREATE UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
     } catch (const Error&) {
-      sqlite::Statement twice = database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");
+      sqlite::Statement twice =
+          database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");
       if (twice.step()) refuse("two landmarks have the same uid", table + " " + std::string(twice.text(0)));
       throw;
     }
@@ -129,8 +139,12 @@ class MapWriter {
 
   void write_view() {
     create_landmark_view(*database_, types_);
-    register_layer(*database_, {.table = "landmark", .description = "All landmarks, whatever their type",
-                                .geometry_type = "POINT", .z = true, .extent = whole_extent_, .srs_id = srs_id_,
+    register_layer(*database_, {.table = "landmark",
+                                .description = "All landmarks, whatever their type",
+                                .geometry_type = "POINT",
+                                .z = true,
+                                .extent = whole_extent_,
+                                .srs_id = srs_id_,
                                 .changed = changed_});
   }
 
@@ -141,8 +155,9 @@ class MapWriter {
       const auto row = rows.find(observation.landmark_uid);
       const bool kept = observation.rejected.empty();
       if (kept && row == rows.end())
-        refuse("an observation is evidence of a landmark that is not there",
-               fmt::format("observation from {}, landmark '{}'", observation.source, observation.landmark_uid));
+        refuse(
+            "an observation is evidence of a landmark that is not there",
+            fmt::format("observation from {}, landmark '{}'", observation.source, observation.landmark_uid));
       observation.type = new_id_.at(observation.type);
       writer.add(observation, kept ? std::optional(row->second) : std::nullopt);
     }
@@ -159,8 +174,11 @@ class MapWriter {
       }
       write_image(*database_, image, srs_id_);
     }
-    register_layer(*database_, {.table = "image", .description = "Images, with the ground they show",
-                                .geometry_type = "MULTIPOLYGON", .extent = extent, .srs_id = srs_id_,
+    register_layer(*database_, {.table = "image",
+                                .description = "Images, with the ground they show",
+                                .geometry_type = "MULTIPOLYGON",
+                                .extent = extent,
+                                .srs_id = srs_id_,
                                 .changed = changed_});
   }
 
@@ -168,19 +186,21 @@ class MapWriter {
   const MapContents* contents_;
   std::string changed_;
   std::vector<std::vector<std::uint32_t>> of_type_;
-  std::vector<RowOfUid> row_of_uid_;                ///< by type of the contents
-  TypeRegistry types_;                              ///< of the map: those of the contents that get a table
-  std::vector<TypeId> kept_;                        ///< their ids in the contents
-  std::unordered_map<TypeId, TypeId> new_id_;       ///< id in the contents -> id in the map
+  std::vector<RowOfUid> row_of_uid_;           ///< by type of the contents
+  TypeRegistry types_;                         ///< of the map: those of the contents that get a table
+  std::vector<TypeId> kept_;                   ///< their ids in the contents
+  std::unordered_map<TypeId, TypeId> new_id_;  ///< id in the contents -> id in the map
   Envelope whole_extent_;
   std::int32_t srs_id_ = 0;
 };
 
 }  // namespace
 
-void write_map(const std::filesystem::path& path, const MapContents& contents, const WriteMapOptions& options) {
+void write_map(const std::filesystem::path& path, const MapContents& contents,
+               const WriteMapOptions& options) {
   if (!options.replace && std::filesystem::exists(path))
-    throw Error(ErrorCode::output, "the file exists already", path.string(), "choose another name, or allow replacing it");
+    throw Error(ErrorCode::output, "the file exists already", path.string(),
+                "choose another name, or allow replacing it");
   AsideFile file(path);
   try {
     sqlite::Database database(file.path(), sqlite::OpenMode::create);

@@ -21,6 +21,7 @@ struct WriteMapOptions {
 /// Throws Error: a folder that is missing or cannot be written, a full disk, an existing file that may not be
 /// replaced, a uid that is empty or used twice in a type, a position that is not finite, evidence for a
 /// landmark that is not there. The old map is kept then.
-void write_map(const std::filesystem::path& path, const MapContents& contents, const WriteMapOptions& options = {});
+void write_map(const std::filesystem::path& path, const MapContents& contents,
+               const WriteMapOptions& options = {});
 
 }  // namespace waymark

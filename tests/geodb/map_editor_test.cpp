@@ -49,7 +49,13 @@ TEST(MapEditor, AddsEvidenceImagesAndRuns) {
   MapEditor editor = MapEditor::open(map.path);
   Observation seen = editor.map().observations_of("lp-1").at(0);
   seen.source = "image_2";
-  editor.add_image({.name = "image_2", .footprint = {}, .camera_json = "{}", .taken_utc = {}, .sun_azimuth = {}, .sun_elevation = {}, .gsd = {}});
+  editor.add_image({.name = "image_2",
+                    .footprint = {},
+                    .camera_json = "{}",
+                    .taken_utc = {},
+                    .sun_azimuth = {},
+                    .sun_elevation = {},
+                    .gsd = {}});
   editor.add_evidence(seen);
   editor.add_run(example_run());
   EXPECT_EQ(editor.map().observations_of("lp-1").size(), 2u);
@@ -67,7 +73,8 @@ TEST(MapEditor, TogetherIsAllOrNothing) {
     editor.remove("lp-1");
     editor.remove("lp-2");
     editor.remove("not there");
-  }), Error);
+  }),
+               Error);
   EXPECT_EQ(editor.map().count(), 1000);
   EXPECT_TRUE(file_bytes(map.path) == before);
 }

@@ -41,7 +41,9 @@ struct Twin {
       if (wanted(landmark)) names.push_back(landmark.uid);
     return sorted(names);
   }
-  double distance(const Landmark& l, double x, double y) const { return ruler(x, y, l.position.xyz.x(), l.position.xyz.y()); }
+  double distance(const Landmark& l, double x, double y) const {
+    return ruler(x, y, l.position.xyz.x(), l.position.xyz.y());
+  }
 
   TemporaryFolder folder;
   MapContents contents;
@@ -56,9 +58,11 @@ Scene whole_body(const std::string& crs, double west) {
 struct Place {
   double x, y, radius;
 };
-// Ordinary places, both sides of the antimeridian, the poles and their neighbourhood, circles round a pole, all.
-const Place kPlaces[] = {{10, 45, 1e6},   {179.9, 0, 8e5},   {-179.9, 60, 1e6}, {540, 10, 1e6},   {0, 90, 1e6},  {77, -90, 5e5},
-                         {123, 88, 1e6},  {-20, -85, 2e6},   {0, 0, 1.2e7},     {200, 30, 3e5},   {5, 5, 3e7},   {5, 5, 0}};
+// Ordinary places, both sides of the antimeridian, the poles and their neighbourhood, circles round a pole,
+// all.
+const Place kPlaces[] = {{10, 45, 1e6}, {179.9, 0, 8e5}, {-179.9, 60, 1e6}, {540, 10, 1e6},
+                         {0, 90, 1e6},  {77, -90, 5e5},  {123, 88, 1e6},    {-20, -85, 2e6},
+                         {0, 0, 1.2e7}, {200, 30, 3e5},  {5, 5, 3e7},       {5, 5, 0}};
 
 class OnABody : public ::testing::TestWithParam<Scene> {};
 
@@ -66,8 +70,10 @@ TEST_P(OnABody, RadiusQueriesAgreeWithTheDefinition) {
   const Twin twin(GetParam());
   for (const auto& [x, y, radius] : kPlaces) {
     const auto found = twin.map->query({.near = MapQuery::Near{x, y, Meters{radius}}});
-    EXPECT_EQ(sorted(uids(found)), twin.by_definition([&](const Landmark& l) { return twin.distance(l, x, y) <= radius; }))
-        << x << " " << y << " " << radius;
+    EXPECT_EQ(sorted(uids(found)), twin.by_definition([&](const Landmark& l) {
+      return twin.distance(l, x, y) <= radius;
+    })) << x
+        << " " << y << " " << radius;
     EXPECT_TRUE(std::ranges::is_sorted(found, {}, [&](const Landmark& l) { return twin.distance(l, x, y); }));
   }
 }
@@ -96,19 +102,29 @@ TEST_P(OnABody, BoxesMayCrossTheAntimeridian) {
 
 INSTANTIATE_TEST_SUITE_P(EarthAndMars, OnABody,
                          ::testing::Values(whole_body("EPSG:4326", -180), whole_body("EPSG:4326", 0),
-                                           whole_body("IAU_2015:49900", 0), whole_body("IAU_2015:49902", -180)));
+                                           whole_body("IAU_2015:49900", 0),
+                                           whole_body("+proj=longlat +a=3396190 +b=3376200", -180)));
 
 TEST(MapQuery, BoxesAndRadiiInThePlaneAgreeWithTheDefinition) {
   const Twin twin({.landmarks = 2000});
   const MapQuery::Box box{420'000, 5'020'000, 440'000, 5'060'000};
-  const auto in_box = [&](const Landmark& l) { return inside({box}, l.position.xyz.x(), l.position.xyz.y()); };
+  const auto in_box = [&](const Landmark& l) {
+    return inside({box}, l.position.xyz.x(), l.position.xyz.y());
+  };
   EXPECT_EQ(sorted(uids(twin.map->query({.box = box}))), twin.by_definition(in_box));
   const auto both = twin.map->query({.box = box, .near = MapQuery::Near{430'000, 5'030'000, Meters{9'000}}});
-  EXPECT_EQ(sorted(uids(both)), twin.by_definition([&](const Landmark& l) { return in_box(l) && twin.distance(l, 430'000, 5'030'000) <= 9'000; }));
+  EXPECT_EQ(sorted(uids(both)), twin.by_definition([&](const Landmark& l) {
+    return in_box(l) && twin.distance(l, 430'000, 5'030'000) <= 9'000;
+  }));
 }
 
 TEST(MapQuery, EdgesOfABoxBelongToItThoughTheIndexIsFloat32) {
-  const Twin twin({.crs = "", .min_x = 8'100'000, .min_y = 8'100'000, .max_x = 8'100'010, .max_y = 8'100'010, .landmarks = 300});
+  const Twin twin({.crs = "",
+                   .min_x = 8'100'000,
+                   .min_y = 8'100'000,
+                   .max_x = 8'100'010,
+                   .max_y = 8'100'010,
+                   .landmarks = 300});
   for (const Landmark& landmark : twin.contents.landmarks) {
     const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
     EXPECT_EQ(uids(twin.map->query({.box = MapQuery::Box{x, y, x, y}})), std::vector{landmark.uid});
@@ -117,11 +133,13 @@ TEST(MapQuery, EdgesOfABoxBelongToItThoughTheIndexIsFloat32) {
 
 TEST(MapQuery, FeatureRangesLeaveOutTheUnknown) {
   const Twin twin({});
-  const auto found = twin.map->query({.features = {{.feature = "diameter", .lowest = 0.2, .highest = 0.3}, {.feature = "height", .lowest = 5}}});
+  const auto found = twin.map->query({.features = {{.feature = "diameter", .lowest = 0.2, .highest = 0.3},
+                                                   {.feature = "height", .lowest = 5}}});
   EXPECT_GT(found.size(), 20u);
   EXPECT_EQ(sorted(uids(found)), twin.by_definition([](const Landmark& l) {
-              return l.features[1].known() && l.features[1].value >= 0.2 && l.features[1].value <= 0.3 && l.features[0].value >= 5;
-            }));
+    return l.features[1].known() && l.features[1].value >= 0.2 && l.features[1].value <= 0.3 &&
+           l.features[0].value >= 5;
+  }));
 }
 
 TEST(MapQuery, LargestFirstGivesTheForemost) {
@@ -158,7 +176,8 @@ TEST(MapQuery, SlipsOfThePenAreErrors) {
   EXPECT_THAT(message(*twin.map, {.types = {"x"}}), HasSubstr("it has: lamp_post"));
   EXPECT_THAT(message(*twin.map, {.features = {{.feature = "heigth"}}}), HasSubstr("did you mean 'height'?"));
   EXPECT_THAT(message(*twin.map, {.largest_first = "prominence"}), HasSubstr("has a feature 'prominence'"));
-  EXPECT_THAT(message(*twin.map, {.near = MapQuery::Near{}, .nearest = MapQuery::NearestK{}}), HasSubstr("cannot be combined"));
+  EXPECT_THAT(message(*twin.map, {.near = MapQuery::Near{}, .nearest = MapQuery::NearestK{}}),
+              HasSubstr("cannot be combined"));
 }
 
 }  // namespace

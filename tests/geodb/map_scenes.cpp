@@ -29,7 +29,8 @@ ProgramResult run_program(const std::string& command_line) {
   std::FILE* pipe = ::popen((command_line + " 2>&1").c_str(), "r");
   if (!pipe) throw std::runtime_error("cannot run " + command_line);
   std::array<char, 4096> part{};
-  while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe)) result.output.append(part.data(), n);
+  while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
+    result.output.append(part.data(), n);
   result.exit_code = WEXITSTATUS(::pclose(pipe));
   return result;
 }
@@ -91,7 +92,9 @@ MapContents scattered(const Scene& scene) {
     rejected.rejected = "height is implausible";
     map.observations.push_back(rejected);
     map.images = {{.name = "image_1",
-                   .footprint = {{{scene.min_x, scene.min_y}, {scene.max_x, scene.min_y}, {scene.max_x, scene.max_y},
+                   .footprint = {{{scene.min_x, scene.min_y},
+                                  {scene.max_x, scene.min_y},
+                                  {scene.max_x, scene.max_y},
                                   {scene.min_x, scene.min_y}}},
                    .camera_json = R"({"model":"pinhole"})",
                    .taken_utc = "2026-06-01T12:00:00.000Z",
@@ -119,7 +122,8 @@ DemHandle ramp_dem(const Crs& crs, std::int64_t columns, std::int64_t rows) {
   for (std::int64_t r = 0; r < rows; ++r)
     for (std::int64_t c = 0; c < columns; ++c)
       heights(c, r) = c < 5 && r < 5 ? kNoHeight : static_cast<double>(c) + 1000.0 * static_cast<double>(r);
-  return std::make_shared<testing::MemoryDem>(std::move(heights), Georeference{crs, 400'015, 5'099'985, 30, -30});
+  return std::make_shared<testing::MemoryDem>(std::move(heights),
+                                              Georeference{crs, 400'015, 5'099'985, 30, -30});
 }
 
 std::string file_bytes(const std::filesystem::path& path) {

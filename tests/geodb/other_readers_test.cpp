@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other programs make of our maps: GDAL's GeoPackage validator must be content; SpatiaLite, QGIS and the npm
-// GeoPackage reader are asked where they are installed.
+// What other programs make of our maps: GDAL's GeoPackage validator must be content; SpatiaLite, QGIS and the
+// npm GeoPackage reader are asked where they are installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,13 +18,17 @@ constexpr const char* kMars = "IAU_2015:49910";  // equidistant cylindrical
 
 MapContents rich_map(const std::string& crs) {
   MapContents map = scattered({.crs = crs});
-  map.types.add({.name = "boulder", .summary = "A type without landmarks", .features = {{"radius", "m", Scale::ratio, 0, 9, ""}}});
+  map.types.add({.name = "boulder",
+                 .summary = "A type without landmarks",
+                 .features = {{"radius", "m", Scale::ratio, 0, 9, ""}}});
   map.dem_coverage = ramp_dem(map.crs, 700, 500);
   return map;
 }
 
 void expect_valid(const std::filesystem::path& map) {
-  const auto result = run_program("/usr/bin/python3 -m osgeo_utils.samples.validate_gpkg -k --extra --warning-as-error '" + map.string() + "'");
+  const auto result =
+      run_program("/usr/bin/python3 -m osgeo_utils.samples.validate_gpkg -k --extra --warning-as-error '" +
+                  map.string() + "'");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(result.output, "");
 }
@@ -51,7 +55,8 @@ TEST_P(OtherReaders, ValidateGpkgFindsNothingAfterEdits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryKind, OtherReaders,
-                         ::testing::Values("EPSG:32632", "EPSG:4326", kMars, "+proj=stere +lat_0=90 +R=1737400", ""));
+                         ::testing::Values("EPSG:32632", "EPSG:4326", kMars,
+                                           "+proj=stere +lat_0=90 +R=1737400", ""));
 
 TEST(OtherReaders, ValidateGpkgFindsNothingInAnEmptyMap) {
   const TemporaryFolder folder;
@@ -87,11 +92,14 @@ TEST(OtherReaders, GdalReadsTheCoverage) {
   EXPECT_THAT(info.output, HasSubstr("Computed Min/Max=5.000,499699.000"));
   EXPECT_THAT(info.output, HasSubstr("Unit Type: m"));
   for (const char* complaint : {"Warning", "ERROR"}) EXPECT_THAT(info.output, Not(HasSubstr(complaint)));
-  const auto cell = run_program("gdallocationinfo -valonly 'GPKG:" + (folder / "map.gpkg").string() + ":dem' 300 400");
+  const auto cell =
+      run_program("gdallocationinfo -valonly 'GPKG:" + (folder / "map.gpkg").string() + ":dem' 300 400");
   EXPECT_EQ(cell.output, "400300\n");
 }
 
-bool available(const std::string& command_line) { return run_program(command_line).exit_code == 0; }
+bool available(const std::string& command_line) {
+  return run_program(command_line).exit_code == 0;
+}
 
 TEST(OtherReaders, OgrEditsThroughOurTriggers) {
   const TemporaryFolder folder;
@@ -118,9 +126,9 @@ TEST(OtherReaders, QgisDrawsTheLayerInOurStyle) {
   if (!available("/usr/bin/python3 -c 'import qgis.core'")) GTEST_SKIP() << "needs python3-qgis";
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", rich_map(kMars));
-  const auto result = run_program(
-      "QT_QPA_PLATFORM=offscreen /usr/bin/python3 " WAYMARK_SOURCE_DIR "/tests/geodb/open_in_qgis.py '" +
-      (folder / "map.gpkg").string() + "' lamp_post");
+  const auto result = run_program("QT_QPA_PLATFORM=offscreen /usr/bin/python3 " WAYMARK_SOURCE_DIR
+                                  "/tests/geodb/open_in_qgis.py '" +
+                                  (folder / "map.gpkg").string() + "' lamp_post");
   EXPECT_THAT(result.output, HasSubstr("valid: True"));
   EXPECT_THAT(result.output, HasSubstr("crs: IAU_2015:49910"));
   EXPECT_THAT(result.output, HasSubstr("colour: #d0a020"));
@@ -134,7 +142,8 @@ TEST(OtherReaders, NpmGeopackageReadsTheRows) {
   if (!available("node -e \"require.resolve('@ngageoint/geopackage')\""))
     GTEST_SKIP() << "needs node and NODE_PATH with @ngageoint/geopackage 4 and better-sqlite3";
   const TemporaryFolder folder;
-  write_map(folder / "map.gpkg", scattered({.crs = "EPSG:4326", .min_x = 10, .min_y = 40, .max_x = 11, .max_y = 41}));
+  write_map(folder / "map.gpkg",
+            scattered({.crs = "EPSG:4326", .min_x = 10, .min_y = 40, .max_x = 11, .max_y = 41}));
   const auto result = run_program("node " + script + " '" + (folder / "map.gpkg").string() + "' lamp_post");
   EXPECT_THAT(result.output, HasSubstr("rows: 1000"));
 }
