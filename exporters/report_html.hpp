@@ -14,7 +14,7 @@ struct ReportOptions {
 /// Writes a report of `map` as one HTML file that needs nothing else: no network, no script, no other file.
 /// It shows a shaded-relief map with the landmarks, the foremost landmarks of each type, histograms, what the run
 /// read and did, and its warnings. The relief is drawn from the DEM inside the map, else from the run's input files
-/// where they are still there and unchanged in size, else a graticule takes its place.
+/// where they are still there and have not grown, else a graticule takes its place.
 /// A huge DEM costs no more than a small one: it is read at the picture's resolution.
 /// The same map gives the same bytes. Written aside and renamed; an existing report is replaced.
 /// Throws Error where the map cannot be read or the report cannot be written.

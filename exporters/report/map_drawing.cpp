@@ -57,8 +57,9 @@ std::vector<std::string> relief_names(const MapStore& map) {
       std::error_code missing;
       const bool there = input.path.starts_with("/vsi") || fs::exists(input.path, missing);
       const std::string name = there ? input.path : beside.string();
-      const bool changed = !name.starts_with("/vsi") && fs::file_size(name, missing) != input.bytes;
-      if (!changed && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      // The recorded size counts what belongs to the file too, such as the sources of a VRT.
+      const bool another = !name.starts_with("/vsi") && fs::file_size(name, missing) > input.bytes;
+      if (!another && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   return names;
 }

@@ -11,6 +11,7 @@ import os
 import sys
 
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+os.environ["GDAL_PAM_ENABLED"] = "NO"  # leave no statistics beside the DEM
 try:
     from osgeo import ogr
     from qgis.core import (QgsApplication, QgsHillshadeRenderer, QgsMapRendererSequentialJob, QgsMapSettings,

@@ -64,7 +64,7 @@ TEST_F(ReportHtml, DrawsTheReliefOfTheInputFiles) {
   test::write_small_dem(folder / "dem.tif", -70.1, -32.55, 0.001);
   contents.run.inputs = {{"elsewhere/dem.tif", std::filesystem::file_size(folder / "dem.tif"), ""}};  // beside the map
   EXPECT_THAT(report_of(contents), HasSubstr("href='data:image/png;base64,iVBORw0KGgo"));
-  contents.run.inputs[0].bytes += 1;  // no longer the file the run has read
+  contents.run.inputs[0].bytes -= 1;  // no longer the file the run has read
   EXPECT_THAT(report_of(contents), Not(HasSubstr("data:image/png")));
 }
 
