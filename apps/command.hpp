@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 namespace waymark {
@@ -12,8 +11,8 @@ namespace waymark {
 struct Session;
 
 /// Where the words of an argument go. A bool is a flag; a vector of texts takes the argument again and again.
-using Target = std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<double>*,
-                            std::vector<double>*, std::vector<std::string>*>;
+using Target = std::variant<bool*, std::int64_t*, double*, std::string*, std::vector<double>*,
+                            std::vector<std::string>*>;
 
 /// What the shell offers for a value that has no choices.
 enum class Offer { nothing, file, folder };

@@ -49,7 +49,6 @@ struct Store {
     *into = number<std::int64_t>(display_name(argument), words[0], "whole number");
   }
   void operator()(double* into) const { *into = to_number(display_name(argument), words[0]); }
-  void operator()(std::optional<double>* into) const { *into = to_number(display_name(argument), words[0]); }
   void operator()(std::string* into) const { *into = one_of(argument, words[0]); }
   void operator()(std::vector<double>* into) const {
     into->clear();
@@ -162,7 +161,7 @@ void parse(const std::string& name, std::span<const Argument> arguments,
            const std::vector<std::string>& words) {
   CLI::App app;
   app.allow_extras();
-  std::vector<std::string> rest = leftover(app, arguments, words);
+  const std::vector<std::string> rest = leftover(app, arguments, words);
   if (rest.empty()) return;
   const auto option = std::ranges::find_if(rest, [](const auto& word) { return word.starts_with("-"); });
   refuse_unknown("waymark " + name, arguments, option != rest.end() ? *option : rest[0]);

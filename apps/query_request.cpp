@@ -74,7 +74,12 @@ MapQuestion::MapQuestion(const QueryRequest& request, const MapStore& map)
   }
   ask_near(request, map);
   ask_box(request, map);
-  if (!outline_) query_.limit = request.limit;
+  if (!outline_) {
+    query_.limit = request.limit;
+  } else if (query_.nearest) {  // which of the nearest are inside is known only afterwards
+    limit_ = std::min(limit_, static_cast<std::size_t>(query_.nearest->k));
+    query_.nearest->k = map.count();
+  }
 }
 
 void MapQuestion::ask_near(const QueryRequest& request, const MapStore& map) {

@@ -28,8 +28,7 @@ std::vector<Argument> global_arguments(Session& session) {
       Argument{"--threads", "N", &session.threads, "Threads to compute with"}.or_else("one per processor"),
       Argument{"--progress", "HOW", &session.progress,
                "Show progress on standard error; auto is a bar on a terminal and a line now and then "
-               "elsewhere, dots "
-               "are GDAL's"}
+               "elsewhere, dots are GDAL's"}
           .one_of({"auto", "bar", "dots", "json", "none"})
           .or_else("auto"),
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},

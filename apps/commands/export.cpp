@@ -25,8 +25,7 @@ class Export final : public Command {
                           .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
                           .offering(all_types().names()),
-                      Argument{"--crs", "CRS", &options_.crs, "Coordinates of the output"}.or_else(
-                          "the map's"),
+                      Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
                       {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
         .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
                      {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",

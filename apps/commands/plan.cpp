@@ -19,8 +19,7 @@ class PlanJob final : public Command {
         .summary = "Print the units of work of a job, for a scheduler",
         .about =
             "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines "
-            "that "
-            "share the --work folder need nothing else in common.",
+            "that share the --work folder need nothing else in common.",
         .arguments = {file_word("JOB.json", &job_, "Job file"),
                       Argument{"--as", "FORM", &as_, "JSON lines, a Snakefile, or a script of sbatch calls"}
                           .one_of({"jsonl", "snakemake", "slurm"})

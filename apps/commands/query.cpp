@@ -26,8 +26,7 @@ class Query final : public Command {
         .summary = "Print the landmarks of a map that meet conditions",
         .about =
             "Distances are metres on the ground, also across the antimeridian and at the poles. The table "
-            "shows "
-            "the features; csv, json and geojson have every column of the map.",
+            "shows the features; csv, json and geojson have every column of the map.",
         .arguments = all,
         .examples = {
             {"waymark query alps.gpkg --largest prominence --limit 10", "The ten most prominent summits"},

@@ -13,11 +13,9 @@ class Report final : public Command {
             .group = Group::use,
             .summary = "Write a report of a map as one HTML file",
             .about =
-                "Shaded relief with the landmarks, the foremost of each type, histograms, what the run read "
-                "and did. "
-                "It needs no network and no other file. The relief comes from the DEM in the map, or from "
-                "the run's "
-                "input files where they are still there.",
+                "Shaded relief with the landmarks, the foremost of each type, histograms, what the run "
+                "read and did. It needs no network and no other file. The relief comes from the DEM in the "
+                "map, or from the run's input files where they are still there.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
                           Argument{"-o,--output", "REPORT.html", &html_,
                                    "Report to write; an older one is replaced"}

@@ -35,8 +35,8 @@ class Run final : public Command {
         .summary = "Run a job file and write the map",
         .about =
             "Paths in the job file start at its folder. With --work every finished unit of work is kept "
-            "under "
-            "a fingerprint of its options and inputs: a second run does only what is missing or has changed.",
+            "under a fingerprint of its options and inputs: a second run does only what is missing or has "
+            "changed.",
         .arguments = all,
         .examples = {
             {"waymark run job.json -o map.gpkg --work work", "Run, and be able to go on after a stop"},

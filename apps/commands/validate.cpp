@@ -17,11 +17,9 @@ class Validate final : public Command {
             .group = Group::use,
             .summary = "Check that a map keeps its promises",
             .about =
-                "RTree against geometry, evidence links, quality ranges and all else a GeoPackage validator "
-                "does not "
-                "know. Each fault is a line of tab-separated text: code, table, row, what is wrong. The exit "
-                "code is "
-                "1 where there are faults.",
+                "RTree against geometry, evidence links, quality ranges and all else a GeoPackage "
+                "validator does not know. Each fault is a line of tab-separated text: code, table, row, "
+                "what is wrong. The exit code is 1 where there are faults.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to check; it is not changed")},
             .examples = {{"waymark validate alps.gpkg", "Nothing on standard output: the map is sound"}}};
   }

@@ -53,7 +53,11 @@ TEST_F(Query, ByBox) {
 TEST_F(Query, ByBoxInDegrees) {
   // 9 degrees east is x = 500000: the peaks lie 1.5 and 5.5 km east of it, 0.0198 and 0.0724 degrees at 46.9
   // N.
-  EXPECT_THAT(elevations({"--crs", "EPSG:4326", "--bbox", "9", "46", "9.05", "47"}), ElementsAre(900));
+  const std::vector<std::string> box{"--crs", "EPSG:4326", "--bbox", "9", "46", "9.05", "47"};
+  EXPECT_THAT(elevations(box), ElementsAre(900));
+  std::vector<std::string> nearest_in_box{"--nearest", "9.1", "46.94", "1"};  // the other peak is nearer
+  nearest_in_box.insert(nearest_in_box.end(), box.begin(), box.end());
+  EXPECT_THAT(elevations(nearest_in_box), ElementsAre(900));
 }
 
 TEST_F(Query, NearestFirst) {
