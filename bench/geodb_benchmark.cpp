@@ -2,11 +2,11 @@
 // Writing and asking a map of a million landmarks with ten features each.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
 #include <filesystem>
 #include <random>
 
 #include "geodb/map_store.hpp"
-#include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 
 namespace waymark {
@@ -81,4 +81,8 @@ BENCHMARK(NearestTen)->Unit(benchmark::kMicrosecond);
 }  // namespace
 }  // namespace waymark
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  std::filesystem::remove(waymark::kMap);
+}

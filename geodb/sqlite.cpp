@@ -77,7 +77,7 @@ const char* settings(OpenMode mode) {
     case OpenMode::update:
       return "PRAGMA foreign_keys = ON; PRAGMA cache_spill = OFF;";
     case OpenMode::create:
-      return "PRAGMA page_size = 4096; PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
+      return "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
              "PRAGMA locking_mode = EXCLUSIVE; PRAGMA cache_size = -65536; PRAGMA temp_store = MEMORY;";
   }
   return "";

@@ -25,6 +25,12 @@
 namespace waymark {
 namespace {
 
+// Large pages save a quarter of the time of a large map; small ones keep a small map small.
+const char* page_size(const MapContents& contents) {
+  constexpr std::size_t kLarge = 50'000;  // landmarks
+  return contents.landmarks.size() < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384";
+}
+
 using RowOfUid = std::unordered_map<std::string_view, std::int64_t>;
 
 [[noreturn]] void refuse(std::string problem, std::string where) {
@@ -204,6 +210,7 @@ void write_map(const std::filesystem::path& path, const MapContents& contents,
   AsideFile file(path);
   try {
     sqlite::Database database(file.path(), sqlite::OpenMode::create);
+    database.execute(page_size(contents));
     sqlite::Transaction all(database);
     MapWriter(database, contents, options).write();
     all.commit();
