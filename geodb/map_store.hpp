@@ -30,7 +30,7 @@ class MapStore {
   std::int64_t count() const;
   std::int64_t count(std::string_view type) const;  ///< throws Error{usage} for a type the map does not have
 
-  /// About 40 us for ten hits among a million landmarks. A feature no chosen type has is an Error{usage}.
+  /// About 50 us for ten hits among a million landmarks. A feature no chosen type has is an Error{usage}.
   std::vector<Landmark> query(const MapQuery& query) const;
   std::optional<Landmark> find(std::string_view uid) const;
   /// Ground distance in metres as the queries measure it.

@@ -16,8 +16,8 @@ struct Finding {
   friend bool operator==(const Finding&, const Finding&) = default;
 };
 
-/// Checks the promises of interface.md that a GeoPackage validator does not know, and the RTree: about 200 k
-/// landmarks/s. At most 100 findings per code and table, then one that counts the rest. Empty: the map is
+/// Checks the promises of interface.md that a GeoPackage validator does not know, and the RTree.
+/// At most 100 findings per code and table, then one that counts the rest. Empty: the map is
 /// sound. Never writes. Throws Error where the file cannot be opened as a map at all.
 std::vector<Finding> validate_map(const std::filesystem::path& path);
 
