@@ -21,7 +21,9 @@ namespace fs = std::filesystem;
 // Less than any output needs: a file system this empty of space is the cause of whatever went wrong.
 constexpr std::uintmax_t kFullDisk = 16 * 1024;
 
-std::string system_reason(int number) { return std::generic_category().message(number); }
+std::string system_reason(int number) {
+  return std::generic_category().message(number);
+}
 
 fs::path folder_of(const fs::path& output) {
   return output.has_parent_path() ? output.parent_path() : fs::path(".");
@@ -41,7 +43,8 @@ void flush(const fs::path& file, const fs::path& output) {
 AsideFolder::AsideFolder(const fs::path& output) : folder_(folder_of(output)) {
   std::error_code ignored;
   if (!fs::is_directory(folder_, ignored))
-    throw Error(ErrorCode::output, "cannot write " + output.filename().string() + ": its folder does not exist",
+    throw Error(ErrorCode::output,
+                "cannot write " + output.filename().string() + ": its folder does not exist",
                 folder_.string(), "make the folder, or write elsewhere");
   std::string pattern = (folder_ / ".waymark-XXXXXX").string();
   if (::mkdtemp(pattern.data()) == nullptr) fail_output(output, system_reason(errno));

@@ -14,8 +14,8 @@
 
 namespace waymark {
 
-std::vector<std::string> check_export(const VectorFormat& format, const std::string& path, const std::string& shown_as,
-                                      const Crs& crs, std::int64_t landmarks) {
+std::vector<std::string> check_export(const VectorFormat& format, const std::string& path,
+                                      const std::string& shown_as, const Crs& crs, std::int64_t landmarks) {
   if (!format.can_be_read) return {};
   GdalMessages messages;
   const char* only[] = {format.driver.c_str(), nullptr};

@@ -7,9 +7,10 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// Reads a finished file again. Throws Error{output} where landmarks are missing, and where a reader would take the
-/// coordinates for another body's. Returns warnings: a CRS that is kept without its name, or not at all.
-std::vector<std::string> check_export(const VectorFormat& format, const std::string& path, const std::string& shown_as,
-                                      const Crs& crs, std::int64_t landmarks);
+/// Reads a finished file again. Throws Error{output} where landmarks are missing, and where a reader would
+/// take the coordinates for another body's. Returns warnings: a CRS that is kept without its name, or not at
+/// all.
+std::vector<std::string> check_export(const VectorFormat& format, const std::string& path,
+                                      const std::string& shown_as, const Crs& crs, std::int64_t landmarks);
 
 }  // namespace waymark

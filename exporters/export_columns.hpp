@@ -15,8 +15,10 @@ struct ExportColumn {
   std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate where the landmark has none
 };
 
-/// The columns of a type without the geometry, in the order of the map's table: uid; per feature its value, spread
-/// (`_sd`, standard deviation) and confidence (`_q`); counts, qualities, covariance (square metres); the attributes.
+/// The columns of a type without the geometry, in the order of the map's table: uid; per feature its value,
+/// spread
+/// (`_sd`, standard deviation) and confidence (`_q`); counts, qualities, covariance (square metres); the
+/// attributes.
 std::vector<ExportColumn> export_columns(const LandmarkType& type);
 
 /// Landmark quality (eq. 8) with equal weights; absent where nothing is known about it.

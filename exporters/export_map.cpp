@@ -51,7 +51,8 @@ std::vector<Landmark> landmarks_of(Export& job, const LandmarkType& type) {
   return std::move(found.landmarks);
 }
 
-void write_layers(Export& job, const std::vector<std::string>& types, const std::string& path, const std::string& out) {
+void write_layers(Export& job, const std::vector<std::string>& types, const std::string& path,
+                  const std::string& out) {
   OgrOutput output(job.format, path, out);
   for (const std::string& type : types)
     output.add_layer(*job.map.types().find(type), landmarks_of(job, *job.map.types().find(type)), job.crs);
@@ -64,7 +65,8 @@ void write_aside(Export& job, const std::vector<std::string>& types, const fs::p
   const std::size_t before = job.summary.layers.size();
   write_layers(job, types, path, out.string());
   std::int64_t landmarks = 0;
-  for (std::size_t i = before; i < job.summary.layers.size(); ++i) landmarks += job.summary.layers[i].landmarks;
+  for (std::size_t i = before; i < job.summary.layers.size(); ++i)
+    landmarks += job.summary.layers[i].landmarks;
   job.warn(check_export(job.format, path, out.string(), job.crs, landmarks));
   for (const fs::path& file : aside.publish()) job.summary.files.push_back(file.string());
 }
@@ -99,9 +101,10 @@ std::vector<OutputFile> output_files(const VectorFormat& format, const std::stri
   const fs::path path(out);
   std::vector<OutputFile> files;
   for (const std::string& type : types)
-    files.push_back({(path.parent_path() / fmt::format("{}_{}{}", path.stem().string(), type, path.extension().string()))
-                         .string(),
-                     {type}});
+    files.push_back(
+        {(path.parent_path() / fmt::format("{}_{}{}", path.stem().string(), type, path.extension().string()))
+             .string(),
+         {type}});
   return files;
 }
 

@@ -27,7 +27,9 @@ GdalMessages::GdalMessages() {
   CPLPushErrorHandlerEx(collect, this);
 }
 
-GdalMessages::~GdalMessages() { CPLPopErrorHandler(); }
+GdalMessages::~GdalMessages() {
+  CPLPopErrorHandler();
+}
 
 std::string GdalMessages::cause(const std::string& otherwise) const {
   if (!failures_.empty()) return failures_.front();
@@ -35,7 +37,11 @@ std::string GdalMessages::cause(const std::string& otherwise) const {
   return otherwise;
 }
 
-void GdalMessages::add_failure(std::string text) { add_once(failures_, std::move(text)); }
-void GdalMessages::add_warning(std::string text) { add_once(warnings_, std::move(text)); }
+void GdalMessages::add_failure(std::string text) {
+  add_once(failures_, std::move(text));
+}
+void GdalMessages::add_warning(std::string text) {
+  add_once(warnings_, std::move(text));
+}
 
 }  // namespace waymark

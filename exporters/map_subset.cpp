@@ -31,9 +31,11 @@ void reproject(std::vector<Observation>& observations, const Crs& from, const Cr
   }
 }
 
-bool keep(Observation& seen, const TypeRegistry& from, const TypeRegistry& to, const std::set<std::string>& uids) {
+bool keep(Observation& seen, const TypeRegistry& from, const TypeRegistry& to,
+          const std::set<std::string>& uids) {
   const std::string& type = from[seen.type].name;
-  if (to.find(type) == nullptr || !(seen.landmark_uid.empty() || uids.contains(seen.landmark_uid))) return false;
+  if (to.find(type) == nullptr || !(seen.landmark_uid.empty() || uids.contains(seen.landmark_uid)))
+    return false;
   seen.type = to.id(type);
   return seen.position.xyz.head<2>().allFinite();
 }
@@ -51,8 +53,8 @@ MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types,
     Reprojected found = reproject(map.query({.types = {name}}), type, map.crs(), crs);
     subset.layers.push_back({name, static_cast<std::int64_t>(found.landmarks.size())});
     if (found.lost > 0)
-      subset.warnings.push_back(fmt::format("{} {} landmarks have no position in {} and are left out", found.lost, name,
-                                            crs.id()));
+      subset.warnings.push_back(
+          fmt::format("{} {} landmarks have no position in {} and are left out", found.lost, name, crs.id()));
     for (Landmark& landmark : found.landmarks) {
       landmark.type = id;
       uids.insert(landmark.uid);
@@ -67,7 +69,8 @@ MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types,
   reproject(contents.images, map.crs(), crs);
   const auto runs = map.runs();
   if (!runs.empty()) contents.run = runs.back();
-  if (runs.size() > 1) subset.warnings.push_back(fmt::format("only the latest of {} runs is kept", runs.size()));
+  if (runs.size() > 1)
+    subset.warnings.push_back(fmt::format("only the latest of {} runs is kept", runs.size()));
   if (map.has_dem_coverage()) subset.warnings.push_back("the elevation tiles of the map are left out");
   return subset;
 }

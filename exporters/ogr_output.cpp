@@ -10,8 +10,8 @@
 
 #include "core/error.hpp"
 #include "exporters/aside_folder.hpp"
-#include "exporters/gdal_messages.hpp"
 #include "exporters/export_columns.hpp"
+#include "exporters/gdal_messages.hpp"
 #include "exporters/place_text.hpp"
 
 namespace waymark {
@@ -49,9 +49,10 @@ std::vector<ExportColumn> columns_of(const VectorFormat& format, const LandmarkT
   if (format.is_table)
     columns.insert(columns.begin() + 1, {coordinate("x", 0), coordinate("y", 1), coordinate("z", 2)});
   if (!format.place_name.empty())
-    columns.insert(columns.begin(),
-                   {text(format.place_name, [&type](const Landmark& l) { return place_name(l, type); }),
-                    text(format.place_description, [&type](const Landmark& l) { return place_description(l, type); })});
+    columns.insert(
+        columns.begin(),
+        {text(format.place_name, [&type](const Landmark& l) { return place_name(l, type); }),
+         text(format.place_description, [&type](const Landmark& l) { return place_description(l, type); })});
   return columns;
 }
 
@@ -109,7 +110,8 @@ struct OgrOutput::File {
                 "if the folder can be written to, the format is at fault: try .gpkg, .geojson or .csv");
   }
 
-  std::vector<Field> add_fields(OGRLayer& layer, const LandmarkType& type, const std::vector<Landmark>& landmarks) {
+  std::vector<Field> add_fields(OGRLayer& layer, const LandmarkType& type,
+                                const std::vector<Landmark>& landmarks) {
     std::vector<std::string> names, refused, shortened;
     const auto columns = columns_of(format, type);
     for (const ExportColumn& column : columns) names.push_back(column.name);
@@ -128,7 +130,8 @@ struct OgrOutput::File {
     if (!refused.empty())
       warnings.push_back(fmt::format("{} has no place for: {}", format.driver, fmt::join(refused, ", ")));
     if (!shortened.empty())
-      warnings.push_back(fmt::format("{} has short column names: {}", format.driver, fmt::join(shortened, ", ")));
+      warnings.push_back(
+          fmt::format("{} has short column names: {}", format.driver, fmt::join(shortened, ", ")));
     return fields;
   }
 };
@@ -139,9 +142,9 @@ OgrOutput::OgrOutput(const VectorFormat& format, const std::string& path, std::s
   file_->shown_as = std::move(shown_as);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver.c_str());
   CPLStringList options = file_options(format);
-  file_->dataset.reset(format.is_file
-                           ? driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, options.List())
-                           : GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE, nullptr, nullptr, nullptr));
+  file_->dataset.reset(format.is_file ? driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, options.List())
+                                      : GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE,
+                                                          nullptr, nullptr, nullptr));
   if (!file_->dataset) file_->fail(format.driver + " could not make it");
 }
 
@@ -155,7 +158,8 @@ void OgrOutput::add_layer(const LandmarkType& type, const std::vector<Landmark>&
                                               file.format.is_table ? wkbNone : wkbPoint25D, options.List());
   if (layer == nullptr) file.fail(file.format.driver + " could not make a layer of points");
   const std::vector<Field> fields = file.add_fields(*layer, type, landmarks);
-  const std::string style = fmt::format("SYMBOL(s:0.8,c:{})", type.colour);  // GDAL 3.6's LIBKML needs the size
+  const std::string style =
+      fmt::format("SYMBOL(s:0.8,c:{})", type.colour);  // GDAL 3.6's LIBKML needs the size
   const bool one_transaction = layer->StartTransaction() == OGRERR_NONE;
   for (const Landmark& landmark : landmarks) {
     OGRFeature feature(layer->GetLayerDefn());
@@ -167,7 +171,8 @@ void OgrOutput::add_layer(const LandmarkType& type, const std::vector<Landmark>&
     }
     if (layer->CreateFeature(&feature) != OGRERR_NONE) file.fail("a landmark was refused");
   }
-  if (one_transaction && layer->CommitTransaction() != OGRERR_NONE) file.fail("the layer could not be committed");
+  if (one_transaction && layer->CommitTransaction() != OGRERR_NONE)
+    file.fail("the layer could not be committed");
 }
 
 std::vector<std::string> OgrOutput::close() {
@@ -178,7 +183,8 @@ std::vector<std::string> OgrOutput::close() {
   if (!file.messages.failures().empty() && full) fail_full_disk(file.shown_as);
   if (!file.messages.failures().empty()) file.fail("closing it failed");
   std::vector<std::string> warnings = file.warnings;
-  for (const std::string& said : file.messages.warnings()) warnings.push_back(file.format.driver + ": " + said);
+  for (const std::string& said : file.messages.warnings())
+    warnings.push_back(file.format.driver + ": " + said);
   return warnings;
 }
 

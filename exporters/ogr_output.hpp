@@ -20,7 +20,8 @@ class OgrOutput {
   /// every place (KML, GPX, GeoRSS) get them. Throws Error{output} for what cannot be written.
   void add_layer(const LandmarkType& type, const std::vector<Landmark>& landmarks, const Crs& crs);
 
-  /// Finishes the file and returns what the format could not keep. Throws Error{output}: the disk may be full only now.
+  /// Finishes the file and returns what the format could not keep. Throws Error{output}: the disk may be full
+  /// only now.
   std::vector<std::string> close();
 
  private:

@@ -25,7 +25,8 @@ std::string feature_text(const FeatureValue& feature, const FeatureSpec& spec) {
 }  // namespace
 
 std::string place_name(const Landmark& landmark, const LandmarkType& type) {
-  return type.label_feature.empty() ? title_of(type.name) : title_of(type.name) + " " + label_of(landmark, type);
+  return type.label_feature.empty() ? title_of(type.name)
+                                    : title_of(type.name) + " " + label_of(landmark, type);
 }
 
 std::string place_description(const Landmark& landmark, const LandmarkType& type) {

@@ -40,7 +40,8 @@ std::string facts(const std::vector<LandmarkSection>& sections, const std::vecto
     }
   }
   if (!runs.empty() && runs.back().seconds > 0)
-    items += fact(number_text(runs.back().seconds, runs.back().seconds < 10 ? 1 : 0) + "\u00a0s", "to make it");
+    items +=
+        fact(number_text(runs.back().seconds, runs.back().seconds < 10 ? 1 : 0) + "\u00a0s", "to make it");
   return items.empty() ? "" : "<ul class='facts'>" + items + "</ul>\n";
 }
 
@@ -53,8 +54,8 @@ std::string place_of(const Crs& crs) {
 std::string section_html(const LandmarkSection& section, const Crs& crs, std::int64_t top) {
   if (section.landmarks.empty()) return {};
   return fmt::format("<section><h2>{}{}</h2><p>{}</p>\n{}{}</section>\n", svg_symbol(section.type, 20),
-                     escaped(title_of(section.type.name)), escaped(section.type.summary), histogram_figures(section),
-                     landmark_table(section, crs, top));
+                     escaped(title_of(section.type.name)), escaped(section.type.summary),
+                     histogram_figures(section), landmark_table(section, crs, top));
 }
 
 std::string page(const MapStore& map, const std::string& title, const ReportOptions& options) {
@@ -63,18 +64,23 @@ std::string page(const MapStore& map, const std::string& title, const ReportOpti
   const RunRecord latest = runs.empty() ? RunRecord{} : runs.back();
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n"
-      "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<meta name='generator' content='Waymark'>\n"
-      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1><p>{2}</p></header>\n<main>\n",
+      "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<meta name='generator' "
+      "content='Waymark'>\n"
+      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1><p>{2}</p></"
+      "header>\n<main>\n",
       escaped(title), kPageStyle, escaped(place_of(map.crs())));
   html += facts(sections, runs) + warning_list(latest) + map_figure(map, sections, options.relief_pixels);
   for (const LandmarkSection& section : sections) html += section_html(section, map.crs(), options.top);
   if (const std::string stages = stage_table(latest); !stages.empty())
     html += "<section><h2>What the run did</h2>" + stages + "</section>\n";
   html += "<section><h2>Where it comes from</h2>" + provenance(runs) +
-          fmt::format("<details><summary>Coordinate reference system</summary><pre>{}</pre></details></section>\n",
-                      escaped(map.crs().wkt2()));
-  return html + fmt::format("</main>\n<footer>Report of {} \u00b7 this file needs no network</footer>\n</body>\n</html>\n",
-                            escaped(map.path().filename().string()));
+          fmt::format(
+              "<details><summary>Coordinate reference system</summary><pre>{}</pre></details></section>\n",
+              escaped(map.crs().wkt2()));
+  return html +
+         fmt::format(
+             "</main>\n<footer>Report of {} \u00b7 this file needs no network</footer>\n</body>\n</html>\n",
+             escaped(map.path().filename().string()));
 }
 
 }  // namespace

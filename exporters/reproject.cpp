@@ -18,7 +18,8 @@ std::vector<Pair> position_pairs(const LandmarkType& type) {
   for (std::size_t x = 0; x < all.size(); ++x) {
     if (!all[x].name.ends_with("_x")) continue;
     const std::string twin = all[x].name.substr(0, all[x].name.size() - 1) + "y";
-    const auto y = std::find_if(all.begin(), all.end(), [&](const AttributeSpec& a) { return a.name == twin; });
+    const auto y =
+        std::find_if(all.begin(), all.end(), [&](const AttributeSpec& a) { return a.name == twin; });
     if (y != all.end()) pairs.push_back({x, static_cast<std::size_t>(y - all.begin())});
   }
   return pairs;
@@ -37,7 +38,8 @@ void reproject(AttributeSet& attributes, const Pair& pair, const CrsTransform& t
 
 }  // namespace
 
-Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type, const Crs& from, const Crs& to) {
+Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type, const Crs& from,
+                      const Crs& to) {
   if (from.same_as(to)) return {std::move(landmarks)};
   const CrsTransform transform(from, to);
   const auto pairs = position_pairs(type);
@@ -46,7 +48,8 @@ Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type,
     landmark.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
     for (const Pair& pair : pairs) reproject(landmark.attributes, pair, transform);
   }
-  const auto lost = std::erase_if(landmarks, [](const Landmark& l) { return !l.position.xyz.head<2>().allFinite(); });
+  const auto lost =
+      std::erase_if(landmarks, [](const Landmark& l) { return !l.position.xyz.head<2>().allFinite(); });
   return {std::move(landmarks), static_cast<std::int64_t>(lost)};
 }
 

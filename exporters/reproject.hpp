@@ -7,13 +7,14 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
-/// Landmarks whose positions are in another CRS: their own, and every attribute pair `<stem>_x`, `<stem>_y` of the
-/// type, which by convention is a position in the map's CRS too (a saddle, where isolation ends). An attribute pair
-/// without an image in `to` becomes NULL. Covariances are east-north metres and stay.
+/// Landmarks whose positions are in another CRS: their own, and every attribute pair `<stem>_x`, `<stem>_y`
+/// of the type, which by convention is a position in the map's CRS too (a saddle, where isolation ends). An
+/// attribute pair without an image in `to` becomes NULL. Covariances are east-north metres and stay.
 struct Reprojected {
   std::vector<Landmark> landmarks;
   std::int64_t lost = 0;  ///< landmarks that have no position in `to`: left out
 };
-Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type, const Crs& from, const Crs& to);
+Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type, const Crs& from,
+                      const Crs& to);
 
 }  // namespace waymark

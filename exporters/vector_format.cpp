@@ -20,9 +20,11 @@ namespace {
 // Formats whose definition says WGS 84. GDAL has no flag for it.
 constexpr std::array kOnlyWgs84 = {"KML", "LIBKML", "GPX", "GeoRSS", "GPSBabel", "GeoJSONSeq"};  // RFC 8142
 constexpr std::array kOneLayer = {"DXF", "DGN"};  // GDAL says they hold several
-constexpr std::size_t kDbfName = 10;  // dBASE III field names
+constexpr std::size_t kDbfName = 10;              // dBASE III field names
 
-bool has(GDALDriver& driver, const char* key) { return driver.GetMetadataItem(key) != nullptr; }
+bool has(GDALDriver& driver, const char* key) {
+  return driver.GetMetadataItem(key) != nullptr;
+}
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -37,10 +39,13 @@ std::vector<GDALDriver*> writers() {
     if (has(driver, GDAL_DCAP_VECTOR) && has(driver, GDAL_DCAP_CREATE) && has(driver, GDAL_DCAP_CREATE_LAYER))
       found.push_back(&driver);
   }
-  // An extension that several drivers claim belongs to the one that does nothing but vectors: .xml is GML, not PDS4.
+  // An extension that several drivers claim belongs to the one that does nothing but vectors: .xml is GML,
+  // not PDS4.
   std::stable_partition(found.begin(), found.end(), [](GDALDriver* d) { return !has(*d, GDAL_DCAP_RASTER); });
-  // LIBKML's time grows with the square of the places (GDAL 3.6: 70 s for 2000): .kml goes to the plain KML driver.
-  std::stable_partition(found.begin(), found.end(), [](GDALDriver* d) { return !EQUAL(d->GetDescription(), "LIBKML"); });
+  // LIBKML's time grows with the square of the places (GDAL 3.6: 70 s for 2000): .kml goes to the plain KML
+  // driver.
+  std::stable_partition(found.begin(), found.end(),
+                        [](GDALDriver* d) { return !EQUAL(d->GetDescription(), "LIBKML"); });
   return found;
 }
 
@@ -63,8 +68,10 @@ GDALDriver& driver_called(const std::string& name, const std::vector<GDALDriver*
   const std::string hint =
       match == lower_names.end()
           ? "`ogrinfo --formats` lists what there is: those with w and 'vector'"
-          : fmt::format("did you mean {}?", all[static_cast<std::size_t>(match - lower_names.begin())]->GetDescription());
-  throw Error(ErrorCode::usage, fmt::format("this GDAL has no vector format '{}' to write", name), "-of " + name, hint);
+          : fmt::format("did you mean {}?",
+                        all[static_cast<std::size_t>(match - lower_names.begin())]->GetDescription());
+  throw Error(ErrorCode::usage, fmt::format("this GDAL has no vector format '{}' to write", name),
+              "-of " + name, hint);
 }
 
 GDALDriver& driver_for(const std::string& out, const std::vector<GDALDriver*>& all) {
@@ -84,15 +91,17 @@ GDALDriver& driver_for(const std::string& out, const std::vector<GDALDriver*>& a
   throw Error(ErrorCode::usage,
               given.empty() ? fmt::format("cannot tell the format of {}: its name has no extension", file)
                             : fmt::format("no vector format has the extension {}", given),
-              out, (nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest)) +
-                       "name the format with -of, e.g. -of GeoJSON");
+              out,
+              (nearest.empty() ? "" : fmt::format("did you mean {}? ", nearest)) +
+                  "name the format with -of, e.g. -of GeoJSON");
 }
 
 std::string cut(const std::string& name, std::size_t longest) {
   if (name.size() <= longest) return name;
   const std::size_t ending = name.find_last_of('_');
   const bool keep = ending != std::string::npos && name.size() - ending <= 4;
-  return keep ? name.substr(0, longest - (name.size() - ending)) + name.substr(ending) : name.substr(0, longest);
+  return keep ? name.substr(0, longest - (name.size() - ending)) + name.substr(ending)
+              : name.substr(0, longest);
 }
 
 }  // namespace
@@ -118,21 +127,22 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   return format;
 }
 
-Crs output_crs(const VectorFormat& format, const Crs& map_crs, const std::string& asked, const std::string& what) {
+Crs output_crs(const VectorFormat& format, const Crs& map_crs, const std::string& asked,
+               const std::string& what) {
   const Crs wgs84 = Crs::from_text("EPSG:4326");
   const bool on_earth = map_crs.kind() != CrsKind::local && map_crs.body().name == earth().name;
   const Crs wanted = !asked.empty() ? Crs::from_text(asked) : format.earth_only && on_earth ? wgs84 : map_crs;
   if (!wanted.same_as(map_crs)) static_cast<void>(CrsTransform(map_crs, wanted));  // throws PROJ's reason
   if (format.earth_only && !on_earth)
-    throw Error(ErrorCode::usage,
-                fmt::format("{} holds positions on Earth only; this map is {}", format.driver,
-                            map_crs.kind() == CrsKind::local ? "in local metres" : "on " + map_crs.body().name),
-                fmt::format("{}: {}", what, map_crs.id()),
-                "write .gpkg, .fgb or .shp, which keep the CRS, or .csv, which has plain columns");
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{} holds positions on Earth only; this map is {}", format.driver,
+                    map_crs.kind() == CrsKind::local ? "in local metres" : "on " + map_crs.body().name),
+        fmt::format("{}: {}", what, map_crs.id()),
+        "write .gpkg, .fgb or .shp, which keep the CRS, or .csv, which has plain columns");
   if (format.only_wgs84 && !wanted.same_as(wgs84))
-    throw Error(ErrorCode::usage,
-                fmt::format("{} holds EPSG:4326 only, not {}", format.driver, wanted.id()), "--crs " + asked,
-                "leave out --crs, or write .gpkg, .fgb or .shp, which hold any CRS");
+    throw Error(ErrorCode::usage, fmt::format("{} holds EPSG:4326 only, not {}", format.driver, wanted.id()),
+                "--crs " + asked, "leave out --crs, or write .gpkg, .fgb or .shp, which hold any CRS");
   return wanted;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWidth = 360, kHeight = 150;  // of the bars, drawing units
 constexpr double kLogSpan = 30;
-constexpr double kTickGap = 48;                // between coordinates on the axis
+constexpr double kTickGap = 48;  // between coordinates on the axis
 
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -49,12 +49,15 @@ std::string svg_bars(const Histogram& histogram, const Reading& read) {
   std::string bars;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     if (histogram.counts[i] == 0) continue;
-    const double left = place(histogram, histogram.edges[i]), right = place(histogram, histogram.edges[i + 1]);
-    const double height = std::max(1.0, kHeight * static_cast<double>(histogram.counts[i]) / static_cast<double>(most));
-    bars += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'><title>{} \u2013 {}: {}</title></rect>",
-                        left + 0.5, kHeight - height, std::max(1.0, right - left - 1), height,
-                        read.number(histogram.edges[i]), read(histogram.edges[i + 1]),
-                        number_text(static_cast<double>(histogram.counts[i])));
+    const double left = place(histogram, histogram.edges[i]),
+                 right = place(histogram, histogram.edges[i + 1]);
+    const double height =
+        std::max(1.0, kHeight * static_cast<double>(histogram.counts[i]) / static_cast<double>(most));
+    bars += fmt::format(
+        "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'><title>{} \u2013 {}: {}</title></rect>",
+        left + 0.5, kHeight - height, std::max(1.0, right - left - 1), height,
+        read.number(histogram.edges[i]), read(histogram.edges[i + 1]),
+        number_text(static_cast<double>(histogram.counts[i])));
   }
   return bars;
 }
@@ -69,9 +72,10 @@ std::string svg_axis(const Histogram& histogram, const FeatureSpec& feature, dou
     const double x = place(shown, tick);
     axis += fmt::format("<path d='M{:.1f} {}v4'/>", x, kHeight);
     if (x < free_from) continue;
-    const int decimals = tick != 0 && std::abs(tick) < 1 ? static_cast<int>(std::ceil(-std::log10(std::abs(tick)) - 1e-9))
-                         : tick == std::floor(tick)      ? 0
-                                                         : 1;
+    const int decimals = tick != 0 && std::abs(tick) < 1
+                             ? static_cast<int>(std::ceil(-std::log10(std::abs(tick)) - 1e-9))
+                         : tick == std::floor(tick) ? 0
+                                                    : 1;
     axis += fmt::format("<text x='{:.1f}' y='{}' text-anchor='middle'>{}</text>", x, kHeight + 18,
                         number_text(tick, decimals));
     free_from = x + kTickGap;
@@ -90,12 +94,18 @@ std::string figure(const LandmarkSection& section, std::size_t f) {
   const std::string title = title_of(feature.name) + (read.unit.empty() ? "" : ", " + read.unit);
   return fmt::format(
       "<figure class='histogram' style='--type:{}'><figcaption><b>{}</b> {}</figcaption>"
-      "<svg viewBox='-14 -18 {} {}' role='img' aria-label='Histogram of {}'>{}<g class='axis'><path d='M0 {}H{}'/>{}"
-      "</g><g class='median'><path d='M{:.1f} -2V{}'/><text x='{:.1f}' y='-6' text-anchor='{}'>median {}</text></g>"
+      "<svg viewBox='-14 -18 {} {}' role='img' aria-label='Histogram of {}'>{}<g class='axis'><path d='M0 "
+      "{}H{}'/>{}"
+      "</g><g class='median'><path d='M{:.1f} -2V{}'/><text x='{:.1f}' y='-6' text-anchor='{}'>median "
+      "{}</text></g>"
       "</svg></figure>\n",
-      section.type.colour, escaped(title), escaped(feature.summary), kWidth + 28, kHeight + 42, escaped(feature.name),
-      svg_bars(histogram, read), kHeight, kWidth, svg_axis(histogram, feature, largest), x, kHeight, x,
-      x < kWidth * 0.2 ? "start" : x > kWidth * 0.8 ? "end" : "middle", read(median));
+      section.type.colour, escaped(title), escaped(feature.summary), kWidth + 28, kHeight + 42,
+      escaped(feature.name), svg_bars(histogram, read), kHeight, kWidth,
+      svg_axis(histogram, feature, largest), x, kHeight, x,
+      x < kWidth * 0.2   ? "start"
+      : x > kWidth * 0.8 ? "end"
+                         : "middle",
+      read(median));
 }
 
 }  // namespace
@@ -105,12 +115,14 @@ Histogram histogram_of(const std::vector<double>& values, Scale scale) {
   const double low = *least, high = *most;
   Histogram histogram;
   histogram.logarithmic = scale == Scale::ratio && low > 0 && high / low > kLogSpan;
-  const auto wanted = static_cast<std::size_t>(std::clamp(2 * std::sqrt(static_cast<double>(values.size())), 6.0, 32.0));
+  const auto wanted =
+      static_cast<std::size_t>(std::clamp(2 * std::sqrt(static_cast<double>(values.size())), 6.0, 32.0));
   const std::size_t bins = high > low ? wanted : 1;
   const auto at = [&](double v) { return histogram.logarithmic ? std::log(v / low) : v - low; };
   for (std::size_t i = 0; i <= bins; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(bins);
-    histogram.edges.push_back(histogram.logarithmic ? low * std::pow(high / low, share) : low + (high - low) * share);
+    histogram.edges.push_back(histogram.logarithmic ? low * std::pow(high / low, share)
+                                                    : low + (high - low) * share);
   }
   histogram.counts.assign(bins, 0);
   for (const double value : values) {

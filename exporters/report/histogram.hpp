@@ -13,8 +13,8 @@ struct Histogram {
   bool logarithmic = false;
 };
 
-/// Bins for finite values, at least one. Logarithmic for positive values of a ratio scale that span more than a
-/// factor of 30; the edges are then equal ratios, else equal steps.
+/// Bins for finite values, at least one. Logarithmic for positive values of a ratio scale that span more than
+/// a factor of 30; the edges are then equal ratios, else equal steps.
 Histogram histogram_of(const std::vector<double>& values, Scale scale);
 
 /// One figure per feature of which at least two values are known: bars, the median, and what is counted.

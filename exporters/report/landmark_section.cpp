@@ -17,7 +17,8 @@ void put_foremost_first(LandmarkSection& section) {
   ranked.reserve(section.landmarks.size());
   for (Landmark& landmark : section.landmarks) {
     const double rank = by ? value_of(landmark, by) : equal_weight_quality(landmark).value_or(-1);
-    ranked.emplace_back(std::isnan(rank) ? -std::numeric_limits<double>::infinity() : rank, std::move(landmark));
+    ranked.emplace_back(std::isnan(rank) ? -std::numeric_limits<double>::infinity() : rank,
+                        std::move(landmark));
   }
   std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
     return a.first != b.first ? a.first > b.first : a.second.uid < b.second.uid;

@@ -8,8 +8,8 @@ namespace waymark {
 
 class MapStore;
 
-/// All landmarks of one type, foremost first: by the feature that sizes their symbol, else by quality; the unknown
-/// last, equals by uid.
+/// All landmarks of one type, foremost first: by the feature that sizes their symbol, else by quality; the
+/// unknown last, equals by uid.
 struct LandmarkSection {
   LandmarkType type;
   std::vector<Landmark> landmarks;

@@ -22,7 +22,8 @@ struct TableColumn {
 };
 
 double real_attribute(const Landmark& landmark, std::size_t i) {
-  const double* value = i < landmark.attributes.size() ? std::get_if<double>(&landmark.attributes[i]) : nullptr;
+  const double* value =
+      i < landmark.attributes.size() ? std::get_if<double>(&landmark.attributes[i]) : nullptr;
   return value != nullptr ? *value : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -61,21 +62,28 @@ TableColumn feature_column(const LandmarkType& type, std::size_t i, const std::v
 /// Positions and bounds stand elsewhere; texts are names of other landmarks.
 bool is_plain(const LandmarkType& type, const AttributeSpec& attribute) {
   const std::string& name = attribute.name;
-  const bool bound = name.ends_with("_low") && find_feature(type, name.substr(0, name.size() - 4)).has_value();
-  return attribute.kind == AttributeSpec::Kind::real && !bound && !name.ends_with("_x") && !name.ends_with("_y");
+  const bool bound =
+      name.ends_with("_low") && find_feature(type, name.substr(0, name.size() - 4)).has_value();
+  return attribute.kind == AttributeSpec::Kind::real && !bound && !name.ends_with("_x") &&
+         !name.ends_with("_y");
 }
 
-TableColumn attribute_column(const AttributeSpec& attribute, std::size_t i, const std::vector<Landmark>& rows) {
-  const FeatureSpec as_feature{.name = attribute.name, .unit = attribute.unit, .scale = Scale::interval, .summary = {}};
-  const Reading read = reading_of(as_feature, largest(rows, [i](const Landmark& l) { return real_attribute(l, i); }));
+TableColumn attribute_column(const AttributeSpec& attribute, std::size_t i,
+                             const std::vector<Landmark>& rows) {
+  const FeatureSpec as_feature{
+      .name = attribute.name, .unit = attribute.unit, .scale = Scale::interval, .summary = {}};
+  const Reading read =
+      reading_of(as_feature, largest(rows, [i](const Landmark& l) { return real_attribute(l, i); }));
   return {with_unit(title_of(attribute.name), read), attribute.summary,
           [=](const Landmark& l) { return read.number(real_attribute(l, i)); }};
 }
 
-std::vector<TableColumn> table_columns(const LandmarkType& type, const std::vector<Landmark>& rows, const Crs& crs) {
+std::vector<TableColumn> table_columns(const LandmarkType& type, const std::vector<Landmark>& rows,
+                                       const Crs& crs) {
   std::vector<TableColumn> columns;
   columns.push_back({"Place", "Position in " + crs.id(), [crs](const Landmark& l) {
-                       return fmt::format("{}<small>{}</small>", position_text(crs, l.position.xyz.x(), l.position.xyz.y()),
+                       return fmt::format("{}<small>{}</small>",
+                                          position_text(crs, l.position.xyz.x(), l.position.xyz.y()),
                                           escaped(l.uid));
                      }});
   for (std::size_t i = 0; i < type.features.size(); ++i) columns.push_back(feature_column(type, i, rows));
@@ -90,15 +98,17 @@ std::vector<TableColumn> table_columns(const LandmarkType& type, const std::vect
 }  // namespace
 
 std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::int64_t top) {
-  const auto count = std::min(section.landmarks.size(), static_cast<std::size_t>(std::max<std::int64_t>(0, top)));
+  const auto count =
+      std::min(section.landmarks.size(), static_cast<std::size_t>(std::max<std::int64_t>(0, top)));
   if (count == 0) return {};
   const std::vector<Landmark> rows(section.landmarks.begin(),
                                    section.landmarks.begin() + static_cast<std::ptrdiff_t>(count));
   const auto columns = table_columns(section.type, rows, crs);
-  std::string html = fmt::format("<div class='scroll'><table class='landmarks'><caption>The foremost {} of {}{}</caption>"
-                                 "<thead><tr><th scope='col'>#</th>",
-                                 count, number_text(static_cast<double>(section.landmarks.size())),
-                                 section.type.size_feature.empty() ? "" : ", by " + escaped(section.type.size_feature));
+  std::string html = fmt::format(
+      "<div class='scroll'><table class='landmarks'><caption>The foremost {} of {}{}</caption>"
+      "<thead><tr><th scope='col'>#</th>",
+      count, number_text(static_cast<double>(section.landmarks.size())),
+      section.type.size_feature.empty() ? "" : ", by " + escaped(section.type.size_feature));
   for (const TableColumn& column : columns)
     html += fmt::format("<th scope='col' title='{}'>{}</th>", escaped(column.tip), column.heading);
   html += "</tr></thead><tbody>\n";

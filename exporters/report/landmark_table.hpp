@@ -6,7 +6,8 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// The first `top` landmarks as an HTML table: place, features with spread, plain attributes, quality. An attribute
+/// The first `top` landmarks as an HTML table: place, features with spread, plain attributes, quality. An
+/// attribute
 /// `<feature>_low` is a certified lower bound and stands below its feature where it is smaller.
 std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::int64_t top);
 

@@ -28,20 +28,24 @@ std::string tint_legend(const HeightTint& tint) {
     const Colour c = tint(tint.lowest + (tint.highest - tint.lowest) * i / steps);
     stops += fmt::format("{}rgb({} {} {})", i == 0 ? "" : ",", c.red, c.green, c.blue);
   }
-  return fmt::format("<span class='ramp'>{}&nbsp;m <i style='background:linear-gradient(90deg,{})'></i> {}&nbsp;m</span>",
-                     number_text(tint.lowest), stops, number_text(tint.highest));
+  return fmt::format(
+      "<span class='ramp'>{}&nbsp;m <i style='background:linear-gradient(90deg,{})'></i> {}&nbsp;m</span>",
+      number_text(tint.lowest), stops, number_text(tint.highest));
 }
 
-std::string legend(const std::vector<LandmarkSection>& sections, const MapMarkers& markers, const std::string& ramp) {
+std::string legend(const std::vector<LandmarkSection>& sections, const MapMarkers& markers,
+                   const std::string& ramp) {
   std::string items;
   for (const LandmarkSection& section : sections) {
     if (section.landmarks.empty()) continue;
-    const std::string sized = section.type.size_feature.empty() ? "" : ", larger with " + section.type.size_feature;
-    items += fmt::format("<span>{}{}{}</span>", svg_symbol(section.type, 16), escaped(title_of(section.type.name)),
-                         escaped(title_of(sized)));
+    const std::string sized =
+        section.type.size_feature.empty() ? "" : ", larger with " + section.type.size_feature;
+    items += fmt::format("<span>{}{}{}</span>", svg_symbol(section.type, 16),
+                         escaped(title_of(section.type.name)), escaped(title_of(sized)));
   }
   if (markers.drawn < markers.total)
-    items += fmt::format("<span>the foremost {} of {} are drawn</span>", number_text(static_cast<double>(markers.drawn)),
+    items += fmt::format("<span>the foremost {} of {} are drawn</span>",
+                         number_text(static_cast<double>(markers.drawn)),
                          number_text(static_cast<double>(markers.total)));
   return items + ramp;
 }
@@ -64,7 +68,8 @@ std::vector<std::string> relief_names(const MapStore& map) {
   return names;
 }
 
-std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& sections, std::int64_t relief_pixels) {
+std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& sections,
+                       std::int64_t relief_pixels) {
   const auto landmarks = extent_of(sections, map.crs());
   const double near_x = landmarks ? landmarks->west + landmarks->width() / 2 : 0;
   const auto relief = read_relief(relief_names(map), map.crs(), near_x, relief_pixels);
@@ -74,20 +79,22 @@ std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& 
   std::string picture, ramp;
   if (relief) {
     const HeightTint tint = tint_for(*relief, map.crs().body());
-    picture = fmt::format("<image width='{:.2f}' height='{:.2f}' preserveAspectRatio='none' "
-                          "href='data:image/png;base64,{}'/>",
-                          view.width, view.height, base64(png_of(shade(*relief, tint))));
+    picture = fmt::format(
+        "<image width='{:.2f}' height='{:.2f}' preserveAspectRatio='none' "
+        "href='data:image/png;base64,{}'/>",
+        view.width, view.height, base64(png_of(shade(*relief, tint))));
     ramp = tint_legend(tint);
   }
   const MapMarkers markers = draw_markers(view, sections);
   return fmt::format(
-      "<figure class='map'><svg viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' role='img' aria-label='Map of the landmarks'>"
+      "<figure class='map'><svg viewBox='{:.1f} {:.1f} {:.1f} {:.1f}' role='img' aria-label='Map of the "
+      "landmarks'>"
       "<rect class='ground' width='{:.2f}' height='{:.2f}'/>{}{}{}{}{}"
       "<rect class='frame' width='{:.2f}' height='{:.2f}'/></svg>"
       "<figcaption class='legend'>{}</figcaption></figure>\n",
-      -kLeft, -kTop, view.width + kLeft + kRight, view.height + kTop + kBottom, view.width, view.height, picture,
-      svg_graticule(view), markers.svg, svg_scale_bar(view), svg_north_arrow(view), view.width, view.height,
-      legend(sections, markers, ramp));
+      -kLeft, -kTop, view.width + kLeft + kRight, view.height + kTop + kBottom, view.width, view.height,
+      picture, svg_graticule(view), markers.svg, svg_scale_bar(view), svg_north_arrow(view), view.width,
+      view.height, legend(sections, markers, ramp));
 }
 
 }  // namespace waymark

@@ -14,12 +14,14 @@ namespace {
 constexpr std::size_t kMostMarkers = 2500;  // of a type; more are a carpet, and make the file heavy
 constexpr std::size_t kMostLabels = 40;
 constexpr double kSmallest = 2, kLargest = 13;  // radius of a marker, drawing units
-constexpr double kModest = 4;                     // smaller markers have a fainter rim: thousands must not hide the relief
-constexpr double kLetter = 7.2, kLine = 13;       // of a label's text
+constexpr double kModest = 4;  // smaller markers have a fainter rim: thousands must not hide the relief
+constexpr double kLetter = 7.2, kLine = 13;  // of a label's text
 
 struct Box {
   double left, top, right, bottom;
-  bool meets(const Box& o) const { return left < o.right && o.left < right && top < o.bottom && o.top < bottom; }
+  bool meets(const Box& o) const {
+    return left < o.right && o.left < right && top < o.bottom && o.top < bottom;
+  }
 };
 
 struct Marker {
@@ -30,11 +32,15 @@ struct Marker {
 /// The shape with radius 1 about the origin.
 const char* shape_of(Solid solid) {
   switch (solid) {
-    case Solid::cone: return "<path d='M0 -1L.95 .75H-.95Z'/>";
-    case Solid::bowl: return "<circle r='1' fill-opacity='.12'/>";
-    case Solid::cylinder: return "<path d='M-.8 -.8H.8V.8H-.8Z'/>";
+    case Solid::cone:
+      return "<path d='M0 -1L.95 .75H-.95Z'/>";
+    case Solid::bowl:
+      return "<circle r='1' fill-opacity='.12'/>";
+    case Solid::cylinder:
+      return "<path d='M-.8 -.8H.8V.8H-.8Z'/>";
     case Solid::sphere:
-    case Solid::point: return "<circle r='.9'/>";
+    case Solid::point:
+      return "<circle r='.9'/>";
   }
   return "<circle r='.9'/>";
 }
@@ -77,7 +83,8 @@ std::string label_text(const Landmark& landmark, const LandmarkType& type) {
 
 /// Letters of UTF-8 text.
 double letters(const std::string& text) {
-  return static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+  return static_cast<double>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 /// Writes labels where there is room: right, left, above or below the marker.
@@ -107,8 +114,10 @@ class Labels {
 
  private:
   bool free(const Box& box) const {
-    const bool inside = box.left > 4 && box.right < view_.width - 4 && box.top > 4 && box.bottom < view_.height - 4;
-    return inside && std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); });
+    const bool inside =
+        box.left > 4 && box.right < view_.width - 4 && box.top > 4 && box.bottom < view_.height - 4;
+    return inside &&
+           std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return box.meets(other); });
   }
 
   const MapView& view_;
@@ -127,9 +136,10 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
     result.svg += fmt::format("<g class='marker {}' style='--type:{}'>",
                               section.type.drawn_as == Solid::bowl ? "ring" : "solid", section.type.colour);
     for (auto m = markers.rbegin(); m != markers.rend(); ++m)  // the foremost on top
-      result.svg += fmt::format("<g{} transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>",
-                                m->radius < kModest ? " class='modest'" : "", m->x, m->y, m->radius,
-                                shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
+      result.svg +=
+          fmt::format("<g{} transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>",
+                      m->radius < kModest ? " class='modest'" : "", m->x, m->y, m->radius,
+                      shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
     result.svg += "</g>\n";
     for (const Marker& marker : markers) labels.add(marker, label_text(*marker.landmark, section.type));
     result.drawn += markers.size();
@@ -140,9 +150,10 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
 }
 
 std::string svg_symbol(const LandmarkType& type, double size) {
-  return fmt::format("<svg class='symbol' viewBox='-1.3 -1.3 2.6 2.6' width='{0}' height='{0}' aria-hidden='true'>"
-                     "<g class='marker {1}' style='--type:{2}'>{3}</g></svg>",
-                     size, type.drawn_as == Solid::bowl ? "ring" : "solid", type.colour, shape_of(type.drawn_as));
+  return fmt::format(
+      "<svg class='symbol' viewBox='-1.3 -1.3 2.6 2.6' width='{0}' height='{0}' aria-hidden='true'>"
+      "<g class='marker {1}' style='--type:{2}'>{3}</g></svg>",
+      size, type.drawn_as == Solid::bowl ? "ring" : "solid", type.colour, shape_of(type.drawn_as));
 }
 
 }  // namespace waymark

@@ -15,7 +15,8 @@ namespace {
 constexpr double kLongSide = 1000;  // drawing units
 
 std::string degrees_text(double value, int decimals, const char* positive, const char* negative) {
-  return fmt::format("{}\u00b0\u00a0{}", number_text(std::abs(value), decimals), value < 0 ? negative : positive);
+  return fmt::format("{}\u00b0\u00a0{}", number_text(std::abs(value), decimals),
+                     value < 0 ? negative : positive);
 }
 
 std::string longitude_text(const Crs& crs, double x, int decimals) {
@@ -24,7 +25,9 @@ std::string longitude_text(const Crs& crs, double x, int decimals) {
   return degrees_text(lon, decimals, "E", "W");
 }
 
-int decimals_of(double step) { return step >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(step) - 1e-9)); }
+int decimals_of(double step) {
+  return step >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
+}
 
 /// About `wanted` round steps over `length`: of degrees where `degrees`, which divide a quarter turn.
 double graticule_step(double length, double wanted, bool degrees) {
@@ -37,7 +40,8 @@ double graticule_step(double length, double wanted, bool degrees) {
 
 std::string line_text(const MapView& view, double value, double step, bool is_x) {
   if (view.crs.kind() == CrsKind::geographic)
-    return is_x ? longitude_text(view.crs, value, decimals_of(step)) : degrees_text(value, decimals_of(step), "N", "S");
+    return is_x ? longitude_text(view.crs, value, decimals_of(step))
+                : degrees_text(value, decimals_of(step), "N", "S");
   if (view.crs.metres_per_unit() == 1 && step >= 1000) return number_text(value / 1000) + "\u00a0km";
   return number_text(value, decimals_of(step));
 }
@@ -47,7 +51,8 @@ double north_of(const MapView& view) {
   if (view.crs.kind() != CrsKind::projected) return 0;
   try {
     const Crs geographic = geographic_of(view.crs);
-    const double x = view.extent.west + view.extent.width() / 2, y = view.extent.south + view.extent.height() / 2;
+    const double x = view.extent.west + view.extent.width() / 2,
+                 y = view.extent.south + view.extent.height() / 2;
     const auto here = CrsTransform(view.crs, geographic)(x, y);
     const auto north = CrsTransform(geographic, view.crs)(here.x, here.y + (here.y > 89.98 ? -0.01 : 0.01));
     const double angle = std::atan2(north.x - x, north.y - y) / kRadiansPerDegree;
@@ -81,18 +86,22 @@ std::optional<Extent> extent_of(const std::vector<LandmarkSection>& sections, co
       extent = extent ? extent->joined({x, y, x, y}) : Extent{x, y, x, y};
     }
   if (!extent) return {};
-  const double kilometre = crs.kind() == CrsKind::geographic ? 1000 / (crs.body().mean_radius() * kRadiansPerDegree)
-                           : crs.kind() == CrsKind::local    ? 1
-                                                             : 1000 / crs.metres_per_unit();
+  const double kilometre = crs.kind() == CrsKind::geographic
+                               ? 1000 / (crs.body().mean_radius() * kRadiansPerDegree)
+                           : crs.kind() == CrsKind::local ? 1
+                                                          : 1000 / crs.metres_per_unit();
   const double margin = std::max(0.04 * std::max(extent->width(), extent->height()), kilometre / 2);
   return Extent{extent->west - margin, extent->south - margin, extent->east + margin, extent->north + margin};
 }
 
 std::string position_text(const Crs& crs, double x, double y) {
   switch (crs.kind()) {
-    case CrsKind::geographic: return degrees_text(y, 4, "N", "S") + " " + longitude_text(crs, x, 4);
-    case CrsKind::projected: return fmt::format("E\u00a0{} N\u00a0{}", number_text(x, 1), number_text(y, 1));
-    case CrsKind::local: return fmt::format("x\u00a0{} y\u00a0{}", number_text(x, 2), number_text(y, 2));
+    case CrsKind::geographic:
+      return degrees_text(y, 4, "N", "S") + " " + longitude_text(crs, x, 4);
+    case CrsKind::projected:
+      return fmt::format("E\u00a0{} N\u00a0{}", number_text(x, 1), number_text(y, 1));
+    case CrsKind::local:
+      return fmt::format("x\u00a0{} y\u00a0{}", number_text(x, 2), number_text(y, 2));
   }
   return {};
 }
@@ -120,7 +129,8 @@ std::string svg_graticule(const MapView& view) {
 std::string svg_scale_bar(const MapView& view) {
   const double metres = round_length(view.metres_per_unit() * view.width / 4);
   const double length = metres / view.metres_per_unit();
-  std::string text = metres >= 1000 ? number_text(metres / 1000) + " km" : number_text(metres, decimals_of(metres)) + " m";
+  std::string text =
+      metres >= 1000 ? number_text(metres / 1000) + " km" : number_text(metres, decimals_of(metres)) + " m";
   const double middle = (view.extent.south + view.extent.north) / 2;
   if (view.crs.kind() == CrsKind::geographic && view.extent.height() > 5)
     text += " at " + degrees_text(middle, 0, "N", "S");
@@ -128,9 +138,11 @@ std::string svg_scale_bar(const MapView& view) {
   return fmt::format(
       "<g class='scale' transform='translate(22 {:.1f})'>"
       "<rect class='plate' x='-10' y='-26' width='{:.1f}' height='38' rx='4'/>"
-      "<rect class='dark' width='{:.2f}' height='5'/><rect class='light' x='{:.2f}' width='{:.2f}' height='5'/>"
+      "<rect class='dark' width='{:.2f}' height='5'/><rect class='light' x='{:.2f}' width='{:.2f}' "
+      "height='5'/>"
       "<text x='0' y='-8'>{}</text></g>",
-      view.height - 24, std::max(length, 9.0 * static_cast<double>(text.size())) + 20, half, half, half, text);
+      view.height - 24, std::max(length, 9.0 * static_cast<double>(text.size())) + 20, half, half, half,
+      text);
 }
 
 std::string svg_north_arrow(const MapView& view) {

@@ -41,13 +41,15 @@ std::string png_of(const Grid<Colour>& picture) {
   const std::string name = unique_name();
   CPLStringList options;
   options.SetNameValue("ZLEVEL", "9");
-  const bool copied = pixels->RasterIO(GF_Write, 0, 0, columns, rows, cells.data(), columns, rows, GDT_Byte, 4, nullptr,
-                                       4, 4 * columns, 1, nullptr) == CE_None;
+  const bool copied = pixels->RasterIO(GF_Write, 0, 0, columns, rows, cells.data(), columns, rows, GDT_Byte,
+                                       4, nullptr, 4, 4 * columns, 1, nullptr) == CE_None;
   pixels->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
   const std::unique_ptr<GDALDataset> file(
-      copied ? png->CreateCopy(name.c_str(), pixels.get(), FALSE, options.List(), nullptr, nullptr) : nullptr);
+      copied ? png->CreateCopy(name.c_str(), pixels.get(), FALSE, options.List(), nullptr, nullptr)
+             : nullptr);
   if (!file)
-    throw Error(ErrorCode::environment, "the relief picture could not be encoded: " + messages.cause("out of memory"));
+    throw Error(ErrorCode::environment,
+                "the relief picture could not be encoded: " + messages.cause("out of memory"));
   return taken_from_memory(name);
 }
 

@@ -16,7 +16,9 @@ struct Slope {
   double east = 0, north = 0;  ///< rise over run
 };
 
-float or_else(float height, float instead) { return std::isnan(height) ? instead : height; }
+float or_else(float height, float instead) {
+  return std::isnan(height) ? instead : height;
+}
 
 /// Horn's slope of a 3x3 neighbourhood; neighbours without a height count as level with the cell.
 Slope slope_at(const Relief& relief, const Grid<float>& heights, std::int64_t c, std::int64_t r) {
@@ -26,14 +28,16 @@ Slope slope_at(const Relief& relief, const Grid<float>& heights, std::int64_t c,
     const std::int64_t row = std::clamp<std::int64_t>(r + dr, 0, heights.rows() - 1);
     return static_cast<double>(or_else(heights(column, row), here));
   };
-  return {(at(1, -1) + 2 * at(1, 0) + at(1, 1) - at(-1, -1) - 2 * at(-1, 0) - at(-1, 1)) / (8 * relief.cell_x),
-          (at(-1, -1) + 2 * at(0, -1) + at(1, -1) - at(-1, 1) - 2 * at(0, 1) - at(1, 1)) / (8 * relief.cell_y)};
+  return {
+      (at(1, -1) + 2 * at(1, 0) + at(1, 1) - at(-1, -1) - 2 * at(-1, 0) - at(-1, 1)) / (8 * relief.cell_x),
+      (at(-1, -1) + 2 * at(0, -1) + at(1, -1) - at(-1, 1) - 2 * at(0, 1) - at(1, 1)) / (8 * relief.cell_y)};
 }
 
 template <class T>
 T percentile(std::vector<T> values, double share) {
   if (values.empty()) return T{};
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -77,7 +81,8 @@ Grid<float> lit(const Relief& relief, const Grid<float>& heights) {
   return east;
 }
 
-/// Mean over a square of 2 * reach + 1 cells, of the cells that have a height; three passes are close to a Gaussian.
+/// Mean over a square of 2 * reach + 1 cells, of the cells that have a height; three passes are close to a
+/// Gaussian.
 Grid<float> blurred(Grid<float> heights, std::int64_t reach) {
   const auto pass = [reach](auto cell, std::int64_t count) {
     std::vector<double> sum(static_cast<std::size_t>(count) + 1), known = sum;
@@ -90,7 +95,8 @@ Grid<float> blurred(Grid<float> heights, std::int64_t reach) {
     for (std::int64_t i = 0; i < count; ++i) {
       const auto from = static_cast<std::size_t>(std::max<std::int64_t>(0, i - reach));
       const auto to = static_cast<std::size_t>(std::min(count, i + reach + 1));
-      if (!std::isnan(cell(i))) cell(i) = static_cast<float>((sum[to] - sum[from]) / (known[to] - known[from]));
+      if (!std::isnan(cell(i)))
+        cell(i) = static_cast<float>((sum[to] - sum[from]) / (known[to] - known[from]));
     }
   };
   for (int repeat = 0; repeat < 3; ++repeat) {
@@ -119,7 +125,8 @@ Colour lit_colour(const Colour& colour, double light) {
 }  // namespace
 
 Colour HeightTint::operator()(double height) const {
-  if (water && height <= 0) return mix(kShallowWater, kDeepWater, lowest < 0 ? std::min(1.0, height / lowest) : 0);
+  if (water && height <= 0)
+    return mix(kShallowWater, kDeepWater, lowest < 0 ? std::min(1.0, height / lowest) : 0);
   const double from = water ? std::max(lowest, 0.0) : lowest;
   const double share = highest > from ? std::clamp((height - from) / (highest - from), 0.0, 1.0) : 0.5;
   const double at = share * static_cast<double>(land.size() - 1);
@@ -136,12 +143,13 @@ HeightTint tint_for(const Relief& relief, const Body& body) {
   tint.highest = std::max<double>(percentile(std::move(heights), 0.995), tint.lowest + 1e-3);
   if (body.name == earth().name) {
     tint.water = true;
-    tint.land = {{132, 160, 112}, {171, 187, 132}, {214, 207, 161}, {205, 178, 139}, {178, 152, 132}, {216, 208, 202},
-                 {250, 249, 248}};
+    tint.land = {{132, 160, 112}, {171, 187, 132}, {214, 207, 161}, {205, 178, 139},
+                 {178, 152, 132}, {216, 208, 202}, {250, 249, 248}};
   } else if (body.name == moon().name) {
     tint.land = {{70, 70, 76}, {118, 117, 118}, {168, 166, 162}, {214, 211, 204}, {246, 244, 239}};
   } else if (body.name == mars().name) {
-    tint.land = {{92, 52, 44}, {145, 79, 53}, {190, 118, 75}, {218, 165, 114}, {236, 208, 167}, {250, 241, 226}};
+    tint.land = {{92, 52, 44},    {145, 79, 53},   {190, 118, 75},
+                 {218, 165, 114}, {236, 208, 167}, {250, 241, 226}};
   } else {
     tint.land = {{84, 99, 112}, {136, 149, 156}, {190, 197, 196}, {238, 238, 232}};
   }
@@ -149,7 +157,8 @@ HeightTint tint_for(const Relief& relief, const Body& body) {
 }
 
 Grid<Colour> shade(const Relief& relief, const HeightTint& tint) {
-  const std::int64_t forms = std::max<std::int64_t>(2, std::max(relief.heights.columns(), relief.heights.rows()) / 90);
+  const std::int64_t forms =
+      std::max<std::int64_t>(2, std::max(relief.heights.columns(), relief.heights.rows()) / 90);
   const Grid<float> fine = lit(relief, relief.heights);
   const Grid<float> broad = lit(relief, blurred(relief.heights, forms));
   Grid<Colour> picture(relief.heights.columns(), relief.heights.rows(), Colour{0, 0, 0, 0});

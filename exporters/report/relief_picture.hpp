@@ -24,12 +24,12 @@ struct HeightTint {
   Colour operator()(double height) const;
 };
 
-/// Spans the heights of a picture without its most extreme percent, in colours that suit the body: greens to snow on
-/// Earth, greys on the Moon, ochres on Mars, slate elsewhere.
+/// Spans the heights of a picture without its most extreme percent, in colours that suit the body: greens to
+/// snow on Earth, greys on the Moon, ochres on Mars, slate elsewhere.
 HeightTint tint_for(const Relief& relief, const Body& body);
 
-/// Shaded relief: tinted heights lit from the north-west, with the large forms lit once more for themselves so that
-/// they are not lost in detail. Slopes are exaggerated until the steep ones look steep, at any scale.
+/// Shaded relief: tinted heights lit from the north-west, with the large forms lit once more for themselves
+/// so that they are not lost in detail. Slopes are exaggerated until the steep ones look steep, at any scale.
 /// Cells without a height are transparent.
 Grid<Colour> shade(const Relief& relief, const HeightTint& tint);
 

@@ -29,13 +29,16 @@ bool on_same_body(const OGRSpatialReference* found, const Crs& crs) {
 
 std::optional<Raster> open_raster(const std::string& name, const Crs& crs, double near_x) {
   Raster raster;
-  raster.file.reset(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  raster.file.reset(
+      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
   double t[6];
-  if (!raster.file || raster.file->GetRasterCount() != 1 || raster.file->GetGeoTransform(t) != CE_None) return {};
+  if (!raster.file || raster.file->GetRasterCount() != 1 || raster.file->GetGeoTransform(t) != CE_None)
+    return {};
   if (t[2] != 0 || t[4] != 0 || !(t[5] < 0) || !on_same_body(raster.file->GetSpatialRef(), crs)) return {};
-  const double turn = crs.kind() != CrsKind::geographic
-                          ? 0
-                          : 360 * std::round((near_x - t[0] - raster.file->GetRasterXSize() * t[1] / 2) / 360);
+  const double turn =
+      crs.kind() != CrsKind::geographic
+          ? 0
+          : 360 * std::round((near_x - t[0] - raster.file->GetRasterXSize() * t[1] / 2) / 360);
   raster.extent = {t[0] + turn, t[3] + raster.file->GetRasterYSize() * t[5],
                    t[0] + turn + raster.file->GetRasterXSize() * t[1], t[3]};
   return raster;
@@ -58,15 +61,18 @@ Part part_of(const Relief& relief, const Raster& raster) {
   part.pixels.row = clamp((relief.extent.north - raster.extent.north) / py, relief.heights.rows());
   part.pixels.columns =
       clamp((raster.extent.east - relief.extent.west) / px, relief.heights.columns()) - part.pixels.column;
-  part.pixels.rows = clamp((relief.extent.north - raster.extent.south) / py, relief.heights.rows()) - part.pixels.row;
+  part.pixels.rows =
+      clamp((relief.extent.north - raster.extent.south) / py, relief.heights.rows()) - part.pixels.row;
   const double cell_x = raster.extent.width() / raster.file->GetRasterXSize();
   const double cell_y = raster.extent.height() / raster.file->GetRasterYSize();
   const double west = relief.extent.west + px * static_cast<double>(part.pixels.column);
   const double north = relief.extent.north - py * static_cast<double>(part.pixels.row);
   part.x = std::max(0.0, (west - raster.extent.west) / cell_x);
   part.y = std::max(0.0, (raster.extent.north - north) / cell_y);
-  part.width = std::min(px * static_cast<double>(part.pixels.columns) / cell_x, raster.file->GetRasterXSize() - part.x);
-  part.height = std::min(py * static_cast<double>(part.pixels.rows) / cell_y, raster.file->GetRasterYSize() - part.y);
+  part.width = std::min(px * static_cast<double>(part.pixels.columns) / cell_x,
+                        raster.file->GetRasterXSize() - part.x);
+  part.height =
+      std::min(py * static_cast<double>(part.pixels.rows) / cell_y, raster.file->GetRasterYSize() - part.y);
   return part;
 }
 
@@ -101,7 +107,8 @@ void paint(Relief& relief, const Raster& raster) {
   const double scale = band.GetScale(), offset = band.GetOffset();
   for (std::int64_t i = 0; i < part.pixels.cells(); ++i) {
     const float height = heights[static_cast<std::size_t>(i)];
-    float& cell = relief.heights(part.pixels.column + i % part.pixels.columns, part.pixels.row + i / part.pixels.columns);
+    float& cell = relief.heights(part.pixels.column + i % part.pixels.columns,
+                                 part.pixels.row + i / part.pixels.columns);
     const bool missing = !std::isfinite(height) || (has_nodata && height == static_cast<float>(nodata));
     if (!missing && std::isnan(cell)) cell = static_cast<float>(height * scale + offset);
   }

@@ -30,7 +30,9 @@ Json list_at(const Json& object, const char* key) {
   return object.contains(key) && object[key].is_array() ? object[key] : Json::array();
 }
 
-std::string count_at(const Json& object, const char* key) { return number_text(number_at(object, key)); }
+std::string count_at(const Json& object, const char* key) {
+  return number_text(number_at(object, key));
+}
 
 std::string units_text(const Json& stage) {
   std::string text = count_at(stage, "units");
@@ -40,7 +42,8 @@ std::string units_text(const Json& stage) {
 }
 
 std::string rejected_text(const Json& stage) {
-  const Json reasons = stage.contains("rejected") && stage["rejected"].is_object() ? stage["rejected"] : Json::object();
+  const Json reasons =
+      stage.contains("rejected") && stage["rejected"].is_object() ? stage["rejected"] : Json::object();
   double total = 0;
   std::string lines;
   for (const auto& [reason, count] : reasons.items()) {
@@ -53,8 +56,9 @@ std::string rejected_text(const Json& stage) {
 
 std::string size_text(std::uint64_t bytes) {
   const auto size = static_cast<double>(bytes);
-  return size >= 1e6 ? number_text(size / 1e6, 1) + "\u00a0MB" : size >= 1e3 ? number_text(size / 1e3, 1) + "\u00a0kB"
-                                                                          : number_text(size) + "\u00a0bytes";
+  return size >= 1e6   ? number_text(size / 1e6, 1) + "\u00a0MB"
+         : size >= 1e3 ? number_text(size / 1e3, 1) + "\u00a0kB"
+                       : number_text(size) + "\u00a0bytes";
 }
 
 std::string fact(const char* name, const std::string& html) {
@@ -67,12 +71,15 @@ std::string inputs_table(const RunRecord& run) {
   for (const InputFile& input : run.inputs)
     rows += fmt::format("<tr><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n", escaped(input.path),
                         size_text(input.bytes), escaped(input.sha256));
-  return "<div class='scroll'><table class='inputs'><caption>Input files</caption><thead><tr><th scope='col'>File</th>"
+  return "<div class='scroll'><table class='inputs'><caption>Input files</caption><thead><tr><th "
+         "scope='col'>File</th>"
          "<th scope='col'>Size</th><th scope='col'>SHA-256</th></tr></thead><tbody>" +
          rows + "</tbody></table></div>\n";
 }
 
-std::string code(const std::string& text) { return text.empty() ? "" : "<code>" + escaped(text) + "</code>"; }
+std::string code(const std::string& text) {
+  return text.empty() ? "" : "<code>" + escaped(text) + "</code>";
+}
 
 std::string job_details(const RunRecord& run) {
   const Json job = Json::parse(run.job_json, nullptr, false);
@@ -89,11 +96,13 @@ std::string stage_table(const RunRecord& run) {
   std::string html =
       "<div class='scroll'><table class='stages'><caption>What came in is what went out and what was rejected"
       "</caption><thead><tr><th scope='col'>Stage</th><th scope='col'>In</th><th scope='col'>Out</th>"
-      "<th scope='col'>Rejected</th><th scope='col'>Units</th><th scope='col'>Seconds</th></tr></thead><tbody>\n";
+      "<th scope='col'>Rejected</th><th scope='col'>Units</th><th "
+      "scope='col'>Seconds</th></tr></thead><tbody>\n";
   for (const Json& stage : stages)
-    html += fmt::format("<tr><th scope='row'>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        escaped(title_of(text_at(stage, "stage"))), count_at(stage, "in"), count_at(stage, "out"),
-                        rejected_text(stage), units_text(stage), number_text(number_at(stage, "seconds"), 2));
+    html += fmt::format(
+        "<tr><th scope='row'>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        escaped(title_of(text_at(stage, "stage"))), count_at(stage, "in"), count_at(stage, "out"),
+        rejected_text(stage), units_text(stage), number_text(number_at(stage, "seconds"), 2));
   return html + "</tbody></table></div>\n";
 }
 
@@ -117,9 +126,11 @@ std::string provenance(const std::vector<RunRecord>& runs) {
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
     if (runs.size() > 1) html += fmt::format("<h3>Run {} of {}</h3>", runs.rend() - run, runs.size());
     html += "<dl>" + fact("Started", escaped(run->started_utc)) +
-            fact("Took", run->seconds > 0 ? number_text(run->seconds, run->seconds < 10 ? 2 : 0) + "\u00a0s" : "") +
+            fact("Took",
+                 run->seconds > 0 ? number_text(run->seconds, run->seconds < 10 ? 2 : 0) + "\u00a0s" : "") +
             fact("Waymark", escaped(run->version)) + fact("Command", code(run->command_line)) +
-            fact("Random seed", fmt::format("{}", run->seed)) + "</dl>\n" + inputs_table(*run) + job_details(*run);
+            fact("Random seed", fmt::format("{}", run->seed)) + "</dl>\n" + inputs_table(*run) +
+            job_details(*run);
   }
   return html;
 }

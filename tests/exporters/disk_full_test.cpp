@@ -37,7 +37,8 @@ class FullDisk : public ::testing::Test {
 };
 
 TEST_F(FullDisk, EveryFormatSaysSoAndLeavesNothing) {
-  for (const std::string name : {"tops.csv", "tops.geojson", "tops.kml", "tops.shp", "tops.fgb", "tops.gml"}) {
+  for (const std::string name :
+       {"tops.csv", "tops.geojson", "tops.kml", "tops.shp", "tops.fgb", "tops.gml"}) {
     const std::string message = error_of([&] { export_map(map, (disk / name).string()); });
     EXPECT_THAT(message, HasSubstr("cannot write " + name + ": the disk is full")) << message;
     EXPECT_THAT(message, HasSubstr("free some space"));

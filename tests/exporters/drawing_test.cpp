@@ -25,7 +25,9 @@ TEST(Histogram, WideRatiosAreLogarithmic) {
   EXPECT_FALSE(histogram_of({20, 50, 6000}, Scale::interval).logarithmic);
 }
 
-TEST(Histogram, EqualValuesAreOneBin) { EXPECT_THAT(histogram_of({5, 5, 5}, Scale::ratio).counts, ElementsAre(3)); }
+TEST(Histogram, EqualValuesAreOneBin) {
+  EXPECT_THAT(histogram_of({5, 5, 5}, Scale::ratio).counts, ElementsAre(3));
+}
 
 TEST(RoundLength, IsOneTwoOrFive) {
   EXPECT_EQ(round_length(9.9), 5);
@@ -47,13 +49,16 @@ TEST(MapView, LongitudesComeRound) {
 }
 
 TEST(PositionText, SpeaksTheLanguageOfTheCrs) {
-  EXPECT_EQ(position_text(Crs::from_text("EPSG:4326"), 289.9875, -32.65), "32.6500\u00b0\u00a0S 70.0125\u00b0\u00a0W");
-  EXPECT_EQ(position_text(Crs::from_text("IAU_2015:49900"), 226.2, 18.65), "18.6500\u00b0\u00a0N 226.2000\u00b0\u00a0E");
+  EXPECT_EQ(position_text(Crs::from_text("EPSG:4326"), 289.9875, -32.65),
+            "32.6500\u00b0\u00a0S 70.0125\u00b0\u00a0W");
+  EXPECT_EQ(position_text(Crs::from_text("IAU_2015:49900"), 226.2, 18.65),
+            "18.6500\u00b0\u00a0N 226.2000\u00b0\u00a0E");
   EXPECT_EQ(position_text(Crs::local(), 1, 2), "x\u00a01.00 y\u00a02.00");
 }
 
 TEST(NorthArrow, TurnsWithThePolarMap) {
-  // South of the pole along 90 E in north polar stereographic (EPSG:3413, central meridian 45 W): up is not north.
+  // South of the pole along 90 E in north polar stereographic (EPSG:3413, central meridian 45 W): up is not
+  // north.
   const MapView view = view_of(Crs::from_text("EPSG:3413"), {999000, -1000, 1001000, 1000});
   EXPECT_THAT(svg_north_arrow(view), HasSubstr("rotate(-90.0)"));
 }

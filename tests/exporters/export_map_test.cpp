@@ -95,7 +95,8 @@ TEST_F(ExportMap, KmlHasNamesAndDescriptions) {
   export_map(earth, out("tops.kml"));
   const std::string kml = content_of(folder / "tops.kml");
   EXPECT_THAT(kml, HasSubstr("<name>Mountain top 3000\u00a0m</name>"));
-  EXPECT_THAT(kml, HasSubstr("&lt;td&gt;Elevation&lt;/td&gt;&lt;td&gt;3000\u00a0m \u00b1 5\u00a0m&lt;/td&gt;"));
+  EXPECT_THAT(kml,
+              HasSubstr("&lt;td&gt;Elevation&lt;/td&gt;&lt;td&gt;3000\u00a0m \u00b1 5\u00a0m&lt;/td&gt;"));
   EXPECT_THAT(kml, HasSubstr("-70.01,-32.65,3000"));
 }
 
@@ -103,7 +104,8 @@ TEST_F(ExportMap, ShapefileSaysWhichNamesAreCut) {
   const ExportSummary summary = export_map(earth, out("tops.shp"));
   ASSERT_EQ(summary.warnings.size(), 1u);
   EXPECT_THAT(summary.warnings[0], HasSubstr("prominence_low as promin_low"));
-  EXPECT_THAT(test::names_in(folder.path()), ::testing::IsSupersetOf({"tops.dbf", "tops.prj", "tops.shp", "tops.shx"}));
+  EXPECT_THAT(test::names_in(folder.path()),
+              ::testing::IsSupersetOf({"tops.dbf", "tops.prj", "tops.shp", "tops.shx"}));
   const auto file = open("tops.shp");
   EXPECT_GE(file->GetLayer(0)->GetLayerDefn()->GetFieldIndex("saddle_ele"), 0);
 }
@@ -145,7 +147,8 @@ TEST_F(ExportMap, TypesGetAFileEachWhereItHasNot) {
 }
 
 TEST_F(ExportMap, OneTypeIsTakenAlone) {
-  EXPECT_THAT(export_map(two, out("craters.geojson"), {.types = {"crater"}}).files, ElementsAre(out("craters.geojson")));
+  EXPECT_THAT(export_map(two, out("craters.geojson"), {.types = {"crater"}}).files,
+              ElementsAre(out("craters.geojson")));
 }
 
 TEST_F(ExportMap, UnknownTypeSuggestsTheNearest) {
@@ -209,10 +212,10 @@ TEST_F(ExportMap, PositionsOutsideTheCrsAreCounted) {
 }
 
 TEST_F(ExportMap, EveryFormatOfThisGdalGivesAFileOrAClearError) {
-  for (const std::string name :
-       {"a.geojsonl", "a.kmz", "a.shz", "a.gml", "a.gpx", "a.sqlite", "a.dxf", "a.mif", "a.gmt", "a.xlsx", "a.ods",
-        "a.jml", "a.gdb", "a.pdf", "a.dgn"}) {
-    const std::string message = error_of([&] { EXPECT_EQ(export_map(earth, out(name)).layers[0].landmarks, 3) << name; });
+  for (const std::string name : {"a.geojsonl", "a.kmz", "a.shz", "a.gml", "a.gpx", "a.sqlite", "a.dxf",
+                                 "a.mif", "a.gmt", "a.xlsx", "a.ods", "a.jml", "a.gdb", "a.pdf", "a.dgn"}) {
+    const std::string message =
+        error_of([&] { EXPECT_EQ(export_map(earth, out(name)).layers[0].landmarks, 3) << name; });
     EXPECT_THAT(message, ::testing::AnyOf(IsEmpty(), HasSubstr(name)));
   }
 }

@@ -15,8 +15,8 @@ constexpr int kNoQgis = 77;
 void expect_qgis_draws(const std::filesystem::path& map, const std::filesystem::path& picture) {
   const std::string script = WAYMARK_SOURCE_DIR "/tests/exporters/qgis_render.py";
   const std::string log = picture.string() + ".log";
-  const std::string command =
-      "/usr/bin/python3 '" + script + "' '" + map.string() + "' '" + picture.string() + "' > '" + log + "' 2>&1";
+  const std::string command = "/usr/bin/python3 '" + script + "' '" + map.string() + "' '" +
+                              picture.string() + "' > '" + log + "' 2>&1";
   const int status = std::system(command.c_str());
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   if (code == kNoQgis || code == 127) GTEST_SKIP() << "QGIS is not installed (python3-qgis)";

@@ -16,7 +16,8 @@ const Crs kDegrees = Crs::from_text("EPSG:4326");
 
 TEST(ReadRelief, HasThePixelsAndProportionsOfTheGround) {
   const test::TemporaryFolder folder;
-  test::write_small_dem(folder / "dem.tif", 10, 60.05, 0.001);  // at 60 N a degree east is half a degree north
+  test::write_small_dem(folder / "dem.tif", 10, 60.05,
+                        0.001);  // at 60 N a degree east is half a degree north
   const auto relief = read_relief({(folder / "dem.tif").string()}, kDegrees, 10, 50);
   ASSERT_TRUE(relief);
   EXPECT_EQ(relief->heights.rows(), 50);
@@ -29,8 +30,8 @@ TEST(ReadRelief, JoinsFilesAndKeepsVoids) {
   const test::TemporaryFolder folder;
   test::write_small_dem(folder / "a.tif", 10, 0.05, 0.001);
   test::write_small_dem(folder / "b.tif", 10.1, 0.05, 0.001);
-  const auto relief =
-      read_relief({(folder / "a.tif").string(), "missing.tif", (folder / "b.tif").string()}, kDegrees, 10, 200);
+  const auto relief = read_relief({(folder / "a.tif").string(), "missing.tif", (folder / "b.tif").string()},
+                                  kDegrees, 10, 200);
   ASSERT_TRUE(relief);
   EXPECT_EQ(relief->heights.columns(), 200);
   EXPECT_TRUE(std::isnan(relief->heights(0, 0)));
@@ -61,7 +62,9 @@ Relief ridge() {
   return relief;
 }
 
-int lightness(const Colour& colour) { return colour.red + colour.green + colour.blue; }
+int lightness(const Colour& colour) {
+  return colour.red + colour.green + colour.blue;
+}
 
 TEST(Shade, LightComesFromTheNorthWest) {
   const Relief relief = ridge();

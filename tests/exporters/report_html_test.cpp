@@ -29,7 +29,9 @@ class ReportHtml : public ::testing::Test {
   }
 };
 
-MapContents andes() { return test::three_summits("EPSG:4326", -70.05, -32.65, 0.05); }
+MapContents andes() {
+  return test::three_summits("EPSG:4326", -70.05, -32.65, 0.05);
+}
 
 TEST_F(ReportHtml, NeedsNothingButItself) {
   const std::string report = report_of(andes());
@@ -51,8 +53,10 @@ TEST_F(ReportHtml, ShowsPlacesFeaturesAndCertifiedBounds) {
 
 TEST_F(ReportHtml, AccountsForTheRun) {
   const std::string report = report_of(andes());
-  EXPECT_THAT(report, HasSubstr("Find mountain tops</th><td>120</td><td>3</td>"
-                                "<td>117<small>117 prominence below 20 m</small></td><td>4<small>1 reused</small></td>"));
+  EXPECT_THAT(
+      report,
+      HasSubstr("Find mountain tops</th><td>120</td><td>3</td>"
+                "<td>117<small>117 prominence below 20 m</small></td><td>4<small>1 reused</small></td>"));
   EXPECT_THAT(report, HasSubstr("<li><b>Find mountain tops:</b> a seam &lt;disagrees&gt;</li>"));
   EXPECT_THAT(report, HasSubstr("<li><b>find_mountain_tops/tile_3 failed:</b> the file is damaged</li>"));
   EXPECT_THAT(report, HasSubstr("<code>waymark peaks dem.tif -o map.gpkg</code>"));
@@ -62,7 +66,8 @@ TEST_F(ReportHtml, AccountsForTheRun) {
 TEST_F(ReportHtml, DrawsTheReliefOfTheInputFiles) {
   MapContents contents = andes();
   test::write_small_dem(folder / "dem.tif", -70.1, -32.55, 0.001);
-  contents.run.inputs = {{"elsewhere/dem.tif", std::filesystem::file_size(folder / "dem.tif"), ""}};  // beside the map
+  contents.run.inputs = {
+      {"elsewhere/dem.tif", std::filesystem::file_size(folder / "dem.tif"), ""}};  // beside the map
   EXPECT_THAT(report_of(contents), HasSubstr("href='data:image/png;base64,iVBORw0KGgo"));
   contents.run.inputs[0].bytes -= 1;  // no longer the file the run has read
   EXPECT_THAT(report_of(contents), Not(HasSubstr("data:image/png")));

@@ -47,7 +47,9 @@ TemporaryFolder::TemporaryFolder() {
   path_ = ::mkdtemp(pattern.data());
 }
 
-TemporaryFolder::~TemporaryFolder() { std::filesystem::remove_all(path_); }
+TemporaryFolder::~TemporaryFolder() {
+  std::filesystem::remove_all(path_);
+}
 
 MapContents three_summits(const std::string& crs, double x, double y, double spacing) {
   MapContents map;
@@ -92,7 +94,8 @@ std::string content_of(const std::filesystem::path& file) {
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }

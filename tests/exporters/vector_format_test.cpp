@@ -92,10 +92,11 @@ TEST(OutputCrs, KmlInMetresIsRefused) {
 
 TEST(FittingNames, KeepShortEndingsAndStayUnique) {
   const VectorFormat shapefile = vector_format("b.shp", "");
-  EXPECT_THAT(fitting_names(shapefile, {"uid", "prominence", "prominence_sd", "prominence_low", "saddle_elevation",
-                                        "saddle_elevations"}),
+  EXPECT_THAT(fitting_names(shapefile, {"uid", "prominence", "prominence_sd", "prominence_low",
+                                        "saddle_elevation", "saddle_elevations"}),
               ElementsAre("uid", "prominence", "promine_sd", "promin_low", "saddle_ele", "saddle_el2"));
-  EXPECT_THAT(fitting_names(vector_format("b.csv", ""), {"saddle_elevation"}), ElementsAre("saddle_elevation"));
+  EXPECT_THAT(fitting_names(vector_format("b.csv", ""), {"saddle_elevation"}),
+              ElementsAre("saddle_elevation"));
 }
 
 }  // namespace

@@ -35,11 +35,17 @@ TEST(Reading, SmallThingsKeepThreeDigits) {
   EXPECT_EQ(reading_of(kIsolation, 0)(0), "0\u00a0m");
 }
 
-TEST(Reading, AnglesAreReadInDegrees) { EXPECT_EQ(reading_of(kOrientation, 1)(M_PI / 4), "45.0\u00a0\u00b0"); }
+TEST(Reading, AnglesAreReadInDegrees) {
+  EXPECT_EQ(reading_of(kOrientation, 1)(M_PI / 4), "45.0\u00a0\u00b0");
+}
 
-TEST(TitleOf, ReadsLikeWords) { EXPECT_EQ(title_of("mountain_top"), "Mountain top"); }
+TEST(TitleOf, ReadsLikeWords) {
+  EXPECT_EQ(title_of("mountain_top"), "Mountain top");
+}
 
-TEST(Escaped, LeavesNoMarkup) { EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;"); }
+TEST(Escaped, LeavesNoMarkup) {
+  EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
+}
 
 }  // namespace
 }  // namespace waymark
