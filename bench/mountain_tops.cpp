@@ -3,9 +3,10 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <map>
 
-#include "tests/pipeline/survey.hpp"
 #include "pipeline/terrain/isolation.hpp"
+#include "tests/pipeline/survey.hpp"
 
 namespace waymark::testing {
 namespace {
@@ -71,3 +72,5 @@ BENCHMARK(isolation_of_all_summits)->Arg(1000)->Arg(2000)->Arg(4000)->Unit(bench
 
 }  // namespace
 }  // namespace waymark::testing
+
+BENCHMARK_MAIN();
