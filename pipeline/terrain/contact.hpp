@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include "geo/dem_source.hpp"
 #include "pipeline/terrain/ground_metric.hpp"
 #include "pipeline/terrain/neighbourhood.hpp"
 namespace waymark {
