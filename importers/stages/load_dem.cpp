@@ -16,7 +16,7 @@ struct LoadDem {
     std::string nodata = to_string(NodataPolicy::ocean);
     std::string crs;
     Meters height_sd{0};
-    std::int64_t tile_cells = 1024;
+    std::int64_t tile_cells = 512;
     std::int64_t memory = 512;
 
     void describe(OptionVisitor& option) {
