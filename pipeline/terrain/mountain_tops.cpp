@@ -68,8 +68,14 @@ class TopMaker {
   void set_parent(Landmark& top, const std::string& uid) const { attribute(top, "parent_uid", uid); }
 
  private:
-  double x(std::int64_t cell) const { return where_.x(static_cast<double>(cell % dem_.geometry().columns)); }
-  double y(std::int64_t cell) const { return where_.y(static_cast<double>(cell / dem_.geometry().columns)); }
+  double x(std::int64_t cell) const {
+    const std::int64_t column = cell % dem_.geometry().columns;
+    return where_.x(static_cast<double>(column));
+  }
+  double y(std::int64_t cell) const {
+    const std::int64_t row = cell / dem_.geometry().columns;
+    return where_.y(static_cast<double>(row));
+  }
 
   void feature(Landmark& top, std::string_view name, double value) const {
     if (!std::isnan(value)) top.features[feature_index(type_, name)] = {value, 0, 1};

@@ -33,7 +33,7 @@ std::vector<Island> one_island_each(const DivideTree& tree) {
 }
 
 // Renumbers the kept nodes and hangs saddles and border cells of contracted ones on what they were contracted into.
-DivideTree without_contracted(const DivideTree& tree, std::vector<DivideTree::Saddle> saddles,
+DivideTree without_contracted(const DivideTree& tree, const std::vector<DivideTree::Saddle>& saddles,
                               std::vector<std::int32_t> contracted_into) {
   std::vector<std::int32_t> number(tree.nodes.size(), -1);
   DivideTree kept;
@@ -97,7 +97,7 @@ DivideTree prune(DivideTree tree, double min_prominence) {
     into.exposed = std::max(into.exposed, sunk.exposed);
     sets.join(low, high);
   }
-  return without_contracted(tree, std::move(saddles), std::move(contracted_into));
+  return without_contracted(tree, saddles, std::move(contracted_into));
 }
 
 }  // namespace waymark

@@ -19,6 +19,8 @@ struct Expected {
   NodataPolicy policy = NodataPolicy::ocean;
 };
 
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.file; }
+
 class ProminenceOfRealGround : public ::testing::TestWithParam<Expected> {};
 
 // Elevation and prominence of every summit of at least 20 m, as a multiset.
