@@ -6,7 +6,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <string_view>
 
 #include "geodb/geometry_blob.hpp"
 
@@ -138,12 +138,25 @@ void write_metadata(const sqlite::Database& database, const RunRecord& run, std:
 }
 
 std::string time_stamp(std::string_view iso_8601) {
-  static const std::regex form(R"((\d{4}-\d\d-\d\d)[T ](\d\d:\d\d:\d\d)(\.\d{1,3})?\d*(Z|\+00:00)?)");
-  std::cmatch part;
-  if (!std::regex_match(iso_8601.begin(), iso_8601.end(), part, form)) return "1970-01-01T00:00:00.000Z";
-  std::string fraction = part[3].matched ? part[3].str() : ".";
+  constexpr std::string_view shape = "0000-00-00T00:00:00";
+  const std::string unknown = "1970-01-01T00:00:00.000Z";
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (iso_8601.size() < shape.size()) return unknown;
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const char c = iso_8601[i];
+    const bool fits = shape[i] == '0' ? is_digit(c) : c == shape[i] || (shape[i] == 'T' && c == ' ');
+    if (!fits) return unknown;
+  }
+  std::string_view rest = iso_8601.substr(shape.size());
+  std::string fraction = ".";
+  if (rest.starts_with('.'))
+    for (rest.remove_prefix(1); !rest.empty() && is_digit(rest.front()); rest.remove_prefix(1))
+      fraction += rest.front();
+  if (!rest.empty() && rest != "Z" && rest != "+00:00") return unknown;
   fraction.resize(4, '0');
-  return part[1].str() + "T" + part[2].str() + fraction + "Z";
+  std::string stamp(iso_8601.substr(0, shape.size()));
+  stamp[10] = 'T';
+  return stamp + fraction + "Z";
 }
 
 std::string time_stamp_now() {

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <regex>
 
 #include "geodb/write_map.hpp"
 #include "small_dem.hpp"
@@ -38,8 +37,9 @@ TEST_F(ReportHtml, NeedsNothingButItself) {
   EXPECT_THAT(report, Not(HasSubstr("<script")));
   EXPECT_THAT(report, Not(HasSubstr("http")));
   EXPECT_THAT(report, Not(HasSubstr("url(")));
-  const std::regex source("(src|href)=['\"](?!data:)");
-  EXPECT_FALSE(std::regex_search(report, source));
+  for (const std::string attribute : {"src=", "href="})
+    for (auto at = report.find(attribute); at != std::string::npos; at = report.find(attribute, at + 1))
+      EXPECT_EQ(report.substr(at + attribute.size() + 1, 5), "data:");
 }
 
 TEST_F(ReportHtml, ShowsPlacesFeaturesAndCertifiedBounds) {
