@@ -16,8 +16,8 @@ static_assert(std::endian::native == std::endian::little, "artifacts are little-
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Appends plain values, each sequence behind its length. Numbers and characters are written as they lie in memory,
-/// so a struct must have no padding that is not zero: write its members one by one.
+/// Appends plain values, each sequence behind its length. Numbers and characters are written as they lie in
+/// memory, so a struct must have no padding that is not zero: write its members one by one.
 class ByteWriter {
  public:
   template <Plain T>
@@ -71,7 +71,8 @@ class ByteReader {
     return static_cast<std::size_t>(size);
   }
   void expect_end() const {
-    if (!bytes_.empty()) throw std::runtime_error("artifact has " + std::to_string(bytes_.size()) + " bytes too many");
+    if (!bytes_.empty())
+      throw std::runtime_error("artifact has " + std::to_string(bytes_.size()) + " bytes too many");
   }
 
  private:

@@ -24,7 +24,9 @@ Error::Error(ErrorCode code, std::string problem, std::string where, std::string
       where_(std::move(where)),
       hint_(std::move(hint)) {}
 
-int exit_code(ErrorCode code) { return code == ErrorCode::usage ? 2 : 1; }
+int exit_code(ErrorCode code) {
+  return code == ErrorCode::usage ? 2 : 1;
+}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);

@@ -15,19 +15,20 @@ enum class Scale {
 
 /// Declares one feature of a landmark type. Values outside [lowest, highest] are implausible.
 struct FeatureSpec {
-  std::string name;     ///< column name in the map: lower case, underscores
-  std::string unit;     ///< "m", "rad", "" for pure numbers
+  std::string name;  ///< column name in the map: lower case, underscores
+  std::string unit;  ///< "m", "rad", "" for pure numbers
   Scale scale = Scale::ratio;
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   std::string summary;  ///< one line for people
-  double reference = 0; ///< interval and axis: the spread at which a value says nothing (see core/quality.hpp)
+  double reference =
+      0;  ///< interval and axis: the spread at which a value says nothing (see core/quality.hpp)
 };
 
 /// A merged feature. An absent value is NaN with observations = 0.
 struct FeatureValue {
   double value = std::numeric_limits<double>::quiet_NaN();
-  double variance = 0;   ///< of the observations, not of their mean; 0 where one observation gives no spread
+  double variance = 0;  ///< of the observations, not of their mean; 0 where one observation gives no spread
   int observations = 0;
 
   bool known() const { return observations > 0; }
@@ -44,8 +45,9 @@ struct WeightedValue {
 /// Merges the observations of one feature of one landmark (Rossmann et al., eq. 3).
 /// The variance is the weighted spread about the merged value, unbiased for equal weights; it is 0 for a
 /// single observation, which therefore says nothing about confidence.
-/// Departure from the paper: an `axis` is averaged as a doubled angle, so 1 and 179 degrees give 0 and not 90;
-/// the result lies in (-pi/2, pi/2]. An axis whose doubled angles cancel has no mean: the first value is kept.
+/// Departure from the paper: an `axis` is averaged as a doubled angle, so 1 and 179 degrees give 0 and not
+/// 90; the result lies in (-pi/2, pi/2]. An axis whose doubled angles cancel has no mean: the first value is
+/// kept.
 FeatureValue merge(std::span<const WeightedValue> seen, Scale scale);
 
 /// a - b as the scale understands it: the shortest way round for an axis.

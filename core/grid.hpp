@@ -8,7 +8,8 @@
 #include <vector>
 namespace waymark {
 
-/// A rectangle of cells: columns [column, column + columns), rows [row, row + rows). May reach outside a grid.
+/// A rectangle of cells: columns [column, column + columns), rows [row, row + rows). May reach outside a
+/// grid.
 struct Window {
   std::int64_t column = 0, row = 0;
   std::int64_t columns = 0, rows = 0;

@@ -6,9 +6,9 @@ namespace waymark {
 
 /// A file a run has read: enough to tell later whether it is still the same.
 struct InputFile {
-  std::string path;         ///< as the user gave it; may be a /vsi path
+  std::string path;  ///< as the user gave it; may be a /vsi path
   std::uint64_t bytes = 0;
-  std::string sha256;       ///< of its content, 64 lower-case hexadecimal digits
+  std::string sha256;  ///< of its content, 64 lower-case hexadecimal digits
   friend bool operator==(const InputFile&, const InputFile&) = default;
 };
 

@@ -14,7 +14,8 @@ namespace waymark {
 struct Quality {
   int seen = 0;     ///< images (or surveys) that detected it
   int visible = 0;  ///< images (or surveys) that could have
-  std::vector<std::optional<double>> of_feature;  ///< q_f (eq. 7); absent where one observation gives no spread
+  std::vector<std::optional<double>>
+      of_feature;  ///< q_f (eq. 7); absent where one observation gives no spread
 };
 
 /// A thing a person recognises: merged, valued, with its evidence.
@@ -23,10 +24,10 @@ struct Landmark {
   TypeId type = 0;
   Point<MapCrs> position;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< east, north, up; square metres
-  FeatureSet features;      ///< in the order of the type's features
-  AttributeSet attributes;  ///< in the order of the type's attributes
+  FeatureSet features;                                   ///< in the order of the type's features
+  AttributeSet attributes;                               ///< in the order of the type's attributes
   Quality quality;
-  double confidence = 1;    ///< probability that the landmark exists, [0, 1]
+  double confidence = 1;  ///< probability that the landmark exists, [0, 1]
   int observations = 1;
 };
 

@@ -21,7 +21,7 @@ struct Observation {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< east, north, up; square metres
   double confidence = 1;                                 ///< detection quality q(d), (0, 1]
   FeatureSet features;
-  std::string rejected;                                  ///< reason; empty if kept
+  std::string rejected;  ///< reason; empty if kept
 };
 
 }  // namespace waymark

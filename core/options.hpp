@@ -15,7 +15,7 @@ struct Field {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices = {};  ///< of a text option; empty: any text
-  bool affects_result = true;        ///< false: threads, memory: left out of fingerprints
+  bool affects_result = true;             ///< false: threads, memory: left out of fingerprints
 };
 
 /// Visits the options of a stage in the order they are declared. A stage's Options has
@@ -29,8 +29,12 @@ class OptionVisitor {
   void operator()(std::string_view name, Quantity<Unit>& value, const Field& field) {
     number(name, value.value, Unit::symbol, field);
   }
-  void operator()(std::string_view name, double& value, const Field& field) { number(name, value, "", field); }
-  void operator()(std::string_view name, std::int64_t& value, const Field& field) { integer(name, value, field); }
+  void operator()(std::string_view name, double& value, const Field& field) {
+    number(name, value, "", field);
+  }
+  void operator()(std::string_view name, std::int64_t& value, const Field& field) {
+    integer(name, value, field);
+  }
   void operator()(std::string_view name, bool& value, const Field& field) { flag(name, value, field); }
   void operator()(std::string_view name, std::string& value, const Field& field) { text(name, value, field); }
   void operator()(std::string_view name, std::vector<std::string>& value, const Field& field) {

@@ -6,8 +6,8 @@
 namespace waymark {
 
 /// Multiplicity-based confidence q_# (Rossmann et al., eq. 5): seen / visible, in [0, 1].
-/// `seen`: images that detected the landmark; `visible`: images at least as fine as the coarsest that covers it
-/// (eq. 4). Absent where no image could have shown it.
+/// `seen`: images that detected the landmark; `visible`: images at least as fine as the coarsest that covers
+/// it (eq. 4). Absent where no image could have shown it.
 std::optional<double> multiplicity_confidence(int seen, int visible);
 
 /// How the spread of a feature becomes a confidence.
@@ -17,11 +17,11 @@ enum class SpreadRule {
 };
 
 /// Variance-based confidence q_f (eqs. 6-7), in [0, 1].
-/// `reference` is the spread at which an interval or axis feature carries no information, > 0, in the feature's
-/// unit (for an axis: pi/4 radians, the spread of random directions is about that).
-/// Departure: eq. 6 divides by the mean, which is meaningless for elevations (mean near 0 or negative).
-/// Absent if the spread is unknown (fewer than two observations) under `sound`; under `paper` absent where the
-/// mean is 0 and the spread is not.
+/// `reference` is the spread at which an interval or axis feature carries no information, > 0, in the
+/// feature's unit (for an axis: pi/4 radians, the spread of random directions is about that). Departure: eq.
+/// 6 divides by the mean, which is meaningless for elevations (mean near 0 or negative). Absent if the spread
+/// is unknown (fewer than two observations) under `sound`; under `paper` absent where the mean is 0 and the
+/// spread is not.
 std::optional<double> spread_confidence(const FeatureValue& feature, Scale scale, double reference,
                                         SpreadRule rule = SpreadRule::sound);
 

@@ -20,9 +20,15 @@ struct Quantity {
   friend constexpr double operator/(Quantity a, Quantity b) { return a.value / b.value; }
 };
 
-struct MetersUnit { static constexpr const char* symbol = "m"; };
-struct RadiansUnit { static constexpr const char* symbol = "rad"; };
-struct DegreesUnit { static constexpr const char* symbol = "deg"; };
+struct MetersUnit {
+  static constexpr const char* symbol = "m";
+};
+struct RadiansUnit {
+  static constexpr const char* symbol = "rad";
+};
+struct DegreesUnit {
+  static constexpr const char* symbol = "deg";
+};
 
 using Meters = Quantity<MetersUnit>;
 using Radians = Quantity<RadiansUnit>;
@@ -30,14 +36,26 @@ using Degrees = Quantity<DegreesUnit>;
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-constexpr Radians to_radians(Degrees angle) { return {angle.value * kRadiansPerDegree}; }
-constexpr Degrees to_degrees(Radians angle) { return {angle.value / kRadiansPerDegree}; }
+constexpr Radians to_radians(Degrees angle) {
+  return {angle.value * kRadiansPerDegree};
+}
+constexpr Degrees to_degrees(Radians angle) {
+  return {angle.value / kRadiansPerDegree};
+}
 
 inline namespace literals {
-constexpr Meters operator""_m(long double v) { return {static_cast<double>(v)}; }
-constexpr Meters operator""_m(unsigned long long v) { return {static_cast<double>(v)}; }
-constexpr Degrees operator""_deg(long double v) { return {static_cast<double>(v)}; }
-constexpr Degrees operator""_deg(unsigned long long v) { return {static_cast<double>(v)}; }
+constexpr Meters operator""_m(long double v) {
+  return {static_cast<double>(v)};
+}
+constexpr Meters operator""_m(unsigned long long v) {
+  return {static_cast<double>(v)};
+}
+constexpr Degrees operator""_deg(long double v) {
+  return {static_cast<double>(v)};
+}
+constexpr Degrees operator""_deg(unsigned long long v) {
+  return {static_cast<double>(v)};
+}
 }  // namespace literals
 
 }  // namespace waymark

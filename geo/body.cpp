@@ -6,11 +6,19 @@
 
 namespace waymark {
 
-double Body::mean_radius() const { return std::cbrt(equatorial_radius * equatorial_radius * polar_radius()); }
+double Body::mean_radius() const {
+  return std::cbrt(equatorial_radius * equatorial_radius * polar_radius());
+}
 
-Body earth() { return {"Earth", 6378137, 1 / 298.257223563}; }
-Body moon() { return {"Moon", 1737400, 0}; }
-Body mars() { return {"Mars", 3396190, (3396190.0 - 3376200.0) / 3396190.0}; }
+Body earth() {
+  return {"Earth", 6378137, 1 / 298.257223563};
+}
+Body moon() {
+  return {"Moon", 1737400, 0};
+}
+Body mars() {
+  return {"Mars", 3396190, (3396190.0 - 3376200.0) / 3396190.0};
+}
 
 Body body_of_ellipsoid(const std::string& name, double equatorial_radius, double flattening) {
   for (const Body& known : {earth(), moon(), mars()})

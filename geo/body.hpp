@@ -6,9 +6,9 @@ namespace waymark {
 
 /// A celestial body as an ellipsoid of revolution.
 struct Body {
-  std::string name;             ///< "Earth", "Moon", "Mars" or the ellipsoid's own name
-  double equatorial_radius = 0; ///< metres, > 0
-  double flattening = 0;        ///< (a - b) / a, [0, 1)
+  std::string name;              ///< "Earth", "Moon", "Mars" or the ellipsoid's own name
+  double equatorial_radius = 0;  ///< metres, > 0
+  double flattening = 0;         ///< (a - b) / a, [0, 1)
 
   double polar_radius() const { return equatorial_radius * (1 - flattening); }
   /// Radius of the sphere of equal volume, metres.
@@ -20,7 +20,8 @@ Body earth();  ///< WGS 84: 6378137 m, 1/298.257223563 (NIMA TR8350.2)
 Body moon();   ///< IAU 2015 sphere: 1737400 m (Archinal et al. 2018)
 Body mars();   ///< IAU 2015: 3396190 m, polar 3376200 m (Archinal et al. 2018)
 
-/// The body an ellipsoid belongs to, named after the known body whose radius agrees within 0.5 %; else `name`.
+/// The body an ellipsoid belongs to, named after the known body whose radius agrees within 0.5 %; else
+/// `name`.
 Body body_of_ellipsoid(const std::string& name, double equatorial_radius, double flattening);
 
 struct LonLat {

@@ -62,7 +62,8 @@ ProjObject parse(std::string_view definition) {
   ProjContext& proj = ProjContext::of_this_thread();
   proj.take_message();
   std::string text(definition);
-  if (text.starts_with('+') && text.find("+type=crs") == std::string::npos) text += " +type=crs";  // else: an operation
+  if (text.starts_with('+') && text.find("+type=crs") == std::string::npos)
+    text += " +type=crs";  // else: an operation
   ProjObject crs(proj_create(proj.get(), text.c_str()));
   if (crs) crs = horizontal_part(std::move(crs));
   if (!crs) {

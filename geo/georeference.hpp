@@ -9,8 +9,8 @@ namespace waymark {
 /// shifted by half a cell in importers/ when a file is opened, and nowhere else.
 struct Georeference {
   Crs crs = Crs::local();
-  double x0 = 0, y0 = 0;        ///< centre of cell (0, 0), CRS units
-  double dx = 1, dy = -1;       ///< from one column / row to the next, CRS units; dx > 0, dy < 0
+  double x0 = 0, y0 = 0;   ///< centre of cell (0, 0), CRS units
+  double dx = 1, dy = -1;  ///< from one column / row to the next, CRS units; dx > 0, dy < 0
 
   double x(double column) const { return x0 + column * dx; }
   double y(double row) const { return y0 + row * dy; }

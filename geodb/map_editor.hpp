@@ -28,7 +28,8 @@ class MapEditor {
   void add_image(const ImageRecord& image);
   void add_run(const RunRecord& run);
 
-  /// All changes made by `changes`, or none if it throws. Far faster than one by one: the disk is waited for once.
+  /// All changes made by `changes`, or none if it throws. Far faster than one by one: the disk is waited for
+  /// once.
   void together(const std::function<void()>& changes);
 
  private:

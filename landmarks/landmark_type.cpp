@@ -19,7 +19,8 @@ bool is_column_name(std::string_view name) {
 }  // namespace
 
 TypeId TypeRegistry::add(LandmarkType type) {
-  if (!is_column_name(type.name)) throw std::logic_error("'" + type.name + "' is no name for a landmark type");
+  if (!is_column_name(type.name))
+    throw std::logic_error("'" + type.name + "' is no name for a landmark type");
   if (find(type.name)) throw std::logic_error("two landmark types named " + type.name);
   std::set<std::string> columns;
   for (const auto& feature : type.features)

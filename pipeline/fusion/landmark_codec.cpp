@@ -15,15 +15,19 @@ void write(ByteWriter& out, const AttributeValue& value) {
 
 AttributeValue read_attribute(ByteReader& in) {
   switch (in.get<std::uint8_t>()) {
-    case 0: return {};
-    case 1: return in.get<double>();
-    case 2: return in.get<std::int64_t>();
+    case 0:
+      return {};
+    case 1:
+      return in.get<double>();
+    case 2:
+      return in.get<std::int64_t>();
     case 3: {
       std::string text;
       in(text);
       return text;
     }
-    default: throw std::runtime_error("artifact has an attribute of no known kind");
+    default:
+      throw std::runtime_error("artifact has an attribute of no known kind");
   }
 }
 

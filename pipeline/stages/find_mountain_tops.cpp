@@ -44,6 +44,8 @@ struct FindMountainTops {
 }  // namespace
 
 void register_stage_find_mountain_tops(Registry& registry);
-void register_stage_find_mountain_tops(Registry& registry) { registry.add<FindMountainTops>(); }
+void register_stage_find_mountain_tops(Registry& registry) {
+  registry.add<FindMountainTops>();
+}
 
 }  // namespace waymark

@@ -14,7 +14,8 @@ struct JoinMountainTops {
     std::string base = "auto";
     void describe(OptionVisitor& option) {
       option("base", base,
-             {.help = "What the highest summit of each piece of land is measured from: elevation 0, the lowest cell, or "
+             {.help = "What the highest summit of each piece of land is measured from: elevation 0, the "
+                      "lowest cell, or "
                       "nothing; auto: 0 where the highest cell lies above it",
               .choices = {"auto", "sea", "lowest", "none"}});
     }
@@ -54,8 +55,10 @@ struct JoinMountainTops {
     }
     auto found = join_divide_trees(trees, min_prominence, policy(options.base));
     if (options.base == "sea" && highest <= 0)
-      unit.warn("the highest ground lies below elevation 0, so its summit has no prominence over the sea and is left "
-                "out; base = lowest measures it from the lowest cell");
+      unit.warn(
+          "the highest ground lies below elevation 0, so its summit has no prominence over the sea and is "
+          "left "
+          "out; base = lowest measures it from the lowest cell");
     unit.count_in(maxima);
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.reject(min_prominence > 0 ? "prominence too small" : "no prominence: part of higher ground",
@@ -68,6 +71,8 @@ struct JoinMountainTops {
 }  // namespace
 
 void register_stage_join_mountain_tops(Registry& registry);
-void register_stage_join_mountain_tops(Registry& registry) { registry.add<JoinMountainTops>(); }
+void register_stage_join_mountain_tops(Registry& registry) {
+  registry.add<JoinMountainTops>();
+}
 
 }  // namespace waymark

@@ -37,8 +37,9 @@ struct MapMountainTops {
     TypeRegistry types;
     register_landmark_types(types);
     const auto& found = unit.read(summits);
-    auto tops = mountain_tops(found, unit.read(isolation), *unit.read(dem), types,
-                              {.min_isolation = options.min_isolation, .visible_range = options.visible_range});
+    auto tops =
+        mountain_tops(found, unit.read(isolation), *unit.read(dem), types,
+                      {.min_isolation = options.min_isolation, .visible_range = options.visible_range});
     unit.count_in(static_cast<std::int64_t>(found.size()));
     unit.count_out(static_cast<std::int64_t>(tops.size()));
     unit.reject("isolation too small", static_cast<std::int64_t>(found.size() - tops.size()));
@@ -49,6 +50,8 @@ struct MapMountainTops {
 }  // namespace
 
 void register_stage_map_mountain_tops(Registry& registry);
-void register_stage_map_mountain_tops(Registry& registry) { registry.add<MapMountainTops>(); }
+void register_stage_map_mountain_tops(Registry& registry) {
+  registry.add<MapMountainTops>();
+}
 
 }  // namespace waymark

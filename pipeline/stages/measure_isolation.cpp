@@ -11,11 +11,14 @@ struct MeasureIsolation {
     std::string isolation = "cell";
     std::string distance = "geodesic";
     void describe(OptionVisitor& option) {
-      option("isolation", isolation,
-             {.help = "Where isolation ends: the nearest higher cell, or the interpolated point of equal elevation",
-              .choices = {"cell", "contact"}});
+      option(
+          "isolation", isolation,
+          {.help =
+               "Where isolation ends: the nearest higher cell, or the interpolated point of equal elevation",
+           .choices = {"cell", "contact"}});
       option("distance", distance,
-             {.help = "Along the body's ellipsoid, or straight on a projected map", .choices = {"geodesic", "planar"}});
+             {.help = "Along the body's ellipsoid, or straight on a projected map",
+              .choices = {"geodesic", "planar"}});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -52,6 +55,8 @@ struct MeasureIsolation {
 }  // namespace
 
 void register_stage_measure_isolation(Registry& registry);
-void register_stage_measure_isolation(Registry& registry) { registry.add<MeasureIsolation>(); }
+void register_stage_measure_isolation(Registry& registry) {
+  registry.add<MeasureIsolation>();
+}
 
 }  // namespace waymark

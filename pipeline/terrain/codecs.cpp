@@ -8,19 +8,26 @@ namespace {
 
 // Each layout is told once and serves both ways: `io` is a ByteWriter or a ByteReader.
 
-void layout(auto& io, auto& node) requires requires { node.portal; } {
-  io(node.cell), io(node.height), io(node.contact), io(node.portal);
+void layout(auto& io, auto& node) requires requires {
+  node.portal;
 }
-void layout(auto& io, auto& saddle) requires requires { saddle.a; } {
-  io(saddle.cell), io(saddle.height), io(saddle.a), io(saddle.b);
+{ io(node.cell), io(node.height), io(node.contact), io(node.portal); }
+void layout(auto& io, auto& saddle) requires requires {
+  saddle.a;
 }
-void layout(auto& io, auto& border) requires requires { border.node; } {
-  io(border.cell), io(border.height), io(border.node);
+{ io(saddle.cell), io(saddle.height), io(saddle.a), io(saddle.b); }
+void layout(auto& io, auto& border) requires requires {
+  border.node;
 }
-void layout(auto& io, auto& window) requires requires { window.columns; } {
-  io(window.column), io(window.row), io(window.columns), io(window.rows);
+{ io(border.cell), io(border.height), io(border.node); }
+void layout(auto& io, auto& window) requires requires {
+  window.columns;
 }
-void layout(auto& io, auto& summit) requires requires { summit.prominence_low; } {
+{ io(window.column), io(window.row), io(window.columns), io(window.rows); }
+void layout(auto& io, auto& summit) requires requires {
+  summit.prominence_low;
+}
+{
   io(summit.cell), io(summit.height), io(summit.prominence), io(summit.prominence_low);
   io(summit.saddle), io(summit.saddle_height), io(summit.parent);
 }

@@ -9,10 +9,9 @@
 #include "pipeline/terrain/neighbourhood.hpp"
 namespace waymark {
 
-/// Offers to `nearest` the point nearest to `from` of the ground above `level` around the higher cell (column, row):
-/// the ground falls linearly from it to each of its eight neighbours, and the contour runs straight between the
-/// crossings of two adjacent ones.
-/// `height(column, row)` gives cell heights.
+/// Offers to `nearest` the point nearest to `from` of the ground above `level` around the higher cell
+/// (column, row): the ground falls linearly from it to each of its eight neighbours, and the contour runs
+/// straight between the crossings of two adjacent ones. `height(column, row)` gives cell heights.
 template <class Metric, class Nearest>
 void offer_contacts(const Metric& metric, const Eigen::Vector3d& from, double level, std::int64_t column,
                     std::int64_t row, auto&& height, Nearest& nearest) {
@@ -23,7 +22,8 @@ void offer_contacts(const Metric& metric, const Eigen::Vector3d& from, double le
   };
   std::array<std::optional<Crossing>, 8> crossings;
   const Place here{static_cast<double>(column), static_cast<double>(row)};
-  nearest.offer(here, (metric.position(here) - from).squaredNorm());  // the nearest where voids hide the slope
+  nearest.offer(here,
+                (metric.position(here) - from).squaredNorm());  // the nearest where voids hide the slope
   for (std::size_t i = 0; i < kRing.size(); ++i) {
     const double foot = height(column + kRing[i].column, row + kRing[i].row);
     if (foot > level || foot == kNoHeight) continue;

@@ -7,8 +7,8 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// Random access to the cells of a DEM: squares of 256 cells, read when first asked for; the oldest are dropped.
-/// For one thread.
+/// Random access to the cells of a DEM: squares of 256 cells, read when first asked for; the oldest are
+/// dropped. For one thread.
 class DemChunks {
  public:
   static constexpr std::int64_t kSide = 256;

@@ -107,7 +107,8 @@ class TileSurvey {
     }
   }
 
-  // Follows steepest ascent to a local maximum or out of the tile, and remembers the answer for each cell passed.
+  // Follows steepest ascent to a local maximum or out of the tile, and remembers the answer for each cell
+  // passed.
   std::int32_t summit_above(std::int64_t c, std::int64_t r) {
     path_.clear();
     while (is_owned(c, r) && labels_(c - 1, r - 1) == kUnlabelled) {

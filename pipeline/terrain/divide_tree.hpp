@@ -8,12 +8,13 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// What one tile knows of the summits and saddles of the whole grid: a maximum spanning forest of the basins of
-/// steepest ascent, joined by saddle cells. The forests of all tiles together hold a maximum spanning forest of
-/// the whole grid, so joining them is exact (join_divide_trees). Cells are indices of the whole grid.
+/// What one tile knows of the summits and saddles of the whole grid: a maximum spanning forest of the basins
+/// of steepest ascent, joined by saddle cells. The forests of all tiles together hold a maximum spanning
+/// forest of the whole grid, so joining them is exact (join_divide_trees). Cells are indices of the whole
+/// grid.
 ///
-/// Where steepest ascent leaves the tile, the basin's summit is unknown here: a *portal* stands for it, the first
-/// cell outside; the tile that owns that cell says in `border` where it leads.
+/// Where steepest ascent leaves the tile, the basin's summit is unknown here: a *portal* stands for it, the
+/// first cell outside; the tile that owns that cell says in `border` where it leads.
 struct DivideTree {
   struct Node {
     std::int64_t cell = 0;
@@ -50,14 +51,14 @@ struct DivideTreeOptions {
 };
 
 /// The divide tree of the cells `owned`. `heights` is that window grown by one cell on each side.
-/// Only critical cells are looked at closely: local maxima, and saddles, whose higher neighbours fall into two or
-/// more connected parts (8-connectivity). All other cells cost one comparison with their neighbours.
+/// Only critical cells are looked at closely: local maxima, and saddles, whose higher neighbours fall into
+/// two or more connected parts (8-connectivity). All other cells cost one comparison with their neighbours.
 /// O(cells) time, 4 bytes per cell of the tile.
 DivideTree build_divide_tree(const HeightWindow& heights, const Window& owned, const GridGeometry& grid,
                              const DivideTreeOptions& options);
 
-/// Contracts what cannot matter elsewhere; see DivideTreeOptions::min_prominence. With 0 it only drops the saddles
-/// that close a cycle. Used by build_divide_tree; public for tests.
+/// Contracts what cannot matter elsewhere; see DivideTreeOptions::min_prominence. With 0 it only drops the
+/// saddles that close a cycle. Used by build_divide_tree; public for tests.
 DivideTree prune(DivideTree tree, double min_prominence);
 
 }  // namespace waymark

@@ -13,7 +13,8 @@ double clamp_to(double v, std::int64_t first, std::int64_t end) {
 
 }  // namespace
 
-// ---- planar -------------------------------------------------------------------------------------------------
+// ---- planar
+// -------------------------------------------------------------------------------------------------
 
 double PlanarMetric::lower_bound(const Origin& o, const Window& cells) const {
   const double x = clamp_to(static_cast<double>(o.column), cells.column, cells.end_column());
@@ -21,7 +22,8 @@ double PlanarMetric::lower_bound(const Origin& o, const Window& cells) const {
   return squared(o, static_cast<std::int64_t>(x), static_cast<std::int64_t>(y));
 }
 
-// ---- geographic ---------------------------------------------------------------------------------------------
+// ---- geographic
+// ---------------------------------------------------------------------------------------------
 
 GeographicMetric::GeographicMetric(const GridGeometry& grid)
     : where_(grid.where), geodesic_(grid.where.crs.body()) {
@@ -41,8 +43,9 @@ GeographicMetric::Parallel GeographicMetric::parallel_at(double latitude) const 
   return {std::max(0.0, normal * cosine), normal * (1 - e2) * sine};
 }
 
-// With the same longitude, the nearest parallel is the one nearest in latitude; with the same latitudes, the nearest
-// meridian is the one nearest in longitude; and longitude counts least where the parallel is shortest.
+// With the same longitude, the nearest parallel is the one nearest in latitude; with the same latitudes, the
+// nearest meridian is the one nearest in longitude; and longitude counts least where the parallel is
+// shortest.
 double GeographicMetric::lower_bound(const Origin& o, const Window& cells) const {
   const auto row = std::clamp(o.row, cells.row, cells.end_row() - 1);
   const Parallel& near = parallel(row);
@@ -50,12 +53,13 @@ double GeographicMetric::lower_bound(const Origin& o, const Window& cells) const
   const double shortest = std::min(parallel(cells.row).radius, parallel(cells.end_row() - 1).radius);
   double apart = 0;
   if (o.column < cells.column || o.column >= cells.end_column())  // beyond half a turn they come nearer again
-    apart = std::min(half_sine_squared(cells.column - o.column), half_sine_squared(cells.end_column() - 1 - o.column));
+    apart = std::min(half_sine_squared(cells.column - o.column),
+                     half_sine_squared(cells.end_column() - 1 - o.column));
   return dr * dr + dz * dz + 4 * o.radius * shortest * apart;
 }
 
-// A geodesic of length s and its chord c differ by c^3 / (24 R^2), and R by at most 3 f of itself from place to place
-// and from azimuth to azimuth. 1e-6 m covers the rounding of chords between neighbouring cells.
+// A geodesic of length s and its chord c differ by c^3 / (24 R^2), and R by at most 3 f of itself from place
+// to place and from azimuth to azimuth. 1e-6 m covers the rounding of chords between neighbouring cells.
 double GeographicMetric::slack(double metres) const {
   const Body& body = where_.crs.body();
   const double share = std::min(1.0, metres / body.equatorial_radius);

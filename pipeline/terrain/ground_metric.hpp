@@ -15,9 +15,9 @@ struct Place {
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-// How far cells of a grid are from each other. A search ranks millions of cells by `squared` (a straight line through
-// the body, for which two table look-ups do), skips blocks by `lower_bound`, and asks `distance` only for the few that
-// could be the nearest. Each metric has the same members:
+// How far cells of a grid are from each other. A search ranks millions of cells by `squared` (a straight line
+// through the body, for which two table look-ups do), skips blocks by `lower_bound`, and asks `distance` only
+// for the few that could be the nearest. Each metric has the same members:
 //   Origin origin(column, row)                 the cell distances are measured from
 //   double squared(Origin, column, row)        m2; order as `distance`, but for the slack
 //   double lower_bound(Origin, Window)         m2; at most `squared` of every cell in the window
@@ -26,7 +26,8 @@ struct Place {
 //   Eigen::Vector3d position(Place)            metres in space; straight-line distances agree with `squared`
 //   double cell_diagonal()                     metres, an upper bound for all cells
 
-/// Longitude and latitude on the body's ellipsoid; heights above it are ignored, as in all published isolations.
+/// Longitude and latitude on the body's ellipsoid; heights above it are ignored, as in all published
+/// isolations.
 class GeographicMetric {
  public:
   explicit GeographicMetric(const GridGeometry& grid);
@@ -91,8 +92,8 @@ class PlanarMetric {
   double cell_width_, cell_height_;
 };
 
-/// Geodesic distances on a projected grid: map metres are not ground metres. Positions in space are known exactly on a
-/// lattice of every 16th cell and interpolated between.
+/// Geodesic distances on a projected grid: map metres are not ground metres. Positions in space are known
+/// exactly on a lattice of every 16th cell and interpolated between.
 class ProjectedMetric {
  public:
   explicit ProjectedMetric(const GridGeometry& grid);

@@ -35,7 +35,8 @@ class Search {
     row_ = summit.cell / grid_.columns;
     origin_ = metric_.origin(column_, row_);
     Isolation isolation;
-    const auto higher = end_ == IsolationEnd::cell ? nearest_higher(summit.height) : nearest_contact(summit.height);
+    const auto higher =
+        end_ == IsolationEnd::cell ? nearest_higher(summit.height) : nearest_contact(summit.height);
     if (higher) {
       isolation.metres = isolation.metres_low = higher->metres;
       isolation.higher = higher->place;
@@ -147,7 +148,8 @@ class Search {
         continue;
       }
       for (const auto& [dc, dr] : {std::pair{0, 0}, {1, 0}, {0, 1}, {1, 1}}) {
-        const ReliefPyramid::Block part{next.block.level - 1, 2 * next.block.column + dc, 2 * next.block.row + dr};
+        const ReliefPyramid::Block part{next.block.level - 1, 2 * next.block.column + dc,
+                                        2 * next.block.row + dr};
         if (!relief_.contains(part) || !wanted(relief_(part))) continue;
         const double bound = metric_.lower_bound(origin_, relief_.cells(part));
         if (bound > limit()) continue;
@@ -159,11 +161,13 @@ class Search {
 
   // A block lies in one chunk.
   void for_cells(const Window& block, auto&& visit) {
-    const std::int64_t chunk_column = block.column / DemChunks::kSide, chunk_row = block.row / DemChunks::kSide;
+    const std::int64_t chunk_column = block.column / DemChunks::kSide,
+                       chunk_row = block.row / DemChunks::kSide;
     for (std::int64_t r = block.row; r < block.end_row(); ++r)
       for (std::int64_t c = block.column; c < block.end_column(); ++c)
         visit(c, r,
-              cells_.chunk(chunk_column, chunk_row)(c - chunk_column * DemChunks::kSide, r - chunk_row * DemChunks::kSide));
+              cells_.chunk(chunk_column, chunk_row)(c - chunk_column * DemChunks::kSide,
+                                                    r - chunk_row * DemChunks::kSide));
   }
 
   const Metric& metric_;
@@ -194,7 +198,8 @@ std::vector<std::size_t> by_chunk(std::span<const HighPoint> summits, std::int64
 template <class Metric>
 std::vector<Isolation> measure_all(std::span<const HighPoint> summits, const DemSource& dem,
                                    const ReliefPyramid& relief, const Metric& metric,
-                                   const IsolationOptions& options, const std::function<void(std::size_t)>& done) {
+                                   const IsolationOptions& options,
+                                   const std::function<void(std::size_t)>& done) {
   std::vector<Isolation> isolations(summits.size());
   const auto order = by_chunk(summits, dem.geometry().columns);
   tbb::enumerable_thread_specific<Search<Metric>> searches(
@@ -217,7 +222,8 @@ std::vector<Isolation> measure_isolation(std::span<const HighPoint> summits, con
                                          const std::function<void(std::size_t)>& done) {
   const Crs& crs = dem.geometry().where.crs;
   if (options.distance == DistanceKind::planar && crs.kind() == CrsKind::geographic)
-    throw Error(ErrorCode::usage, "planar isolation needs a projected DEM; this one is in degrees (" + crs.id() + ")",
+    throw Error(ErrorCode::usage,
+                "planar isolation needs a projected DEM; this one is in degrees (" + crs.id() + ")",
                 "distance = planar", "use distance = geodesic, or project the DEM with gdalwarp -t_srs");
   if (options.distance == DistanceKind::planar || crs.kind() == CrsKind::local)
     return measure_all(summits, dem, relief, PlanarMetric(dem.geometry()), options, done);

@@ -16,8 +16,9 @@ struct MountainTopOptions {
 };
 
 /// The summits as landmarks of type mountain_top, in row order of their cells. `isolations` in the order of
-/// `summits`. Position: centre of the cell, map CRS; its variance is that of a uniform error over the cell, in square
-/// metres east and north. Confidence: the share of its prominence that hidden ground cannot take away. A parent that was left out is replaced by the nearest of its own parents that was not.
+/// `summits`. Position: centre of the cell, map CRS; its variance is that of a uniform error over the cell,
+/// in square metres east and north. Confidence: the share of its prominence that hidden ground cannot take
+/// away. A parent that was left out is replaced by the nearest of its own parents that was not.
 std::vector<Landmark> mountain_tops(std::span<const Summit> summits, std::span<const Isolation> isolations,
                                     const DemSource& dem, const TypeRegistry& types,
                                     const MountainTopOptions& options);

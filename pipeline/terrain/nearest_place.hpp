@@ -7,7 +7,8 @@
 #include "pipeline/terrain/ground_metric.hpp"
 namespace waymark {
 
-/// The places that may be the nearest to an origin, ranked by straight-line distance, until exact distances decide.
+/// The places that may be the nearest to an origin, ranked by straight-line distance, until exact distances
+/// decide.
 template <class Metric>
 class NearestPlace {
  public:
@@ -37,7 +38,8 @@ class NearestPlace {
     for (const auto& [place, squared] : places_) {
       if (squared > limit_) continue;
       const double metres = metric_.distance(origin_, place);
-      if (!nearest || metres < nearest->metres || (metres == nearest->metres && before(place, nearest->place)))
+      if (!nearest || metres < nearest->metres ||
+          (metres == nearest->metres && before(place, nearest->place)))
         nearest = {place, metres};
     }
     return nearest;

@@ -17,9 +17,9 @@ inline constexpr std::array<Step, 8> kRing{
 /// 0 parts: the cell is a local maximum; 1: a slope; 2 to 4: a saddle.
 std::uint8_t one_of_each_part(std::uint8_t mask);
 
-/// For a row of cells, which neighbours are higher in the order of cell_order.hpp. `north`, `here`, `south` point
-/// at the first cell; the cells before it and after the last must be readable. Neighbours that come before in
-/// row order win ties.
+/// For a row of cells, which neighbours are higher in the order of cell_order.hpp. `north`, `here`, `south`
+/// point at the first cell; the cells before it and after the last must be readable. Neighbours that come
+/// before in row order win ties.
 void higher_neighbours(const double* north, const double* here, const double* south,
                        std::span<std::uint8_t> masks);
 

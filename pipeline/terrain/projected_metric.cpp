@@ -40,8 +40,8 @@ Eigen::Vector3d ProjectedMetric::in_space(LonLat p) const {
   const double e2 = body.flattening * (2 - body.flattening);
   const double latitude = p.lat * kRadiansPerDegree, longitude = p.lon * kRadiansPerDegree;
   const double normal = body.equatorial_radius / std::sqrt(1 - e2 * std::sin(latitude) * std::sin(latitude));
-  return {normal * std::cos(latitude) * std::cos(longitude), normal * std::cos(latitude) * std::sin(longitude),
-          normal * (1 - e2) * std::sin(latitude)};
+  return {normal * std::cos(latitude) * std::cos(longitude),
+          normal * std::cos(latitude) * std::sin(longitude), normal * (1 - e2) * std::sin(latitude)};
 }
 
 void ProjectedMetric::build_lattice() {
@@ -64,7 +64,8 @@ void ProjectedMetric::measure_interpolation() {
     for (std::int64_t c = 0; c + 1 < lattice_.columns(); ++c) {
       x.push_back(grid_.where.x((static_cast<double>(c) + 0.5) * kStride));
       y.push_back(grid_.where.y((static_cast<double>(r) + 0.5) * kStride));
-      middle.push_back((lattice_(c, r) + lattice_(c + 1, r) + lattice_(c, r + 1) + lattice_(c + 1, r + 1)) / 4);
+      middle.push_back((lattice_(c, r) + lattice_(c + 1, r) + lattice_(c, r + 1) + lattice_(c + 1, r + 1)) /
+                       4);
     }
   projection_->to_lon_lat.apply(x, y);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -80,7 +81,8 @@ void ProjectedMetric::build_balls() {
   for (std::int64_t r = 0; r < balls_[0].rows(); ++r)
     for (std::int64_t c = 0; c < balls_[0].columns(); ++c) {
       Ball& ball = balls_[0](c, r);
-      const Eigen::Vector3d corners[] = {lattice_(c, r), lattice_(c + 1, r), lattice_(c, r + 1), lattice_(c + 1, r + 1)};
+      const Eigen::Vector3d corners[] = {lattice_(c, r), lattice_(c + 1, r), lattice_(c, r + 1),
+                                         lattice_(c + 1, r + 1)};
       for (const auto& corner : corners) ball.centre += corner / 4;
       for (const auto& corner : corners) ball.radius = std::max((corner - ball.centre).norm(), ball.radius);
       if (c == 0 || r == 0) ball.radius *= 1.25;  // column and row -1 are extrapolated
@@ -119,7 +121,8 @@ double ProjectedMetric::cell_diagonal() const {
 }
 
 double ProjectedMetric::lower_bound(const Origin& o, const Window& cells) const {
-  std::int64_t i0 = std::max<std::int64_t>(cells.column, 0) / kStride, i1 = (cells.end_column() - 1) / kStride;
+  std::int64_t i0 = std::max<std::int64_t>(cells.column, 0) / kStride,
+               i1 = (cells.end_column() - 1) / kStride;
   std::int64_t j0 = std::max<std::int64_t>(cells.row, 0) / kStride, j1 = (cells.end_row() - 1) / kStride;
   std::size_t level = 0;
   for (; i0 < i1 || j0 < j1; ++level) i0 /= 2, i1 /= 2, j0 /= 2, j1 /= 2;
@@ -134,6 +137,8 @@ double ProjectedMetric::slack(double metres) const {
   return metres * (3 * body.flattening * share * share + 1e-9) + 1e-6 + 4 * interpolation_error_;
 }
 
-double ProjectedMetric::distance(Place a, Place b) const { return geodesic_.distance(lon_lat(a), lon_lat(b)); }
+double ProjectedMetric::distance(Place a, Place b) const {
+  return geodesic_.distance(lon_lat(a), lon_lat(b));
+}
 
 }  // namespace waymark

@@ -28,7 +28,8 @@ struct Link {
   std::size_t a, b;  // peaks
 };
 
-// The summits of all tiles, and the saddles between them with every portal replaced by the summit it leads to.
+// The summits of all tiles, and the saddles between them with every portal replaced by the summit it leads
+// to.
 class WholeGrid {
  public:
   explicit WholeGrid(Tiles tiles) {
@@ -89,8 +90,8 @@ class WholeGrid {
   std::vector<std::size_t> path_;
 };
 
-// Sinks the water from saddle to saddle. All links of one saddle cell act at once: the highest of the islands that
-// meet there survives and is the parent of all others.
+// Sinks the water from saddle to saddle. All links of one saddle cell act at once: the highest of the islands
+// that meet there survives and is the parent of all others.
 class Sinking {
  public:
   explicit Sinking(WholeGrid& grid) : grid_(grid), islands_(grid.peaks.size()), ends_(grid.peaks.size()) {
@@ -104,7 +105,7 @@ class Sinking {
   struct End {
     const Link* saddle = nullptr;  // nullptr: no higher ground
     std::size_t parent = 0;
-    double contact = kNoHeight;    // of the island when it ended
+    double contact = kNoHeight;  // of the island when it ended
   };
   const End& end(std::size_t peak) {
     if (!ends_[peak].saddle) ends_[peak].contact = grid_.peaks[peak].contact;
@@ -148,10 +149,14 @@ double base_height(Tiles tiles, BasePolicy base) {
     any = true;
   }
   switch (base) {
-    case BasePolicy::sea: return 0;
-    case BasePolicy::lowest: return lowest;
-    case BasePolicy::none: return Summit::kUnknown;
-    case BasePolicy::automatic: break;
+    case BasePolicy::sea:
+      return 0;
+    case BasePolicy::lowest:
+      return lowest;
+    case BasePolicy::none:
+      return Summit::kUnknown;
+    case BasePolicy::automatic:
+      break;
   }
   return highest > 0 ? 0 : lowest;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The saddles of a tile are worked off from the highest down, as if water sank around the summits: each saddle joins
-// two islands. If the lower island's summit has not reached the prominence asked for, and the island holds nothing
-// another tile can ask for above the saddle (a portal, a kept summit, a cell on the tile's border or beside hidden
-// ground), the island is contracted into the higher one. Every path that other tiles can use keeps its height: it
-// can enter a contracted island only below the saddle that joined it.
+// The saddles of a tile are worked off from the highest down, as if water sank around the summits: each
+// saddle joins two islands. If the lower island's summit has not reached the prominence asked for, and the
+// island holds nothing another tile can ask for above the saddle (a portal, a kept summit, a cell on the
+// tile's border or beside hidden ground), the island is contracted into the higher one. Every path that other
+// tiles can use keeps its height: it can enter a contracted island only below the saddle that joined it.
 #include <algorithm>
 
 #include "pipeline/terrain/cell_order.hpp"
@@ -14,9 +14,9 @@ namespace waymark {
 namespace {
 
 struct Island {
-  std::int32_t summit = -1;     // highest summit known in this tile; -1: portals only
-  bool holds_others = false;    // a portal or a kept summit besides `summit`
-  double exposed = kNoHeight;   // highest cell on the tile's border or beside hidden ground
+  std::int32_t summit = -1;    // highest summit known in this tile; -1: portals only
+  bool holds_others = false;   // a portal or a kept summit besides `summit`
+  double exposed = kNoHeight;  // highest cell on the tile's border or beside hidden ground
 };
 
 std::vector<Island> one_island_each(const DivideTree& tree) {
@@ -32,7 +32,8 @@ std::vector<Island> one_island_each(const DivideTree& tree) {
   return islands;
 }
 
-// Renumbers the kept nodes and hangs saddles and border cells of contracted ones on what they were contracted into.
+// Renumbers the kept nodes and hangs saddles and border cells of contracted ones on what they were contracted
+// into.
 DivideTree without_contracted(const DivideTree& tree, const std::vector<DivideTree::Saddle>& saddles,
                               std::vector<std::int32_t> contracted_into) {
   std::vector<std::int32_t> number(tree.nodes.size(), -1);
@@ -63,7 +64,8 @@ DivideTree without_contracted(const DivideTree& tree, const std::vector<DivideTr
       auto& into = kept.nodes[static_cast<std::size_t>(new_number(static_cast<std::int32_t>(i)))];
       into.contact = std::max(into.contact, tree.nodes[i].contact);
     }
-  for (const auto& border : tree.border) kept.border.push_back({border.cell, border.height, new_number(border.node)});
+  for (const auto& border : tree.border)
+    kept.border.push_back({border.cell, border.height, new_number(border.node)});
   return kept;
 }
 

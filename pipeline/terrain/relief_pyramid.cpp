@@ -6,7 +6,9 @@
 namespace waymark {
 namespace {
 
-std::int64_t blocks_for(std::int64_t cells) { return (cells + kReliefBlock - 1) / kReliefBlock; }
+std::int64_t blocks_for(std::int64_t cells) {
+  return (cells + kReliefBlock - 1) / kReliefBlock;
+}
 
 }  // namespace
 

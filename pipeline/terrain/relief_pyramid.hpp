@@ -11,24 +11,25 @@ namespace waymark {
 /// Side of the finest blocks, in cells.
 inline constexpr std::int64_t kReliefBlock = 16;
 
-/// The highest cell of each block that a tile touches; blocks are aligned to the whole grid, so a tile may hold
-/// only part of one.
+/// The highest cell of each block that a tile touches; blocks are aligned to the whole grid, so a tile may
+/// hold only part of one.
 struct BlockRelief {
-  Window blocks;                     ///< in blocks
-  std::vector<double> highest;       ///< row by row
-  std::vector<std::uint8_t> voids;   ///< 1: some cell has no height
+  Window blocks;                    ///< in blocks
+  std::vector<double> highest;      ///< row by row
+  std::vector<std::uint8_t> voids;  ///< 1: some cell has no height
 };
 
 /// `heights` is the window `owned` grown by one cell on each side.
 BlockRelief block_relief(const HeightWindow& heights, const Window& owned);
 
-/// Highest cells of ever larger blocks: level 0 has blocks of kReliefBlock cells, each next level twice that, the
-/// last one block. About 0.05 bytes per cell of the grid.
+/// Highest cells of ever larger blocks: level 0 has blocks of kReliefBlock cells, each next level twice that,
+/// the last one block. About 0.05 bytes per cell of the grid.
 class ReliefPyramid {
  public:
   ReliefPyramid() = default;
   /// Joins the tiles; each block is the maximum of its parts.
-  ReliefPyramid(std::span<const std::shared_ptr<const BlockRelief>> tiles, std::int64_t columns, std::int64_t rows);
+  ReliefPyramid(std::span<const std::shared_ptr<const BlockRelief>> tiles, std::int64_t columns,
+                std::int64_t rows);
 
   struct Block {
     int level = 0;

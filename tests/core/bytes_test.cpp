@@ -7,7 +7,8 @@
 namespace waymark {
 namespace {
 
-RC_GTEST_PROP(Bytes, ReadBackWhatWasWritten, (const std::vector<double>& numbers, const std::string& text, int number)) {
+RC_GTEST_PROP(Bytes, ReadBackWhatWasWritten,
+              (const std::vector<double>& numbers, const std::string& text, int number)) {
   ByteWriter out;
   out(numbers), out(text), out(number);
   const std::string bytes = out.take();

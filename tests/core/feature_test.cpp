@@ -49,7 +49,9 @@ TEST(MergeFeature, EqualWeightsGiveTheSampleVariance) {
   EXPECT_NEAR(merge(seen, Scale::ratio).variance, 7.0, 1e-12);
 }
 
-TEST(MergeFeature, AnAbsentValueIsNotKnown) { EXPECT_FALSE(FeatureValue{}.known()); }
+TEST(MergeFeature, AnAbsentValueIsNotKnown) {
+  EXPECT_FALSE(FeatureValue{}.known());
+}
 
 std::vector<WeightedValue> some_values() {
   std::vector<WeightedValue> seen;

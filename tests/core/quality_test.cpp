@@ -25,8 +25,8 @@ TEST(SpreadConfidence, OfARatioIsOneLessTheCoefficientOfVariation) {
   EXPECT_NEAR(*spread_confidence(kRadius, Scale::ratio, 0, SpreadRule::paper), 0.75, 1e-12);
 }
 
-// Eq. 6 divides by the mean: 5 m of spread at -2000 m would give more than full confidence, clamped to 1; near
-// datum zero it would give none.
+// Eq. 6 divides by the mean: 5 m of spread at -2000 m would give more than full confidence, clamped to 1;
+// near datum zero it would give none.
 TEST(SpreadConfidence, OfAnElevationUsesTheReferenceAndNotTheDatum) {
   EXPECT_NEAR(*spread_confidence(kMarsSummit, Scale::interval, 100), 0.95, 1e-12);
   FeatureValue at_datum = kMarsSummit;
@@ -67,7 +67,8 @@ TEST(LandmarkQuality, WeightsOfZeroLeaveTheMultiplicity) {
 }
 
 RC_GTEST_PROP(SpreadConfidence, StaysBetweenZeroAndOne, ()) {
-  const FeatureValue f{0.1 * *rc::gen::inRange(-1000, 1000), 0.1 * *rc::gen::inRange(0, 10000), *rc::gen::inRange(0, 5)};
+  const FeatureValue f{0.1 * *rc::gen::inRange(-1000, 1000), 0.1 * *rc::gen::inRange(0, 10000),
+                       *rc::gen::inRange(0, 5)};
   for (const Scale scale : {Scale::ratio, Scale::interval, Scale::axis})
     for (const SpreadRule rule : {SpreadRule::sound, SpreadRule::paper}) {
       const auto q = spread_confidence(f, scale, 3.0, rule);

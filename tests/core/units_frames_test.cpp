@@ -8,9 +8,13 @@ namespace waymark {
 namespace {
 
 template <class A, class B>
-concept Composes = requires(A a, B b) { a * b; };
+concept Composes = requires(A a, B b) {
+  a* b;
+};
 template <class A, class B>
-concept Adds = requires(A a, B b) { a + b; };
+concept Adds = requires(A a, B b) {
+  a + b;
+};
 
 static_assert(Composes<Pose<MapFrame, CameraFrame>, Point<CameraFrame>>);
 static_assert(!Composes<Pose<MapFrame, CameraFrame>, Point<MapFrame>>);
@@ -29,7 +33,8 @@ TEST(Units, ConvertByNameOnly) {
 
 TEST(Frames, APoseTurnsAndMovesAndItsInverseUndoesIt) {
   Pose<MapFrame, RobotFrame> map_from_robot;
-  map_from_robot.transform = Eigen::Translation3d(10, 20, 1) * Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
+  map_from_robot.transform =
+      Eigen::Translation3d(10, 20, 1) * Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ());
   const Point<RobotFrame> ahead{{2, 0, 0}};
   EXPECT_TRUE((map_from_robot * ahead).xyz.isApprox(Eigen::Vector3d(10, 22, 1)));
   EXPECT_TRUE((map_from_robot.inverse() * (map_from_robot * ahead)).xyz.isApprox(ahead.xyz));

@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-
 #include "geodb/write_map.hpp"
 #include "small_dem.hpp"
 #include "small_map.hpp"

@@ -21,7 +21,9 @@ void expect_round_trip(const T& value) {
 
 const MemoryDem kDem(random_terrain(4, 50, 40), {}, NodataPolicy::unknown);
 
-TEST(Codecs, DivideTree) { expect_round_trip(*tree_of(kDem, {16, 0, 20, 40}, 5)); }
+TEST(Codecs, DivideTree) {
+  expect_round_trip(*tree_of(kDem, {16, 0, 20, 40}, 5));
+}
 
 TEST(Codecs, BlockReliefAndPyramid) {
   const Window all{0, 0, 50, 40};
@@ -31,7 +33,9 @@ TEST(Codecs, BlockReliefAndPyramid) {
   expect_round_trip(ReliefPyramid(tiles, 50, 40));
 }
 
-TEST(Codecs, Summits) { expect_round_trip(survey(kDem, 64)); }
+TEST(Codecs, Summits) {
+  expect_round_trip(survey(kDem, 64));
+}
 
 TEST(Codecs, Isolations) {
   expect_round_trip(std::vector<Isolation>{{{}, {}, {}}, {12.5, 7.0, {3, 4}}, {{}, 7.0, {}}});

@@ -27,12 +27,14 @@ std::vector<HighPoint> summits_of(const DemSource& dem) {
   return points;
 }
 
-// ---- the slow twin: look at every cell -------------------------------------------------------------------------
+// ---- the slow twin: look at every cell
+// -------------------------------------------------------------------------
 
 template <class Metric>
 Isolation by_looking_everywhere(const HighPoint& summit, const MemoryDem& dem, const Metric& metric) {
   const GridGeometry& grid = dem.geometry();
-  const Place here{static_cast<double>(summit.cell % grid.columns), static_cast<double>(summit.cell / grid.columns)};
+  const Place here{static_cast<double>(summit.cell % grid.columns),
+                   static_cast<double>(summit.cell / grid.columns)};
   Isolation best;
   const auto at_most = [](std::optional<double>& value, double other) {
     value = std::min(value.value_or(other), other);
@@ -79,7 +81,8 @@ const Georeference kAlps{Crs::from_text("EPSG:4326"), 8.0, 47.0, 1 / 1200.0, -1 
 
 TEST(Isolation, EndsAtTheNearestHigherCell) {
   const MemoryDem dem(dem_art("0 0 0 0 0 / 0 5 0 0 6 / 0 0 0 0 0 / 0 9 0 0 0"));
-  const auto isolation = measure_isolation(summits_of(dem), dem, pyramid_of(dem, 2), {.distance = DistanceKind::planar});
+  const auto isolation =
+      measure_isolation(summits_of(dem), dem, pyramid_of(dem, 2), {.distance = DistanceKind::planar});
   EXPECT_FALSE(isolation[0].metres);
   EXPECT_NEAR(*isolation[1].metres, std::sqrt(9 + 4), 1e-12);  // 6 -> 9
   EXPECT_NEAR(*isolation[2].metres, 2, 1e-12);                 // 5 -> 9, not 6
@@ -96,15 +99,18 @@ TEST(Isolation, HiddenGroundBoundsItFromBelow) {
 }
 
 TEST(Isolation, AVoidBoundsItUnlessItIsOcean) {
-  const auto art = dem_art("0 0 0 0 0 0 0 / 0 0 0 0 0 0 0 / 0 0 0 0 0 0 0 / 0 0 0 5 . 0 9 / 0 0 0 0 0 0 0 / 0 0 0 0 0 0 0");
+  const auto art = dem_art(
+      "0 0 0 0 0 0 0 / 0 0 0 0 0 0 0 / 0 0 0 0 0 0 0 / 0 0 0 5 . 0 9 / 0 0 0 0 0 0 0 / 0 0 0 0 0 0 0");
   const MemoryDem ocean(art), unknown(art, {}, NodataPolicy::unknown);
   EXPECT_NEAR(*measure_isolation(summits_of(ocean), ocean, pyramid_of(ocean, 4), {})[1].metres_low, 3, 1e-12);
-  EXPECT_NEAR(*measure_isolation(summits_of(unknown), unknown, pyramid_of(unknown, 4), {})[1].metres_low, 1, 1e-12);
+  EXPECT_NEAR(*measure_isolation(summits_of(unknown), unknown, pyramid_of(unknown, 4), {})[1].metres_low, 1,
+              1e-12);
 }
 
 TEST(Isolation, ContactIsTheInterpolatedPointOfEqualElevation) {
   const MemoryDem dem(dem_art("0 0 0 0 0 0 / 0 6 0 0 0 9 / 0 0 0 0 0 0"));
-  const auto contact = measure_isolation(summits_of(dem), dem, pyramid_of(dem, 64), {.end = IsolationEnd::contact});
+  const auto contact =
+      measure_isolation(summits_of(dem), dem, pyramid_of(dem, 64), {.end = IsolationEnd::contact});
   EXPECT_NEAR(*contact[1].metres, 4 - 3 / 9.0, 1e-12);  // the slope from 9 down to 0 passes 6
   EXPECT_NEAR(contact[1].higher.column, 5 - 3 / 9.0, 1e-12);
 }
@@ -160,7 +166,8 @@ TEST(Isolation, DoesNotDependOnTiles) {
   const MemoryDem dem(random_terrain(7, 90, 70), kAlps, NodataPolicy::unknown);
   const auto summits = summits_of(dem);
   const auto whole = measure_isolation(summits, dem, pyramid_of(dem, 1000), {});
-  for (const std::int64_t side : {5, 16, 33}) EXPECT_EQ(measure_isolation(summits, dem, pyramid_of(dem, side), {}), whole);
+  for (const std::int64_t side : {5, 16, 33})
+    EXPECT_EQ(measure_isolation(summits, dem, pyramid_of(dem, side), {}), whole);
 }
 
 TEST(Isolation, ContactIsAtMostOneDiagonalNearerThanTheCell) {

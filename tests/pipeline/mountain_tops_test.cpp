@@ -20,8 +20,8 @@ const TypeRegistry& types() {
 
 ReliefPyramid pyramid_of(const DemSource& dem) {
   const Window all{0, 0, dem.geometry().columns, dem.geometry().rows};
-  const std::shared_ptr<const BlockRelief> tiles[] = {
-      std::make_shared<const BlockRelief>(block_relief(dem.read({-1, -1, all.columns + 2, all.rows + 2}), all))};
+  const std::shared_ptr<const BlockRelief> tiles[] = {std::make_shared<const BlockRelief>(
+      block_relief(dem.read({-1, -1, all.columns + 2, all.rows + 2}), all))};
   return {tiles, all.columns, all.rows};
 }
 

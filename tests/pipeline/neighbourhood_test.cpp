@@ -14,7 +14,9 @@ std::uint8_t mask(std::initializer_list<int> bits) {
   return static_cast<std::uint8_t>(all);
 }
 
-int parts(std::uint8_t m) { return std::popcount(one_of_each_part(m)); }
+int parts(std::uint8_t m) {
+  return std::popcount(one_of_each_part(m));
+}
 
 TEST(Neighbourhood, CountsConnectedParts) {
   EXPECT_EQ(parts(mask({})), 0);

@@ -13,13 +13,12 @@
 namespace waymark::testing {
 namespace {
 
-// ---- the slow twin: everything by its definition ------------------------------------------------------------
+// ---- the slow twin: everything by its definition
+// ------------------------------------------------------------
 
 struct Terrain {
   const MemoryDem& dem;
-  double height(std::int64_t cell) const {
-    return dem.heights().cells()[static_cast<std::size_t>(cell)];
-  }
+  double height(std::int64_t cell) const { return dem.heights().cells()[static_cast<std::size_t>(cell)]; }
   bool higher(std::int64_t a, std::int64_t b) const { return is_higher(height(a), a, height(b), b); }
   std::vector<std::int64_t> neighbours(std::int64_t cell) const {
     const auto& grid = dem.geometry();
@@ -106,7 +105,8 @@ void PrintTo(const Summit& s, std::ostream* out) {
 }
 
 bool same(const Summit& a, const Summit& b) {
-  const bool saddles = std::isnan(a.saddle_height) ? std::isnan(b.saddle_height) : a.saddle_height == b.saddle_height;
+  const bool saddles =
+      std::isnan(a.saddle_height) ? std::isnan(b.saddle_height) : a.saddle_height == b.saddle_height;
   return a.cell == b.cell && a.height == b.height && a.prominence == b.prominence &&
          a.prominence_low == b.prominence_low && a.saddle == b.saddle && a.parent == b.parent && saddles;
 }
@@ -130,7 +130,8 @@ std::vector<Summit> at_least(const std::vector<Summit>& summits, double prominen
   return kept;
 }
 
-// ---- pictures -----------------------------------------------------------------------------------------------
+// ---- pictures
+// -----------------------------------------------------------------------------------------------
 
 TEST(Prominence, TwinPeaksShareTheSaddle) {
   const MemoryDem dem(dem_art("0 0 0 0 0 0 0 / 0 9 5 4 5 7 0 / 0 0 0 0 0 0 0"));
@@ -204,7 +205,8 @@ TEST(Prominence, AGlobalGridContinuesAcrossItsSeam) {
   EXPECT_EQ(survey(MemoryDem(art, {}, NodataPolicy::ocean, true), 64).size(), 1u);
 }
 
-// ---- against the twin, on random nasty terrain ----------------------------------------------------------------
+// ---- against the twin, on random nasty terrain
+// ----------------------------------------------------------------
 
 TEST(Prominence, MatchesTheDefinition) {
   for (unsigned seed = 0; seed < 300; ++seed) {

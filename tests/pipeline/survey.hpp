@@ -16,19 +16,20 @@ inline std::vector<Window> tiles_of(const GridGeometry& grid, std::int64_t side)
   return tiles;
 }
 
-inline std::shared_ptr<const DivideTree> tree_of(const DemSource& dem, const Window& tile, double min_prominence) {
+inline std::shared_ptr<const DivideTree> tree_of(const DemSource& dem, const Window& tile,
+                                                 double min_prominence) {
   const Window grown{tile.column - 1, tile.row - 1, tile.columns + 2, tile.rows + 2};
-  return std::make_shared<const DivideTree>(
-      build_divide_tree(dem.read(grown), tile, dem.geometry(),
-                        {.min_prominence = min_prominence,
-                         .voids_hide_ground = dem.nodata_policy() != NodataPolicy::ocean}));
+  return std::make_shared<const DivideTree>(build_divide_tree(
+      dem.read(grown), tile, dem.geometry(),
+      {.min_prominence = min_prominence, .voids_hide_ground = dem.nodata_policy() != NodataPolicy::ocean}));
 }
 
 /// The summits of a DEM worked off in square tiles of `side` cells.
 inline std::vector<Summit> survey(const DemSource& dem, std::int64_t side, double min_prominence = 0,
                                   BasePolicy base = BasePolicy::sea) {
   std::vector<std::shared_ptr<const DivideTree>> trees;
-  for (const Window& tile : tiles_of(dem.geometry(), side)) trees.push_back(tree_of(dem, tile, min_prominence));
+  for (const Window& tile : tiles_of(dem.geometry(), side))
+    trees.push_back(tree_of(dem, tile, min_prominence));
   return join_divide_trees(trees, min_prominence, base);
 }
 

@@ -12,7 +12,9 @@ namespace {
 
 constexpr Meters kEarth{6371000}, kRange{10000};
 
-double number(int low, int high) { return 0.1 * *rc::gen::inRange(10 * low, 10 * high); }
+double number(int low, int high) {
+  return 0.1 * *rc::gen::inRange(10 * low, 10 * high);
+}
 
 RC_GTEST_PROP(Visibility, NeverFallsWithProminenceIsolationOrTheBodysRadius, ()) {
   const Meters prominence{number(1, 5000)}, isolation{number(1, 500000)}, radius{number(1000000, 7000000)};
@@ -32,7 +34,8 @@ TEST(Visibility, IsTheAverageOfItsModelOverTheDisc) {
   const int rings = 200000;
   for (int i = 0; i < rings; ++i) {
     const double r = kRange.value * (i + 0.5) / rings;
-    if (r * r < 2 * kEarth.value * prominence) sum += std::exp(-r / free_length) * 2 * r / kRange.value / rings;
+    if (r * r < 2 * kEarth.value * prominence)
+      sum += std::exp(-r / free_length) * 2 * r / kRange.value / rings;
   }
   EXPECT_NEAR(expected_visibility({prominence}, {isolation}, kEarth, kRange), sum, 1e-6);
 }

@@ -8,8 +8,8 @@
 namespace waymark::testing {
 namespace {
 
-// Against an independent exact program: the same cell, or one at the same distance, and within 0.5 % of its metres
-// (it measures on a sphere).
+// Against an independent exact program: the same cell, or one at the same distance, and within 0.5 % of its
+// metres (it measures on a sphere).
 void expect_table(const char* table, const DemSource& dem, double least, const IsolationOptions& options,
                   const char* x = "lon", const char* y = "lat") {
   std::map<std::int64_t, std::size_t> index;
@@ -27,7 +27,8 @@ void expect_table(const char* table, const DemSource& dem, double least, const I
     if (!ours.metres) continue;
     ++compared;
     EXPECT_NEAR(*ours.metres, theirs, 0.005 * theirs + 0.06) << row["elev"];
-    const auto end = cell_at(dem.geometry(), std::stod(row[std::string("ilp_") + x]), std::stod(row[std::string("ilp_") + y]));
+    const auto end = cell_at(dem.geometry(), std::stod(row[std::string("ilp_") + x]),
+                             std::stod(row[std::string("ilp_") + y]));
     const auto ours_end = dem.geometry().index(std::lround(ours.higher.column), std::lround(ours.higher.row));
     if (end == ours_end)
       ++same_cell;

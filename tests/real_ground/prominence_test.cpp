@@ -19,7 +19,9 @@ struct Expected {
   NodataPolicy policy = NodataPolicy::ocean;
 };
 
-void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.file; }
+void PrintTo(const Expected& expected, std::ostream* out) {
+  *out << expected.file;
+}
 
 class ProminenceOfRealGround : public ::testing::TestWithParam<Expected> {};
 
@@ -52,7 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Expected{"prominence20_N49W124-123.txt", {"earth/N49W124.tif", "earth/N49W123.tif"}}),
     [](const auto& test) {
       std::string name = test.param.file;
-      std::ranges::replace_if(name, [](char c) { return !std::isalnum(c); }, '_');
+      std::ranges::replace_if(
+          name, [](char c) { return !std::isalnum(c); }, '_');
       return name;
     });
 
@@ -63,7 +66,8 @@ std::map<std::int64_t, Summit> by_cell(const std::vector<Summit>& summits) {
 }
 
 // Summit by summit: cell, prominence, key saddle, and the certified bound from the highest open contact.
-void expect_table(const char* table, const DemSource& dem, double least, const char* x, const char* y, bool compare_bounds) {
+void expect_table(const char* table, const DemSource& dem, double least, const char* x, const char* y,
+                  bool compare_bounds) {
   const auto summits = by_cell(survey(dem, 512, least));
   std::size_t compared = 0, saddle_elsewhere = 0;
   for (auto& row : read_table(dem_data() / "expected" / table)) {
@@ -114,8 +118,9 @@ TEST(ProminenceTables, MarsWithWrap) {
   expect_table("mars_mola_4ppd.csv", *dem, 500, "lon", "lat", true);
 }
 
-// Published prominences of Alpine summits. What is published must lie inside the certified interval of the DEM, but for
-// the error of the DEM itself: its summits are lower than the real ones and its saddles higher or lower.
+// Published prominences of Alpine summits. What is published must lie inside the certified interval of the
+// DEM, but for the error of the DEM itself: its summits are lower than the real ones and its saddles higher
+// or lower.
 TEST(PublishedProminence, LiesInsideTheCertifiedInterval) {
   SKIP_WITHOUT_DEM_DATA();
   const auto dem = open_dem({"earth/N46E008.tif"}, NodataPolicy::fill);
@@ -137,7 +142,8 @@ TEST(PublishedProminence, LiesInsideTheCertifiedInterval) {
     }
     if (!best) continue;
     ++matched;
-    const double tolerance = 50;  // a 90 m DEM of the Alps: summits cut off, narrow saddles too high or too low
+    const double tolerance =
+        50;  // a 90 m DEM of the Alps: summits cut off, narrow saddles too high or too low
     inside += prominence >= best->prominence_low - tolerance && prominence <= best->prominence + tolerance;
     differences.push_back(best->prominence - prominence);
     within_50 += std::abs(differences.back()) <= 50;
@@ -149,8 +155,8 @@ TEST(PublishedProminence, LiesInsideTheCertifiedInterval) {
   ::testing::Test::RecordProperty("inside_certified_interval", inside);
   ::testing::Test::RecordProperty("within_50_m", within_50);
   ::testing::Test::RecordProperty("within_100_m", within_100);
-  std::cout << matched << " of 135 matched; median difference " << differences[differences.size() / 2] << " m; "
-            << within_50 << " within 50 m, " << within_100 << " within 100 m; " << inside
+  std::cout << matched << " of 135 matched; median difference " << differences[differences.size() / 2]
+            << " m; " << within_50 << " within 50 m, " << within_100 << " within 100 m; " << inside
             << " inside the certified interval (50 m for the DEM itself)\n";
   EXPECT_GE(matched, 120);
   EXPECT_GE(within_100, matched * 3 / 4);

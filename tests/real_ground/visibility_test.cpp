@@ -14,7 +14,8 @@ struct Sample {
   std::vector<double> expected, seen;
 };
 
-// Summits spread evenly over the logarithm of prominence: 20 per third of an octave, so hills do not drown mountains.
+// Summits spread evenly over the logarithm of prominence: 20 per third of an octave, so hills do not drown
+// mountains.
 Sample sample(const std::string& tile, double range) {
   const auto dem = open_dem({tile}, NodataPolicy::fill);
   const Viewshed viewshed(*dem);
@@ -29,7 +30,8 @@ Sample sample(const std::string& tile, double range) {
     int& count = in_bin[static_cast<int>(3 * std::log2(summits[i].prominence / 20))];
     if (!isolations[i].metres || count >= 20) continue;
     const std::int64_t columns = dem->geometry().columns;
-    const double seen = viewshed.seen_from(summits[i].cell % columns, summits[i].cell / columns, range, 300, 7);
+    const double seen =
+        viewshed.seen_from(summits[i].cell % columns, summits[i].cell / columns, range, 300, 7);
     if (std::isnan(seen)) continue;
     ++count;
     sample.seen.push_back(seen);
@@ -42,7 +44,8 @@ Sample sample(const std::string& tile, double range) {
 TEST(Visibility, AgreesInRankWithViewshedsOnRealGround) {
   SKIP_WITHOUT_DEM_DATA();
   Sample all;
-  for (const char* tile : {"earth/S33W071.tif", "earth/N42E001.tif", "earth/N46E008.tif", "earth/N49W123.tif"}) {
+  for (const char* tile :
+       {"earth/S33W071.tif", "earth/N42E001.tif", "earth/N46E008.tif", "earth/N49W123.tif"}) {
     const Sample one = sample(tile, 10000);
     ASSERT_GT(one.seen.size(), 150u) << tile;
     const double rank = spearman(one.expected, one.seen);
@@ -60,8 +63,8 @@ TEST(Visibility, AgreesInRankWithViewshedsOnRealGround) {
     mean_expected += all.expected[i] / n;
   }
   const double rank = spearman(all.expected, all.seen);
-  std::cout << "all: rank correlation " << rank << "; mean share seen " << mean_seen << ", expected " << mean_expected
-            << ", rms difference " << std::sqrt(error) << "\n";
+  std::cout << "all: rank correlation " << rank << "; mean share seen " << mean_seen << ", expected "
+            << mean_expected << ", rms difference " << std::sqrt(error) << "\n";
   EXPECT_GT(rank, 0.25);
 }
 

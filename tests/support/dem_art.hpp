@@ -26,7 +26,8 @@ class MemoryDem final : public DemSource {
     for (std::int64_t r = 0; r < window.rows; ++r)
       for (std::int64_t c = 0; c < window.columns; ++c) {
         std::int64_t column = window.column + c;
-        if (geometry_.wraps) column = ((column % heights_.columns()) + heights_.columns()) % heights_.columns();
+        if (geometry_.wraps)
+          column = ((column % heights_.columns()) + heights_.columns()) % heights_.columns();
         if (heights_.contains(column, window.row + r)) cells(c, r) = heights_(column, window.row + r);
       }
     return cells;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cmath>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <numeric>
@@ -12,7 +12,8 @@
 #include "geo/dem_source.hpp"
 namespace waymark::testing {
 
-/// What a person sees, by ray casting over a small DEM in degrees or metres; curvature included, no refraction.
+/// What a person sees, by ray casting over a small DEM in degrees or metres; curvature included, no
+/// refraction.
 class Viewshed {
  public:
   explicit Viewshed(const DemSource& dem)
@@ -21,7 +22,8 @@ class Viewshed {
     radius_ = where.crs.body().mean_radius();
     const bool degrees = where.crs.kind() == CrsKind::geographic;
     const double middle = where.y(static_cast<double>(grid_.rows) / 2) * kRadiansPerDegree;
-    cell_height_ = degrees ? -where.dy * radius_ * kRadiansPerDegree : -where.dy * where.crs.metres_per_unit();
+    cell_height_ =
+        degrees ? -where.dy * radius_ * kRadiansPerDegree : -where.dy * where.crs.metres_per_unit();
     cell_width_ = degrees ? where.dx * radius_ * kRadiansPerDegree * std::cos(middle)
                           : where.dx * where.crs.metres_per_unit();
   }
@@ -31,17 +33,19 @@ class Viewshed {
     const double dx = (to_column - column) * cell_width_, dy = (to_row - row) * cell_height_;
     const double distance = std::hypot(dx, dy);
     const double eye = height(column, row) + 2, target = height(to_column, to_row) - drop(distance);
-    const int steps = static_cast<int>(std::ceil(std::max(std::abs(to_column - column), std::abs(to_row - row))));
+    const int steps =
+        static_cast<int>(std::ceil(std::max(std::abs(to_column - column), std::abs(to_row - row))));
     for (int i = 1; i < steps; ++i) {
       const double t = static_cast<double>(i) / steps;
-      const double ground = height(column + t * (to_column - column), row + t * (to_row - row)) - drop(t * distance);
+      const double ground =
+          height(column + t * (to_column - column), row + t * (to_row - row)) - drop(t * distance);
       if (!(ground <= eye + t * (target - eye))) return false;  // nobody sees across a void
     }
     return true;
   }
 
-  /// Share of `samples` places spread evenly over the disc of `range` metres from which a cell is seen; NaN where more
-  /// than a tenth of the disc lies outside the DEM.
+  /// Share of `samples` places spread evenly over the disc of `range` metres from which a cell is seen; NaN
+  /// where more than a tenth of the disc lies outside the DEM.
   double seen_from(std::int64_t column, std::int64_t row, double range, int samples, unsigned seed) const {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -50,7 +54,9 @@ class Viewshed {
       const double distance = range * std::sqrt(unit(random)), azimuth = 2 * std::numbers::pi * unit(random);
       const double c = static_cast<double>(column) + distance * std::sin(azimuth) / cell_width_;
       const double r = static_cast<double>(row) - distance * std::cos(azimuth) / cell_height_;
-      if (c < 0 || r < 0 || c > static_cast<double>(grid_.columns - 1) || r > static_cast<double>(grid_.rows - 1)) continue;
+      if (c < 0 || r < 0 || c > static_cast<double>(grid_.columns - 1) ||
+          r > static_cast<double>(grid_.rows - 1))
+        continue;
       if (!std::isfinite(height(c, r))) continue;
       ++inside;
       seen += sees(c, r, static_cast<double>(column), static_cast<double>(row));
