@@ -33,6 +33,11 @@ std::string indented(std::string text) {
 
 }  // namespace
 
+int RunReport::exit_code() const {
+  const bool wrong_option = std::ranges::find(failures, ErrorCode::usage, &Failure::code) != failures.end();
+  return failures.empty() ? 0 : wrong_option ? 2 : 3;
+}
+
 bool RunReport::complete() const {
   return std::ranges::all_of(stages, [](const StageReport& s) { return s.made + s.reused == s.units; });
 }

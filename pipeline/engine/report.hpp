@@ -37,8 +37,8 @@ struct RunReport {
 
   /// Every unit was made or reused.
   bool complete() const;
-  /// 0, or 3 where units failed (interface.md).
-  int exit_code() const { return failures.empty() ? 0 : 3; }
+  /// 0; 2 where a unit refused an option, which no second run mends; else 3 where units failed (interface.md).
+  int exit_code() const;
 };
 
 /// A table for people, one line per stage, with reasons, warnings and failures below it.

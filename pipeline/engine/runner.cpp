@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 
 #include "pipeline/engine/run.hpp"
 
@@ -31,12 +32,23 @@ RunResult run(const Pipeline& pipeline, const RunOptions& options) {
   const bool keeps = !options.work.empty();
   Run run(pipeline, options);
   with_threads(options.threads, [&] {
+    // A stage says better what is wrong with a file, so a hash that fails is told last; and a task group that
+    // is left by an exception must not meet a second one.
+    std::exception_ptr unreadable;
     tbb::task_group beside;  // without a work folder the hashes are provenance only: nothing waits for them
     if (keeps) run.hash_inputs();
-    if (!keeps && !options.check_only) beside.run([&] { run.hash_inputs(); });
+    if (!keeps && !options.check_only)
+      beside.run([&] {
+        try {
+          run.hash_inputs();
+        } catch (...) {
+          unreadable = std::current_exception();
+        }
+      });
     run.make_plan(keeps);
     if (!options.check_only) run.run_stages();
     beside.wait();
+    if (unreadable) std::rethrow_exception(unreadable);
   });
   RunResult result = run.result();
   result.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

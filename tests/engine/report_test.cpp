@@ -64,6 +64,10 @@ TEST(RunReport, IsCompleteWhenEveryUnitHasAResult) {
   EXPECT_EQ(sample().exit_code(), 3);
   EXPECT_TRUE(RunReport{}.complete());
   EXPECT_EQ(RunReport{}.exit_code(), 0);
+  RunReport refused = sample();
+  refused.failures.push_back(
+      {"measure_isolation/map", ErrorCode::usage, "planar isolation needs a projected DEM"});
+  EXPECT_EQ(refused.exit_code(), 2);
 }
 
 }  // namespace
