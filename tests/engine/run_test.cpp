@@ -170,6 +170,28 @@ TEST_F(RunTest, TakesAnotherHasher) {
   EXPECT_EQ(run(pipeline, {.hash_file = hasher}).inputs, (std::vector{hasher("/vsimem/a.tif")}));
 }
 
+TEST_F(RunTest, AFileThatCannotBeHashedFailsTheRun) {
+  pipeline.set("list_numbers.files=gone.tif");
+  EXPECT_THAT(message_of([&] { run(pipeline); }), HasSubstr("gone.tif"));
+}
+
+// The hash is still at work when the stage's exception leaves the run, and throws into its wake.
+TEST_F(RunTest, AStageAndAHashMayFailTogether) {
+  pipeline.set("list_numbers.files=gone.tif");
+  std::atomic<bool> leaving = false;
+  toy::watch().in_square = [&](const StageContext&) {
+    leaving = true;
+    throw std::logic_error("a bug");
+  };
+  const auto hasher = [&](const std::string& path) -> InputFile {
+    for (int i = 0; i < 1000 && !leaving; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    throw Error(ErrorCode::input, "the file cannot be read", path);
+  };
+  EXPECT_EQ(message_of<std::logic_error>([&] { run(pipeline, {.threads = 2, .hash_file = hasher}); }),
+            "a bug");
+}
+
 TEST_F(RunTest, TellsProgressUpToTheEndOfEachStage) {
   pipeline.set("list_numbers.tiles=50");
   toy::watch().in_square = [](const StageContext& unit) {
