@@ -64,11 +64,7 @@ void isolation_of_all_summits(benchmark::State& state) {
   std::vector<HighPoint> points;
   for (const Summit& s : survey(dem, 1024)) points.push_back({s.cell, s.height});
   for (auto _ : state) {
-    std::vector<std::shared_ptr<const BlockRelief>> tiles;
-    for (const Window& t : tiles_of(dem.geometry(), 1024))
-      tiles.push_back(std::make_shared<const BlockRelief>(
-          block_relief(dem.read({t.column - 1, t.row - 1, t.columns + 2, t.rows + 2}), t)));
-    const ReliefPyramid relief(tiles, dem.geometry().columns, dem.geometry().rows);
+    const ReliefPyramid relief = pyramid_of(dem, 1024);
     benchmark::DoNotOptimize(measure_isolation(points, dem, relief, {}));
   }
   state.counters["cells/s"] = benchmark::Counter(static_cast<double>(dem.geometry().cells()),

@@ -13,14 +13,6 @@
 namespace waymark::testing {
 namespace {
 
-ReliefPyramid pyramid_of(const DemSource& dem, std::int64_t side) {
-  std::vector<std::shared_ptr<const BlockRelief>> tiles;
-  for (const Window& t : tiles_of(dem.geometry(), side))
-    tiles.push_back(std::make_shared<const BlockRelief>(
-        block_relief(dem.read({t.column - 1, t.row - 1, t.columns + 2, t.rows + 2}), t)));
-  return {tiles, dem.geometry().columns, dem.geometry().rows};
-}
-
 std::vector<HighPoint> summits_of(const DemSource& dem) {
   std::vector<HighPoint> points;
   for (const Summit& s : survey(dem, 1 << 20, 0, BasePolicy::none)) points.push_back({s.cell, s.height});

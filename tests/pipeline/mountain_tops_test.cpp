@@ -18,18 +18,12 @@ const TypeRegistry& types() {
   return all;
 }
 
-ReliefPyramid pyramid_of(const DemSource& dem) {
-  const Window all{0, 0, dem.geometry().columns, dem.geometry().rows};
-  const std::shared_ptr<const BlockRelief> tiles[] = {std::make_shared<const BlockRelief>(
-      block_relief(dem.read({-1, -1, all.columns + 2, all.rows + 2}), all))};
-  return {tiles, all.columns, all.rows};
-}
-
 std::vector<Landmark> tops_of(const DemSource& dem, const MountainTopOptions& options = {}) {
   const auto summits = survey(dem, 64);
   std::vector<HighPoint> points;
   for (const Summit& s : summits) points.push_back({s.cell, s.height});
-  return mountain_tops(summits, measure_isolation(points, dem, pyramid_of(dem), {}), dem, types(), options);
+  return mountain_tops(summits, measure_isolation(points, dem, pyramid_of(dem, 64), {}), dem, types(),
+                       options);
 }
 
 double feature(const Landmark& l, std::string_view name) {
@@ -61,11 +55,8 @@ TEST(MountainTops, CarryFeaturesAndWhereTheyComeFrom) {
 }
 
 TEST(MountainTops, WhoseParentIsLeftOutNameTheGrandparent) {
-  // 7 is 4 cells from 9 and goes; 5, two cells from 7, would go too, so ask for less than its 60 m
-  const auto all = tops_of(kThree);
-  const auto kept = tops_of(kThree, {.min_isolation = Meters{59}});
-  EXPECT_EQ(kept.size(), 3u);
-  // a far, low hill whose parent is a near shoulder of the highest
+  EXPECT_EQ(tops_of(kThree, {.min_isolation = Meters{59}}).size(), 3u);  // the nearest two are 60 m apart
+  // The far hill of 5 would name the shoulder of 8, which is too near to 9 to be kept.
   const MemoryDem dem(dem_art("0 0 0 0 0 0 0 0 0 0 0 / 0 9 7 8 2 2 2 2 2 5 0 / 0 0 0 0 0 0 0 0 0 0 0"),
                       kThree.geometry().where);
   const auto far = tops_of(dem, {.min_isolation = Meters{100}});

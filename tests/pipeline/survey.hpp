@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/terrain/prominence.hpp"
+#include "pipeline/terrain/relief_pyramid.hpp"
 #include "tests/support/dem_art.hpp"
 namespace waymark::testing {
 
@@ -31,6 +32,15 @@ inline std::vector<Summit> survey(const DemSource& dem, std::int64_t side, doubl
   for (const Window& tile : tiles_of(dem.geometry(), side))
     trees.push_back(tree_of(dem, tile, min_prominence));
   return join_divide_trees(trees, min_prominence, base);
+}
+
+/// The highest cells of a DEM, gathered from square tiles of `side` cells.
+inline ReliefPyramid pyramid_of(const DemSource& dem, std::int64_t side) {
+  std::vector<std::shared_ptr<const BlockRelief>> tiles;
+  for (const Window& t : tiles_of(dem.geometry(), side))
+    tiles.push_back(std::make_shared<const BlockRelief>(
+        block_relief(dem.read({t.column - 1, t.row - 1, t.columns + 2, t.rows + 2}), t)));
+  return {tiles, dem.geometry().columns, dem.geometry().rows};
 }
 
 }  // namespace waymark::testing

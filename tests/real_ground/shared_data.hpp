@@ -50,14 +50,6 @@ inline std::shared_ptr<const DemSource> open_dem(const std::vector<std::string>&
   return import_dem(import);
 }
 
-inline ReliefPyramid pyramid_of(const DemSource& dem, std::int64_t side) {
-  std::vector<std::shared_ptr<const BlockRelief>> tiles;
-  for (const Window& t : tiles_of(dem.geometry(), side))
-    tiles.push_back(std::make_shared<const BlockRelief>(
-        block_relief(dem.read({t.column - 1, t.row - 1, t.columns + 2, t.rows + 2}), t)));
-  return {tiles, dem.geometry().columns, dem.geometry().rows};
-}
-
 inline std::vector<Isolation> isolation_of(const std::vector<Summit>& summits, const DemSource& dem,
                                            const IsolationOptions& options = {}) {
   std::vector<HighPoint> points;
