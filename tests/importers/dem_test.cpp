@@ -26,6 +26,16 @@ HeightWindow heights_of(const RasterFile& file) {
 
 const Grid<double> kHills = dem_art("1 2 3 / 4 9 6 / 7 8 5");
 
+TEST(ImportDem, ReadsOtherFormatsAlike) {
+  const GDALDatasetH tiff = GDALOpen(write_raster({.cells = kHills}).c_str(), GA_ReadOnly);
+  for (const auto& [driver, path] :
+       {std::pair{"COG", "/vsimem/hills_cog.tif"}, {"AAIGrid", "/vsimem/hills.asc"}}) {
+    GDALClose(GDALCreateCopy(GDALGetDriverByName(driver), path, tiff, 0, nullptr, nullptr, nullptr));
+    EXPECT_EQ(all_of(*import_dem({.files = {path}, .crs = "EPSG:32633"})), kHills) << driver;
+  }
+  GDALClose(tiff);
+}
+
 TEST(ImportDem, GivesTheCentresOfCells) {
   const auto dem = import_dem({.files = {write_raster({.cells = kHills})}});
   const GridGeometry& grid = dem->geometry();
