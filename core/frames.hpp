@@ -5,6 +5,8 @@ namespace waymark {
 
 struct MapCrs;       ///< x, y in the units of the map's CRS (x = easting or longitude), z in metres
 struct MapFrame;     ///< east, north, up in metres about the map's origin
+struct GridFrame;    ///< x, y: easting and northing of a projected or local CRS, z: height; all metres,
+                     ///< taken as Cartesian. Where cameras, suns and rays live
 struct CameraFrame;  ///< x right, y down, z forward, metres (OpenCV)
 struct RobotFrame;   ///< x forward, y left, z up, metres
 
