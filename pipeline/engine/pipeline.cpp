@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "pipeline/engine/option_reader.hpp"
+#include "pipeline/engine/planner.hpp"
 
 namespace waymark {
 namespace {
@@ -54,13 +55,17 @@ std::string hint_to_add(const std::vector<std::string>& stages) {
 
 void check_inputs(const Steps& steps, std::size_t reader, const Registry& registry) {
   for (const InputPort& input : steps[reader]->spec().inputs) {
-    const OutputPort* output = nullptr;
-    std::size_t writer = 0;
-    for (; writer < reader && !output; ++writer) output = output_of(*steps[writer], input.name);
-    if (!output) refuse_missing(steps, reader, input.name, registry);
-    if (output->type != input.type)
-      refuse(fmt::format("{} reads '{}' as {}, but {} writes it as {}", place(steps, reader), input.name,
-                         readable_type(input.type), place(steps, writer - 1), readable_type(output->type)));
+    std::vector<std::size_t> writers;
+    for (std::size_t i = 0; i < reader; ++i)
+      if (output_of(*steps[i], input.name)) writers.push_back(i);
+    if (writers.empty()) refuse_missing(steps, reader, input.name, registry);
+    for (const std::size_t writer : writers)
+      if (const auto type = output_of(*steps[writer], input.name)->type; type != input.type)
+        refuse(fmt::format("{} reads '{}' as {}, but {} writes it as {}", place(steps, reader), input.name,
+                           readable_type(input.type), place(steps, writer), readable_type(type)));
+    if (writers.size() > 1 && !input.gathers)
+      refuse(fmt::format("{} and {} both write '{}', of which {} reads one", place(steps, writers[0]),
+                         place(steps, writers[1]), input.name, place(steps, reader)));
   }
 }
 
@@ -68,21 +73,34 @@ void check_outputs(const Steps& steps, std::size_t second) {
   for (std::size_t first = 0; first < second; ++first) {
     if (steps[first]->spec().name == steps[second]->spec().name)
       refuse(fmt::format("{} and {} are the same stage", place(steps, first), place(steps, second)));
-    for (const OutputPort& output : steps[second]->spec().outputs)
-      if (output_of(*steps[first], output.name))
-        refuse(
-            fmt::format("{} and {} both write '{}'", place(steps, first), place(steps, second), output.name));
-    if (steps[first]->spec().lists && steps[second]->spec().lists)
-      refuse(fmt::format("{} and {} both list tiles", place(steps, first), place(steps, second)));
+    const auto lists = steps[first]->spec().lists;
+    if (lists && lists == steps[second]->spec().lists)
+      refuse(fmt::format("{} and {} both list {}s", place(steps, first), place(steps, second),
+                         to_string(*lists)));
   }
 }
 
-void check_tiles(const Steps& steps, std::size_t index, const Registry& registry) {
-  if (steps[index]->spec().scope != Scope::tile) return;
+void check_items(const Steps& steps, std::size_t index, const Registry& registry) {
+  const Scope scope = steps[index]->spec().scope;
+  const auto lists_them = [&](const Step& step) { return step.spec().lists == scope; };
+  if (scope == Scope::map) return;
   for (std::size_t earlier = 0; earlier < index; ++earlier)
-    if (steps[earlier]->spec().lists) return;
-  refuse(fmt::format("{} works on tiles, but no stage before it lists them", place(steps, index)),
-         hint_to_add(stages_where(registry, [](const Step& s) { return s.spec().lists.has_value(); })));
+    if (lists_them(*steps[earlier])) return;
+  refuse(fmt::format("{} works on {}s, but no stage before it lists them", place(steps, index),
+                     to_string(scope)),
+         hint_to_add(stages_where(registry, lists_them)));
+}
+
+/// A stage that lists, and all it reads, runs while planning: once.
+void check_listing(const Pipeline& pipeline) {
+  std::vector<std::vector<Wire>> wires;
+  for (std::size_t i = 0; i < pipeline.steps().size(); ++i) wires.push_back(wires_of(pipeline, i));
+  const auto planning = runs_while_planning(pipeline, wires);
+  for (std::size_t i = 0; i < wires.size(); ++i)
+    if (planning[i] && pipeline.steps()[i]->spec().scope != Scope::map)
+      refuse(fmt::format("{} runs {} by {}, but a stage that lists reads it while planning",
+                         place(pipeline.steps(), i), to_string(pipeline.steps()[i]->spec().scope),
+                         to_string(pipeline.steps()[i]->spec().scope)));
 }
 
 }  // namespace
@@ -135,8 +153,9 @@ void Pipeline::check() const {
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     check_inputs(steps_, i, *registry_);
     check_outputs(steps_, i);
-    check_tiles(steps_, i, *registry_);
+    check_items(steps_, i, *registry_);
   }
+  check_listing(*this);
 }
 
 }  // namespace waymark

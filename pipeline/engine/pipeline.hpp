@@ -31,11 +31,12 @@ class Pipeline {
   std::filesystem::path base_folder;
 
   const std::vector<std::unique_ptr<Step>>& steps() const { return steps_; }
-  /// The step that writes the artifact, or null.
+  /// The first step that writes the artifact, or null.
   const Step* writer_of(std::string_view artifact) const;
 
   /// Throws Error{usage} naming stages and ports where an input has no earlier output of the same name and
-  /// type, two stages write one name, or a tile-scope stage has no stage before it that lists tiles.
+  /// type, or several but does not gather them, where a tile-scope (image-scope) stage has no stage before it
+  /// that lists tiles (images), or where a stage is there twice.
   void check() const;
 
  private:

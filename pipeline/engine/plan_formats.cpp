@@ -76,7 +76,8 @@ std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command) {
 
 std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
   constexpr std::size_t kMostShares = 64;
-  std::string script = "#!/bin/sh\n# One job per stage; a stage over tiles is an array of shares.\nset -eu\n";
+  std::string script =
+      "#!/bin/sh\n# One job per stage; a stage over tiles or images is an array of shares.\nset -eu\n";
   for (std::size_t stage = 0; stage < plan.stage_count(); ++stage) {
     const std::size_t begin = plan.begins[stage], end = plan.begins[stage + 1];
     if (begin == end) continue;
@@ -88,7 +89,7 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
     for (const std::size_t earlier : after_stages)
       options += fmt::format("{}$stage_{}", options.empty() ? " --dependency=afterok:" : ":", earlier);
     std::string work = fmt::format("{} --unit {}", run_command(command), plan.units[begin].id());
-    if (plan.units[begin].tile) {
+    if (plan.units[begin].index()) {
       const std::size_t shares = std::min(end - begin, kMostShares);
       options += fmt::format(" --array=1-{}", shares);
       work = fmt::format("{} --shard $SLURM_ARRAY_TASK_ID/{}", run_command(command), shares);

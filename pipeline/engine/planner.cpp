@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "pipeline/engine/option_table.hpp"
 #include "pipeline/engine/sha256.hpp"
@@ -13,21 +12,26 @@
 namespace waymark {
 namespace {
 
-/// The units a unit reads: of each input the one of the same tile, the only one, or all.
-std::vector<std::size_t> units_read(const Plan& plan, const Pipeline& pipeline,
-                                    const std::vector<Wire>& wires, std::size_t position) {
+/// Every unit a unit reads, ascending.
+std::vector<std::size_t> all_read(const Plan& plan, const std::vector<Wire>& wires, std::size_t position) {
   std::vector<std::size_t> read;
   for (const Wire& wire : wires) {
-    const std::size_t begin = plan.begins[wire.writer], end = plan.begins[wire.writer + 1];
-    const bool same_tile = !wire.all_tiles && pipeline.steps()[wire.writer]->spec().scope == Scope::tile;
-    if (same_tile) read.push_back(begin + position);
-    if (same_tile) continue;
-    read.resize(read.size() + (end - begin));
-    std::iota(read.end() - static_cast<std::ptrdiff_t>(end - begin), read.end(), begin);
+    const auto [first, last] = units_read(plan, wire, position);
+    for (std::size_t i = first; i < last; ++i) read.push_back(i);
   }
   std::ranges::sort(read);
   read.erase(std::ranges::unique(read).begin(), read.end());
   return read;
+}
+
+bool lists_images(const Pipeline& pipeline, const Unit& unit) {
+  return std::ranges::any_of(pipeline.steps(), [&](const std::unique_ptr<Step>& step) {
+    return step->spec().lists == Scope::image && step->spec().name == unit.stage;
+  });
+}
+
+bool writes(const Step& step, const std::string& port) {
+  return std::ranges::find(step.spec().outputs, port, &OutputPort::name) != step.spec().outputs.end();
 }
 
 }  // namespace
@@ -35,35 +39,55 @@ std::vector<std::size_t> units_read(const Plan& plan, const Pipeline& pipeline,
 std::vector<Wire> wires_of(const Pipeline& pipeline, std::size_t stage) {
   const StageSpec& spec = pipeline.steps()[stage]->spec();
   std::vector<Wire> wires;
-  for (const InputPort& input : spec.inputs) {
-    const Step* writer = pipeline.writer_of(input.name);
-    const auto at = std::ranges::find(pipeline.steps(), writer, &std::unique_ptr<Step>::get);
-    wires.push_back({.port = input.name,
-                     .writer = static_cast<std::size_t>(at - pipeline.steps().begin()),
-                     .all_tiles = spec.scope == Scope::map && writer->spec().scope == Scope::tile});
-  }
+  for (const InputPort& input : spec.inputs)
+    for (std::size_t writer = 0; writer < stage; ++writer)
+      if (const Step& step = *pipeline.steps()[writer]; writes(step, input.name))
+        wires.push_back({.port = input.name,
+                         .writer = writer,
+                         .same_item = spec.scope != Scope::map && step.spec().scope == spec.scope,
+                         .gathers = input.gathers});
   return wires;
 }
 
-void append_units(Plan& plan, const Pipeline& pipeline, const std::vector<Tile>& tiles) {
+std::pair<std::size_t, std::size_t> units_read(const Plan& plan, const Wire& wire, std::size_t position) {
+  const std::size_t begin = plan.begins[wire.writer];
+  if (wire.same_item) return {begin + position, begin + position + 1};
+  return {begin, plan.begins[wire.writer + 1]};
+}
+
+std::vector<bool> runs_while_planning(const Pipeline& pipeline, const std::vector<std::vector<Wire>>& wires) {
+  std::vector<bool> runs(wires.size());
+  for (std::size_t stage = wires.size(); stage-- > 0;) {
+    runs[stage] = runs[stage] || pipeline.steps()[stage]->spec().lists.has_value();
+    if (!runs[stage]) continue;
+    for (const Wire& wire : wires[stage]) runs[wire.writer] = true;
+  }
+  return runs;
+}
+
+void append_units(Plan& plan, const Pipeline& pipeline, const Items& items) {
   const std::size_t stage = plan.stage_count();
   const StageSpec& spec = pipeline.steps()[stage]->spec();
   const std::vector<Wire> wires = wires_of(pipeline, stage);
-  const auto append = [&](std::string item, std::optional<Tile> tile, std::size_t position) {
-    plan.units.push_back({.stage = spec.name,
-                          .item = std::move(item),
-                          .tile = tile,
-                          .fingerprint = {},
-                          .after = units_read(plan, pipeline, wires, position)});
+  const auto append = [&](std::string item, std::size_t position) -> Unit& {
+    return plan.units.emplace_back(Unit{.stage = spec.name,
+                                        .item = std::move(item),
+                                        .tile = {},
+                                        .image = {},
+                                        .fingerprint = {},
+                                        .after = all_read(plan, wires, position)});
   };
-  if (spec.scope == Scope::map) append("map", {}, 0);
+  if (spec.scope == Scope::map) append("map", 0);
   if (spec.scope == Scope::tile)
-    for (std::size_t i = 0; i < tiles.size(); ++i)
-      append(fmt::format("tile_{:06}", tiles[i].index), tiles[i], i);
+    for (std::size_t i = 0; i < items.tiles.size(); ++i)
+      append(fmt::format("tile_{:06}", items.tiles[i].index), i).tile = items.tiles[i];
+  if (spec.scope == Scope::image)
+    for (std::size_t i = 0; i < items.images.size(); ++i)
+      append(unit_item(items.images[i]), i).image = items.images[i];
   plan.begins.push_back(plan.units.size());
 }
 
-std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step,
+std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
                            const std::vector<InputFile>& files) {
   auto key = nlohmann::json{{"stage", unit.stage},
                             {"version", step.spec().version},
@@ -74,7 +98,10 @@ std::string fingerprint_of(const Plan& plan, const Unit& unit, const Step& step,
                             {"reads", nlohmann::json::array()}};
   if (unit.tile) key["tile"] = Codec<std::vector<Tile>>::encode({*unit.tile});
   for (const InputFile& file : files) key["files"].push_back(file.sha256);
-  for (const std::size_t read : unit.after) key["reads"].push_back(plan.units[read].fingerprint);
+  if (unit.image) key["image"] = unit.image->content;
+  for (const std::size_t read : unit.after)
+    if (!unit.image || !lists_images(pipeline, plan.units[read]))
+      key["reads"].push_back(plan.units[read].fingerprint);
   return sha256(key.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).substr(0, 32);
 }
 

@@ -11,19 +11,30 @@ struct In {
   const char* name;
 };
 
-/// What a stage writes. T needs a Codec.
+/// What a stage gathers: the artifacts of every earlier stage that writes this name and type, of the same
+/// item or of all. Items whose unit failed are left out, with a warning; a result made without them is not
+/// kept in the work folder.
+template <class T>
+struct Gather {
+  const char* name;
+};
+
+/// What a stage writes. T needs a Codec. Several stages may write one name where all readers gather it.
 template <class T>
 struct Out {
   const char* name;
 };
 
-/// An In<T> as StageSpec lists it.
+/// An In<T> or a Gather<T> as StageSpec lists it.
 struct InputPort {
   std::string name;
   std::type_index type;
+  bool gathers = false;
 
   template <class T>
   InputPort(In<T> port) : name(port.name), type(typeid(T)) {}
+  template <class T>
+  InputPort(Gather<T> port) : name(port.name), type(typeid(T)), gathers(true) {}
 };
 
 /// An Out<T> as StageSpec lists it.

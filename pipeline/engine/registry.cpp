@@ -26,11 +26,12 @@ std::string contradiction(const StageSpec& spec) {
       return "it declares the output '" + port.name + "' twice";
   }
   if (spec.lists) {
-    if (spec.scope != Scope::map || *spec.lists != Scope::tile)
-      return "a listing stage has map scope, lists tiles";
-    if (!spec.inputs.empty()) return "a listing stage runs while planning: it can read no artifact";
-    if (std::ranges::count(spec.outputs, std::type_index(typeid(std::vector<Tile>)), &OutputPort::type) != 1)
-      return "a listing stage writes one std::vector<Tile>";
+    if (spec.scope != Scope::map || *spec.lists == Scope::map)
+      return "a listing stage has map scope, lists tiles or images";
+    const bool tiles = *spec.lists == Scope::tile;
+    const std::type_index list = tiles ? typeid(std::vector<Tile>) : typeid(std::vector<ImageItem>);
+    if (std::ranges::count(spec.outputs, list, &OutputPort::type) != 1)
+      return fmt::format("a stage that lists {}s writes one {}", to_string(*spec.lists), readable_type(list));
   }
   if (spec.halo < 0 || (spec.halo > 0 && spec.scope != Scope::tile))
     return "only a tile has a halo, >= 0 cells";

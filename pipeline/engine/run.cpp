@@ -39,6 +39,7 @@ Run::Run(const Pipeline& pipeline, const RunOptions& options) : pipeline_(pipeli
   check_run_options(options, pipeline);
   for (std::size_t stage = 0; stage < pipeline.steps().size(); ++stage)
     wires_.push_back(wires_of(pipeline, stage));
+  planning_ = runs_while_planning(pipeline, wires_);
   anew_ = reached_from(options.rerun_from, pipeline, wires_);
   seconds_.resize(wires_.size());
   if (!options.work.empty()) store_.emplace(options.work);
@@ -63,36 +64,61 @@ void Run::hash_inputs() {
                     [&](std::size_t i) { inputs_[i] = options_.hash_file(inputs_[i].path); });
 }
 
+void Run::hash_images() {
+  image_files_.resize(items_.images.size());
+  tbb::parallel_for(std::size_t{0}, image_files_.size(), [&](std::size_t i) {
+    const std::string& file = items_.images[i].file;
+    if (file.empty()) return;
+    try {
+      image_files_[i] = options_.hash_file(file);
+    } catch (const Error&) {
+      image_files_[i] = {.path = file, .bytes = 0, .sha256 = {}};
+    }
+  });
+}
+
 void Run::make_plan(bool fingerprints) {
   for (std::size_t stage = 0; stage < wires_.size(); ++stage) {
     append_stage(fingerprints);
-    if (!step(stage).spec().lists) continue;
+    if (!planning_[stage]) continue;
     run_stage(stage);
-    const std::size_t unit = plan_.begins[stage];
-    for (const OutputPort& port : step(stage).spec().outputs)
-      if (port.type == typeid(std::vector<Tile>))
-        tiles_ = *std::static_pointer_cast<const std::vector<Tile>>(
-            states_[unit].artifacts.at(port.name)->value());
+    take_items(stage);
+    if (fingerprints && step(stage).spec().lists == Scope::image) hash_images();
   }
   divide_work(plan_, options_, states_);
 }
 
+void Run::take_items(std::size_t stage) {
+  const auto& artifacts = states_[plan_.begins[stage]].artifacts;
+  const auto take = [&]<class T>(const OutputPort& port, std::vector<T>& items) {
+    if (port.type == typeid(std::vector<T>))
+      items = *std::static_pointer_cast<const std::vector<T>>(artifacts.at(port.name)->value());
+  };
+  if (!step(stage).spec().lists) return;
+  for (const OutputPort& port : step(stage).spec().outputs) {
+    take(port, items_.tiles);
+    take(port, items_.images);
+  }
+}
+
 void Run::append_stage(bool fingerprints) {
   const std::size_t stage = plan_.stage_count();
-  append_units(plan_, pipeline_, tiles_);
+  append_units(plan_, pipeline_, items_);
   states_.resize(plan_.units.size());
   if (!fingerprints) return;
   std::vector<InputFile> files;
   for (const std::size_t i : inputs_of_stage_[stage]) files.push_back(inputs_[i]);
   for (std::size_t i = plan_.begins[stage]; i < plan_.units.size(); ++i) {
-    plan_.units[i].fingerprint = fingerprint_of(plan_, plan_.units[i], step(stage), files);
+    std::vector<InputFile> own = files;
+    if (plan_.units[i].image) own.push_back(image_files_.at(i - plan_.begins[stage]));
+    plan_.units[i].fingerprint = fingerprint_of(plan_, plan_.units[i], step(stage), pipeline_, own);
     plan_.units[i].done = store_ && store_->contains(plan_.units[i]);
   }
 }
 
 void Run::run_stages() {
   for (std::size_t stage = 0; stage < wires_.size(); ++stage) {
-    if (!step(stage).spec().lists) run_stage(stage);
+    if (!planning_[stage]) run_stage(stage);
     release_read(stage);
   }
   expect_wanted_unit();
@@ -122,26 +148,50 @@ void Run::run_stage(std::size_t stage) {
 
 void Run::do_unit(std::size_t stage, std::size_t unit, ProgressMeter& progress) {
   UnitState& state = states_[unit];
-  const auto any_read = [&](auto predicate) {
-    return std::ranges::any_of(plan_.units[unit].after, [&](std::size_t i) { return predicate(states_[i]); });
+  const auto needs = [&](auto predicate) {
+    return std::ranges::any_of(wires_[stage], [&](const Wire& wire) {
+      const auto [first, last] = units_read(plan_, wire, unit - plan_.begins[stage]);
+      return std::any_of(states_.begin() + static_cast<std::ptrdiff_t>(first),
+                         states_.begin() + static_cast<std::ptrdiff_t>(last),
+                         [&](const UnitState& read) { return predicate(read, wire); });
+    });
   };
   if (state.part == Part::none) return;
   const bool make_anew = state.part == Part::ours && anew_[stage];
   if (store_ && !make_anew && reuse(stage, unit)) return progress.add(1);
   if (state.part == Part::others) return;
-  if (any_read([](const UnitState& read) { return read.lost(); })) {
+  if (needs([](const UnitState& read, const Wire& wire) { return read.lost() && !wire.gathers; })) {
     state.status = Status::skipped;
     return progress.add(1);
   }
-  if (any_read([](const UnitState& read) { return !read.ready(); })) return;
+  if (needs([](const UnitState& read, const Wire&) { return !read.ready() && !read.lost(); })) return;
+  if (gathers_nothing(stage, unit)) {
+    state.status = Status::skipped;
+    return progress.add(1);
+  }
+  state.partial = needs([](const UnitState& read, const Wire&) { return read.lost() || read.partial; });
   make(stage, unit, progress);
+}
+
+/// Whether a port that gathers finds only units that failed.
+bool Run::gathers_nothing(std::size_t stage, std::size_t unit) const {
+  std::map<std::string, std::pair<bool, bool>> found_lost;
+  for (const Wire& wire : wires_[stage]) {
+    const auto [first, last] = units_read(plan_, wire, unit - plan_.begins[stage]);
+    auto& [found, lost] = found_lost[wire.port];
+    for (std::size_t i = first; i < last; ++i) (states_[i].ready() ? found : lost) = true;
+  }
+  return std::ranges::any_of(found_lost, [](const auto& port) {
+    const auto [found, lost] = port.second;
+    return lost && !found;
+  });
 }
 
 bool Run::reuse(std::size_t stage, std::size_t unit) {
   const StageSpec& spec = step(stage).spec();
   auto stored = store_->find(plan_.units[unit], spec);
   if (!stored) return false;
-  if (spec.lists) {  // needed at once; inputs that moved away make it fail
+  if (planning_[stage]) {  // needed at once; inputs that moved away make it fail
     try {
       for (const auto& [port, artifact] : stored->artifacts) artifact->value();
     } catch (const Error&) {
@@ -171,7 +221,7 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   } catch (const std::logic_error&) {
     throw;  // a stage that breaks its declaration is a bug, not a bad input
   } catch (const std::exception& problem) {
-    if (spec.lists) throw;  // without its items there is no plan
+    if (planning_[stage]) throw;  // without its items there is no plan
     const auto* error = dynamic_cast<const Error*>(&problem);
     state.failure = {what.id(), error ? error->code() : ErrorCode::environment, problem.what()};
     state.status = Status::failed;
@@ -179,38 +229,53 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
     return progress.reach(1);
   }
   state.outcome = context.finish();
+  warn_of_lost(stage, unit);
   if (store_ && anew_[stage]) store_->remove(what);
-  if (store_) store_->save(what, spec, state.outcome);
+  if (store_ && !state.partial) store_->save(what, spec, state.outcome);
   for (auto& [port, value] : std::exchange(state.outcome.outputs, {}))
     state.artifacts[port] = std::make_shared<Artifact>(std::move(value));
   state.status = Status::made;
   progress.reach(1);
 }
 
+void Run::warn_of_lost(std::size_t stage, std::size_t unit) {
+  for (const Wire& wire : wires_[stage]) {
+    const auto [first, last] = units_read(plan_, wire, unit - plan_.begins[stage]);
+    std::size_t lost = 0;
+    for (std::size_t i = first; i < last; ++i) lost += states_[i].lost() ? 1 : 0;
+    if (lost > 0)
+      states_[unit].outcome.warnings.push_back(
+          fmt::format("made without {} of {} results of {}, which failed", lost, last - first,
+                      step(wire.writer).spec().name));
+  }
+}
+
 UnitInputs Run::inputs_of(std::size_t stage, std::size_t unit) const {
   const Unit& what = plan_.units[unit];
   UnitInputs inputs{.id = what.id(),
                     .tile = what.tile,
+                    .image = what.image,
                     .base_folder = pipeline_.base_folder,
                     .threads = tbb::this_task_arena::max_concurrency()};
   for (const Wire& wire : wires_[stage]) {
     PortInput& input = inputs.ports[wire.port];
-    input.all_tiles = wire.all_tiles;
-    const std::size_t begin = plan_.begins[wire.writer], end = plan_.begins[wire.writer + 1];
-    const bool same_tile = !wire.all_tiles && step(wire.writer).spec().scope == Scope::tile;
-    const std::size_t from = same_tile ? begin + (unit - plan_.begins[stage]) : begin;
-    for (std::size_t i = from; i < (same_tile ? from + 1 : end); ++i)
-      input.items.push_back(states_[i].artifacts.find(wire.port)->second);
+    const bool all_items = !wire.same_item && step(wire.writer).spec().scope != Scope::map;
+    input.many = wire.gathers || all_items;
+    const auto [first, last] = units_read(plan_, wire, unit - plan_.begins[stage]);
+    for (std::size_t i = first; i < last; ++i)
+      if (states_[i].ready()) input.items.push_back(states_[i].artifacts.find(wire.port)->second);
   }
   return inputs;
 }
 
-/// Lets go of tile artifacts that no later stage reads, unless nobody reads them at all: those are results.
+/// Lets go of the artifacts of tiles and images that no later stage reads, unless nobody reads them at all:
+/// those are results.
 void Run::release_read(std::size_t stage) {
   for (const Wire& wire : wires_[stage]) {
-    if (step(wire.writer).spec().scope != Scope::tile) continue;
+    if (step(wire.writer).spec().scope == Scope::map) continue;
     const auto reads_it = [&](const std::vector<Wire>& later) {
-      return std::ranges::find(later, wire.port, &Wire::port) != later.end();
+      return std::ranges::any_of(
+          later, [&](const Wire& other) { return other.port == wire.port && other.writer == wire.writer; });
     };
     if (std::any_of(wires_.begin() + static_cast<std::ptrdiff_t>(stage) + 1, wires_.end(), reads_it))
       continue;
@@ -222,6 +287,8 @@ void Run::release_read(std::size_t stage) {
 RunResult Run::result() const {
   RunResult result;
   result.inputs = inputs_;
+  for (const InputFile& file : image_files_)
+    if (!file.sha256.empty()) result.inputs.push_back(file);
   for (std::size_t stage = 0; stage < wires_.size(); ++stage) {
     const StageSpec& spec = step(stage).spec();
     StageReport report = stage_report(plan_, states_, stage);
@@ -229,12 +296,12 @@ RunResult Run::result() const {
     report.seconds = seconds_[stage];
     result.report.stages.push_back(std::move(report));
     for (const OutputPort& port : spec.outputs) {
-      RunResult::Kept kept{port.type, spec.scope, {}};
+      RunResult::Kept kept{port.name, port.type, spec.scope, {}};
       for (std::size_t i = plan_.begins[stage]; i < plan_.begins[stage + 1]; ++i) {
         const auto found = states_[i].artifacts.find(port.name);
         kept.items.push_back(found == states_[i].artifacts.end() ? nullptr : found->second);
       }
-      result.artifacts_.emplace(port.name, std::move(kept));
+      result.artifacts_.push_back(std::move(kept));
     }
   }
   for (const UnitState& state : states_)

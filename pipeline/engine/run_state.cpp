@@ -14,7 +14,7 @@ class WarningList {
   void add(const std::string& text, const Unit& unit) {
     const auto known = std::ranges::find(entries_, text, &Entry::text);
     if (known == entries_.end())
-      entries_.push_back({text, unit.tile ? unit.item : "", 1});
+      entries_.push_back({text, unit.index() ? unit.item : "", 1});
     else
       ++known->units;
   }

@@ -22,6 +22,7 @@ struct UnitState {
   UnitOutcome outcome;  ///< its outputs moved to `artifacts`
   std::map<std::string, ArtifactPtr, std::less<>> artifacts;
   Failure failure;
+  bool partial = false;  ///< made without items that failed: not to be kept
 
   bool ready() const { return status == Status::made || status == Status::reused; }
   bool lost() const { return status == Status::failed || status == Status::skipped; }

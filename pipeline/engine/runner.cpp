@@ -46,6 +46,7 @@ RunResult run(const Pipeline& pipeline, const RunOptions& options) {
         }
       });
     run.make_plan(keeps);
+    if (!keeps && !options.check_only) beside.run([&] { run.hash_images(); });
     if (!options.check_only) run.run_stages();
     beside.wait();
     if (unreadable) std::rethrow_exception(unreadable);

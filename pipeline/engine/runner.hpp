@@ -2,7 +2,6 @@
 #pragma once
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -48,33 +47,35 @@ class RunResult {
   std::vector<InputFile> inputs;  ///< every file the stages named, once, in their order
 
   /// A map-scope artifact. Throws Error where it was not made, with the first failure; std::logic_error where
-  /// no stage writes that name and type, or it belongs to tiles.
+  /// not one stage writes that name and type, or it belongs to tiles or images.
   template <class T>
   const T& artifact(std::string_view name) const& {
-    return *static_cast<const T*>(find(name, typeid(T), Scope::map).front().get());
+    return *static_cast<const T*>(find_one(name, typeid(T)).get());
   }
   template <class T>
   const T& artifact(std::string_view name) const&& = delete;  // would dangle
 
-  /// The artifacts of all tiles, in their order, unless a later stage read them: those are released.
+  /// What all stages wrote under that name and type, stage by stage, each in the order of its tiles or
+  /// images; without what was not made, and what was released after the last stage that reads it.
   template <class T>
   std::vector<std::shared_ptr<const T>> artifacts(std::string_view name) const {
     std::vector<std::shared_ptr<const T>> all;
-    for (auto& value : find(name, typeid(T), Scope::tile))
-      all.push_back(std::static_pointer_cast<const T>(value));
+    for (auto& value : find_all(name, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
     return all;
   }
 
  private:
   friend class Run;
   struct Kept {
+    std::string name;
     std::type_index type;
     Scope scope;
     std::vector<ArtifactPtr> items;  ///< null where not made
   };
-  std::vector<Artifact::Value> find(std::string_view name, std::type_index type, Scope scope) const;
+  Artifact::Value find_one(std::string_view name, std::type_index type) const;
+  std::vector<Artifact::Value> find_all(std::string_view name, std::type_index type) const;
 
-  std::map<std::string, Kept, std::less<>> artifacts_;
+  std::vector<Kept> artifacts_;
 };
 
 /// Runs what is not yet in the work folder. Units of a stage run in parallel; results and report do not

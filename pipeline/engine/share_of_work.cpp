@@ -55,8 +55,8 @@ void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitSt
   if (!options.unit.empty()) return want_unit(plan, options.unit, states);
   if (!options.shard) return;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    const auto& tile = plan.units[i].tile;
-    const bool ours = !tile || tile->index % options.shard->count == options.shard->index - 1;
+    const auto index = plan.units[i].index();
+    const bool ours = !index || *index % options.shard->count == options.shard->index - 1;
     states[i].part = ours ? Part::ours : Part::others;
   }
 }

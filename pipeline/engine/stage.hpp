@@ -15,6 +15,7 @@
 #include "core/error.hpp"
 #include "core/options.hpp"
 #include "pipeline/engine/codec.hpp"
+#include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/port.hpp"
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/stage_context.hpp"

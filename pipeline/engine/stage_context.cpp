@@ -42,9 +42,9 @@ const PortInput& StageContext::declared_input(std::string_view port, std::type_i
 
 Artifact::Value StageContext::read_one(std::string_view port, std::type_index type) {
   const PortInput& input = declared_input(port, type);
-  if (input.all_tiles)
+  if (input.many)
     throw std::logic_error(
-        fmt::format("stage {} reads '{}' with read, but every tile has one: use read_all", spec_.name, port));
+        fmt::format("stage {} reads '{}' with read, but there are many: use read_all", spec_.name, port));
   return input.items.front()->value();
 }
 
@@ -62,8 +62,17 @@ void StageContext::write_one(std::string_view port, std::type_index type, Artifa
 }
 
 const Tile& StageContext::tile() const {
-  if (!inputs_.tile) throw std::logic_error("stage " + spec_.name + " has map scope: it has no tile");
+  if (!inputs_.tile)
+    throw std::logic_error(
+        fmt::format("stage {} has {} scope: it has no tile", spec_.name, to_string(spec_.scope)));
   return *inputs_.tile;
+}
+
+const ImageItem& StageContext::image() const {
+  if (!inputs_.image)
+    throw std::logic_error(
+        fmt::format("stage {} has {} scope: it has no image", spec_.name, to_string(spec_.scope)));
+  return *inputs_.image;
 }
 
 Window StageContext::cells_with_halo() const {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 #include "pipeline/engine/artifact.hpp"
+#include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/stage_spec.hpp"
 #include "pipeline/engine/tile.hpp"
 namespace waymark {
@@ -26,14 +27,15 @@ struct Counts {
 
 /// What a unit reads from one port.
 struct PortInput {
-  std::vector<ArtifactPtr> items;  ///< one, or one per tile in the order of the tiles
-  bool all_tiles = false;          ///< to be read with read_all
+  std::vector<ArtifactPtr> items;  ///< one, or many: stage by stage, item by item
+  bool many = false;               ///< to be read with read_all
 };
 
 /// What a unit of work is given.
 struct UnitInputs {
-  std::string id = {};            ///< "find_mountain_tops/tile_000003"
-  std::optional<Tile> tile = {};  ///< of a tile-scope unit
+  std::string id = {};                  ///< "find_mountain_tops/tile_000003"
+  std::optional<Tile> tile = {};        ///< of a tile-scope unit
+  std::optional<ImageItem> image = {};  ///< of an image-scope unit
   std::map<std::string, PortInput, std::less<>> ports = {};
   std::filesystem::path base_folder = {};  ///< relative paths of options start here
   int threads = 1;
@@ -59,13 +61,15 @@ class StageContext {
   const T& read(In<T> port) {
     return *static_cast<const T*>(read_one(port.name, typeid(T)).get());
   }
-  /// The artifacts of all tiles in the order of the tiles: what a map-scope stage gathers.
+  /// The artifacts of all tiles (images) in their order.
   template <class T>
   std::vector<std::shared_ptr<const T>> read_all(In<T> port) {
-    std::vector<std::shared_ptr<const T>> all;
-    for (auto& value : read_each(port.name, typeid(T)))
-      all.push_back(std::static_pointer_cast<const T>(value));
-    return all;
+    return all_of<T>(port.name);
+  }
+  /// The artifacts of all stages that write it, stage by stage, each in the order of its items.
+  template <class T>
+  std::vector<std::shared_ptr<const T>> read_all(Gather<T> port) {
+    return all_of<T>(port.name);
   }
   /// Once per port; every declared output must be written.
   template <class T>
@@ -73,8 +77,9 @@ class StageContext {
     write_one(port.name, typeid(T), std::make_shared<const T>(std::move(value)));
   }
 
-  /// Throws std::logic_error in a map-scope stage.
+  /// Throws std::logic_error in a stage of another scope.
   const Tile& tile() const;
+  const ImageItem& image() const;
   /// The tile's cells grown by the declared halo; may reach outside the grid.
   Window cells_with_halo() const;
   /// "stage/item": what a random generator is seeded from.
@@ -98,6 +103,12 @@ class StageContext {
   UnitOutcome finish();
 
  private:
+  template <class T>
+  std::vector<std::shared_ptr<const T>> all_of(std::string_view port) {
+    std::vector<std::shared_ptr<const T>> all;
+    for (auto& value : read_each(port, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
+    return all;
+  }
   Artifact::Value read_one(std::string_view port, std::type_index type);
   std::vector<Artifact::Value> read_each(std::string_view port, std::type_index type);
   void write_one(std::string_view port, std::type_index type, Artifact::Value value);

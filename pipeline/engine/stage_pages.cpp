@@ -46,8 +46,10 @@ std::string readable_ports(const Ports& ports) {
 }
 
 std::string readable_scope(const StageSpec& spec) {
-  if (spec.lists) return "the whole map; runs while planning and decides the tiles";
+  if (spec.lists)
+    return fmt::format("the whole map; runs while planning and decides the {}s", to_string(*spec.lists));
   if (spec.scope == Scope::map) return "the whole map";
+  if (spec.scope == Scope::image) return "one image";
   return spec.halo == 0 ? "one tile" : fmt::format("one tile and {} cells around it", spec.halo);
 }
 

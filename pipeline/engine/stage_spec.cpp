@@ -4,7 +4,8 @@
 namespace waymark {
 
 std::string to_string(Scope scope) {
-  return scope == Scope::map ? "map" : "tile";
+  constexpr const char* kNames[] = {"map", "tile", "image"};
+  return kNames[static_cast<int>(scope)];
 }
 
 }  // namespace waymark

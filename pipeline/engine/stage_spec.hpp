@@ -9,11 +9,12 @@ namespace waymark {
 
 /// How often a stage runs.
 enum class Scope {
-  map,   ///< once; reads the artifacts of all tiles
-  tile,  ///< once per tile; reads artifacts of the same tile and of the map
+  map,    ///< once; reads the artifacts of all tiles and images
+  tile,   ///< once per tile; reads artifacts of the same tile and of the map
+  image,  ///< once per image; reads artifacts of the same image and of the map
 };
 
-/// "map" or "tile".
+/// "map", "tile" or "image".
 std::string to_string(Scope scope);
 
 /// What a stage declares about itself.
@@ -22,8 +23,9 @@ struct StageSpec {
   std::string summary;  ///< one line for people
   int version = 1;      ///< raise it when the same input gives another result
   Scope scope = Scope::map;
-  /// Scope::tile: this map-scope stage decides the tiles, in an output of type std::vector<Tile>. It reads no
-  /// artifact and is cheap, because it runs while planning.
+  /// Scope::tile or Scope::image: this map-scope stage decides the tiles (images), in an output of type
+  /// std::vector<Tile> (std::vector<ImageItem>). It is cheap, because it runs while planning, and so do the
+  /// stages it reads.
   std::optional<Scope> lists = {};
   std::int64_t halo = 0;  ///< cells a tile-scope stage looks at beyond its tile
   std::vector<InputPort> inputs = {};

@@ -37,6 +37,17 @@ struct Lonely : Mistyped {
   static StageSpec spec() { return {.name = "lonely", .summary = "", .scope = Scope::tile}; }
 };
 
+/// Lists images from what is made tile by tile.
+struct ListByTile : Mistyped {
+  static StageSpec spec() {
+    return {.name = "list_by_tile",
+            .summary = "",
+            .lists = Scope::image,
+            .inputs = {In<Number>{"square"}},
+            .outputs = {Out<std::vector<ImageItem>>{"images"}}};
+  }
+};
+
 class PipelineTest : public testing::Test {
  protected:
   const Registry registry = [] {
@@ -45,6 +56,7 @@ class PipelineTest : public testing::Test {
     all.add<ListAgain>();
     all.add<WriteAgain>();
     all.add<Lonely>();
+    all.add<ListByTile>();
     return all;
   }();
 
@@ -74,8 +86,11 @@ TEST_F(PipelineTest, NamesBothTypes) {
 }
 
 TEST_F(PipelineTest, NamesBothWriters) {
-  EXPECT_EQ(refusal({"list_numbers", "write_again"}),
-            "stages[0] list_numbers and stages[1] write_again both write 'number'");
+  EXPECT_EQ(refusal({"list_numbers", "write_again", "square_number"}),
+            "stages[0] list_numbers and stages[1] write_again both write 'number', of which stages[2] "
+            "square_number reads one");
+  EXPECT_EQ(refusal({"list_numbers", "square_number", "list_by_tile"}),
+            "stages[1] square_number runs tile by tile, but a stage that lists reads it while planning");
   EXPECT_EQ(refusal({"list_numbers", "list_numbers"}),
             "stages[0] list_numbers and stages[1] list_numbers are the same stage");
   EXPECT_EQ(refusal({"list_numbers", "list_again"}),
@@ -93,7 +108,8 @@ TEST_F(PipelineTest, NamesThePlaceOfAnUnknownStage) {
   Pipeline pipeline(registry);
   EXPECT_EQ(message_of([&] { pipeline.add("list_numbers").add("sqare_number"); }),
             "stages[1]: there is no stage 'sqare_number'; did you mean 'square_number'?\n"
-            "  stages: list_again, list_numbers, lonely, mistyped, square_number, sum_squares, write_again");
+            "  stages: list_again, list_by_tile, list_numbers, lonely, mistyped, square_number, sum_squares, "
+            "write_again");
 }
 
 TEST_F(PipelineTest, TakesOptionsAsJsonAndAsValues) {

@@ -21,7 +21,6 @@ std::string refusal(StageSpec spec) {
 }
 
 constexpr Out<std::vector<Tile>> kTiles{"tiles"};
-constexpr In<Number> kNumber{"number"};
 
 TEST(Registry, NamesTheNearestStage) {
   EXPECT_EQ(message_of([] { toy::registry().at("square_numbr"); }),
@@ -51,12 +50,11 @@ TEST(Registry, RefusesSpecsThatContradictThemselves) {
             "stage 'a': it declares the output 'x' twice");
   EXPECT_EQ(
       refusal({.name = "a", .summary = "", .scope = Scope::tile, .lists = Scope::tile, .outputs = {kTiles}}),
-      "stage 'a': a listing stage has map scope, lists tiles");
-  EXPECT_EQ(
-      refusal({.name = "a", .summary = "", .lists = Scope::tile, .inputs = {kNumber}, .outputs = {kTiles}}),
-      "stage 'a': a listing stage runs while planning: it can read no artifact");
+      "stage 'a': a listing stage has map scope, lists tiles or images");
   EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::tile}),
-            "stage 'a': a listing stage writes one std::vector<Tile>");
+            "stage 'a': a stage that lists tiles writes one vector<Tile>");
+  EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::image, .outputs = {kTiles}}),
+            "stage 'a': a stage that lists images writes one vector<ImageItem>");
   EXPECT_EQ(refusal({.name = "a", .summary = "", .halo = 2}),
             "stage 'a': only a tile has a halo, >= 0 cells");
 }

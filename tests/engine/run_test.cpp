@@ -135,8 +135,7 @@ TEST_F(RunTest, ChecksTheWiringFirst) {
 
 TEST_F(RunTest, KeepsWhatNobodyReadsAndReleasesTheRest) {
   const RunResult whole = run(pipeline);
-  EXPECT_EQ(message_of<std::logic_error>([&] { whole.artifacts<Number>("square"); }),
-            "'square' was released after the last stage that reads it");
+  EXPECT_THAT(whole.artifacts<Number>("square"), testing::IsEmpty());
   Pipeline part(registry);
   part.add("list_numbers").add("square_number");
   EXPECT_EQ(run(part).artifacts<Number>("square").at(3)->value, 36);

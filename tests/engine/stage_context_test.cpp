@@ -80,7 +80,7 @@ TEST_F(StageContextTest, KnowsItsTileAndHalo) {
 
 TEST_F(StageContextTest, ManyTilesAreReadWithReadAll) {
   const StageSpec map = toy::SumSquares::spec();
-  const UnitInputs gathered{.id = "sum_squares/map", .ports = {{"square", {.items = {}, .all_tiles = true}}}};
+  const UnitInputs gathered{.id = "sum_squares/map", .ports = {{"square", {.items = {}, .many = true}}}};
   StageContext all(map, gathered);
   EXPECT_TRUE(all.read_all(In<Number>{"square"}).empty());
   EXPECT_THAT(message_of<std::logic_error>([&] { all.read(In<Number>{"square"}); }),
