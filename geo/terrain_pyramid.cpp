@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/terrain_pyramid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTouching = 1e-6;  // metres, see terrain.cpp
+
+// First t in [range.from, range.to] at which the ray is on or below the patch. The height of the ray above it
+// is a quadratic in t, taken about the entry so that far origins lose no digits.
+std::optional<double> meet(const Patch& patch, const GridRay& ray, const RayRange& range, double column,
+                           double row) {
+  const double u = ray.u + range.from * ray.du - column, v = ray.v + range.from * ray.dv - row;
+  const double q2 = -patch.d * ray.du * ray.dv;
+  const double q1 = ray.dz - patch.b * ray.du - patch.c * ray.dv - patch.d * (u * ray.dv + v * ray.du);
+  const double q0 = ray.z + range.from * ray.dz - patch.height(u, v);
+  const double length = range.to - range.from;
+  if (q0 <= 0 && !(q0 > -kTouching && q1 > 0)) return range.from;
+  const double discriminant = q1 * q1 - 4 * q2 * q0;
+  if (discriminant < 0) return std::nullopt;
+  const double q = -0.5 * (q1 + std::copysign(std::sqrt(discriminant), q1));
+  double first = kInfinity;
+  for (const double root : {q2 != 0 ? q / q2 : kInfinity, q != 0 ? q0 / q : kInfinity}) {
+    const bool sinks = q1 + 2 * q2 * root <= 0;  // the other root is where it comes out again
+    if (sinks && root >= 0 && root <= length) first = std::min(first, root);
+  }
+  if (first < kInfinity) return range.from + first;
+  // A root that rounding has put just beyond the shared edge would be missed by both cells.
+  if (q0 + length * (q1 + length * q2) <= 0) return range.to;
+  return std::nullopt;
+}
+
+struct Node {
+  int level = 0;
+  std::int32_t column = 0, row = 0;
+  double from = 0, to = 0;
+};
+
+// When the ray crosses the line `at`; and whether it is beyond it (towards greater values) at time t.
+struct Crossing {
+  double at, start, speed, t;
+  Crossing(double line, double begin, double velocity)
+      : at(line), start(begin), speed(velocity), t(velocity != 0 ? (line - begin) / velocity : kInfinity) {}
+  bool beyond(double now) const {
+    if (speed > 0) return now >= t;
+    if (speed < 0) return now < t;
+    return start >= at;
+  }
+};
+
+}  // namespace
+
+Terrain::Pyramid::Pyramid(Grid<float> given, double left, double top, double dx, double dy, double sd)
+    : heights(std::move(given)), x0(left), y0(top), step_x(dx), step_y(dy), height_sd(sd) {
+  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+  lowest = kInfinity, highest = -kInfinity;
+  for (float& h : heights.cells()) {
+    if (!std::isfinite(h)) {
+      h = kNaN;
+      continue;
+    }
+    lowest = std::min<double>(lowest, h), highest = std::max<double>(highest, h);
+  }
+  ceiling = highest;
+  if (lowest > highest) lowest = highest = kNaN, ceiling = kInfinity;
+
+  Grid<float> cells(heights.columns() - 1, heights.rows() - 1);
+  for (std::int64_t j = 0; j < cells.rows(); ++j)
+    for (std::int64_t i = 0; i < cells.columns(); ++i) {
+      const float a = heights(i, j), b = heights(i + 1, j), c = heights(i, j + 1), d = heights(i + 1, j + 1);
+      // Unknown ground may be as high as any known.
+      cells(i, j) = std::isfinite(a + b + c + d) ? std::max({a, b, c, d}) : static_cast<float>(ceiling);
+    }
+  levels.push_back(std::move(cells));
+  while (levels.back().columns() > 1 || levels.back().rows() > 1) {
+    const Grid<float>& fine = levels.back();
+    Grid<float> coarse((fine.columns() + 1) / 2, (fine.rows() + 1) / 2);
+    for (std::int64_t j = 0; j < coarse.rows(); ++j)
+      for (std::int64_t i = 0; i < coarse.columns(); ++i) {
+        const std::int64_t i1 = std::min(2 * i + 1, fine.columns() - 1),
+                           j1 = std::min(2 * j + 1, fine.rows() - 1);
+        coarse(i, j) = std::max({fine(2 * i, 2 * j), fine(i1, 2 * j), fine(2 * i, j1), fine(i1, j1)});
+      }
+    levels.push_back(std::move(coarse));
+  }
+}
+
+std::optional<Terrain::Pyramid::Place> Terrain::Pyramid::locate(double x, double y) const {
+  const double column = (x - x0) / step_x, row = (y0 - y) / step_y;
+  const std::int64_t columns = heights.columns(), rows = heights.rows();
+  if (!(column >= 0 && row >= 0 && column <= double(columns - 1) && row <= double(rows - 1)))
+    return std::nullopt;
+  const auto c = std::min(static_cast<std::int64_t>(column), columns - 2);
+  const auto r = std::min(static_cast<std::int64_t>(row), rows - 2);
+  return Place{c, r, column - double(c), row - double(r)};
+}
+
+Patch Terrain::Pyramid::patch(std::int64_t column, std::int64_t row) const {
+  const double h00 = heights(column, row), h10 = heights(column + 1, row), h01 = heights(column, row + 1),
+               h11 = heights(column + 1, row + 1);
+  return {h00, h10 - h00, h01 - h00, h11 - h10 - h01 + h00};
+}
+
+GridRay Terrain::Pyramid::in_cells(const Eigen::Vector3d& origin, const Eigen::Vector3d& along) const {
+  return {(origin.x() - x0) / step_x, (y0 - origin.y()) / step_y, origin.z(),
+          along.x() / step_x,         -along.y() / step_y,        along.z()};
+}
+
+std::optional<RayRange> Terrain::Pyramid::inside(const GridRay& ray) const {
+  RayRange range{0, kInfinity};
+  const auto clip = [&range](double start, double speed, double low, double high) {
+    if (speed == 0) {
+      if (!(start >= low && start <= high)) range.to = -kInfinity;
+      return;
+    }
+    double enter = (low - start) / speed, leave = (high - start) / speed;
+    if (enter > leave) std::swap(enter, leave);
+    range.from = std::max(range.from, enter);
+    range.to = std::min(range.to, leave);
+  };
+  clip(ray.u, ray.du, 0, double(heights.columns() - 1));
+  clip(ray.v, ray.dv, 0, double(heights.rows() - 1));
+  clip(ray.z, ray.dz, -kInfinity, ceiling + kTouching);
+  if (!(range.from <= range.to)) return std::nullopt;
+  return range;
+}
+
+PyramidHit Terrain::Pyramid::first_hit(const GridRay& ray, const RayRange& range,
+                                       UnknownCells unknown) const {
+  // Front to back through the quadtree; each node cuts its piece of the ray at its middle lines, so pieces
+  // join without gaps whatever the rounding.
+  std::array<Node, 128> stack;  // at most 3 per level, 32 levels
+  std::size_t size = 0;
+  const auto push = [&](int level, std::int32_t i, std::int32_t j, double from, double to) {
+    const Grid<float>& bound = levels[std::size_t(level)];
+    i = std::min(i, static_cast<std::int32_t>(bound.columns() - 1));
+    j = std::min(j, static_cast<std::int32_t>(bound.rows() - 1));
+    const double low = std::min(ray.z + from * ray.dz, ray.z + to * ray.dz);
+    if (low <= bound(i, j)) stack[size++] = {level, i, j, from, to};
+  };
+  // A vertical ray below the extent's ground would otherwise have an endless piece.
+  const double deepest = ray.dz < 0 ? (lowest - 1 - ray.z) / ray.dz : kInfinity;
+  const double last = std::min(range.to, std::max(range.from, deepest));
+  push(int(levels.size()) - 1, 0, 0, range.from, std::isfinite(last) ? last : range.from);
+  while (size > 0) {
+    const Node node = stack[--size];
+    if (node.level == 0) {
+      const Patch ground = patch(node.column, node.row);
+      if (!ground.known()) {
+        if (unknown == UnknownCells::stop) return {RayEnd::no_data, node.from};
+        continue;
+      }
+      if (const auto t = meet(ground, ray, {node.from, node.to}, node.column, node.row))
+        return {RayEnd::ground, *t};
+      continue;
+    }
+    const double half = double(std::int64_t{1} << (node.level - 1));
+    const Crossing u((2 * node.column + 1) * half, ray.u, ray.du);
+    const Crossing v((2 * node.row + 1) * half, ray.v, ray.dv);
+    const double cut_u = u.t > node.from && u.t < node.to ? u.t : node.to;
+    const double cut_v = v.t > node.from && v.t < node.to ? v.t : node.to;
+    const double first = std::min(cut_u, cut_v), second = std::max(cut_u, cut_v);
+    const auto child = [&](double from, double to, bool after_u, bool after_v) {
+      const bool right = u.beyond(node.from) != after_u, below = v.beyond(node.from) != after_v;
+      push(node.level - 1, 2 * node.column + right, 2 * node.row + below, from, to);
+    };
+    if (second < node.to) child(second, node.to, true, true);  // the last piece lies deepest in the stack
+    if (first < node.to) child(first, second, cut_u <= cut_v, cut_v <= cut_u);
+    child(node.from, first, false, false);
+  }
+  return {};
+}
+
+}  // namespace waymark
