@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include "geo/body.hpp"
+#include "geo/crs.hpp"
+namespace waymark {
+
+/// Metres between neighbouring places of a map, whatever its CRS: a plane that touches the ellipsoid between
+/// the two. Exact for a projected or local CRS (whose plane is taken as it is); for degrees better than
+/// 1e-4 of the distance up to 100 km and 80 degrees of latitude. Longitudes may differ by whole turns.
+class MapPlane {
+ public:
+  explicit MapPlane(const Crs& crs);
+
+  /// East and north from a to b, metres. a and b in CRS units.
+  Eigen::Vector2d offset(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
+    if (!geographic_) return (b - a) * metres_per_unit_;
+    const Eigen::Vector2d scale = metres_per_degree((a.y() + b.y()) / 2);
+    return {wrapped(b.x() - a.x()) * scale.x(), (b.y() - a.y()) * scale.y()};
+  }
+  /// The place that lies `east_north` metres from a, CRS units.
+  Eigen::Vector2d moved(const Eigen::Vector2d& a, const Eigen::Vector2d& east_north) const {
+    if (!geographic_) return a + east_north / metres_per_unit_;
+    const double north = east_north.y() / metres_per_degree(a.y()).y();
+    const Eigen::Vector2d scale = metres_per_degree(a.y() + north / 2);
+    return {wrapped(a.x() + east_north.x() / scale.x()), a.y() + east_north.y() / scale.y()};
+  }
+  /// The place in space, metres: chords are never longer than offsets by more than 1e-4. z = 0 on a plane.
+  Eigen::Vector3d in_space(const Eigen::Vector2d& place) const;
+  bool flat() const { return !geographic_; }
+
+ private:
+  Eigen::Vector2d metres_per_degree(double latitude) const;
+  static double wrapped(double degrees);
+
+  bool geographic_ = false;
+  double metres_per_unit_ = 1;
+  double radius_ = 0, eccentricity2_ = 0;
+};
+
+}  // namespace waymark
