@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/craters/pixel_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace waymark {
+
+double pixel_noise(const float* pixels, int columns, int rows) {
+  double sum = 0, squares = 0;
+  const auto count = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  if (count == 0) return 0;
+  for (std::size_t i = 0; i < count; ++i) sum += pixels[i];
+  const double mean = sum / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) squares += (pixels[i] - mean) * (pixels[i] - mean);
+  const double floor = 1e-3 * std::sqrt(squares / static_cast<double>(count));
+  if (columns < 3 || rows < 3) return floor;
+
+  std::vector<float> differences;
+  const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(count) / 2e5)));
+  for (int y = 1; y + 1 < rows; y += step)
+    for (int x = 1; x + 1 < columns; x += step) {
+      const float* p = pixels + static_cast<std::ptrdiff_t>(y) * columns + x;
+      differences.push_back(std::abs(4 * p[0] - 2 * (p[-1] + p[1] + p[-columns] + p[columns]) +
+                                     p[-columns - 1] + p[-columns + 1] + p[columns - 1] + p[columns + 1]));
+    }
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return std::max(floor, *middle / 0.6745 / 6);  // 6: norm of the difference's weights
+}
+
+}  // namespace waymark
