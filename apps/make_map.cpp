@@ -5,22 +5,19 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <map>
 
 #include "apps/log.hpp"
+#include "apps/map_of_run.hpp"
 #include "apps/output_path.hpp"
 #include "apps/progress.hpp"
 #include "apps/registries.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
-#include "geo/dem_handle.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 
 namespace waymark {
 namespace {
-
-using Landmarks = std::vector<Landmark>;
 
 void check_request(const Job& job, const MapRequest& request, const RunOptions& options) {
   const bool share = options.shard || !options.unit.empty();
@@ -49,47 +46,6 @@ RunRecord record_of(const Job& job, const RunResult& result, const Session& sess
           .seconds = result.report.seconds,
           .seed = 0,  // no stage draws random numbers
           .inputs = result.inputs};
-}
-
-/// "1204 mountain_top", "12 crater, 3 rock".
-std::string count_by_type(const Landmarks& landmarks) {
-  std::map<std::string, std::int64_t> counts;
-  for (const Landmark& landmark : landmarks) ++counts[all_types()[landmark.type].name];
-  std::string text;
-  for (const auto& [type, count] : counts)
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
-  return text.empty() ? "no landmarks" : text;
-}
-
-std::string cell_count(double cells) {
-  return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
-}
-
-/// Where the map is, and how fast it was made: no rate where results of an earlier run were used again.
-std::string summary(const RunResult& result, const std::string& map) {
-  const auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
-  std::string text =
-      fmt::format("{}: {}\n{}, {:.2f} s", map, count_by_type(result.artifact<Landmarks>("landmarks")),
-                  cell_count(cells), result.report.seconds);
-  std::int64_t reused = 0;
-  for (const StageReport& stage : result.report.stages) reused += stage.reused;
-  if (reused == 0 && result.report.seconds > 0)
-    text += fmt::format(", {:.2g} M cells/s", cells / 1e6 / result.report.seconds);
-  return text + "\n";
-}
-
-void write(const Job& job, const RunResult& result, const MapRequest& request, const Session& session,
-           std::chrono::system_clock::time_point started) {
-  const auto& landmarks = result.artifact<Landmarks>("landmarks");
-  const auto& dem = result.artifact<DemHandle>("dem");
-  MapContents contents;
-  contents.types = all_types();
-  contents.crs = dem->geometry().where.crs;
-  contents.landmarks = landmarks;
-  contents.run = record_of(job, result, session, started);
-  if (request.with_dem) contents.dem_coverage = dem;
-  write_map(request.map, contents, {.empty_tables = {"mountain_top"}});  // what all stages of today make
-  say(summary(result, request.map));
 }
 
 /// Failures are told even by a quiet program.
@@ -145,10 +101,13 @@ int make_map(const Job& job, const MapRequest& request, RunOptions options, cons
   for (const InputFile& input : result.inputs) log_detail(fmt::format("{}  {}", input.sha256, input.path));
   tell(result.report);
   if (request.map.empty()) return result.report.exit_code();
-  if (result.report.complete())
-    write(job, result, request, session, started);
-  else
+  if (!makes_map(job.pipeline, result)) {
     say(request.map + " is not written: some units of work are missing\n");
+    return result.report.exit_code();
+  }
+  const MapContents contents = map_of_run(result, record_of(job, result, session, started), request.with_dem);
+  write_map(request.map, contents, {.empty_tables = types_found(job.pipeline)});
+  say(summary_of_run(result, contents, request.map));
   return result.report.exit_code();
 }
 

@@ -19,8 +19,9 @@ struct MapRequest {
 std::vector<Argument> map_arguments(MapRequest& request);
 
 /// Runs the job and writes the map: the one code path behind every command that makes one. Ends with a
-/// summary on standard error. Returns the exit code; where units failed the map is not written and an older
-/// one is kept. The output is refused before any work is done.
+/// summary on standard error. Returns the exit code. Where single images failed the map is made of the
+/// others; where it cannot be made it is not written and an older one is kept. The output is refused before
+/// any work is done.
 int make_map(const Job& job, const MapRequest& request, RunOptions options, const Session& session);
 
 /// Engine options that every command shares: threads, hashes of any GDAL path, progress.

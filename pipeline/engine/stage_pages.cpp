@@ -141,6 +141,7 @@ std::string stage_as_json(const Step& step) {
               {"halo", spec.halo},
               {"inputs", ports_json(spec.inputs)},
               {"outputs", ports_json(spec.outputs)},
+              {"finds", spec.finds},
               {"options", option_schemas(step)}}
       .dump(2);
 }

@@ -30,6 +30,8 @@ struct StageSpec {
   std::int64_t halo = 0;  ///< cells a tile-scope stage looks at beyond its tile
   std::vector<InputPort> inputs = {};
   std::vector<OutputPort> outputs = {};
+  /// Landmark types it finds: they get a table in the map though none of them may be there.
+  std::vector<std::string> finds = {};
 };
 
 }  // namespace waymark

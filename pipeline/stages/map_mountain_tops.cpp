@@ -30,7 +30,8 @@ struct MapMountainTops {
             .version = 1,
             .scope = Scope::map,
             .inputs = {dem, summits, isolation},
-            .outputs = {landmarks}};
+            .outputs = {landmarks},
+            .finds = {"mountain_top"}};
   }
 
   static void run(const Options& options, StageContext& unit) {

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/map_of_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "apps/registries.hpp"
+#include "geo/dem_handle.hpp"
+#include "pipeline/fusion/image_view.hpp"
+
+namespace waymark {
+namespace {
+
+ImageRecord record_of(const ImageView& image) {
+  ImageRecord record{.name = image.name,
+                     .footprint = image.footprint,
+                     .camera_json = camera_json(image),
+                     .taken_utc = image.taken_utc,
+                     .sun_azimuth = {},
+                     .sun_elevation = {},
+                     .gsd = {}};
+  if (image.sun) record.sun_azimuth = image.sun->azimuth;
+  if (image.sun) record.sun_elevation = image.sun->elevation;
+  if (std::isfinite(image.gsd)) record.gsd = Meters{image.gsd};
+  return record;
+}
+
+/// "1204 mountain_top", "12 crater, 3 rock".
+std::string count_by_type(const MapContents& contents) {
+  std::map<std::string, std::int64_t> counts;
+  for (const Landmark& landmark : contents.landmarks) ++counts[contents.types[landmark.type].name];
+  std::string text;
+  for (const auto& [type, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
+  return text.empty() ? "no landmarks" : text;
+}
+
+std::string cell_count(double cells) {
+  return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
+}
+
+}  // namespace
+
+bool makes_map(const Pipeline& pipeline, const RunResult& result) {
+  const auto writes_landmarks = [](const std::unique_ptr<Step>& step) {
+    return std::ranges::count(step->spec().outputs, "landmarks", &OutputPort::name) > 0;
+  };
+  const auto made = result.artifacts<std::vector<Landmark>>("landmarks").size();
+  return static_cast<std::ptrdiff_t>(made) == std::ranges::count_if(pipeline.steps(), writes_landmarks);
+}
+
+MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem) {
+  const auto& dem = result.artifact<DemHandle>("dem");
+  MapContents contents;
+  contents.types = all_types();
+  contents.crs = dem->geometry().where.crs;
+  contents.run = std::move(run);
+  if (with_dem) contents.dem_coverage = dem;
+  for (const auto& made : result.artifacts<std::vector<Landmark>>("landmarks"))
+    contents.landmarks.insert(contents.landmarks.end(), made->begin(), made->end());
+  for (const auto& made : result.artifacts<std::vector<Observation>>("evidence"))
+    contents.observations.insert(contents.observations.end(), made->begin(), made->end());
+  for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
+    for (const ImageView& image : *made) contents.images.push_back(record_of(image));
+  return contents;
+}
+
+std::vector<std::string> types_found(const Pipeline& pipeline) {
+  std::vector<std::string> types;
+  for (const auto& step : pipeline.steps())
+    types.insert(types.end(), step->spec().finds.begin(), step->spec().finds.end());
+  std::ranges::sort(types);
+  types.erase(std::ranges::unique(types).begin(), types.end());
+  return types;
+}
+
+std::string summary_of_run(const RunResult& result, const MapContents& contents, const std::string& map) {
+  const auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
+  std::string text = fmt::format("{}: {}\n", map, count_by_type(contents));
+  if (!contents.images.empty()) {
+    const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);
+    text += fmt::format("{} images, {} observations, {} of them used, {:.2f} s\n", contents.images.size(),
+                        contents.observations.size(), used, result.report.seconds);
+    return text;
+  }
+  text += fmt::format("{}, {:.2f} s", cell_count(cells), result.report.seconds);
+  std::int64_t reused = 0;
+  for (const StageReport& stage : result.report.stages) reused += stage.reused;
+  if (reused == 0 && result.report.seconds > 0)
+    text += fmt::format(", {:.2g} M cells/s", cells / 1e6 / result.report.seconds);
+  return text + "\n";
+}
+
+}  // namespace waymark

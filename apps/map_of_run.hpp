@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "geodb/map_contents.hpp"
+#include "pipeline/engine/runner.hpp"
+namespace waymark {
+
+/// Whether every stage that writes landmarks has written them. Images that failed do not prevent it.
+bool makes_map(const Pipeline& pipeline, const RunResult& result);
+
+/// All that the stages of a run made for a map: `landmarks`, and where there are images, `evidence` and
+/// `image_views`. Stage by stage.
+MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem);
+
+/// Landmark types the stages find, whether any is there or not.
+std::vector<std::string> types_found(const Pipeline& pipeline);
+
+/// Where the map is, what it holds and how fast it was made; no rate where earlier results were used again.
+std::string summary_of_run(const RunResult& result, const MapContents& contents, const std::string& map);
+
+}  // namespace waymark
