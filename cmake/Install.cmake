@@ -12,7 +12,7 @@ configure_package_config_file(cmake/WaymarkConfig.cmake.in WaymarkConfig.cmake I
 write_basic_package_version_file(WaymarkConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(EXPORT WaymarkTargets NAMESPACE Waymark:: DESTINATION ${package_dir} COMPONENT development)
 install(FILES ${PROJECT_BINARY_DIR}/WaymarkConfig.cmake ${PROJECT_BINARY_DIR}/WaymarkConfigVersion.cmake
-              cmake/Catalogue.cmake
+              cmake/Catalogue.cmake cmake/FindOpenCVParts.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
 # The program writes its own man page and completion, so that they cannot disagree with it.
