@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/camera.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+
+#include "geo/lens_field.hpp"
+
+namespace waymark {
+namespace {
+
+struct Distorted {
+  Eigen::Vector2d at;
+  Eigen::Matrix2d jacobian;
+};
+
+// Brown 1966 with OpenCV's rational radial term: k = k1 k2 p1 p2 k3 k4 k5 k6.
+Distorted brown(const std::array<double, 8>& k, const Eigen::Vector2d& p) {
+  const double x = p.x(), y = p.y(), s = x * x + y * y;
+  const double over = 1 + s * (k[0] + s * (k[1] + s * k[4])), d_over = k[0] + s * (2 * k[1] + s * 3 * k[4]);
+  const double under = 1 + s * (k[5] + s * (k[6] + s * k[7])), d_under = k[5] + s * (2 * k[6] + s * 3 * k[7]);
+  const double radial = over / under,
+               slope = 2 * (d_over - radial * d_under) / under;  // d radial = slope r dr
+  const double p1 = k[2], p2 = k[3];
+  Distorted out;
+  out.at = {x * radial + 2 * p1 * x * y + p2 * (s + 2 * x * x),
+            y * radial + p1 * (s + 2 * y * y) + 2 * p2 * x * y};
+  const double mixed = slope * x * y + 2 * p1 * x + 2 * p2 * y;
+  out.jacobian << radial + slope * x * x + 2 * p1 * y + 6 * p2 * x, mixed,  //
+      mixed, radial + slope * y * y + 6 * p1 * y + 2 * p2 * x;
+  return out;
+}
+
+// Kannala and Brandt 2006 as OpenCV has it: the angle from the axis, theta, lands at radius
+// theta (1 + k1 theta^2 + ... + k4 theta^8).
+double fisheye_radius(const std::array<double, 8>& k, double theta) {
+  const double s = theta * theta;
+  return theta * (1 + s * (k[0] + s * (k[1] + s * (k[2] + s * k[3]))));
+}
+
+double fisheye_slope(const std::array<double, 8>& k, double theta) {
+  const double s = theta * theta;
+  return 1 + s * (3 * k[0] + s * (5 * k[1] + s * (7 * k[2] + s * 9 * k[3])));
+}
+
+double radial_radius(const std::array<double, 8>& k, double r) {
+  const double s = r * r;
+  return r * (1 + s * (k[0] + s * (k[1] + s * k[4]))) / (1 + s * (k[5] + s * (k[6] + s * k[7])));
+}
+
+// The r in [0, field) with f(r) = target, f increasing: bisection, after the bracket is found by doubling.
+template <class Function>
+std::optional<double> invert_increasing(const Function& f, double target, double field) {
+  double low = 0, high = std::min(field, std::max(target, 1e-3));
+  while (f(high) < target) {
+    if (high >= field || high > 1e6) return std::nullopt;
+    low = high;
+    high = std::min(2 * high, field);
+  }
+  for (int step = 0; step < 60 && high - low > 1e-16 * high; ++step) {
+    const double middle = (low + high) / 2;
+    (f(middle) < target ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+// Newton from `guess`; nothing unless it ends within the field, on the branch that holds the centre.
+std::optional<Eigen::Vector2d> refine_brown(const Camera& camera, const Eigen::Vector2d& goal,
+                                            Eigen::Vector2d p, double field) {
+  constexpr double kClose = 1e-13;  // of the focal length
+  constexpr double kEnough = 1e-9;
+  for (int step = 0; step < 30; ++step) {
+    const Distorted here = brown(camera.distortion, p);
+    const Eigen::Vector2d miss = here.at - goal;
+    const double determinant = here.jacobian.determinant();
+    if (!(determinant > 0) || !(p.norm() < field)) return std::nullopt;
+    const double scale = 1 + goal.norm();
+    if (miss.norm() < kClose * scale) return p;
+    const Eigen::Vector2d next = p - here.jacobian.inverse() * miss;
+    if ((next - p).norm() < 1e-16 * scale)
+      return miss.norm() < kEnough * scale ? std::optional(p) : std::nullopt;
+    p = next;
+  }
+  const Distorted here = brown(camera.distortion, p);
+  const bool found = (here.at - goal).norm() < kEnough && here.jacobian.determinant() > 0 && p.norm() < field;
+  return found ? std::optional(p) : std::nullopt;
+}
+
+std::optional<Eigen::Vector2d> undistort_brown(const Camera& camera, const Eigen::Vector2d& goal) {
+  if (camera.distortion == std::array<double, 8>{}) return goal;
+  const double field = field_of(camera);
+  if (goal.norm() < field)
+    if (const auto p = refine_brown(camera, goal, goal, field)) return p;
+  const double radius = goal.norm();
+  if (!(radius > 0)) return std::nullopt;
+  const auto start =
+      invert_increasing([&](double r) { return radial_radius(camera.distortion, r); }, radius, field);
+  if (!start) return std::nullopt;
+  return refine_brown(camera, goal, goal * (*start / radius), field);
+}
+
+std::optional<Eigen::Vector3d> undistort_fisheye(const Camera& camera, const Eigen::Vector2d& goal) {
+  const auto& k = camera.distortion;
+  const double radius = goal.norm();
+  if (!(radius > 0)) return radius == 0 ? std::optional(Eigen::Vector3d(0, 0, 1)) : std::nullopt;
+  auto theta = invert_increasing([&](double t) { return fisheye_radius(k, t); }, radius, field_of(camera));
+  if (!theta) return std::nullopt;
+  const double slope = fisheye_slope(k, *theta);
+  if (slope > 0) *theta -= (fisheye_radius(k, *theta) - radius) / slope;
+  const double sine = std::sin(*theta);
+  return Eigen::Vector3d(goal.x() / radius * sine, goal.y() / radius * sine, std::cos(*theta));
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector2d> project(const Camera& camera, const Point<CameraFrame>& point) {
+  const Eigen::Vector3d& at = point.xyz;
+  if (!(at.z() > 0)) return std::nullopt;
+  Eigen::Vector2d seen = at.head<2>() / at.z();
+  if (camera.lens == Camera::Lens::fisheye) {
+    const double radius = seen.norm(), theta = std::atan(radius);
+    if (!(theta < field_of(camera))) return std::nullopt;
+    if (radius > 0) seen *= fisheye_radius(camera.distortion, theta) / radius;
+  } else if (camera.distortion != std::array<double, 8>{}) {
+    if (!(seen.norm() < field_of(camera))) return std::nullopt;
+    const Distorted there = brown(camera.distortion, seen);
+    if (!(there.jacobian.determinant() > 0)) return std::nullopt;
+    seen = there.at;
+  }
+  const Eigen::Vector2d pixel(camera.fx * seen.x() + camera.skew * seen.y() + camera.cx,
+                              camera.fy * seen.y() + camera.cy);
+  return pixel.allFinite() ? std::optional(pixel) : std::nullopt;
+}
+
+std::optional<Direction<CameraFrame>> ray(const Camera& camera, const Eigen::Vector2d& pixel) {
+  if (!pixel.allFinite()) return std::nullopt;
+  const double y = (pixel.y() - camera.cy) / camera.fy;
+  const Eigen::Vector2d goal((pixel.x() - camera.cx - camera.skew * y) / camera.fx, y);
+  if (camera.lens == Camera::Lens::fisheye) {
+    const auto along = undistort_fisheye(camera, goal);
+    if (!along) return std::nullopt;
+    return Direction<CameraFrame>{*along};
+  }
+  const auto seen = undistort_brown(camera, goal);
+  if (!seen) return std::nullopt;
+  return Direction<CameraFrame>{Eigen::Vector3d(seen->x(), seen->y(), 1).normalized()};
+}
+
+std::optional<Ray<GridFrame>> ray(const PosedCamera& view, const Eigen::Vector2d& pixel) {
+  const auto along = ray(view.camera, pixel);
+  if (!along) return std::nullopt;
+  return Ray<GridFrame>{view.centre(), view.grid_from_camera * *along};
+}
+
+std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<GridFrame>& point) {
+  // Subtracting first keeps millimetres where northings have seven digits.
+  const Eigen::Vector3d away = point.xyz - view.grid_from_camera.transform.translation();
+  return project(view.camera,
+                 Point<CameraFrame>{view.grid_from_camera.transform.linear().transpose() * away});
+}
+
+}  // namespace waymark
