@@ -14,7 +14,6 @@ namespace {
 
 struct CellKey {
   std::int64_t x = 0, y = 0, z = 0;
-  friend bool operator==(const CellKey&, const CellKey&) = default;
 };
 
 std::uint64_t hash(const CellKey& key) {
@@ -25,47 +24,52 @@ std::uint64_t hash(const CellKey& key) {
   return h ^ (h >> 32);
 }
 
+struct Entry {
+  Eigen::Vector3d place;
+  std::uint32_t item = 0;
+  std::uint32_t tag = 0;  // of its cell
+};
+
 // Places whose reach is at most `reach` and more than half of it, by cell. Two places of a level, or one and
 // a place of a finer level, reach each other only if their cells touch.
 class Level {
  public:
-  Level(double reach, bool flat, std::vector<std::uint32_t> items, std::span<const Eigen::Vector3d> places)
-      : cell_(std::max(2 * reach, 1e-9)), flat_(flat), items_(std::move(items)) {
+  Level(double reach, bool flat, std::span<const std::uint32_t> items,
+        std::span<const Eigen::Vector3d> places)
+      : cell_(std::max(2 * reach, 1e-9)), flat_(flat), entries_(items.size()) {
     std::size_t slots = 16;
-    while (slots < 2 * items_.size()) slots *= 2;
+    while (slots < 2 * items.size()) slots *= 2;
     mask_ = slots - 1;
     // Counting sort by slot: items of one slot lie side by side, ascending.
     starts_.assign(slots + 1, 0);
-    std::vector<std::uint32_t> slot(items_.size());
-    for (std::size_t i = 0; i < items_.size(); ++i) {
-      slot[i] = static_cast<std::uint32_t>(hash(key(places[items_[i]])) & mask_);
-      ++starts_[slot[i] + 1];
+    std::vector<std::uint64_t> cell(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      cell[i] = hash(key(places[items[i]]));
+      ++starts_[(cell[i] & mask_) + 1];
     }
     for (std::size_t s = 0; s < slots; ++s) starts_[s + 1] += starts_[s];
-    std::vector<std::uint32_t> sorted(items_.size()), next(starts_.begin(), starts_.end() - 1);
-    for (std::size_t i = 0; i < items_.size(); ++i) sorted[next[slot[i]]++] = items_[i];
-    items_ = std::move(sorted);
+    std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
+    for (std::size_t i = 0; i < items.size(); ++i)
+      entries_[next[cell[i] & mask_]++] = {places[items[i]], items[i], tag(cell[i])};
   }
 
-  /// Calls visit(item) for the items of all cells that touch the place's; some items may lie further away,
-  /// none comes twice.
-  void around(const Eigen::Vector3d& place, std::span<const Eigen::Vector3d> places,
-              const auto& visit) const {
+  /// Calls visit(entry) for the entries of all cells that touch the place's; some may lie further away, and
+  /// where hashes collide one may come twice.
+  void around(const Eigen::Vector3d& place, const auto& visit) const {
     const CellKey centre = key(place);
     const std::int64_t dz_end = flat_ ? 0 : 1;
     for (std::int64_t dz = -dz_end; dz <= dz_end; ++dz)
       for (std::int64_t dy = -1; dy <= 1; ++dy)
         for (std::int64_t dx = -1; dx <= 1; ++dx) {
-          const CellKey cell{centre.x + dx, centre.y + dy, centre.z + dz};
-          const std::size_t s = hash(cell) & mask_;
+          const std::uint64_t cell = hash({centre.x + dx, centre.y + dy, centre.z + dz});
+          const std::size_t s = cell & mask_;
           for (std::uint32_t i = starts_[s]; i < starts_[s + 1]; ++i)
-            if (key(places[items_[i]]) == cell) visit(items_[i]);
+            if (entries_[i].tag == tag(cell)) visit(entries_[i]);
         }
   }
 
-  std::span<const std::uint32_t> items() const { return items_; }
-
  private:
+  static std::uint32_t tag(std::uint64_t cell) { return static_cast<std::uint32_t>(cell >> 32); }
   CellKey key(const Eigen::Vector3d& p) const {
     return {static_cast<std::int64_t>(std::floor(p.x() / cell_)),
             static_cast<std::int64_t>(std::floor(p.y() / cell_)),
@@ -75,7 +79,8 @@ class Level {
   double cell_;
   bool flat_;
   std::size_t mask_ = 0;
-  std::vector<std::uint32_t> items_, starts_;
+  std::vector<Entry> entries_;
+  std::vector<std::uint32_t> starts_;
 };
 
 }  // namespace
@@ -92,8 +97,7 @@ std::vector<IndexPair> close_pairs(std::span<const Eigen::Vector3d> places, std:
     flat = flat && places[i].z() == 0;
   }
   std::map<int, Level> levels;
-  for (auto& [e, items] : by_exponent)
-    levels.try_emplace(e, std::ldexp(1.0, e), flat, std::move(items), places);
+  for (const auto& [e, items] : by_exponent) levels.try_emplace(e, std::ldexp(1.0, e), flat, items, places);
 
   constexpr std::size_t kChunk = 4096;
   std::vector<std::vector<IndexPair>> found((places.size() + kChunk - 1) / kChunk);
@@ -101,10 +105,11 @@ std::vector<IndexPair> close_pairs(std::span<const Eigen::Vector3d> places, std:
     const std::size_t end = std::min(places.size(), (chunk + 1) * kChunk);
     for (std::size_t i = chunk * kChunk; i < end; ++i)
       for (auto level = levels.find(exponent[i]); level != levels.end(); ++level)
-        level->second.around(places[i], places, [&](std::uint32_t j) {
+        level->second.around(places[i], [&](const Entry& entry) {
+          const std::uint32_t j = entry.item;
           if (i == j || (exponent[j] == exponent[i] && j < i)) return;
           const double together = reach[i] + reach[j];
-          if ((places[i] - places[j]).squaredNorm() > together * together) return;
+          if ((places[i] - entry.place).squaredNorm() > together * together) return;
           const auto a = static_cast<std::uint32_t>(i);
           const IndexPair pair{std::min(a, j), std::max(a, j)};
           if (wanted(pair.first, pair.second)) found[chunk].push_back(pair);
@@ -119,6 +124,7 @@ std::vector<IndexPair> close_pairs(std::span<const Eigen::Vector3d> places, std:
     part = {};
   }
   tbb::parallel_sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }
 

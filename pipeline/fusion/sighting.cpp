@@ -13,12 +13,17 @@ double largest_eigenvalue(const Eigen::Matrix2d& m) {
   return mean + std::hypot(half, m(0, 1));
 }
 
-bool nested(const Sighting& a, const Sighting& b, double distance, const IdentityRules& rules) {
+bool inside(const Sighting& a, const Sighting& b, double distance, const IdentityRules& rules) {
   if (!(std::abs(a.log_size - b.log_size) <= std::log(rules.alike))) return false;
   return distance <= rules.overlap * std::exp(std::min(a.log_size, b.log_size));
 }
 
 }  // namespace
+
+bool stand_in_each_other(const Sighting& a, const Sighting& b, const MapPlane& plane,
+                         const IdentityRules& rules) {
+  return inside(a, b, plane.offset(a.at, b.at).norm(), rules);
+}
 
 double reach(const Sighting& sighting, const IdentityRules& rules) {
   const double by_position = std::sqrt(rules.position_gate * largest_eigenvalue(sighting.covariance));
@@ -37,7 +42,7 @@ std::optional<double> same_thing_cost(const Sighting& a, const Sighting& b, cons
                           sum(0, 0) * apart.y() * apart.y()) /
                          determinant;
   double cost = squared + std::log(determinant);
-  const bool stands_inside = nested(a, b, distance, rules);
+  const bool stands_inside = inside(a, b, distance, rules);
   if (!(squared <= rules.position_gate) && !stands_inside) return std::nullopt;
   const double size_apart = a.log_size - b.log_size;
   if (std::isnan(size_apart)) return cost;

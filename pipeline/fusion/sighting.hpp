@@ -38,6 +38,10 @@ struct IdentityRules {
 /// How far the place may be from another of the same thing, the other's own reach added, metres.
 double reach(const Sighting& sighting, const IdentityRules& rules);
 
+/// Bodies of like size, the centre of one well inside the other: one thing, see IdentityRules::overlap.
+bool stand_in_each_other(const Sighting& a, const Sighting& b, const MapPlane& plane,
+                         const IdentityRules& rules);
+
 /// Twice the negative log likelihood that two sightings of one type and independent errors show one thing, up
 /// to a constant: squared Mahalanobis distance + ln det of the summed covariance, and the same for ln(size).
 /// The determinant keeps a vague sighting from being everybody's best match. Nothing where the rules say that

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/merging.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "landmarks/uid.hpp"
+#include "pipeline/fusion/body_radius.hpp"
+#include "pipeline/fusion/clustering.hpp"
+
+namespace waymark {
+namespace {
+
+using Index = std::uint32_t;
+
+// A covariance that can be inverted: never sharper than the rules believe, nothing that is not a number.
+Eigen::Matrix2d believable(const Eigen::Matrix3d& covariance, double radius, const MergeRules& rules) {
+  const double least = std::max(rules.least_sd, rules.least_sd_of_radius * radius);
+  Eigen::Matrix2d plane = covariance.topLeftCorner<2, 2>();
+  plane = (plane + plane.transpose()).eval() / 2;
+  const bool sound = plane.allFinite() && plane(0, 0) >= 0 && plane(1, 1) >= 0 &&
+                     plane.determinant() >= -1e-9 * plane.trace() * plane.trace();
+  if (!sound) plane = Eigen::Matrix2d::Identity() * std::max(radius, 1.0) * std::max(radius, 1.0);
+  return plane + Eigen::Matrix2d::Identity() * least * least;
+}
+
+struct Sightings {
+  std::vector<Sighting> all;
+  std::vector<Index> observation;  // of each
+};
+
+Sightings sightings_of(std::span<const Observation> observations, const TypeRegistry& types,
+                       const MergeRules& rules) {
+  std::vector<std::optional<BodySize>> sizes;
+  for (const LandmarkType& type : types) sizes.push_back(body_size(type));
+  std::map<std::string_view, Index> sources;  // by name, so numbers do not depend on who comes first
+  for (const Observation& o : observations) sources.emplace(o.source, 0);
+  Index next = 0;
+  for (auto& [_, number] : sources) number = next++;
+
+  Sightings found;
+  for (Index i = 0; i < observations.size(); ++i) {
+    const Observation& o = observations[i];
+    if (!o.rejected.empty()) continue;
+    Sighting s;
+    const auto body = body_radius(sizes.at(o.type), o.features);
+    s.at = o.position.xyz.head<2>();
+    s.covariance = believable(o.covariance, body ? body->metres : 0, rules);
+    if (body) s.log_size = std::log(body->metres), s.log_size_variance = body->log_variance;
+    s.type = o.type;
+    s.source = sources.at(o.source);
+    found.all.push_back(s);
+    found.observation.push_back(i);
+  }
+  return found;
+}
+
+// Marks the less confident of two observations of one source that stand in one place.
+void reject_twins(Sightings& seen, std::vector<Observation>& observations, const MapPlane& plane,
+                  const IdentityRules& rules) {
+  std::vector<Eigen::Vector3d> places;
+  std::vector<double> reach;
+  for (const Sighting& s : seen.all) {
+    places.push_back(plane.in_space(s.at));
+    reach.push_back(std::isnan(s.log_size) ? 0 : rules.overlap * std::exp(s.log_size));
+  }
+  const auto pairs = close_pairs(places, reach, [&](Index a, Index b) {
+    const Sighting &s = seen.all[a], &t = seen.all[b];
+    return s.type == t.type && s.source == t.source && stand_in_each_other(s, t, plane, rules);
+  });
+  if (pairs.empty()) return;
+  // The most confident first: whom it puts out puts nobody out.
+  std::vector<std::vector<Index>> others(seen.all.size());
+  std::vector<Index> order;
+  for (const IndexPair& pair : pairs) {
+    others[pair.first].push_back(pair.second), others[pair.second].push_back(pair.first);
+    order.push_back(pair.first), order.push_back(pair.second);
+  }
+  const auto confidence = [&](Index i) { return observations[seen.observation[i]].confidence; };
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return confidence(a) != confidence(b) ? confidence(a) > confidence(b) : a < b;
+  });
+  order.erase(std::unique(order.begin(), order.end()), order.end());
+  std::vector<bool> out(seen.all.size(), false);
+  for (const Index i : order)
+    if (!out[i])
+      for (const Index other : others[i]) out[other] = true;
+  Sightings kept;
+  for (Index i = 0; i < seen.all.size(); ++i) {
+    if (out[i]) {
+      observations[seen.observation[i]].rejected = "seen twice in one image";
+      continue;
+    }
+    kept.all.push_back(seen.all[i]);
+    kept.observation.push_back(seen.observation[i]);
+  }
+  seen = std::move(kept);
+}
+
+// Weighted by inverse covariances; heights join in where all are known.
+void place(Landmark& landmark, std::span<const Index> members, const Sightings& seen,
+           std::span<const Observation> observations, const MapPlane& plane, const MergeRules& rules) {
+  const auto covariance_of = [&](Index m) {
+    Eigen::Matrix3d c = observations[seen.observation[m]].covariance;
+    c.topLeftCorner<2, 2>() = seen.all[m].covariance;
+    if (!c.allFinite()) {  // height unknown: it says nothing about the place
+      c.row(2).setZero(), c.col(2).setZero();
+      c(2, 2) = 1;
+    }
+    c(2, 2) += rules.least_sd * rules.least_sd;
+    return c;
+  };
+  const bool height_known = std::all_of(members.begin(), members.end(), [&](Index m) {
+    return observations[seen.observation[m]].covariance.allFinite();
+  });
+  const Point<MapCrs>& origin = observations[seen.observation[members[0]]].position;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = covariance_of(members[0]), sharpest = covariance;
+  for (const Index m : members.subspan(1)) {
+    const Point<MapCrs>& p = observations[seen.observation[m]].position;
+    Eigen::Vector3d apart;
+    apart << plane.offset(origin.xyz.head<2>(), p.xyz.head<2>()), p.xyz.z() - origin.xyz.z();
+    const Eigen::Matrix3d own = covariance_of(m);
+    const Eigen::Matrix3d gain = covariance * (covariance + own).inverse();
+    mean += gain * (apart - mean);
+    covariance -= (gain * covariance).eval();
+    covariance = (covariance + covariance.transpose()).eval() / 2;
+    if (own.topLeftCorner<2, 2>().determinant() < sharpest.topLeftCorner<2, 2>().determinant())
+      sharpest = own;
+  }
+  landmark.position.xyz << plane.moved(origin.xyz.head<2>(), mean.head<2>()), origin.xyz.z() + mean.z();
+  landmark.covariance = (1 - rules.common_share) * covariance + rules.common_share * sharpest;
+  if (!height_known) {
+    landmark.covariance.row(2).setConstant(std::nan(""));
+    landmark.covariance.col(2).setConstant(std::nan(""));
+  }
+}
+
+FeatureSet merged_features(std::span<const Index> members, const Sightings& seen,
+                           std::span<const Observation> observations, const LandmarkType& type,
+                           const MergeRules& rules) {
+  FeatureSet merged(type.features.size());
+  for (std::size_t f = 0; f < merged.size(); ++f) {
+    std::vector<WeightedValue> values;
+    std::vector<double> variances;
+    for (const Index m : members) {
+      const Observation& o = observations[seen.observation[m]];
+      if (f >= o.features.size() || !o.features[f].known() || std::isnan(o.features[f].value)) continue;
+      values.push_back({o.features[f].value, std::max(o.confidence, 1e-6)});
+      variances.push_back(o.features[f].variance);
+    }
+    const bool told = std::all_of(variances.begin(), variances.end(), [](double v) { return v > 0; });
+    if (rules.weights == FeatureWeights::precision && told)
+      for (std::size_t i = 0; i < values.size(); ++i) values[i].weight /= variances[i];
+    if (!values.empty()) merged[f] = merge(values, type.features[f].scale);
+  }
+  return merged;
+}
+
+std::vector<Observation> by_content(std::vector<Observation> observations) {
+  std::vector<Index> order(observations.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  tbb::parallel_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return comes_before(observations[a], observations[b]);
+  });
+  std::vector<Observation> sorted;
+  sorted.reserve(observations.size());
+  for (const Index i : order) sorted.push_back(std::move(observations[i]));
+  return sorted;
+}
+
+bool landmark_before(const Landmark& a, const Landmark& b) {
+  const auto& p = a.position.xyz;
+  const auto& q = b.position.xyz;
+  return std::tie(a.type, p.x(), p.y(), p.z()) < std::tie(b.type, q.x(), q.y(), q.z());
+}
+
+}  // namespace
+
+MergedObservations merge_observations(std::vector<Observation> observations, const TypeRegistry& types,
+                                      const Crs& crs, const MergeRules& rules) {
+  observations = by_content(std::move(observations));
+  const MapPlane plane(crs);
+  Sightings seen = sightings_of(observations, types, rules);
+  reject_twins(seen, observations, plane, rules.identity);
+  const std::vector<Index> thing = cluster(seen.all, plane, rules.identity);
+
+  // Members of one thing side by side, ascending.
+  std::vector<Index> members(thing.size());
+  std::iota(members.begin(), members.end(), Index{0});
+  std::stable_sort(members.begin(), members.end(), [&](Index a, Index b) { return thing[a] < thing[b]; });
+  std::vector<Index> starts;
+  for (Index i = 0; i < members.size(); ++i)
+    if (i == 0 || thing[members[i]] != thing[members[i - 1]]) starts.push_back(i);
+  const std::size_t count = starts.size();
+  starts.push_back(static_cast<Index>(members.size()));
+
+  std::vector<Landmark> made(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    const auto own = std::span<const Index>(members).subspan(starts[i], starts[i + 1] - starts[i]);
+    Landmark& landmark = made[i];
+    landmark.type = seen.all[own[0]].type;
+    const LandmarkType& type = types[landmark.type];
+    place(landmark, own, seen, observations, plane, rules);
+    landmark.features = merged_features(own, seen, observations, type, rules);
+    landmark.attributes.resize(type.attributes.size());
+    landmark.quality.seen = static_cast<int>(own.size());
+    landmark.quality.of_feature.resize(type.features.size());
+    landmark.observations = static_cast<int>(own.size());
+  });
+
+  std::vector<Index> order(count);
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return landmark_before(made[a], made[b]); });
+  MergedObservations merged;
+  merged.landmarks.reserve(count);
+  for (const Index i : order) merged.landmarks.push_back(std::move(made[i]));
+  assign_uids(types, crs, merged.landmarks);
+  for (Index rank = 0; rank < count; ++rank)
+    for (Index i = starts[order[rank]]; i < starts[order[rank] + 1]; ++i)
+      observations[seen.observation[members[i]]].landmark_uid = merged.landmarks[rank].uid;
+  merged.evidence = std::move(observations);
+  return merged;
+}
+
+}  // namespace waymark
