@@ -10,6 +10,8 @@
 #include "testbed/scene.hpp"
 namespace waymark {
 
+class LitGround;
+
 enum class Photometry {
   lambert,          ///< cos i
   lommel_seeliger,  ///< 2 cos i / (cos i + cos e): the Moon at small phase
@@ -42,6 +44,9 @@ View camera_view(PosedCamera camera);
 /// The picture, in [0, 1] (full scale 1), not yet quantised. Pixels that look past the terrain are NaN.
 /// `noise_seed` decides the noise alone. The same for any number of threads.
 Pixels render_view(const Scene& scene, const View& view, const Exposure& exposure, std::uint64_t noise_seed);
+/// The same, for many pictures under one sun: `ground` was made from this scene and exposure.sun.
+Pixels render_view(const Scene& scene, const LitGround& ground, const View& view, const Exposure& exposure,
+                   std::uint64_t noise_seed);
 
 /// A crater or rock as it appears in a view: the ellipse of its outline on the ground, in pixels.
 /// Nothing where a part of it is outside the picture. Occlusion is not looked at.

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/noise.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/random.hpp"
+
+namespace waymark {
+namespace {
+
+// 64 directions, so that the hash of a lattice point needs no trigonometry.
+struct Directions {
+  std::array<double, 64> x, y;
+  Directions() {
+    for (std::size_t i = 0; i < 64; ++i) {
+      x[i] = std::cos((double(i) + 0.5) * std::numbers::pi / 32);
+      y[i] = std::sin((double(i) + 0.5) * std::numbers::pi / 32);
+    }
+  }
+};
+const Directions kDirections;
+
+std::uint32_t lattice_hash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
+  std::uint32_t h = seed + static_cast<std::uint32_t>(x) * 0x9e3779b1u;
+  h = (h ^ (h >> 15)) * 0x85ebca6bu;
+  h += static_cast<std::uint32_t>(y) * 0xc2b2ae35u;
+  h = (h ^ (h >> 13)) * 0x27d4eb2fu;
+  return h ^ (h >> 16);
+}
+
+constexpr double kUnitSpread = 3.4;  // measured: gradient noise itself has a standard deviation of 0.29
+
+Grid<float> enlarged(const Grid<float>& coarse, std::int64_t columns, std::int64_t rows) {
+  // Fine node i lies at coarse node 2 + i / 2.
+  const auto between = [](float a, float b, float c, float d) { return (9 * (b + c) - a - d) / 16; };
+  Grid<float> wide(columns, coarse.rows());
+  for (std::int64_t j = 0; j < coarse.rows(); ++j)
+    for (std::int64_t i = 0; i < columns; ++i) {
+      const std::int64_t c = 2 + i / 2;
+      wide(i, j) = i % 2 == 0 ? coarse(c, j)
+                              : between(coarse(c - 1, j), coarse(c, j), coarse(c + 1, j), coarse(c + 2, j));
+    }
+  Grid<float> result(columns, rows);
+  tbb::parallel_for(std::int64_t{0}, rows, [&](std::int64_t j) {
+    const std::int64_t r = 2 + j / 2;
+    for (std::int64_t i = 0; i < columns; ++i)
+      result(i, j) =
+          j % 2 == 0 ? wide(i, r) : between(wide(i, r - 1), wide(i, r), wide(i, r + 1), wide(i, r + 2));
+  });
+  return result;
+}
+
+}  // namespace
+
+NoiseValue gradient_noise(double x, double y, std::uint32_t seed) {
+  const double floor_x = std::floor(x), floor_y = std::floor(y);
+  const auto ix = static_cast<std::int32_t>(floor_x), iy = static_cast<std::int32_t>(floor_y);
+  const double u = x - floor_x, v = y - floor_y;
+  const auto corner = [&](int right, int up) {
+    const std::uint32_t k = lattice_hash(ix + right, iy + up, seed) & 63u;
+    const double gx = kDirections.x[k], gy = kDirections.y[k];
+    return NoiseValue{gx * (u - right) + gy * (v - up), gx, gy};
+  };
+  const NoiseValue a = corner(0, 0), b = corner(1, 0), c = corner(0, 1), d = corner(1, 1);
+  const double su = u * u * u * (u * (u * 6 - 15) + 10), sv = v * v * v * (v * (v * 6 - 15) + 10);
+  const double du = 30 * u * u * (u - 1) * (u - 1), dv = 30 * v * v * (v - 1) * (v - 1);
+  const double k1 = b.value - a.value, k2 = c.value - a.value, k3 = a.value - b.value - c.value + d.value;
+  const auto blend = [&](double p, double q, double r, double s) {
+    return p + su * (q - p) + sv * (r - p) + su * sv * (p - q - r + s);
+  };
+  return {kUnitSpread * blend(a.value, b.value, c.value, d.value),
+          kUnitSpread * (blend(a.dx, b.dx, c.dx, d.dx) + du * (k1 + k3 * sv)),
+          kUnitSpread * (blend(a.dy, b.dy, c.dy, d.dy) + dv * (k2 + k3 * su))};
+}
+
+NoiseValue Fractal::at(double x, double y) const {
+  NoiseValue sum;
+  double height = amplitude, length = longest;
+  for (std::uint32_t octave = 0; length > shortest; ++octave, length /= 2, height *= std::exp2(-hurst)) {
+    // Each octave is turned by the golden angle, so that their lattices never line up.
+    const double turn = 2.399963 * octave, c = std::cos(turn) / length, s = std::sin(turn) / length;
+    const NoiseValue n = gradient_noise(c * x - s * y, s * x + c * y, seed + octave * 0x51ed270bu);
+    sum.value += height * n.value;
+    sum.dx += height * (c * n.dx + s * n.dy);
+    sum.dy += height * (c * n.dy - s * n.dx);
+  }
+  return sum;
+}
+
+Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes) {
+  constexpr double kEnough = 16;  // nodes per wavelength above which a grid twice as coarse will do
+  Fractal here = fractal;
+  Grid<float> result(nodes.columns, nodes.rows, 0.0F);
+  if (fractal.longest > kEnough * nodes.step) {
+    Fractal coarser = fractal;
+    double shortest = fractal.longest;
+    std::uint32_t octaves = 0;
+    for (; shortest > std::max(fractal.shortest, kEnough * nodes.step); shortest /= 2) ++octaves;
+    coarser.shortest = shortest;
+    const NodeGrid twice{nodes.columns / 2 + 5, nodes.rows / 2 + 5, nodes.x0 - 4 * nodes.step,
+                         nodes.y0 + 4 * nodes.step, 2 * nodes.step};
+    result = enlarged(fractal_grid(coarser, twice), nodes.columns, nodes.rows);
+    here.longest = shortest;
+    here.amplitude *= std::exp2(-fractal.hurst * octaves);
+  }
+  if (!(here.longest > here.shortest)) return result;
+  const auto first = static_cast<std::uint32_t>(std::lround(std::log2(fractal.longest / here.longest)));
+  tbb::parallel_for(std::int64_t{0}, nodes.rows, [&](std::int64_t j) {
+    for (std::int64_t i = 0; i < nodes.columns; ++i) {
+      double height = here.amplitude, length = here.longest, sum = 0;
+      for (std::uint32_t octave = first; length > here.shortest;
+           ++octave, length /= 2, height *= std::exp2(-here.hurst)) {
+        const double turn = 2.399963 * octave, c = std::cos(turn) / length, s = std::sin(turn) / length;
+        const double x = nodes.x(i), y = nodes.y(j);
+        sum +=
+            height * gradient_noise(c * x - s * y, s * x + c * y, fractal.seed + octave * 0x51ed270bu).value;
+      }
+      result(i, j) += static_cast<float>(sum);
+    }
+  });
+  return result;
+}
+
+}  // namespace waymark

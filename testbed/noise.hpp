@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+#include "core/grid.hpp"
+namespace waymark {
+
+/// Height and slope of gradient noise (Perlin 2002, quintic fade): smooth, mean 0, standard deviation about
+/// 1, features about one unit wide. The same everywhere for the same seed.
+struct NoiseValue {
+  double value = 0, dx = 0, dy = 0;
+};
+NoiseValue gradient_noise(double x, double y, std::uint32_t seed);
+
+/// Octaves of gradient noise, from `longest` halved and halved again while above `shortest` (metres);
+/// the standard deviation of the first is `amplitude`, of each next one 2^-hurst of the one before.
+struct Fractal {
+  double longest = 100, shortest = 1, amplitude = 1, hurst = 0.85;
+  std::uint32_t seed = 0;
+
+  NoiseValue at(double x, double y) const;
+};
+
+/// Nodes of a grid: metres of the first, which may be anywhere, and between them (x right, y up: rows go
+/// down).
+struct NodeGrid {
+  std::int64_t columns = 0, rows = 0;
+  double x0 = 0, y0 = 0, step = 1;
+
+  double x(std::int64_t column) const { return x0 + double(column) * step; }
+  double y(std::int64_t row) const { return y0 - double(row) * step; }
+  double column(double at_x) const { return (at_x - x0) / step; }
+  double row(double at_y) const { return (y0 - at_y) / step; }
+};
+
+/// The fractal at every node. Long octaves are made on coarse grids and enlarged by cubic interpolation
+/// (error below 1 % of the octave), so the cost is that of about three octaves.
+Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes);
+
+}  // namespace waymark

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+#include "core/grid.hpp"
+#include "testbed/crater_field.hpp"
+#include "testbed/ground.hpp"
+#include "testbed/noise.hpp"
+namespace waymark {
+
+/// The terrain's nodes: the site, north-up, its middle at (east, north).
+NodeGrid nodes_of(const Ground& ground);
+
+/// Relief down to `shortest` metres.
+Fractal relief_fractal(const Relief& relief, double shortest, std::uint64_t seed);
+
+/// Relief coarser than `finest` metres, with the site's slope and mountains.
+Grid<float> coarse_relief(const Ground& ground, const NodeGrid& nodes, double finest, std::uint64_t seed);
+
+/// How much of each node dunes cover, [0, 1], and how high they stand there (added to `heights`).
+Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGrid& nodes, std::uint64_t seed);
+
+/// Normal albedo of each node.
+Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>& dunes,
+                  const std::vector<CraterPlan>& craters, std::uint64_t seed);
+
+}  // namespace waymark
