@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/body_motion.hpp"
+
+namespace waymark {
+
+MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  MotionJacobians j;
+  j.by_pose << 1, 0, -s * step.x - c * step.y,  //
+      0, 1, c * step.x - s * step.y,            //
+      0, 0, 1;
+  j.by_step << c, -s, 0,  //
+      s, c, 0,            //
+      0, 0, 1;
+  return j;
+}
+
+PoseEstimate moved(const PoseEstimate& estimate, const BodyMotion& motion) {
+  const MotionJacobians j = motion_jacobians(estimate.pose, motion.step);
+  const Eigen::Matrix3d p = j.by_pose * estimate.covariance * j.by_pose.transpose() +
+                            j.by_step * motion.covariance * j.by_step.transpose();
+  return {estimate.pose * motion.step, (p + p.transpose()) / 2};
+}
+
+BodyMotion then(const BodyMotion& first, const BodyMotion& second) {
+  const PoseEstimate both = moved({first.step, first.covariance}, second);
+  return {both.pose, both.covariance};
+}
+
+Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
+  for (int j = 0; j < 3; ++j) {
+    double left = covariance(j, j) - root.row(j).head(j).squaredNorm();
+    if (!(left > 1e-14 * covariance(j, j))) continue;  // nothing new in this direction
+    root(j, j) = std::sqrt(left);
+    for (int i = j + 1; i < 3; ++i)
+      root(i, j) = (covariance(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);
+  }
+  return root;
+}
+
+}  // namespace waymark
