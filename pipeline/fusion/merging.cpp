@@ -166,9 +166,8 @@ FeatureSet merged_features(std::span<const Index> members, const Sightings& seen
 std::vector<Observation> by_content(std::vector<Observation> observations) {
   std::vector<Index> order(observations.size());
   std::iota(order.begin(), order.end(), Index{0});
-  tbb::parallel_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return comes_before(observations[a], observations[b]);
-  });
+  tbb::parallel_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return comes_before(observations[a], observations[b]); });
   std::vector<Observation> sorted;
   sorted.reserve(observations.size());
   for (const Index i : order) sorted.push_back(std::move(observations[i]));

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/rock_height.hpp"
+
+#include <cmath>
+
+namespace waymark {
+
+std::optional<Measured> height_from_shadow(const Measured& reach_px, const ImageView& image,
+                                           const GroundPlane& ground, const Sun& sun, double slope_sd) {
+  const Eigen::Vector3d light = towards(sun).unit;
+  const double level = light.head<2>().norm();
+  if (!(light.z() > 0) || !(level > 1e-6)) return std::nullopt;
+  const Eigen::Vector2d away = -light.head<2>() / level;
+  const double rise = ground.gradient.dot(away);
+  const double per_metre = light.z() / level + rise;  // height per level metre of shadow
+  if (!(per_metre > 0.02)) return std::nullopt;
+
+  const Eigen::Vector3d step(away.x(), away.y(), rise);
+  const auto from = appears(image, {ground.at - 0.5 * step}), to = appears(image, {ground.at + 0.5 * step});
+  if (!from || !to) return std::nullopt;
+  const double pixels_per_metre = (*to - *from).norm();
+  if (!(pixels_per_metre > 0)) return std::nullopt;
+
+  const double length = reach_px.value / pixels_per_metre, length_sd = reach_px.sd / pixels_per_metre;
+  const double cosine2 = level * level;  // of the elevation
+  const double from_sun = length / cosine2 * to_radians(sun.sd).value;
+  return Measured{length * per_metre,
+                  std::hypot(per_metre * length_sd, std::hypot(from_sun, length * slope_sd))};
+}
+
+}  // namespace waymark

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include "core/detection.hpp"
+#include "geo/sun.hpp"
+#include "pipeline/fusion/sight.hpp"
+namespace waymark {
+
+/// Height of a thing from the reach of its shadow on sloping ground, seen from anywhere:
+/// H = L (tan e + g), L the level length of the shadow, e the sun's elevation, g the rise of the ground per
+/// metre away from the sun (a shadow that falls downhill is longer than the thing is high).
+/// The reach is turned into metres along the shadow's own direction on the ground, which corrects oblique
+/// views. `slope_sd` is the standard deviation of g. Nothing where the sun is below the ground's own horizon
+/// (tan e + g <= 0.02: the ground is in its own shadow) or the shadow's direction is not seen.
+std::optional<Measured> height_from_shadow(const Measured& reach_px, const ImageView& image,
+                                           const GroundPlane& ground, const Sun& sun, double slope_sd);
+
+}  // namespace waymark
