@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/craters/crater_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/craters/pixel_noise.hpp"
+
+namespace waymark {
+namespace {
+
+using Patch = std::array<float, kPatchSide * kPatchSide>;
+
+float bilinear(const Pixels& image, double x, double y) {
+  x = std::clamp(x, 0.0, double(image.columns() - 1));
+  y = std::clamp(y, 0.0, double(image.rows() - 1));
+  const auto column = std::min(static_cast<std::int64_t>(x), std::max<std::int64_t>(0, image.columns() - 2));
+  const auto row = std::min(static_cast<std::int64_t>(y), std::max<std::int64_t>(0, image.rows() - 2));
+  const auto right = std::min(column + 1, image.columns() - 1), below = std::min(row + 1, image.rows() - 1);
+  const auto a = static_cast<float>(x - double(column)), b = static_cast<float>(y - double(row));
+  return (1 - b) * ((1 - a) * image(column, row) + a * image(right, row)) +
+         b * ((1 - a) * image(column, below) + a * image(right, below));
+}
+
+// Zero mean, unit deviation, clipped to 3; returns the deviation.
+double normalise(Patch& patch) {
+  double sum = 0, squares = 0;
+  for (const float v : patch) sum += v;
+  const double mean = sum / patch.size();
+  for (const float v : patch) squares += (v - mean) * (v - mean);
+  const double deviation = std::sqrt(squares / patch.size());
+  const double scale = deviation > 0 ? 1 / deviation : 0;
+  for (float& v : patch) v = static_cast<float>(std::clamp((v - mean) * scale, -3.0, 3.0));
+  return deviation;
+}
+
+void thumbnail(const Patch& patch, float* out) {
+  for (int y = 0; y < kThumbSide; ++y)
+    for (int x = 0; x < kThumbSide; ++x) {
+      const float* p = patch.data() + 2 * y * kPatchSide + 2 * x;
+      *out++ = (p[0] + p[1] + p[kPatchSide] + p[kPatchSide + 1]) / 4;
+    }
+}
+
+// Signed directions, shared linearly between two bins; one block, norm 1 clipped at 0.25 and scaled to ~1.
+void gradients(const Patch& patch, float* out) {
+  std::array<float, kHogCells * kHogCells * kHogBins> cells{};
+  constexpr int cell_side = kPatchSide / kHogCells;
+  for (int y = 0; y < kPatchSide; ++y)
+    for (int x = 0; x < kPatchSide; ++x) {
+      const auto at = [&](int i, int j) {
+        return patch[static_cast<std::size_t>(std::clamp(j, 0, kPatchSide - 1) * kPatchSide +
+                                              std::clamp(i, 0, kPatchSide - 1))];
+      };
+      const float gx = at(x + 1, y) - at(x - 1, y), gy = at(x, y + 1) - at(x, y - 1);
+      const float strength = std::sqrt(gx * gx + gy * gy);
+      if (!(strength > 0)) continue;
+      const float turn = std::atan2(gy, gx) / static_cast<float>(2 * std::numbers::pi) + 0.5F;
+      const float place = turn * kHogBins;
+      const int bin = static_cast<int>(place);
+      const float part = place - static_cast<float>(bin);
+      float* cell = cells.data() + (y / cell_side * kHogCells + x / cell_side) * kHogBins;
+      cell[bin % kHogBins] += strength * (1 - part);
+      cell[(bin + 1) % kHogBins] += strength * part;
+    }
+  float squares = 1e-6F;
+  for (const float v : cells) squares += v * v;
+  const float scale = 1 / std::sqrt(squares);
+  for (const float v : cells) *out++ = 4 * std::min(0.25F, v * scale);
+}
+
+}  // namespace
+
+PatchSource::PatchSource(const Pixels& image, Radians sun_angle) : sun_angle_(sun_angle) {
+  auto levels = std::make_shared<std::vector<Level>>();
+  levels->push_back({image, 1, 1});
+  noise_ = std::max(1e-12, pixel_noise(image.cells().data(), static_cast<int>(image.columns()),
+                                       static_cast<int>(image.rows())));
+  while (std::min(levels->back().pixels.columns(), levels->back().pixels.rows()) >= 16) {
+    Pixels& fine = levels->back().pixels;
+    const cv::Mat1f from(static_cast<int>(fine.rows()), static_cast<int>(fine.columns()),
+                         fine.cells().data());
+    Pixels half((fine.columns() + 1) / 2, (fine.rows() + 1) / 2);
+    cv::Mat1f to(static_cast<int>(half.rows()), static_cast<int>(half.columns()), half.cells().data());
+    cv::resize(from, to, to.size(), 0, 0, cv::INTER_AREA);
+    const double shrink_x = double(image.columns()) / double(half.columns()),
+                 shrink_y = double(image.rows()) / double(half.rows());
+    levels->push_back({std::move(half), shrink_x, shrink_y});
+  }
+  levels_ = std::move(levels);
+}
+
+std::array<float, kPatchSide * kPatchSide> PatchSource::patch(const CraterCandidate& c, bool mirrored) const {
+  const double step = kPatchReach * c.diameter / kPatchSide;  // pixels of the image between samples
+  const auto wanted = static_cast<int>(std::floor(std::log2(std::max(1.0, step / 0.75))));
+  const Level& level = (*levels_)[std::min(static_cast<std::size_t>(wanted), levels_->size() - 1)];
+  const double towards_x = std::cos(sun_angle_.value), towards_y = std::sin(sun_angle_.value);
+  Patch patch{};
+  for (int j = 0; j < kPatchSide; ++j)
+    for (int i = 0; i < kPatchSide; ++i) {
+      const double u = (i - (kPatchSide - 1) / 2.0) * step,
+                   v = (mirrored ? -1 : 1) * (j - (kPatchSide - 1) / 2.0) * step;
+      const double x = c.x + u * towards_x - v * towards_y, y = c.y + u * towards_y + v * towards_x;
+      patch[static_cast<std::size_t>(j * kPatchSide + i)] =
+          bilinear(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
+    }
+  return patch;
+}
+
+CraterFeatures PatchSource::features(const CraterCandidate& c, double correlation, bool mirrored) const {
+  CraterFeatures result{};
+  Patch seen = patch(c, mirrored);
+  const double deviation = normalise(seen);
+  thumbnail(seen, result.data());
+  gradients(seen, result.data() + kThumbSide * kThumbSide);
+  float* rest = result.data() + kCraterFeatures - 3;
+  rest[0] = static_cast<float>(4 * correlation - 2);
+  rest[1] = static_cast<float>(std::clamp(std::log2((deviation + 1e-12) / noise_) / 3, -1.0, 2.0));
+  rest[2] = static_cast<float>(std::clamp(std::log2(c.diameter / 12), -1.0, 1.0));
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+#include "core/units.hpp"
+#include "geo/image_source.hpp"
+#include "pipeline/craters/crater_candidate.hpp"
+namespace waymark {
+
+inline constexpr int kPatchSide = 20;              ///< samples
+inline constexpr double kPatchReach = 1.6;         ///< radii from the middle to the edge
+inline constexpr int kHogCells = 5, kHogBins = 8;  ///< cells per side, directions per turn
+inline constexpr int kThumbSide = 10;              ///< the patch, 2 x 2 means
+inline constexpr int kCraterFeatures = kThumbSide * kThumbSide + kHogCells * kHogCells * kHogBins + 3;
+
+/// What the model sees of a candidate: the patch about it turned so that the sun stands at +x, brightness
+/// with zero mean and unit deviation, as a thumbnail; a histogram of oriented gradients (Dalal & Triggs 2005)
+/// of it; correlation, contrast against noise, and size.
+using CraterFeatures = std::array<float, kCraterFeatures>;
+
+/// An image prepared for sampling patches of any size: octaves of half size, of which patches are read so
+/// that a sample is never much finer or coarser than a pixel. Cheap to copy.
+class PatchSource {
+ public:
+  /// `image` has no NaN.
+  PatchSource(const Pixels& image, Radians sun_angle);
+
+  /// About 10 us. `mirrored`: seen in a mirror along the light, as likely a crater as before.
+  CraterFeatures features(const CraterCandidate& candidate, double correlation, bool mirrored = false) const;
+  /// Brightness at kPatchSide x kPatchSide samples, +x towards the sun, row by row; not normalised.
+  std::array<float, kPatchSide * kPatchSide> patch(const CraterCandidate& candidate,
+                                                   bool mirrored = false) const;
+  Radians sun_angle() const { return sun_angle_; }
+
+ private:
+  struct Level {
+    Pixels pixels;
+    double shrink_x = 1, shrink_y = 1;
+  };
+  std::shared_ptr<const std::vector<Level>> levels_;
+  Radians sun_angle_;
+  double noise_ = 1;
+};
+
+}  // namespace waymark

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+#include "pipeline/craters/crater_model.hpp"
+#include "pipeline/craters/shaded_scene.hpp"
+namespace waymark {
+
+/// One thing to learn.
+struct CraterExample {
+  CraterFeatures features{};
+  bool crater = false;
+  float along = 0, across = 0, log_size = 0;  ///< as in CraterVerdict; of craters only
+};
+
+/// The bowls found in a scene, with what they are: a crater where they overlap a clear one by half, nothing
+/// where they touch none; those in between, and those on unclear craters, are left out. Each twice, once
+/// mirrored.
+std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t seed);
+
+struct CraterTraining {
+  int rounds = 12;  ///< times through the examples
+  std::vector<int> hidden{32, 16};
+  double decay = 1e-4;  ///< of weights, per step and learning rate
+  std::uint64_t seed = 1;
+};
+
+/// Adam (Kingma & Ba 2015) over cross entropy and, for craters, squared error of place and size. One thread,
+/// the same weights everywhere but for the last bits of exp. `progress` gets the round and its mean loss.
+CraterModel train_crater_model(std::span<const CraterExample> examples, const CraterTraining& training,
+                               const std::function<void(int round, double loss)>& progress = {});
+
+}  // namespace waymark
