@@ -65,26 +65,32 @@ std::optional<double> invert_increasing(const Function& f, double target, double
   return (low + high) / 2;
 }
 
-// Newton from `guess`; nothing unless it ends within the field, on the branch that holds the centre.
+// Newton from `p`, with steps halved until they stay on the branch that holds the centre and come closer.
 std::optional<Eigen::Vector2d> refine_brown(const Camera& camera, const Eigen::Vector2d& goal,
                                             Eigen::Vector2d p, double field) {
-  constexpr double kClose = 1e-13;  // of the focal length
-  constexpr double kEnough = 1e-9;
-  for (int step = 0; step < 30; ++step) {
-    const Distorted here = brown(camera.distortion, p);
+  constexpr double kClose = 1e-13, kEnough = 1e-9;  // of the focal length
+  const auto on_branch = [&](const Eigen::Vector2d& at, const Distorted& seen) {
+    return at.norm() < field && seen.jacobian.determinant() > 0;
+  };
+  const double scale = 1 + goal.norm();
+  Distorted here = brown(camera.distortion, p);
+  if (!on_branch(p, here)) return std::nullopt;
+  for (int step = 0; step < 50; ++step) {
     const Eigen::Vector2d miss = here.at - goal;
-    const double determinant = here.jacobian.determinant();
-    if (!(determinant > 0) || !(p.norm() < field)) return std::nullopt;
-    const double scale = 1 + goal.norm();
     if (miss.norm() < kClose * scale) return p;
-    const Eigen::Vector2d next = p - here.jacobian.inverse() * miss;
-    if ((next - p).norm() < 1e-16 * scale)
-      return miss.norm() < kEnough * scale ? std::optional(p) : std::nullopt;
-    p = next;
+    Eigen::Vector2d move = here.jacobian.inverse() * miss;
+    bool closer = false;
+    for (int halving = 0; halving < 30 && !closer; ++halving, move /= 2) {
+      const Eigen::Vector2d next = p - move;
+      const Distorted there = brown(camera.distortion, next);
+      if (!on_branch(next, there) || !((there.at - goal).norm() < miss.norm())) continue;
+      closer = true;
+      p = next;
+      here = there;
+    }
+    if (!closer) break;
   }
-  const Distorted here = brown(camera.distortion, p);
-  const bool found = (here.at - goal).norm() < kEnough && here.jacobian.determinant() > 0 && p.norm() < field;
-  return found ? std::optional(p) : std::nullopt;
+  return (here.at - goal).norm() < kEnough * scale ? std::optional(p) : std::nullopt;
 }
 
 std::optional<Eigen::Vector2d> undistort_brown(const Camera& camera, const Eigen::Vector2d& goal) {
@@ -96,8 +102,9 @@ std::optional<Eigen::Vector2d> undistort_brown(const Camera& camera, const Eigen
   if (!(radius > 0)) return std::nullopt;
   const auto start =
       invert_increasing([&](double r) { return radial_radius(camera.distortion, r); }, radius, field);
-  if (!start) return std::nullopt;
-  return refine_brown(camera, goal, goal * (*start / radius), field);
+  // The tangential terms may reach a little beyond the largest radius of the radial ones.
+  const double from = start.value_or(std::isfinite(field) ? 0.95 * field : radius);
+  return refine_brown(camera, goal, goal * (from / radius), field);
 }
 
 std::optional<Eigen::Vector3d> undistort_fisheye(const Camera& camera, const Eigen::Vector2d& goal) {

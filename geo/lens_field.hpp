@@ -10,8 +10,8 @@ namespace waymark {
 /// The last lens asked about is remembered per thread.
 double field_of(const Camera& camera);
 
-/// The smallest positive root of a0 + a1 s + a2 s^2 + ..., infinity where there is none. Brackets between the
-/// roots of the derivative, then bisects to machine precision.
+/// The smallest s > 0 where a0 + a1 s + a2 s^2 + ... changes sign, infinity where there is none. Brackets
+/// between the roots of the derivative, then bisects to machine precision.
 double first_positive_root(const std::vector<double>& coefficients);
 
 }  // namespace waymark
