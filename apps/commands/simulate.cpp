@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "apps/command.hpp"
+#include "apps/log.hpp"
+#include "apps/session.hpp"
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "exporters/aside_folder.hpp"
+#include "exporters/image_file.hpp"
+#include "exporters/raster_file.hpp"
+#include "testbed/lit_ground.hpp"
+#include "testbed/scene_files.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string whole_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file && text.empty()) throw Error(ErrorCode::input, "cannot read the scenario", path);
+  return text;
+}
+
+class Simulate final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "simulate",
+        .group = Group::make,
+        .summary = "Make a landing site whose every rock and crater is known, with images of it",
+        .about =
+            "Writes into a folder: the DEM, the images, the camera file with the sun, a job that makes a map "
+            "of "
+            "them, and the truth to judge the map by. The same scenario and seed give the same bytes, "
+            "whatever the "
+            "number of threads.\n\nThe scenario is JSON; every field has a default: docs/testbed.md.",
+        .arguments = {file_word("SCENARIO.json", &scenario_, "What to make"),
+                      Argument{"-o,--output", "DIR", &folder_, "Folder for the files; it may exist"}
+                          .needed()
+                          .offering(Offer::folder),
+                      {"--seed", "N", &seed_, "Another site of the same kind; default: the scenario's seed"}},
+        .examples = {
+            {"waymark simulate scenario.json -o landing", "dem.tif, images, cameras.json, truth, job.json"},
+            {"waymark run landing/job.json -o landing.gpkg", "The map of it"}}};
+  }
+
+  int run(const Session&) override {
+    Scenario scenario = read_scenario(whole_file(scenario_), scenario_);
+    if (seed_ >= 0) scenario.seed = seed_;
+    const Crs crs = scenario.crs == "local" ? Crs::local() : Crs::from_text(scenario.crs);
+    if (crs.kind() == CrsKind::geographic)
+      throw Error(ErrorCode::usage, fmt::format("crs {} is geographic: its units are degrees", scenario.crs),
+                  scenario_, "use a projected CRS or \"local\"");
+    const std::vector<Shot> shots = plan_shots(scenario);
+    scenario.ground = sized_for(scenario, shots);
+    const auto seed = static_cast<std::uint64_t>(scenario.seed);
+    const Scene scene = make_scene(scenario.ground, seed);
+    check_footprints(scene, shots);
+
+    const fs::path folder = folder_;
+    for (const char* part : {"images", "truth"}) {
+      std::error_code failed;
+      fs::create_directories(folder / part, failed);
+      if (failed) fail_output(folder / part, failed.message());
+    }
+    const GivenDem dem = given_dem(scenario, scene);
+    const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
+    write_raster(folder / "dem.tif", dem.heights,
+                 {crs, dem.x0 / unit, dem.y0 / unit, dem.cell / unit, -dem.cell / unit});
+    const LitGround ground(scene, scenario.exposure.sun);
+    for (const Shot& shot : shots) {
+      const Pixels image =
+          render_view(scene, ground, camera_view(shot.view), scenario.exposure, named_seed(seed, shot.name));
+      write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
+    }
+    const TruthTables truth = truth_tables(scenario, scene, shots);
+    write_file(folder / "cameras.json", camera_file(scenario, shots, false));
+    write_file(folder / "job.json", job_file(scenario));
+    write_file(folder / "scenario.json", scenario_json(scenario));
+    write_file(folder / "truth/cameras.json", camera_file(scenario, shots, true));
+    write_file(folder / "truth/landmarks.csv", truth.landmarks);
+    write_file(folder / "truth/ignored.csv", truth.ignored);
+    write_file(folder / "truth/detections.csv", truth.detections);
+    say(fmt::format("{}: {:.0f} x {:.0f} m, {} images, {} rocks, {} craters\n", folder_,
+                    scenario.ground.width, scenario.ground.height, shots.size(), scene.rocks.size(),
+                    scene.craters.size()));
+    return 0;
+  }
+
+ private:
+  std::string scenario_, folder_;
+  std::int64_t seed_ = -1;
+};
+
+}  // namespace
+
+void register_command_simulate(CommandTable& commands);
+void register_command_simulate(CommandTable& commands) {
+  commands.add<Simulate>();
+}
+
+}  // namespace waymark
