@@ -75,7 +75,7 @@ LitGround::LitGround(const Scene& scene, const Sun& sun)
   fine_.amplitude *= scene.ground.relief.roughness;
   fine_.seed = static_cast<std::uint32_t>(named_seed(scene.seed, "relief below the cells"));
 
-  Grid<Eigen::Vector4f> looks(nodes_.columns, nodes_.rows);
+  Grid<Eigen::Vector4f> looks(nodes_.columns, nodes_.rows, Eigen::Vector4f::Zero());
   const auto step = static_cast<float>(nodes_.step);
   tbb::parallel_for(std::int64_t{0}, nodes_.rows, [&](std::int64_t j) {
     const std::int64_t up = std::max<std::int64_t>(j - 1, 0), down = std::min(j + 1, nodes_.rows - 1);
@@ -89,7 +89,7 @@ LitGround::LitGround(const Scene& scene, const Sun& sun)
   looks_.push_back(std::move(looks));
   while (looks_.back().columns() > 8 && looks_.back().rows() > 8) {
     const auto& fine = looks_.back();
-    Grid<Eigen::Vector4f> coarse(fine.columns() / 2, fine.rows() / 2);
+    Grid<Eigen::Vector4f> coarse(fine.columns() / 2, fine.rows() / 2, Eigen::Vector4f::Zero());
     for (std::int64_t j = 0; j < coarse.rows(); ++j)
       for (std::int64_t i = 0; i < coarse.columns(); ++i)
         coarse(i, j) = 0.25F * (fine(2 * i, 2 * j) + fine(2 * i + 1, 2 * j) + fine(2 * i, 2 * j + 1) +
