@@ -5,8 +5,8 @@
 namespace waymark {
 
 /// A DEM on disk is its recipe: files, policy, CRS. Decoding opens the files again, headers only, so shards
-/// on other machines read the rasters themselves. Only a DEM that import_dem opened can be encoded
-/// (std::logic_error).
+/// on other machines read the rasters themselves. Only a DEM that import_dem opened, or level ground
+/// (PlaneDem), can be encoded (std::logic_error).
 template <>
 struct Codec<DemHandle> {
   static std::string encode(const DemHandle& dem);

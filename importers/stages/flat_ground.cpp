@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/plane_dem.hpp"
+#include "importers/dem_codec.hpp"
+#include "pipeline/engine/stage.hpp"
+
+namespace waymark {
+namespace {
+
+struct FlatGround {
+  struct Options {
+    std::string crs;
+    Meters height{0}, height_sd{0};
+    void describe(OptionVisitor& option) {
+      option(
+          "crs", crs,
+          {.help = "Projected coordinate reference system of the map: EPSG:32633, a PROJ string, or local"});
+      option("height", height, {.help = "Height of the level ground", .min = -2e4, .max = 1e5});
+      option(
+          "height_sd", height_sd,
+          {.help = "How far the real ground departs from it: places seen from the side become less certain",
+           .min = 0,
+           .max = 1e4});
+    }
+  };
+  static constexpr Out<DemHandle> dem{"dem"};
+
+  static StageSpec spec() {
+    return {.name = "flat_ground",
+            .summary = "Level ground for images where there is no DEM: the map has no heights then",
+            .version = 1,
+            .scope = Scope::map,
+            .outputs = {dem}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    if (options.crs.empty())
+      throw Error(ErrorCode::usage, "flat_ground does not know the map's CRS", "flat_ground.crs",
+                  "name a projected CRS (EPSG:32633), or local for metres on no body");
+    const Crs crs = options.crs == "local" ? Crs::local() : Crs::from_text(options.crs);
+    unit.write(dem,
+               DemHandle(std::make_shared<PlaneDem>(crs, options.height.value, options.height_sd.value)));
+  }
+};
+
+}  // namespace
+
+void register_stage_flat_ground(Registry& registry);
+void register_stage_flat_ground(Registry& registry) {
+  registry.add<FlatGround>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/valuing.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "pipeline/fusion/body_radius.hpp"
+#include "pipeline/fusion/footprint.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kSameSharpness = 1.1;
+
+struct Box {
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+};
+
+struct Images {
+  std::span<const ImageView> all;
+  std::vector<Box> boxes;  // of the footprints, CRS units
+  std::map<std::string_view, std::size_t> by_name;
+
+  explicit Images(std::span<const ImageView> images) : all(images), boxes(images.size()) {
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      by_name.emplace(images[i].name, i);
+      for (const auto& ring : images[i].footprint)
+        for (const auto& corner : ring)
+          boxes[i].low = boxes[i].low.cwiseMin(corner), boxes[i].high = boxes[i].high.cwiseMax(corner);
+    }
+  }
+  bool may_show(std::size_t i, const Eigen::Vector2d& at, double reach) const {
+    if (all[i].footprint.empty()) return false;
+    return (at.array() >= boxes[i].low.array() - reach).all() &&
+           (at.array() <= boxes[i].high.array() + reach).all();
+  }
+};
+
+struct Counted {
+  int seen = 0, visible = 0;
+};
+
+Counted count_by_paper(const Images& images, const std::set<std::size_t>& detected,
+                       const Eigen::Vector2d& at) {
+  double largest = 0;
+  for (const std::size_t i : detected) largest = std::max(largest, images.all[i].area);
+  Counted counted{static_cast<int>(detected.size()), 0};
+  for (std::size_t i = 0; i < images.all.size(); ++i) {
+    const auto& rings = images.all[i].footprint;
+    const bool covers =
+        detected.contains(i) ||
+        (images.all[i].area <= largest &&
+         std::any_of(rings.begin(), rings.end(), [&](const auto& ring) { return inside(ring, at); }));
+    counted.visible += covers;
+  }
+  return counted;
+}
+
+Counted count_by_sight(const Images& images, const std::set<std::size_t>& detected, const Visible& thing,
+                       const Terrain* terrain, double metres_per_unit, const ValuationRules& rules) {
+  // Where it was seen the outline may touch the border: only the sharpness matters.
+  double coarsest = 0;
+  for (const std::size_t i : detected) {
+    const auto gsd = shown_at(images.all[i], nullptr, {thing.at, 0}, {.margin = -1e9});
+    coarsest = std::max(coarsest, gsd.value_or(images.all[i].gsd));
+  }
+  Counted counted{static_cast<int>(detected.size()), 0};
+  const Eigen::Vector2d at = thing.at.head<2>() / metres_per_unit;
+  for (std::size_t i = 0; i < images.all.size(); ++i) {
+    if (detected.contains(i)) {
+      ++counted.visible;
+      continue;
+    }
+    if (!images.may_show(i, at, thing.radius / metres_per_unit)) continue;
+    const auto gsd = shown_at(images.all[i], terrain, thing, rules.covering);
+    counted.visible += gsd && *gsd <= kSameSharpness * coarsest;
+  }
+  return counted;
+}
+
+}  // namespace
+
+void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation> evidence,
+                     std::span<const ImageView> images, const Terrain* terrain, const TypeRegistry& types,
+                     double metres_per_unit, const ValuationRules& rules) {
+  const Images known(images);
+  std::unordered_map<std::string_view, std::size_t> row;
+  row.reserve(landmarks.size());
+  for (std::size_t i = 0; i < landmarks.size(); ++i) row.emplace(landmarks[i].uid, i);
+  std::vector<std::vector<const Observation*>> seen(landmarks.size());
+  for (const Observation& o : evidence) {
+    if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
+    if (const auto found = row.find(o.landmark_uid); found != row.end()) seen[found->second].push_back(&o);
+  }
+
+  tbb::parallel_for(std::size_t{0}, landmarks.size(), [&](std::size_t l) {
+    Landmark& landmark = landmarks[l];
+    const LandmarkType& type = types[landmark.type];
+    std::set<std::size_t> detected;
+    std::set<std::string_view> surveys;
+    std::vector<double> confidences;
+    for (const Observation* o : seen[l]) {
+      const auto image = known.by_name.find(o->source);
+      if (image != known.by_name.end())
+        detected.insert(image->second);
+      else
+        surveys.insert(o->source);
+      confidences.push_back(o->confidence);
+    }
+    Counted counted;
+    const Eigen::Vector3d& at = landmark.position.xyz;
+    if (!detected.empty() && rules.cover == CoverRule::paper)
+      counted = count_by_paper(known, detected, at.head<2>());
+    if (!detected.empty() && rules.cover == CoverRule::sound) {
+      const auto body = body_radius(body_size(type), landmark.features);
+      const Visible thing{{at.x() * metres_per_unit, at.y() * metres_per_unit, at.z()},
+                          body ? body->metres : 0};
+      counted = count_by_sight(known, detected, thing, terrain, metres_per_unit, rules);
+    }
+    landmark.quality.seen = counted.seen + static_cast<int>(surveys.size());
+    landmark.quality.visible = counted.visible + static_cast<int>(surveys.size());
+    landmark.quality.of_feature.assign(type.features.size(), std::nullopt);
+    for (std::size_t f = 0; f < type.features.size() && f < landmark.features.size(); ++f)
+      landmark.quality.of_feature[f] = spread_confidence(landmark.features[f], type.features[f].scale,
+                                                         type.features[f].reference, rules.spread);
+    landmark.confidence =
+        existence_probability(confidences, landmark.quality.visible - landmark.quality.seen, rules.existence);
+  });
+}
+
+}  // namespace waymark

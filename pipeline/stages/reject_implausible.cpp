@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/count_kept.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/rejections.hpp"
+
+namespace waymark {
+namespace {
+
+struct RejectImplausible {
+  struct Options {
+    double min_depth_ratio = PlausibilityRules{}.min_depth_ratio;
+    double max_height_ratio = PlausibilityRules{}.max_height_ratio;
+    void describe(OptionVisitor& option) {
+      option("min_depth_ratio", min_depth_ratio,
+             {.help = "Craters shallower than this share of their diameter are rejected, where the DEM shows "
+                      "their depth",
+              .min = 0,
+              .max = 0.5});
+      option("max_height_ratio", max_height_ratio,
+             {.help = "Rocks higher than this many diameters are rejected: cliffs and ridges",
+              .min = 0.5,
+              .max = 100});
+    }
+  };
+  static constexpr In<std::vector<Observation>> placed{"placed"};
+  static constexpr Out<std::vector<Observation>> plausible{"plausible"};
+
+  static StageSpec spec() {
+    return {.name = "reject_implausible",
+            .summary = "Rejects observations whose features are outside the ranges of their type",
+            .version = 1,
+            .scope = Scope::image,
+            .inputs = {placed},
+            .outputs = {plausible}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<Observation> all = unit.read(placed);
+    KeptCount count(unit, all);
+    reject_implausible(
+        all, types,
+        {.min_depth_ratio = options.min_depth_ratio, .max_height_ratio = options.max_height_ratio});
+    count.close(all);
+    unit.write(plausible, std::move(all));
+  }
+};
+
+}  // namespace
+
+void register_stage_reject_implausible(Registry& registry);
+void register_stage_reject_implausible(Registry& registry) {
+  registry.add<RejectImplausible>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/dem_handle.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/count_kept.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/image_view_codec.hpp"
+#include "pipeline/fusion/rejections.hpp"
+
+namespace waymark {
+namespace {
+
+// Of the whole map: a crater seen in a coarse image explains shadows in a fine one that shows only its rim.
+struct RejectRimShadows {
+  struct Options {
+    double inner = RimShadowRules{}.inner, outer = RimShadowRules{}.outer;
+    Degrees half_angle = to_degrees(Radians{RimShadowRules{}.half_angle});
+    double min_share = RimShadowRules{}.min_share;
+    double min_confidence = RimShadowRules{}.min_confidence;
+    void describe(OptionVisitor& option) {
+      option("inner", inner,
+             {.help = "Rocks nearer to the crater's middle than this many radii stay", .min = 0, .max = 1});
+      option(
+          "outer", outer,
+          {.help = "Rocks further from the crater's middle than this many radii stay", .min = 1, .max = 5});
+      option(
+          "half_angle", half_angle,
+          {.help = "How far either side of the sun's direction a rim faces the light", .min = 0, .max = 180});
+      option("min_share", min_share,
+             {.help = "Rocks narrower than this share of the crater stay: a rim's shadow is wide",
+              .min = 0,
+              .max = 1});
+      option("min_confidence", min_confidence,
+             {.help = "Craters less certain than this reject no rocks", .min = 0, .max = 1});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr Gather<ImageView> image_view{"image_view"};
+  static constexpr Gather<std::vector<Observation>> lit{"lit"};
+  static constexpr Out<std::vector<Observation>> observations{"observations"};
+
+  static StageSpec spec() {
+    return {.name = "reject_rim_shadows",
+            .summary = "Rejects rocks on the light-facing rims of craters: the shadow is the crater's",
+            .version = 1,
+            .scope = Scope::map,
+            .inputs = {dem, image_view, lit},
+            .outputs = {observations}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::map<std::string, Sun> suns;
+    for (const auto& image : unit.read_all(image_view))
+      if (image->sun) suns[image->name] = *image->sun;
+    std::vector<Observation> all;
+    for (const auto& part : unit.read_all(lit)) all.insert(all.end(), part->begin(), part->end());
+    KeptCount count(unit, all);
+    reject_rim_shadows(all, all, types, suns, unit.read(dem)->geometry().where.crs,
+                       {.inner = options.inner,
+                        .outer = options.outer,
+                        .half_angle = to_radians(options.half_angle).value,
+                        .min_share = options.min_share,
+                        .min_confidence = options.min_confidence});
+    count.close(all);
+    unit.write(observations, std::move(all));
+  }
+};
+
+}  // namespace
+
+void register_stage_reject_rim_shadows(Registry& registry);
+void register_stage_reject_rim_shadows(Registry& registry) {
+  registry.add<RejectRimShadows>();
+}
+
+}  // namespace waymark

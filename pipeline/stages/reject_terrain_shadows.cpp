@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/count_kept.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/image_view_codec.hpp"
+#include "pipeline/fusion/rejections.hpp"
+#include "pipeline/fusion/terrain_of.hpp"
+
+namespace waymark {
+namespace {
+
+struct RejectTerrainShadows {
+  struct Options {
+    double min_distance_cells = TerrainShadowRules{}.min_distance_cells;
+    void describe(OptionVisitor& option) {
+      option("min_distance_cells", min_distance_cells,
+             {.help = "Ground nearer than this many cells of the DEM is not held to cast the shadow",
+              .min = 0,
+              .max = 1000});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr In<ImageView> image_view{"image_view"};
+  static constexpr In<std::vector<Observation>> plausible{"plausible"};
+  static constexpr Out<std::vector<Observation>> lit{"lit"};
+
+  static StageSpec spec() {
+    return {.name = "reject_terrain_shadows",
+            .summary = "Rejects rocks whose shadow is the terrain's, by casting rays to the sun",
+            .version = 1,
+            .scope = Scope::image,
+            .inputs = {dem, image_view, plausible},
+            .outputs = {lit}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<Observation> all = unit.read(plausible);
+    KeptCount count(unit, all);
+    const DemHandle& ground = unit.read(dem);
+    reject_terrain_shadows(all, types, unit.read(image_view), terrain_of(ground),
+                           ground->geometry().where.crs.metres_per_unit(),
+                           {.min_distance_cells = options.min_distance_cells});
+    count.close(all);
+    unit.write(lit, std::move(all));
+  }
+};
+
+}  // namespace
+
+void register_stage_reject_terrain_shadows(Registry& registry);
+void register_stage_reject_terrain_shadows(Registry& registry) {
+  registry.add<RejectTerrainShadows>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/image_view_codec.hpp"
+#include "pipeline/fusion/landmark_codec.hpp"
+#include "pipeline/fusion/terrain_of.hpp"
+#include "pipeline/fusion/valuing.hpp"
+
+namespace waymark {
+namespace {
+
+struct ValueLandmarks {
+  struct Options {
+    std::string covers = "sound";
+    std::string spread = "sound";
+    double least_diameter = 0;
+    void describe(OptionVisitor& option) {
+      option("covers", covers,
+             {.help = "When an image could have shown a landmark: sound (whole, unhidden, at least as sharp "
+                      "there as the coarsest that did) or paper (eq. 4: footprint and its area)",
+              .choices = {"sound", "paper"}});
+      option("spread", spread,
+             {.help = "How spread becomes confidence: sound (by scale, absent for one observation) or paper "
+                      "(eqs. 6-7 literally)",
+              .choices = {"sound", "paper"}});
+      option("least_diameter", least_diameter,
+             {.help = "Images that show a landmark smaller than this, in pixels, could not have detected it",
+              .min = 0,
+              .max = 1000});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr Gather<ImageView> image_view{"image_view"};
+  static constexpr In<std::vector<Landmark>> merged{"merged"};
+  static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
+  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
+  static constexpr Out<std::vector<Observation>> evidence{"evidence"};
+  static constexpr Out<std::vector<ImageView>> image_views{"image_views"};
+
+  static StageSpec spec() {
+    return {.name = "value_landmarks",
+            .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
+            .version = 1,
+            .scope = Scope::map,
+            .inputs = {dem, image_view, merged, merged_evidence},
+            .outputs = {landmarks, evidence, image_views}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<ImageView> images;
+    for (const auto& image : unit.read_all(image_view)) images.push_back(*image);
+    std::vector<Landmark> all = unit.read(merged);
+    const auto& seen = unit.read(merged_evidence);
+    const DemHandle& ground = unit.read(dem);
+    const Terrain terrain = terrain_of(ground);
+    ValuationRules rules;
+    rules.cover = options.covers == "paper" ? CoverRule::paper : CoverRule::sound;
+    rules.spread = options.spread == "paper" ? SpreadRule::paper : SpreadRule::sound;
+    rules.covering.least_diameter = options.least_diameter;
+    value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
+                    rules);
+    unit.count_out(static_cast<std::int64_t>(all.size()));
+    unit.write(landmarks, std::move(all));
+    unit.write(evidence, seen);
+    unit.write(image_views, std::move(images));
+  }
+};
+
+}  // namespace
+
+void register_stage_value_landmarks(Registry& registry);
+void register_stage_value_landmarks(Registry& registry) {
+  registry.add<ValueLandmarks>();
+}
+
+}  // namespace waymark

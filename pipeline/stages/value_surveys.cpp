@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/dem_handle.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/landmark_codec.hpp"
+#include "pipeline/fusion/valuing.hpp"
+
+namespace waymark {
+namespace {
+
+// Landmarks of a DEM alone: each source saw its own and could have.
+struct ValueSurveys {
+  struct Options {
+    void describe(OptionVisitor&) {}
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr In<std::vector<Landmark>> merged{"merged"};
+  static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
+  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
+  static constexpr Out<std::vector<Observation>> evidence{"evidence"};
+
+  static StageSpec spec() {
+    return {.name = "value_surveys",
+            .summary = "Values landmarks that no image showed: a DEM or a table is one survey",
+            .version = 1,
+            .scope = Scope::map,
+            .inputs = {dem, merged, merged_evidence},
+            .outputs = {landmarks, evidence}};
+  }
+
+  static void run(const Options&, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<Landmark> all = unit.read(merged);
+    const auto& seen = unit.read(merged_evidence);
+    value_landmarks(all, seen, {}, nullptr, types, 1);
+    unit.count_out(static_cast<std::int64_t>(all.size()));
+    unit.write(landmarks, std::move(all));
+    unit.write(evidence, seen);
+  }
+};
+
+}  // namespace
+
+void register_stage_value_surveys(Registry& registry);
+void register_stage_value_surveys(Registry& registry) {
+  registry.add<ValueSurveys>();
+}
+
+}  // namespace waymark
