@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <vector>
+namespace waymark {
+
+/// An entry of a sparse cost table.
+struct Choice {
+  int column = 0;
+  double cost = 0;
+};
+
+/// For each row one of its choices, or none, no column twice. `none_cost`: of a row without choice.
+using Assignment = std::vector<std::optional<std::size_t>>;  ///< index into the row's choices
+
+/// Cheapest entries first.
+Assignment assign_greedily(const std::vector<std::vector<Choice>>& rows);
+
+/// The least total cost (Kuhn 1955; shortest augmenting paths, Jonker & Volgenant 1987), each row having a
+/// dummy column of its own at `none_cost`. O(rows^2 (rows + columns)).
+Assignment assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost);
+
+}  // namespace waymark

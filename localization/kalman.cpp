@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/kalman.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+// Landmarks further than this from where the robot believes to be are not asked for.
+double reach_of(const SightingSet& seen, const PoseEstimate& robot, const IdentificationOptions& options) {
+  double farthest = 0;
+  for (const Sighting& s : seen.sightings)
+    if (s.sound()) farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options.bearing_reach);
+  const double spread = std::sqrt(std::max(robot.covariance(0, 0), robot.covariance(1, 1)));
+  return farthest + 6 * spread + std::hypot(seen.robot_from_sensor.x, seen.robot_from_sensor.y);
+}
+
+}  // namespace
+
+Eigen::Vector3d widest(const Eigen::Vector3d& sd) {
+  return sd.cwiseMin(Eigen::Vector3d(1e4, 1e4, 3)).cwiseMax(Eigen::Vector3d(0.05, 0.05, 0.02));
+}
+
+void KalmanOptions::describe(OptionVisitor& option) {
+  option("quality_floor", quality_floor,
+         {.help = "The noise of a landmark is divided by its quality, but by no less than this; 1 turns "
+                  "quality off",
+          .min = 1e-3,
+          .max = 1});
+  option("lost_after", lost_after,
+         {.help = "Sets of sightings in a row without a match after which the filter searches",
+          .min = 1,
+          .max = 1e9});
+  option("search_growth", search_growth,
+         {.help = "Growth of the standard deviations per set while searching", .min = 1, .max = 10});
+}
+
+KalmanLocalizer::KalmanLocalizer(LandmarkWindow map, FeatureScales scales,
+                                 IdentificationOptions identification, KalmanOptions options)
+    : map_(std::move(map)),
+      scales_(std::move(scales)),
+      identification_(std::move(identification)),
+      options_(options) {}
+
+std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
+  const PoseEstimate before = estimate();
+  const LandmarkGrid& map = map_.around(before.pose.at(), reach_of(seen, before, identification_));
+  std::vector<Match> matches = identify(seen, before, map, scales_, identification_);
+  std::vector<Use> uses;
+  bool any = false;  // that should have matched
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const Match& match = matches[i];
+    any = any || match.verdict == Verdict::nothing_near || match.verdict == Verdict::too_far;
+    if (match.verdict != Verdict::matched) continue;
+    const MapLandmark& landmark = map[match.pairing.landmark];
+    uses.push_back({&seen.sightings[i], &landmark, std::max(landmark.quality, options_.quality_floor)});
+    if (options_.quality_floor >= 1) uses.back().trust = 1;
+  }
+  for (Match& match : matches)
+    if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
+  if (!uses.empty()) {
+    missed_ = 0;
+    update(uses, seen.robot_from_sensor);
+  } else if (any && ++missed_ >= options_.lost_after) {
+    widen(options_.search_growth);
+  }
+  return matches;
+}
+
+ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
+                               IdentificationOptions identification, KalmanOptions options)
+    : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),
+      estimate_(start) {
+  if (!start.pose.finite() || !start.covariance.allFinite())
+    throw std::invalid_argument("the start of a filter must be finite");
+}
+
+void ExtendedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
+  for (const Use& use : uses)
+    estimate_ = kalman_updated(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+}
+
+void ExtendedKalman::widen(double factor) {
+  const Eigen::Vector3d sd = estimate_.covariance.diagonal().cwiseSqrt();
+  const Eigen::Vector3d wide = widest(sd * factor);
+  // Correlations are dropped: what the filter believed was wrong.
+  estimate_.covariance = wide.cwiseAbs2().asDiagonal();
+}
+
+PoseEstimate kalman_updated(const PoseEstimate& estimate, const Sighting& seen,
+                            const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+  const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, landmark.at);
+  Eigen::Matrix<double, 2, 3> h = e.by_pose;
+  Eigen::Matrix2d r =
+      (sensor_noise(seen) + e.by_landmark * landmark.covariance * e.by_landmark.transpose()) / trust;
+  const Eigen::Vector2d v = innovation(seen, e.value);
+  if (!seen.range) {  // a row that says nothing
+    h.row(0).setZero();
+    r(0, 1) = r(1, 0) = 0;
+  }
+  const Eigen::Matrix3d& p = estimate.covariance;
+  const Eigen::Matrix<double, 3, 2> ph = p * h.transpose();
+  const Eigen::Matrix2d s = h * ph + r;
+  const Eigen::Matrix<double, 3, 2> gain = ph * s.inverse();
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * h;
+  const Eigen::Matrix3d after = a * p * a.transpose() + gain * r * gain.transpose();
+  return {pose_of(estimate.pose.vector() + gain * v), (after + after.transpose()) / 2};
+}
+
+}  // namespace waymark

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/particle_weights.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+#include "localization/chi_square.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// atan2 for the small angles that pass a gate; to 1e-7 rad where it is a series.
+double small_angle(double y, double x) {
+  const double t = y / x;
+  if (!(x > 0) || !(std::abs(t) < 0.25)) return std::atan2(y, x);
+  const double s = t * t;
+  return t * (1 - s * (1.0 / 3 - s * (0.2 - s * (1.0 / 7 - s / 9))));
+}
+
+}  // namespace
+
+void WeightOptions::describe(OptionVisitor& option) {
+  option("weights", weights,
+         {.help = "How particles are weighed: by probability, or by eqs. 12-14",
+          .choices = {"likelihood", "paper"}});
+  option("clutter", clutter,
+         {.help = "Density of false sightings per metre of range and radian of bearing", .min = 1e-12});
+  option("temper", temper,
+         {.help = "Power of each probability; below 1 where errors of successive sightings are alike",
+          .min = 0.01,
+          .max = 1});
+  option("quality_floor", quality_floor,
+         {.help = "Least quality a landmark counts with; 1 turns quality off", .min = 1e-3, .max = 1});
+  option("gate", gate, {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
+  option("unmatched_cost", unmatched_cost,
+         {.help = "paper: what a sighting without landmark costs; negative: the gate"});
+  option("feature_tolerance", feature_tolerance,
+         {.help = "Part of a feature's value two sensors may disagree by", .min = 0, .max = 10});
+  option("feature_limit", feature_limit,
+         {.help = "Squared standard deviations one feature may differ", .min = 0});
+  option("bearing_reach", bearing_reach,
+         {.help = "How far, in metres, a sighting without range may be", .min = 0.1, .max = 1e6});
+}
+
+SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
+                             const WeightOptions& options, bool use_identities)
+    : map_(&map),
+      scales_(&scales),
+      options_(options),
+      robot_from_sensor_(seen.robot_from_sensor),
+      paper_(options.weights == "paper") {
+  const double gate = chi_square_quantile(options.gate, 2), sigmas = std::sqrt(gate);
+  for (const Sighting& s : seen.sightings) {
+    if (!s.sound()) continue;
+    Prepared p{.seen = s,
+               .cosine = std::cos(s.bearing),
+               .sine = std::sin(s.bearing),
+               .range_variance = s.range ? s.range_sd * s.range_sd : 0,
+               .bearing_variance = s.bearing_sd * s.bearing_sd,
+               .radius = 0,
+               .log_clutter = 0,
+               .gate = gate,
+               .landmark = {}};
+    const double far = s.range ? *s.range : options.bearing_reach;
+    p.radius =
+        s.range ? sigmas * std::max(s.range_sd, far * std::min(s.bearing_sd, 1.0)) + sigmas * map.largest_sd()
+                : far;
+    p.log_clutter = std::log(options.clutter * (s.range ? 1 : far));
+    if (use_identities && s.identity) {
+      p.landmark = map.find(*s.identity);
+      p.absent = !p.landmark;
+    }
+    prepared_.push_back(p);
+  }
+}
+
+double SightingScore::pair(const Prepared& p, std::uint32_t landmark, const Eigen::Vector2d& sensor,
+                           const Eigen::Vector2d& along) const {
+  const MapLandmark& l = (*map_)[landmark];
+  if (!p.landmark && p.seen.type && *p.seen.type != l.type) return kNone;
+  const double dx = l.at.x() - sensor.x(), dy = l.at.y() - sensor.y();
+  const double ahead = along.x() * dx + along.y() * dy, left = along.x() * dy - along.y() * dx;
+  const double range = std::max(std::sqrt(dx * dx + dy * dy), 1e-3);
+  const double nx = dx / range, ny = dy / range;
+  const double turn = small_angle(left, ahead);
+  const Eigen::Matrix2d& c = l.covariance;
+  const double tangential = (ny * ny * c(0, 0) - 2 * nx * ny * c(0, 1) + nx * nx * c(1, 1)) / (range * range);
+  double squares = 0, log_det = 0;
+  if (p.seen.range) {
+    const double off = *p.seen.range - range;
+    const double a = p.range_variance + nx * nx * c(0, 0) + 2 * nx * ny * c(0, 1) + ny * ny * c(1, 1);
+    const double b = (nx * ny * (c(1, 1) - c(0, 0)) + (nx * nx - ny * ny) * c(0, 1)) / range;
+    const double d = p.bearing_variance + tangential;
+    const double det = a * d - b * b;
+    squares = paper_ ? off * off / p.range_variance + turn * turn / p.bearing_variance
+                     : (d * off * off + 2 * b * off * turn + a * turn * turn) / det;
+    if (!(squares <= p.gate)) return kNone;
+    log_det = std::log(det) + 2 * std::log(2 * std::numbers::pi);
+  } else {
+    const double d = p.bearing_variance + tangential;
+    squares = turn * turn / (paper_ ? p.bearing_variance : d);
+    if (!(squares <= p.gate)) return kNone;
+    log_det = std::log(d) + std::log(2 * std::numbers::pi);
+  }
+  const bool comparable = p.seen.type && *p.seen.type == l.type;
+  const FeatureComparison features =
+      comparable ? compare_features(*scales_, l.type, p.seen.features, l.features, options_.feature_tolerance)
+                 : FeatureComparison{};
+  if (features.largest > options_.feature_limit) return kNone;
+  const double quality = std::max(l.quality, options_.quality_floor);
+  if (paper_) return (squares + features.squares) * quality;
+  // As a cost, -2 ln of the density. A missing feature counts 1; right ones count 1 each on average.
+  return squares + log_det + features.squares - features.used - 2 * std::log(quality * p.seen.confidence);
+}
+
+double SightingScore::best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine,
+                           double sine) const {
+  const Eigen::Vector2d along(cosine * p.cosine - sine * p.sine, sine * p.cosine + cosine * p.sine);
+  if (p.absent) return kNone;
+  if (p.landmark) return pair(p, *p.landmark, sensor, along);
+  double least = kNone;
+  const Eigen::Vector2d centre = p.seen.range ? Eigen::Vector2d(sensor + *p.seen.range * along) : sensor;
+  map_->near(centre, p.radius, [&](std::uint32_t i) { least = std::min(least, pair(p, i, sensor, along)); });
+  return least;
+}
+
+double SightingScore::operator()(const Pose2& robot) const {
+  double cosine = std::cos(robot.yaw), sine = std::sin(robot.yaw);
+  const Pose2& mount = robot_from_sensor_;
+  const Eigen::Vector2d sensor(robot.x + cosine * mount.x - sine * mount.y,
+                               robot.y + sine * mount.x + cosine * mount.y);
+  if (mount.yaw != 0) cosine = std::cos(robot.yaw + mount.yaw), sine = std::sin(robot.yaw + mount.yaw);
+  double sum = 0;
+  for (const Prepared& p : prepared_) {
+    const double cost = best(p, sensor, cosine, sine);
+    if (paper_) {
+      sum += cost < kNone ? cost : options_.unmatched_cost < 0 ? p.gate : options_.unmatched_cost;
+    } else if (cost < kNone) {
+      const double fit = -cost / 2, high = std::max(fit, p.log_clutter), low = std::min(fit, p.log_clutter);
+      sum += options_.temper * (high + std::log1p(std::exp(low - high)));
+    } else {
+      sum += options_.temper * p.log_clutter;
+    }
+  }
+  return sum;
+}
+
+std::vector<double> paper_weights(std::span<const double> errors) {
+  std::vector<double> weights(errors.size(), 1);
+  if (errors.empty()) return weights;
+  const auto [least, most] = std::ranges::minmax_element(errors);
+  if (!(*most - *least > 1e-12 * std::max(1.0, std::abs(*most)))) return weights;
+  for (std::size_t i = 0; i < errors.size(); ++i) weights[i] = (*most - errors[i]) / *most;
+  return weights;
+}
+
+std::vector<double> normalised(std::span<const double> log_weights) {
+  std::vector<double> weights(log_weights.size());
+  double most = -kNone, sum = 0;
+  for (const double w : log_weights)
+    if (w > most) most = w;
+  if (!(most > -kNone)) {
+    std::ranges::fill(weights, 1 / static_cast<double>(std::max<std::size_t>(1, weights.size())));
+    return weights;
+  }
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    sum += weights[i] = log_weights[i] > -kNone ? std::exp(log_weights[i] - most) : 0;
+  for (double& w : weights) w /= sum;
+  return weights;
+}
+
+}  // namespace waymark

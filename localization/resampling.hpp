@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+#include "localization/pose2.hpp"
+namespace waymark {
+
+/// 1 / sum of squared weights: as many equal particles would say as much. Weights sum to 1.
+double effective_count(std::span<const double> weights);
+
+/// Systematic resampling (Kitagawa 1996): indices of `count` particles drawn with one random number u in
+/// [0, 1). Each is drawn within one of its expected number. Weights sum to 1.
+std::vector<std::uint32_t> resample(std::span<const double> weights, std::size_t count, double u);
+
+/// Particles needed so that the error of their histogram (Kullback-Leibler distance) stays below `error` with
+/// probability 0.99, given the number of bins they occupy (Fox 2003, eq. 7).
+std::size_t kld_count(std::size_t bins, double error);
+
+/// Bins of metres x metres x radians that poses occupy.
+std::size_t occupied_bins(std::span<const Pose2> poses, double metres, double radians);
+
+/// Mean and covariance of weighted poses: of the densest part where most of the weight lies together (within
+/// `radius` metres), so that a few lost particles do not pull the robot off its place; of all otherwise.
+PoseEstimate summary(std::span<const Pose2> poses, std::span<const double> weights, double radius);
+
+}  // namespace waymark

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <stdexcept>
+
+#include "localization/kalman.hpp"
+
+namespace waymark {
+namespace {
+
+/// Lower triangular L with L L' = m m', without forming the product.
+template <int Rows, int Columns>
+Eigen::Matrix<double, Rows, Rows> lower_root(const Eigen::Matrix<double, Rows, Columns>& m) {
+  const Eigen::Matrix<double, Columns, Rows> t = m.transpose();
+  const Eigen::HouseholderQR<Eigen::Matrix<double, Columns, Rows>> qr(t);
+  const Eigen::Matrix<double, Rows, Rows> upper =
+      qr.matrixQR().template topRows<Rows>().template triangularView<Eigen::Upper>();
+  return upper.transpose();
+}
+
+double circular_mean(const double* angles, int count) {
+  double c = 0, s = 0;
+  for (int i = 0; i < count; ++i) c += std::cos(angles[i]), s += std::sin(angles[i]);
+  return std::atan2(s, c);
+}
+
+}  // namespace
+
+UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
+                                 IdentificationOptions identification, KalmanOptions options)
+    : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),
+      pose_(start.pose),
+      root_(square_root(start.covariance)) {
+  if (!start.pose.finite() || !start.covariance.allFinite())
+    throw std::invalid_argument("the start of a filter must be finite");
+}
+
+// Points of pose and step together: 6 dimensions, 12 points of equal weight.
+void UnscentedKalman::move(const BodyMotion& motion) {
+  constexpr int kPoints = 12;
+  const Eigen::Matrix3d noise = square_root(motion.covariance);
+  const double reach = std::sqrt(6.0);
+  Eigen::Matrix<double, 3, kPoints> points;
+  double yaws[kPoints];
+  for (int i = 0; i < 3; ++i)
+    for (int sign = 0; sign < 2; ++sign) {
+      const double k = sign ? -reach : reach;
+      const Pose2 by_pose = pose_of(pose_.vector() + k * root_.col(i)) * motion.step;
+      const Pose2 by_step = pose_ * pose_of(motion.step.vector() + k * noise.col(i));
+      points.col(4 * i + 2 * sign) = by_pose.vector();
+      points.col(4 * i + 2 * sign + 1) = by_step.vector();
+    }
+  for (int i = 0; i < kPoints; ++i) yaws[i] = points(2, i);
+  Eigen::Vector3d mean = points.rowwise().mean();
+  mean.z() = circular_mean(yaws, kPoints);
+  points.colwise() -= mean;
+  for (int i = 0; i < kPoints; ++i) points(2, i) = wrapped(points(2, i));
+  pose_ = pose_of(mean);
+  root_ = lower_root<3, kPoints>(points / std::sqrt(double{kPoints}));
+}
+
+void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
+  constexpr int kPoints = 6;
+  for (const Use& use : uses) {
+    const double reach = std::sqrt(3.0);
+    Eigen::Matrix<double, 3, kPoints> points;
+    Eigen::Matrix<double, 2, kPoints> seen;
+    double bearings[kPoints];
+    for (int i = 0; i < kPoints; ++i) {
+      points.col(i) = (i % 2 ? -reach : reach) * root_.col(i / 2);
+      seen.col(i) =
+          expect(pose_of(pose_.vector() + points.col(i)), robot_from_sensor, use.landmark->at).value;
+      bearings[i] = seen(1, i);
+      if (!use.seen->range) seen(0, i) = 0;
+    }
+    Eigen::Vector2d mean = seen.rowwise().mean();
+    mean[1] = circular_mean(bearings, kPoints);
+    seen.colwise() -= mean;
+    for (int i = 0; i < kPoints; ++i) seen(1, i) = wrapped(seen(1, i));
+    points /= std::sqrt(double{kPoints});
+    seen /= std::sqrt(double{kPoints});
+
+    const Eigen::Matrix2d by_landmark = expect(pose_, robot_from_sensor, use.landmark->at).by_landmark;
+    Eigen::Matrix2d noise =
+        (sensor_noise(*use.seen) + by_landmark * use.landmark->covariance * by_landmark.transpose()) /
+        use.trust;
+    if (!use.seen->range) noise(0, 1) = noise(1, 0) = 0;
+    const Eigen::Matrix2d noise_root = noise.llt().matrixL();
+    const Eigen::Matrix2d s = seen * seen.transpose() + noise;
+    const Eigen::Matrix<double, 3, 2> gain = points * seen.transpose() * s.inverse();
+    Eigen::Matrix<double, 3, kPoints + 2> after;
+    after << points - gain * seen, gain * noise_root;
+    root_ = lower_root<3, kPoints + 2>(after);
+    pose_ = pose_of(pose_.vector() + gain * innovation(*use.seen, mean));
+  }
+}
+
+void UnscentedKalman::widen(double factor) {
+  const Eigen::Vector3d sd = (root_ * root_.transpose()).diagonal().cwiseSqrt();
+  root_ = widest(sd * factor).asDiagonal();
+}
+
+}  // namespace waymark
