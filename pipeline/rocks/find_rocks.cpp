@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/rocks/find_rocks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "pipeline/rocks/find_classic_rocks.hpp"
+#include "pipeline/rocks/find_shadow_rocks.hpp"
+#include "pipeline/vision/sun_angle.hpp"
+namespace waymark {
+namespace {
+
+void check(const RockSearch& search) {
+  const auto refuse = [](const std::string& problem, const std::string& hint) {
+    throw Error(ErrorCode::usage, "cannot look for rocks: " + problem, "", hint);
+  };
+  if (search.sun_angle && !std::isfinite(search.sun_angle->value))
+    refuse("the direction of the light in the image is not a number",
+           "leave it out: it is then read off the image");
+  if (search.sun_elevation) {
+    const double degrees = to_degrees(*search.sun_elevation).value;
+    if (!(degrees > 0))
+      refuse(fmt::format("the sun stands {:g} degrees above the ground, that is not above it", degrees),
+             "shadows need a sun above 0 degrees; check the sun's frame and time");
+    if (!(degrees < 90))
+      refuse(fmt::format("the sun stands {:g} degrees above the ground", degrees),
+             "shadows need a sun below 90 degrees");
+  }
+  if (!(search.min_diameter > 0) || !(search.max_diameter > search.min_diameter))
+    refuse(fmt::format("diameters from {:g} to {:g} pixels are no range", search.min_diameter,
+                       search.max_diameter),
+           "give 0 < smallest < largest");
+  if (!(search.min_confidence >= 0 && search.min_confidence <= 1))
+    refuse(fmt::format("{:g} is no probability", search.min_confidence),
+           "give a least confidence between 0 and 1");
+  if (!(search.blur >= 0 && search.blur < 10))
+    refuse(fmt::format("a blur of {:g} pixels", search.blur),
+           "give its standard deviation, 0 to 10; 0: unknown");
+}
+
+}  // namespace
+
+std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search) {
+  check(search);
+  Radians sun_angle;
+  if (search.sun_angle) {
+    sun_angle = *search.sun_angle;
+  } else if (const auto estimate = estimate_sun_angle(image)) {
+    sun_angle = estimate->angle;
+  } else {
+    return {};
+  }
+  auto found = search.method == RockMethod::classic ? find_classic_rocks(image, search, sun_angle)
+                                                    : find_shadow_rocks(image, search, sun_angle);
+  std::sort(found.begin(), found.end(), [](const Detection& a, const Detection& b) {
+    if (a.confidence != b.confidence) return a.confidence > b.confidence;
+    return a.outline.y != b.outline.y ? a.outline.y < b.outline.y : a.outline.x < b.outline.x;
+  });
+  return found;
+}
+
+}  // namespace waymark

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/rocks/find_shadow_rocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+namespace waymark {
+namespace {
+
+constexpr Radians kUsualElevation = to_radians(Degrees{40});
+
+// One scale sees rocks up to half a tile well; a coarser scale takes over before that.
+constexpr int kTile = 32;
+constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of the scale, diameter
+
+Pixels halved(const Pixels& image) {
+  Pixels half(image.columns() / 2, image.rows() / 2);
+  for (std::int64_t y = 0; y < half.rows(); ++y)
+    for (std::int64_t x = 0; x < half.columns(); ++x)
+      half(x, y) = 0.25F * (image(2 * x, 2 * y) + image(2 * x + 1, 2 * y) + image(2 * x, 2 * y + 1) +
+                            image(2 * x + 1, 2 * y + 1));
+  return half;
+}
+
+Detection detection_of(const JudgedRock& judged, const RockSearch& search, const LightFrame& light) {
+  const RockCandidate& rock = judged.rock;
+  const double scale = judged.scale;
+  // The centre of a coarser pixel lies amid the finer ones it covers.
+  const auto place = [&](double c) { return scale * (c + 0.5) - 0.5; };
+  Detection found;
+  found.type = search.type;
+  const double diameter = 2 * scale * rock.size.radius;
+  found.outline = {.x = place(rock.x), .y = place(rock.y), .major = diameter, .minor = diameter, .angle = 0};
+  const double along_sd = scale * std::hypot(0.15, 0.09 * std::hypot(rock.size.radius, rock.size.reach));
+  const double across_sd = scale * std::hypot(0.09, 0.05 * rock.size.radius);
+  Eigen::Matrix2d turn;
+  turn << light.ux, -light.uy, light.uy, light.ux;
+  found.covariance =
+      turn * Eigen::Vector2d{along_sd * along_sd, across_sd * across_sd}.asDiagonal() * turn.transpose();
+  found.diameter_sd = 2 * scale * rock.size.radius_sd;
+  found.shadow_reach = Measured{scale * rock.size.reach, scale * rock.size.reach_sd};
+  found.confidence = judged.confidence;
+  return found;
+}
+
+// Whether `other` lies on a rock or its shadow.
+bool covers(const Detection& rock, const Detection& other, const LightFrame& light) {
+  const double dx = other.outline.x - rock.outline.x, dy = other.outline.y - rock.outline.y;
+  const double t = light.along(dx, dy), s = light.across(dx, dy), r = 0.5 * rock.outline.diameter();
+  return std::abs(s) < r && t > -r && t < std::hypot(r, rock.shadow_reach->value);
+}
+
+// The same rock at two scales, or a piece of a large one at a fine scale: the finer measurement of what both
+// see whole, the coarser of all else.
+std::vector<Detection> without_repeats(std::vector<Detection> all, const LightFrame& light) {
+  std::stable_sort(all.begin(), all.end(), [](const Detection& a, const Detection& b) {
+    return a.outline.diameter() > b.outline.diameter();
+  });
+  std::vector<char> dropped(all.size(), 0);
+  std::vector<std::size_t> by_row(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) by_row[i] = i;
+  std::sort(by_row.begin(), by_row.end(), [&](std::size_t a, std::size_t b) {
+    return all[a].outline.y != all[b].outline.y ? all[a].outline.y < all[b].outline.y : a < b;
+  });
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Detection& large = all[i];
+    if (dropped[i] || large.outline.diameter() < 2 * kSmallestAtCoarse) continue;
+    const double far = large.outline.diameter() + large.shadow_reach->value;
+    auto next = std::lower_bound(by_row.begin(), by_row.end(), large.outline.y - far,
+                                 [&](std::size_t k, double y) { return all[k].outline.y < y; });
+    for (; next != by_row.end() && all[*next].outline.y < large.outline.y + far; ++next) {
+      const std::size_t j = *next;
+      if (j == i || dropped[j] || all[j].outline.diameter() > large.outline.diameter()) continue;
+      const double smaller = all[j].outline.diameter();
+      if (!covers(large, all[j], light) && !covers(all[j], large, light)) continue;
+      const bool same = smaller > 0.6 * large.outline.diameter();
+      if (same ? smaller < kLargestAtOneScale * 0.75 : all[j].confidence > large.confidence + 0.2) {
+        dropped[i] = 1;
+        break;
+      }
+      dropped[j] = 1;
+    }
+  }
+  std::vector<Detection> kept;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (!dropped[i]) kept.push_back(all[i]);
+  return kept;
+}
+
+}  // namespace
+
+std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table) {
+  const float smooth_noise = 0.375F * map.noise;  // under the binomial mask
+  const SegmentLimits limits{.grow = std::max(0.06F, 2.5F * smooth_noise),
+                             .seed = std::max(0.12F, 4.5F * smooth_noise),
+                             .most_cells = static_cast<std::size_t>(4 * map.tile * map.tile)};
+  std::vector<JudgedRock> judged;
+  for (const ShadowSegment& segment : find_segments(map, limits)) {
+    RockCandidate rock;
+    rock.shadow = measure_shadow(map, segment, light);
+    rock.segment_cells = segment.cells.size();
+    if (!(rock.shadow.area > 0)) continue;
+    JudgedRock one;
+    one.noise = static_cast<double>(map.noise);
+    one.texture = static_cast<double>(map.texture_at(rock.shadow.x, rock.shadow.y));
+    rock.size = table.explain(rock.shadow, one.noise, one.texture);
+    rock.x = rock.shadow.x - light.ux * rock.size.offset;
+    rock.y = rock.shadow.y - light.uy * rock.size.offset;
+    rock.log_ratio_excess = std::log(rock.size.reach / rock.size.radius) - table.usual_log_ratio();
+    one.evidence = gather_evidence(map, rock, light);
+    one.confidence = rock_confidence(one.evidence);
+    one.rock = rock;
+    judged.push_back(one);
+  }
+  return judged;
+}
+
+std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& search, Radians sun_angle) {
+  const LightFrame light = LightFrame::of(sun_angle);
+  const Radians elevation = search.sun_elevation.value_or(kUsualElevation);
+  std::vector<JudgedRock> all;
+  std::optional<float> umbra;
+  Pixels coarse;
+  double blur = search.blur > 0 ? search.blur : 0.6;
+  for (double scale = 1;; scale *= 2) {
+    if (scale > 1) {
+      coarse = halved(scale > 2 ? coarse : image);
+      // Halved, pixel and blur count half; what the wider pixel adds is not blur.
+      blur = std::max(0.25, std::sqrt(blur * blur + 1.0 / 12) / 2);
+    }
+    const Pixels& pixels = scale > 1 ? coarse : image;
+    const auto map = map_shadows(pixels, kTile, umbra);
+    if (!map) break;
+    umbra = map->umbra;
+    const RockTable table(elevation, search.sun_elevation.has_value(), blur);
+    for (JudgedRock& one : judge_shadows(*map, light, table)) {
+      const double diameter = 2 * one.rock.size.radius;
+      one.scale = scale;
+      if (scale == 1 || diameter > kSmallestAtCoarse) all.push_back(std::move(one));
+    }
+    if (scale * kLargestAtOneScale >= search.max_diameter ||
+        std::min(pixels.columns(), pixels.rows()) < 3 * kTile)
+      break;
+  }
+  return all;
+}
+
+std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
+  const LightFrame light = LightFrame::of(sun_angle);
+  std::vector<Detection> found;
+  for (const JudgedRock& judged : judge_scales(image, search, sun_angle)) {
+    const double diameter = 2 * judged.scale * judged.rock.size.radius;
+    if (judged.confidence >= search.min_confidence && diameter >= search.min_diameter &&
+        diameter <= search.max_diameter)
+      found.push_back(detection_of(judged, search, light));
+  }
+  return without_repeats(std::move(found), light);
+}
+
+}  // namespace waymark

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "pipeline/rocks/find_rocks.hpp"
+#include "pipeline/rocks/rock_evidence.hpp"
+namespace waymark {
+
+/// A candidate with what was gathered about it; the confidence is fitted on these.
+struct JudgedRock {
+  RockCandidate rock;
+  RockEvidence evidence{};
+  double confidence = 0;
+  double noise = 0, texture = 0;  ///< standard deviations in alpha where it stands
+  double scale = 1;               ///< side of its map's pixels, image pixels
+};
+
+/// Every dark spot that could be a rock's shadow, at one scale: rocks up to about half a tile.
+std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table);
+
+/// The same at every scale of the image, each half as fine as the one before, until `max_diameter` or the
+/// size of the image; larger rocks are seen against a wider background. Positions are still those of each
+/// scale.
+std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
+
+/// Method `shadow`: the light's direction is known.
+std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);
+
+}  // namespace waymark

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/rocks/rock_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+namespace waymark {
+namespace {
+
+// Brightness over the ground at a place relative to the rock: `t` away from the sun, `s` across.
+class Around {
+ public:
+  Around(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light)
+      : map_(map), rock_(rock), light_(light) {}
+
+  double excess(double s, double t) const {
+    const double x = rock_.x + light_.ux * t - light_.uy * s, y = rock_.y + light_.uy * t + light_.ux * s;
+    const double u = std::clamp(x, 0.0, static_cast<double>(map_.alpha.columns() - 1));
+    const double v = std::clamp(y, 0.0, static_cast<double>(map_.alpha.rows() - 1));
+    const auto c = std::min(static_cast<std::int64_t>(u), map_.alpha.columns() - 2);
+    const auto r = std::min(static_cast<std::int64_t>(v), map_.alpha.rows() - 2);
+    const double fu = u - static_cast<double>(c), fv = v - static_cast<double>(r);
+    const auto a = [&](std::int64_t dc, std::int64_t dr) {
+      return static_cast<double>(map_.alpha(c + dc, r + dr));
+    };
+    return -((1 - fv) * ((1 - fu) * a(0, 0) + fu * a(1, 0)) + fv * ((1 - fu) * a(0, 1) + fu * a(1, 1)));
+  }
+
+  // Mean of three places across.
+  double band(double half_width, double t) const {
+    return (excess(-half_width, t) + excess(0, t) + excess(half_width, t)) / 3;
+  }
+
+ private:
+  const ShadowMap& map_;
+  const RockCandidate& rock_;
+  const LightFrame& light_;
+};
+
+}  // namespace
+
+RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light) {
+  const Around around(map, rock, light);
+  const double r = rock.size.radius, reach = rock.size.reach, tip = std::hypot(r, reach);
+  const double root = r * r / tip;  // where the shadow begins on the rock, from its middle
+  const double mid = 0.5 * (root + tip);
+  const double near_left = around.excess(-(r + 1), mid), near_right = around.excess(r + 1, mid);
+  const double far_left = around.excess(-(2 * r + 2), mid), far_right = around.excess(2 * r + 2, mid);
+  double lit_most = -1.5;
+  for (const double t : {-1.1 * r, -0.7 * r, -0.3 * r, 0.1 * r})
+    for (const double s : {-0.6 * r, 0.0, 0.6 * r}) lit_most = std::max(lit_most, around.excess(s, t));
+  const double spread = std::sqrt(rock.shadow.along_variance * rock.shadow.across_variance);
+  const double noise = std::max(1e-3, static_cast<double>(map.noise));
+  const double texture = static_cast<double>(map.texture_at(rock.x, rock.y));
+  return {rock.shadow.peak,
+          std::log(r),
+          rock.log_ratio_excess,
+          spread > 0 ? std::abs(rock.shadow.covariance) / spread : 0,
+          std::min(5.0, rock.size.misfit),
+          std::clamp(std::log(rock.shadow.peak / noise), 0.0, 4.0),
+          std::min(1.0, texture),
+          around.band(0.5 * r, -(r + 1.5)),
+          around.band(0.4 * r, -0.6 * r),
+          lit_most,
+          around.band(0.4 * r, mid),
+          around.band(0.5 * r, tip + 1.0),
+          around.band(0.5 * r, tip + r + 2.0),
+          std::min(near_left, near_right),
+          std::max(near_left, near_right),
+          std::min(far_left, far_right),
+          std::max(far_left, far_right),
+          std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))};
+}
+
+}  // namespace waymark

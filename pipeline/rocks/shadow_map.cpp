@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/rocks/shadow_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pipeline/vision/local_background.hpp"
+namespace waymark {
+namespace {
+
+constexpr float kDarkest = 1.3F, kBrightest = -1.5F;  // beyond lies noise, not shadow
+
+float median_of(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Brightness of full shadow. The floors of the deepest shadows pile up there, those of the many small
+// shadows, which the blur fills with light, lie above it: take a low share of all floors. A floor is a pixel
+// no brighter than its eight neighbours and well below the ground.
+std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground, float noise) {
+  const auto columns = image.columns();
+  std::vector<float> level(static_cast<std::size_t>(columns)), spread(level.size());
+  std::vector<float> floors;
+  for (std::int64_t y = 1; y + 1 < image.rows(); ++y) {
+    ground.read_row(y, level, spread);
+    const auto above = image.row(y - 1), here = image.row(y), below = image.row(y + 1);
+    for (std::size_t x = 1; x + 1 < level.size(); ++x) {
+      const float value = here[x];
+      if (!(value < level[x] - 4 * std::max(noise, spread[x]))) continue;
+      const float sides = std::min(std::min(here[x - 1], here[x + 1]), std::min(above[x], below[x]));
+      const float corners =
+          std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1]));
+      if (!(value <= std::min(sides, corners))) continue;
+      // The mean of the floor and its darkest side: single hot or dead pixels are no floors.
+      floors.push_back(0.5F * (value + sides));
+    }
+  }
+  if (floors.empty()) return std::nullopt;
+  const auto rank =
+      std::min(floors.size() - 1,
+               std::max<std::size_t>(std::min<std::size_t>(2, floors.size() / 4), floors.size() / 50));
+  std::nth_element(floors.begin(), floors.begin() + static_cast<std::ptrdiff_t>(rank), floors.end());
+  return floors[rank];
+}
+
+}  // namespace
+
+Grid<float> smoothed(const Grid<float>& alpha) {
+  Grid<float> smooth(alpha.columns(), alpha.rows());
+  if (alpha.columns() == 0) return smooth;
+  const auto rows = alpha.rows();
+  const auto columns = static_cast<std::size_t>(alpha.columns());
+  std::vector<float> sum(columns);
+  for (std::int64_t y = 0; y < rows; ++y) {
+    const auto above = alpha.row(std::max<std::int64_t>(0, y - 1)), here = alpha.row(y);
+    const auto below = alpha.row(std::min(rows - 1, y + 1));
+    for (std::size_t x = 0; x < columns; ++x) sum[x] = 0.25F * (above[x] + below[x]) + 0.5F * here[x];
+    const auto out = smooth.row(y);
+    for (std::size_t x = 1; x + 1 < columns; ++x) out[x] = 0.25F * (sum[x - 1] + sum[x + 1]) + 0.5F * sum[x];
+    out[0] = sum[0];
+    out[columns - 1] = sum[columns - 1];
+  }
+  return smooth;
+}
+
+float ShadowMap::texture_at(double x, double y) const {
+  const auto c = std::clamp<std::int64_t>(static_cast<std::int64_t>(x) / tile, 0, texture.columns() - 1);
+  const auto r = std::clamp<std::int64_t>(static_cast<std::int64_t>(y) / tile, 0, texture.rows() - 1);
+  return texture(c, r);
+}
+
+std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optional<float> umbra) {
+  if (image.columns() < 5 || image.rows() < 5) return std::nullopt;
+  const LocalBackground ground = local_background(image, tile);
+  const float noise = noise_sd(image);
+  if (!umbra) umbra = umbra_of(image, ground, noise);
+  std::vector<float> levels;
+  for (const float level : ground.level.cells())
+    if (std::isfinite(level)) levels.push_back(level);
+  if (!umbra || levels.empty()) return std::nullopt;
+  const float typical_depth = median_of(levels) - *umbra;
+  if (!(typical_depth > 4 * noise) || !(typical_depth > 0)) return std::nullopt;
+
+  ShadowMap map{.alpha = Grid<float>(image.columns(), image.rows()),
+                .smooth = {},
+                .umbra = *umbra,
+                .noise = noise / typical_depth,
+                .texture = ground.spread,
+                .tile = tile};
+  // Ground that is nearly as dark as the umbra lies in shadow itself: nothing casts one there.
+  const float least_depth = std::max(0.25F * typical_depth, 4 * noise);
+  for (std::int64_t r = 0; r < map.texture.rows(); ++r)
+    for (std::int64_t c = 0; c < map.texture.columns(); ++c)
+      map.texture(c, r) /= std::max(least_depth, ground.level(c, r) - *umbra);
+  std::vector<float> level(static_cast<std::size_t>(image.columns())), spread(level.size());
+  for (std::int64_t y = 0; y < image.rows(); ++y) {
+    ground.read_row(y, level, spread);
+    const auto in = image.row(y);
+    const auto out = map.alpha.row(y);
+    for (std::size_t x = 0; x < level.size(); ++x) {
+      const float depth = level[x] - *umbra;
+      const float alpha = (level[x] - in[x]) / depth;
+      out[x] = depth > least_depth && alpha == alpha ? std::clamp(alpha, kBrightest, kDarkest) : 0;
+    }
+  }
+  map.smooth = smoothed(map.alpha);
+  return map;
+}
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+
+#include "core/units.hpp"
+#include "pipeline/rocks/shadow_map.hpp"
+namespace waymark {
+
+/// Axes of an image along the light: `along` away from the sun, `across` a quarter turn further.
+struct LightFrame {
+  double ux = -1, uy = 0;  ///< unit vector away from the sun, pixels
+
+  static LightFrame of(Radians towards_sun) {
+    return {-std::cos(towards_sun.value), -std::sin(towards_sun.value)};
+  }
+  double along(double x, double y) const { return ux * x + uy * y; }
+  double across(double x, double y) const { return ux * y - uy * x; }
+};
+
+/// Moments of one shadow, weighted by how much of each pixel it covers.
+struct ShadowShape {
+  double area = 0;                                                 ///< sum of alpha, pixels
+  double x = 0, y = 0;                                             ///< centroid, pixels of the image
+  double along_variance = 0, across_variance = 0, covariance = 0;  ///< about it, px^2
+  double peak = 0;                                                 ///< greatest alpha of the smoothed map
+  int cells = 0;     ///< pixels that entered, without the ring around
+  bool cut = false;  ///< touches the border of the map
+};
+
+/// Measures the pixels of a segment above a quarter of its peak and a ring of one pixel about them, where
+/// light of other shadows is left out and the mean that noise adds to a clipped pixel is taken off.
+ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, const LightFrame& light);
+
+}  // namespace waymark
