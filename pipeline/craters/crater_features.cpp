@@ -7,22 +7,12 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/craters/pixel_noise.hpp"
+#include "pipeline/craters/sample.hpp"
 
 namespace waymark {
 namespace {
 
 using Patch = std::array<float, kPatchSide * kPatchSide>;
-
-float bilinear(const Pixels& image, double x, double y) {
-  x = std::clamp(x, 0.0, double(image.columns() - 1));
-  y = std::clamp(y, 0.0, double(image.rows() - 1));
-  const auto column = std::min(static_cast<std::int64_t>(x), std::max<std::int64_t>(0, image.columns() - 2));
-  const auto row = std::min(static_cast<std::int64_t>(y), std::max<std::int64_t>(0, image.rows() - 2));
-  const auto right = std::min(column + 1, image.columns() - 1), below = std::min(row + 1, image.rows() - 1);
-  const auto a = static_cast<float>(x - double(column)), b = static_cast<float>(y - double(row));
-  return (1 - b) * ((1 - a) * image(column, row) + a * image(right, row)) +
-         b * ((1 - a) * image(column, below) + a * image(right, below));
-}
 
 // Zero mean, unit deviation, clipped to 3; returns the deviation.
 double normalise(Patch& patch) {
@@ -104,7 +94,7 @@ std::array<float, kPatchSide * kPatchSide> PatchSource::patch(const CraterCandid
                    v = (mirrored ? -1 : 1) * (j - (kPatchSide - 1) / 2.0) * step;
       const double x = c.x + u * towards_x - v * towards_y, y = c.y + u * towards_y + v * towards_x;
       patch[static_cast<std::size_t>(j * kPatchSide + i)] =
-          bilinear(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
+          sample(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
     }
   return patch;
 }
