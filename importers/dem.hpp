@@ -29,6 +29,8 @@ class ImportedDem : public DemSource {
 
 /// Opens the files as one grid. Heights are in metres whatever the band's scale, offset and unit are; a cell
 /// that is no-data, masked, NaN or infinite has no height. South-up files are turned.
+///  - Distances from the body's centre, as shape maps hold them, become elevations above the sphere of the
+///    CRS's equatorial radius, with a warning.
 ///  - Files must share CRS, cell size and alignment, within 1/1000 of a cell.
 ///  - Geographic files across the antimeridian join: x may then exceed 180, or be below -180.
 ///  - A grid in degrees or in a cylindrical projection that goes all the way round wraps; columns that

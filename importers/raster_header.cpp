@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "importers/height_unit.hpp"
+#include "importers/radii.hpp"
 
 namespace waymark {
 namespace {
@@ -156,6 +157,18 @@ CellType cell_type(GDALDataType type, bool masked) {  // a masked cell becomes N
   }
 }
 
+void take_off_radius(GDALDataset& dataset, RasterHeader& header) {
+  const auto [metres, because] = radius_to_take_off(dataset, header);
+  if (metres == 0) return;
+  const Body& body = header.where.crs.body();
+  header.heights.offset -= metres;
+  header.heights.whole_metres = header.heights.whole_metres && metres == std::floor(metres);
+  header.warnings.push_back(
+      fmt::format("{}: heights are distances from the body's centre: {}, the radius of {} is {:.10g} m; "
+                  "{:.10g} m taken off",
+                  header.path, because, body.name, body.equatorial_radius, metres));
+}
+
 }  // namespace
 
 RasterHeader read_header(GDALDataset& dataset, const std::string& path, const std::string& crs) {
@@ -173,6 +186,7 @@ RasterHeader read_header(GDALDataset& dataset, const std::string& path, const st
   header.masked = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
   header.cells = cell_type(band.GetRasterDataType(), header.masked);
   header.heights = height_scale(band, header);
+  take_off_radius(dataset, header);
   return header;
 }
 

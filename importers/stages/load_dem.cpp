@@ -20,7 +20,10 @@ struct LoadDem {
     std::int64_t memory = 512;
 
     void describe(OptionVisitor& option) {
-      option("files", files, {.help = "Rasters that make the DEM; where they overlap the first one counts"});
+      option(
+          "files", files,
+          {.help = "Rasters that make the DEM; where they overlap the first one counts. Distances from the "
+                   "body's centre become elevations above its equatorial radius"});
       option(
           "nodata", nodata,
           {.help =
@@ -49,7 +52,7 @@ struct LoadDem {
   static StageSpec spec() {
     return {.name = "load_dem",
             .summary = "Opens elevation rasters as one grid and cuts it into tiles",
-            .version = 1,
+            .version = 2,
             .scope = Scope::map,
             .lists = Scope::tile,
             .outputs = {dem, tiles}};

@@ -75,6 +75,50 @@ TEST(ImportDem, WarnsOfAUnitItDoesNotKnow) {
               ElementsAre(HasSubstr("in 'furlong', which is no unit we know; read as metres")));
 }
 
+// A shape map of the Moon, 1737400 m in radius. Its heights, as elevations: 10 and -20 m.
+TEST(ImportDem, TakesTheRadiusOffDistancesFromTheCentre) {
+  const RasterFile moon{.transform = GeoTransform{0, 1, 0, 10, 0, -1}, .crs = "IAU_2015:30100"};
+  RasterFile by_offset = moon, by_height = moon;
+  by_offset.cells = dem_art("20 -40");
+  by_offset.scale = 0.5;
+  by_offset.offset = 1737400;
+  by_height.cells = dem_art("1737410 1737380");
+  by_height.type = GDT_Float64;
+  EXPECT_THAT(import_dem({.files = {write_raster(by_offset)}})->warnings(),
+              ElementsAre(HasSubstr("heights are distances from the body's centre: the band's offset is "
+                                    "1737400 m, the radius of Moon is 1737400 m; 1737400 m taken off")));
+  EXPECT_EQ(heights_of(by_offset), dem_art("10 -20"));
+  EXPECT_THAT(import_dem({.files = {write_raster(by_height)}})->warnings(),
+              ElementsAre(HasSubstr("the first ones are 1737380 to 1737410 m")));
+  EXPECT_EQ(heights_of(by_height), dem_art("10 -20"));
+}
+
+TEST(ImportDem, FindsDistancesFromTheCentreBehindVoids) {
+  Grid<double> cells(64, 64, kNoHeight);
+  cells(60, 60) = 1737900;
+  cells(61, 60) = 1737401;
+  const auto heights = heights_of({.cells = cells,
+                                   .type = GDT_Float32,
+                                   .transform = GeoTransform{0, 0.5, 0, 32, 0, -0.5},
+                                   .crs = "IAU_2015:30100",
+                                   .nodata = -1,
+                                   .options = {"TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16"}});
+  EXPECT_EQ(heights(60, 60), 500);
+  EXPECT_EQ(heights(61, 60), 1);
+  EXPECT_EQ(heights(0, 0), kNoHeight);
+}
+
+TEST(ImportDem, LeavesElevationsFarFromTheRadiusAlone) {
+  const auto heights = dem_art("1600000 1737400");  // 8 % below: no shape of the Moon
+  EXPECT_EQ(heights_of({.cells = heights,
+                        .type = GDT_Float64,
+                        .transform = GeoTransform{0, 1, 0, 10, 0, -1},
+                        .crs = "IAU_2015:30100"}),
+            heights);
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills, .offset = 10000})}});
+  EXPECT_THAT(dem->warnings(), IsEmpty());
+}
+
 TEST(ImportDem, KeepsEveryCellTypeExactly) {
   for (const GDALDataType type : {GDT_Byte, GDT_UInt16, GDT_Int16, GDT_UInt32, GDT_Int32, GDT_Int64,
                                   GDT_UInt64, GDT_Float32, GDT_Float64})

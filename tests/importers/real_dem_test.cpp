@@ -10,6 +10,8 @@
 namespace waymark::testing {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 class RealDem : public ::testing::Test {
@@ -53,6 +55,15 @@ TEST_F(RealDem, MarsWrapsAndKeepsItsSphere) {
   EXPECT_EQ(grid.where.crs.body().equatorial_radius, 3396190);
   EXPECT_EQ(highest(*dem), 21134);
   EXPECT_EQ(dem->read({-1, 300, 1, 1}), dem->read({1439, 300, 1, 1}));
+}
+
+// LOLA's shape map: its label gives 1737400 m as offset and 21008 / 2 = 10504 m as the highest elevation.
+TEST_F(RealDem, TheShapeOfTheMoonBecomesElevations) {
+  const std::string label = "../craters/catalogues/LDEM_4.LBL";
+  if (!shared_dem(label)) GTEST_SKIP() << label << " is not here";
+  const auto dem = import({label});
+  EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("1737400 m taken off")));
+  EXPECT_EQ(highest(*dem), 10504);
 }
 
 TEST_F(RealDem, GaleCraterIsProjectedAndBelowTheDatum) {
