@@ -142,7 +142,9 @@ void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) 
       if (r >= CraterProfiles::kReach) continue;
       const double azimuth = (std::atan2(unit.y(), unit.x()) + kPi) * 32 / kPi;
       const auto k = std::min<std::size_t>(static_cast<std::size_t>(azimuth), 63);
-      r /= std::lerp(wobble[k], wobble[k + 1], azimuth - double(k));
+      // The rim wavers, the bowl and the far ejecta do not.
+      const double rim = 4 * r * r * std::exp(1 - 4 * r * r);
+      r /= 1 + rim * (std::lerp(wobble[k], wobble[k + 1], azimuth - double(k)) - 1);
       const double place = std::min(r * 128, double(profile.size()) - 1.001);
       const auto m = static_cast<std::size_t>(place);
       const double added = std::lerp(profile[m], profile[m + 1], place - double(m));

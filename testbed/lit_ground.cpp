@@ -133,9 +133,11 @@ GroundLook LitGround::look(const Eigen::Vector3d& point, double size) const {
     const double x = point.x() - middle_.x(), y = point.y() - middle_.y();
     for (std::uint32_t octave = 0; length > 1.5 * size && octave < 8; ++octave) {
       const double weight = std::clamp(length / size - 1.5, 0.0, 1.0) * height / length;
-      const NoiseValue n = gradient_noise(x / length, y / length, fine_.seed + octave);
-      result.slope_x += weight * n.dx;
-      result.slope_y += weight * n.dy;
+      const double turn = 2.399963 * (octave + 1), c = std::cos(turn), s = std::sin(turn);
+      const NoiseValue n =
+          gradient_noise((c * x - s * y) / length, (s * x + c * y) / length, fine_.seed + octave);
+      result.slope_x += weight * (c * n.dx + s * n.dy);
+      result.slope_y += weight * (c * n.dy - s * n.dx);
       height *= std::exp2(-fine_.hurst), length /= 2;
     }
   }

@@ -97,11 +97,9 @@ Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGri
   std::nth_element(sorted.begin(), sorted.begin() + nth, sorted.end());
   const double threshold = double(sorted[std::size_t(nth)]);
 
-  const Fractal bends{.longest = 7 * length,
-                      .shortest = length,
-                      .amplitude = 0.75,
-                      .hurst = 0.8,
-                      .seed = noise_seed(seed, "dune bends")};
+  // Crests are a plane wave times a complex random field (phasor noise: Tricard et al. 2019): where the field
+  // is zero crests end or fork, as real ones do.
+  const std::uint32_t real = noise_seed(seed, "dune crests"), imaginary = noise_seed(seed, "dune forks");
   const Fractal breaks{.longest = 3 * length,
                        .shortest = length / 2,
                        .amplitude = 1,
@@ -113,9 +111,15 @@ Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGri
       const double inside = std::clamp((double(fields(i, j)) - threshold + 0.15) / 0.3, 0.0, 1.0);
       if (!(inside > 0)) continue;
       const double x = about_middle.x(i), y = about_middle.y(j);
-      const double phase = (wx * x + wy * y) / length + bends.at(x, y).value;
+      const double across = (wx * x + wy * y) / length, along = (wx * y - wy * x) / length;
+      const double re = gradient_noise(across / 4, along / 9, real).value +
+                        0.3 * gradient_noise(across / 2, along / 4, real + 1).value;
+      const double im = gradient_noise(across / 4, along / 9, imaginary).value +
+                        0.3 * gradient_noise(across / 2, along / 4, imaginary + 1).value;
+      const double phase = across + std::atan2(im, re) / (2 * std::numbers::pi);
       const double size =
-          std::clamp(0.6 + 0.35 * breaks.at(x * wx + y * wy, 0.35 * (y * wx - x * wy)).value, 0.0, 1.2);
+          std::clamp(0.7 + 0.25 * breaks.at(x * wx + y * wy, 0.35 * (y * wx - x * wy)).value, 0.0, 1.2) *
+          std::min(1.0, 1.5 * std::hypot(re, im));
       // A long windward slope and a short lee, crests sharp, troughs round.
       const double part = phase - std::floor(phase), rise = part < 0.62 ? part / 0.62 : (1 - part) / 0.38;
       const double ripple_phase = 6.3 * phase + 1.7 * breaks.at(y, x).value;
@@ -154,9 +158,10 @@ Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>
         const double dx = nodes.x(i) - crater.east, dy = nodes.y(j) - crater.north,
                      r = std::hypot(dx, dy) / radius;
         if (r > 4) continue;
-        const double streak = r > 0.3 ? streaks.at(3 * dx / (r * radius), 3 * dy / (r * radius)).value : 0;
+        const double streak = r > 0.8 ? streaks.at(3 * dx / (r * radius), 3 * dy / (r * radius)).value : 0;
         const double fade = std::exp(-0.9 * std::max(0.0, r - 1)) * std::clamp(4 - r, 0.0, 1.0);
-        albedo(i, j) += static_cast<float>(freshness * fade * std::clamp(0.7 + streak, 0.0, 1.6));
+        albedo(i, j) += static_cast<float>(
+            freshness * fade * std::clamp(0.7 + std::min(1.0, 2.5 * (r - 0.8)) * streak, 0.0, 1.6));
       }
   }
   const double brightness = std::log1p(std::max(-0.9, law.mean > 0 ? ground.dunes.brightness : 0));
