@@ -25,7 +25,7 @@ struct CameraImport {
 
 /// One image of a camera file.
 struct ImageCamera {
-  std::string image;                ///< as the file names it, folders left out
+  std::string image;                ///< as the file names it, folders included
   std::optional<PosedCamera> view;  ///< nothing where the file has no pose for it
   std::optional<Sun> sun;
   std::optional<Degrees> image_sun_angle;
@@ -36,7 +36,7 @@ struct ImageCamera {
 struct CameraSet {
   std::string format;               ///< as recognised: "waymark", "opensfm", ...
   Crs crs = Crs::local();           ///< of the map
-  std::vector<ImageCamera> images;  ///< in the file's order
+  std::vector<ImageCamera> images;  ///< in the file's order, no two of one name
   std::vector<std::string> warnings;
 };
 
@@ -51,7 +51,8 @@ std::vector<std::string> camera_formats();
 /// one name, a frame without scale and no similarity.
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import);
 
-/// The entry for an image file: by full name, else by name without extension; null where there is none.
+/// The entry for an image file: the one that agrees in the most path components from the end, the last one
+/// with or without its extension. Null where there is none, or where two agree equally.
 const ImageCamera* camera_of(const CameraSet& set, const std::string& image_file);
 
 }  // namespace waymark

@@ -2,12 +2,15 @@
 #include "importers/hash.hpp"
 
 #include <cpl_vsi.h>
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 
 #include "core/error.hpp"
+#include "importers/find_images.hpp"
 #include "importers/gdal_session.hpp"
 #include "pipeline/engine/sha256.hpp"
 
@@ -57,11 +60,44 @@ std::uint64_t add_content(const std::string& path, Sha256& sum) {
   return bytes;
 }
 
+bool is_folder(const std::string& path) {
+  VSIStatBufL status;
+  return VSIStatL(path.c_str(), &status) == 0 && VSI_ISDIR(status.st_mode);
+}
+
+// Which files there are and how large they are.
+void add_listing(const std::string& folder, Sha256& sum) {
+  for (const std::string& path : image_files_in(folder)) {
+    VSIStatBufL status;
+    const bool there = VSIStatL(path.c_str(), &status) == 0;
+    sum.add(fmt::format("{} {}\n", path.substr(folder.size()), there ? status.st_size : 0));
+  }
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  const std::unique_ptr<char*, decltype(&CSLDestroy)> names(VSIReadDir(folder.c_str()), &CSLDestroy);
+  std::vector<std::string> files;
+  for (char** name = names.get(); name && *name; ++name)
+    if (const std::string path = folder + "/" + *name; !is_folder(path)) files.push_back(path);
+  std::ranges::sort(files);
+  return files;
+}
+
 }  // namespace
 
 InputFile hash_file(const std::string& path) {
   Sha256 sum;
   InputFile input{.path = path, .bytes = 0, .sha256 = {}};
+  if (path.ends_with('/')) {
+    add_listing(path, sum);
+    input.sha256 = sum.hex();
+    return input;
+  }
+  if (is_folder(path)) {
+    for (const std::string& file : files_in(path)) input.bytes += add_content(file, sum);
+    input.sha256 = sum.hex();
+    return input;
+  }
   for (const std::string& part : parts_of(path)) input.bytes += add_content(part, sum);
   input.sha256 = sum.hex();
   return input;

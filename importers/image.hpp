@@ -26,6 +26,7 @@ class ImportedImage : public ImageSource {
  public:
   /// One line each, in a fixed order.
   virtual const std::vector<std::string>& warnings() const = 0;
+  virtual int band() const = 0;  ///< as ImageImport has it
 };
 
 /// Opens an image: GeoTIFF, COG, PNG, JPEG, PGM, PDS3/PDS4/ISIS and whatever else GDAL reads; 8, 16, 32 bit,

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "importers/camera_set.hpp"
+#include "importers/control_points.hpp"
+#include "importers/find_images.hpp"
+#include "importers/image_set.hpp"
+#include "importers/list_images.hpp"
+#include "importers/text_table.hpp"
+#include "pipeline/engine/stage.hpp"
+
+namespace waymark {
+namespace {
+
+std::vector<std::string> format_names() {
+  std::vector<std::string> names{"auto"};
+  for (std::string& name : camera_formats()) names.push_back(std::move(name));
+  return names;
+}
+
+struct LoadImages {
+  struct Options {
+    std::vector<std::string> files, cameras;
+    std::string camera_format = "auto", interior, crs, camera_crs, control_points, similarity;
+    Meters height_offset{0}, position_sd{0}, gsd{0};
+    Degrees rotation_sd{0}, sun_azimuth{0}, sun_elevation{0}, sun_sd{Sun{}.sd};
+    std::string sun = "auto", image_sun_angle, time_zone;
+    double saturated = 0;
+    std::int64_t band = 0;
+
+    void describe(OptionVisitor& option) {
+      option("files", files,
+             {.help = "Images, or folders of images; empty: those the camera file names, near it"});
+      option("cameras", cameras, {.help = "Camera files, one or several of one format; none: orthophotos"});
+      option("camera_format", camera_format,
+             {.help = "Format of the camera files", .choices = format_names()});
+      option("interior", interior,
+             {.help = "File with the interior orientation, for formats that keep it apart"});
+      option("crs", crs,
+             {.help =
+                  "CRS of the map, that of the DEM; empty: as the camera file or the first orthophoto says"});
+      option("camera_crs", camera_crs,
+             {.help = "CRS of camera places where their file does not say; empty: the map's"});
+      option(
+          "height_offset", height_offset,
+          {.help =
+               "Added to every camera height: minus the height of the DEM's zero (geoid, areoid) above the "
+               "cameras' (ellipsoid, sphere)",
+           .min = -1e5,
+           .max = 1e5});
+      option("control_points", control_points,
+             {.help = "CSV file that ties an arbitrary camera frame to the map"});
+      option("similarity", similarity,
+             {.help = "Instead of control points: scale,qw,qx,qy,qz,x,y,z with map = scale * rotation * "
+                      "frame + shift"});
+      option("rotation_sd", rotation_sd,
+             {.help = "Standard deviation of camera angles where the camera file gives none",
+              .min = 0,
+              .max = 180});
+      option("position_sd", position_sd,
+             {.help = "Standard deviation of camera places where the camera file gives none",
+              .min = 0,
+              .max = 1e6});
+      option("sun", sun,
+             {.help = "What tells the sun: auto (camera file, label, then time and place), time, none",
+              .choices = {"auto", "time", "none"}});
+      option("sun_azimuth", sun_azimuth,
+             {.help = "Towards the sun, clockwise from map north; of all images, with sun_elevation",
+              .min = -360,
+              .max = 360});
+      option("sun_elevation", sun_elevation,
+             {.help = "Of the sun above the horizon; 0: not given", .min = 0, .max = 90});
+      option("sun_sd", sun_sd,
+             {.help = "Standard deviation of the sun's angles as given", .min = 0, .max = 90});
+      option(
+          "image_sun_angle", image_sun_angle,
+          {.help =
+               "Towards the sun in the images, degrees from x (right) towards y (down); empty: not given"});
+      option("time_zone", time_zone,
+             {.help = "Offset of EXIF times that carry none: Z, +08:00; empty: not known"});
+      option(
+          "gsd", gsd,
+          {.help = "Ground size of a pixel, for images without place; 0: not known", .min = 0, .max = 1e5});
+      option("saturated", saturated,
+             {.help = "Pixels at or above are blown out; 0: the largest 8 or 16 bit number",
+              .min = 0,
+              .max = 1e12});
+      option("band", band, {.help = "Band to look at, from 1; 0: brightness", .min = 0, .max = 10000});
+    }
+  };
+
+  static constexpr Out<ImageSet> images{"image_set"};
+  static constexpr Out<std::vector<ImageItem>> items{"images"};
+
+  static StageSpec spec() {
+    return {.name = "load_images",
+            .summary = "Lists images and gives each one its camera or georeference, and the sun",
+            .version = 1,
+            .scope = Scope::map,
+            .lists = Scope::image,
+            .outputs = {images, items}};
+  }
+
+  // Images are hashed one by one, as what they are to their own units; what counts here is which there are.
+  static std::vector<std::string> input_files(const Options& options) {
+    namespace fs = std::filesystem;
+    std::vector<std::string> files = options.cameras;
+    for (const std::string& file : {options.interior, options.control_points})
+      if (!file.empty()) files.push_back(file);
+    std::set<std::string> folders;
+    for (const std::string& file : options.files)
+      folders.insert((is_image_name(file) ? fs::path(file).parent_path() / "." : fs::path(file)).string() +
+                     "/");
+    if (options.files.empty())
+      for (const std::string& file : options.cameras)
+        for (const char* place : {"./", "images/", "../images/"})
+          folders.insert((fs::path(file).parent_path() / place).string());
+    files.insert(files.end(), folders.begin(), folders.end());
+    return files;
+  }
+
+  static ImageListing listing_of(const Options& options, const StageContext& unit) {
+    const auto path = [&](const std::string& file) { return file.empty() ? file : unit.path(file); };
+    ImageListing listing;
+    for (const std::string& file : options.files) listing.files.push_back(path(file));
+    for (const std::string& file : options.cameras) listing.cameras.push_back(path(file));
+    if (options.camera_format != "auto") listing.format = options.camera_format;
+    listing.import = {.crs = options.crs,
+                      .camera_crs = options.camera_crs,
+                      .height_offset = options.height_offset.value,
+                      .interior = path(options.interior),
+                      .control_points = path(options.control_points),
+                      .rotation_sd = to_radians(options.rotation_sd).value,
+                      .position_sd = options.position_sd.value};
+    if (!options.similarity.empty()) listing.import.map_from_frame = similarity_from_text(options.similarity);
+    using From = ImageListing::SunFrom;
+    listing.sun_from = options.sun == "time" ? From::time : options.sun == "none" ? From::nothing : From::all;
+    if (options.sun_elevation.value > 0)
+      listing.sun = Sun{.azimuth = Degrees{std::fmod(options.sun_azimuth.value + 360, 360.0)},
+                        .elevation = options.sun_elevation,
+                        .sd = options.sun_sd};
+    if (!options.image_sun_angle.empty()) listing.image_sun_angle = angle_of(options.image_sun_angle);
+    listing.time_zone = options.time_zone;
+    if (options.gsd.value > 0) listing.gsd = options.gsd;
+    listing.saturated = options.saturated;
+    listing.band = static_cast<int>(options.band);
+    return listing;
+  }
+
+  static Degrees angle_of(const std::string& text) {
+    double angle = 0;
+    if (!parse_number(text, angle) || !(angle >= -360 && angle <= 360))
+      throw Error(ErrorCode::usage, "image_sun_angle is '" + text + "'", "",
+                  "degrees, -360 to 360, or empty");
+    return Degrees{angle};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    const ListedImages listed = list_images(listing_of(options, unit));
+    for (const std::string& warning : listed.warnings) unit.warn(warning);
+    std::vector<ImageItem> list;
+    for (ImageInfo info : listed.images) {
+      const std::string path = std::exchange(info.path, {});  // elsewhere it is the same image
+      list.push_back({static_cast<std::int64_t>(list.size()), info.name, path, to_json(info)});
+    }
+    unit.count_out(static_cast<std::int64_t>(list.size()));
+    unit.write(images, image_set(listed.images, static_cast<int>(options.band)));
+    unit.write(items, std::move(list));
+  }
+};
+
+}  // namespace
+
+void register_stage_load_images(Registry& registry);
+void register_stage_load_images(Registry& registry) {
+  registry.add<LoadImages>();
+}
+
+}  // namespace waymark
