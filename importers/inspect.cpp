@@ -14,12 +14,13 @@ namespace {
 constexpr double kSeamTolerance = 1e-3;  // metres
 constexpr std::size_t kSeamsNamed = 20;
 constexpr std::int64_t kPiece = 1024;  // cells on a side, read at once
+constexpr std::int64_t kGlance = 256;  // the same where the first piece mostly tells
 
-// Calls visit(piece) for square pieces of the window, row by row, until it returns false.
-void for_each_piece(const Window& window, auto&& visit) {
-  for (std::int64_t row = window.row; row < window.end_row(); row += kPiece)
-    for (std::int64_t column = window.column; column < window.end_column(); column += kPiece)
-      if (!visit(common({column, row, kPiece, kPiece}, window))) return;
+// Calls visit(piece) for squares of `side` cells of the window, row by row, until it returns false.
+void for_each_piece(const Window& window, std::int64_t side, auto&& visit) {
+  for (std::int64_t row = window.row; row < window.end_row(); row += side)
+    for (std::int64_t column = window.column; column < window.end_column(); column += side)
+      if (!visit(common({column, row, side, side}, window))) return;
 }
 
 // The end of a file is what a broken download lacks.
@@ -33,7 +34,7 @@ void check_ends(const Mosaic& mosaic) {
 
 void check_relief(const Mosaic& mosaic, std::vector<std::string>& warnings) {
   double low = std::numeric_limits<double>::infinity(), high = kNoHeight;
-  for_each_piece({0, 0, mosaic.grid().columns, mosaic.grid().rows}, [&](const Window& piece) {
+  for_each_piece({0, 0, mosaic.grid().columns, mosaic.grid().rows}, kGlance, [&](const Window& piece) {
     const HeightWindow heights = mosaic.read(piece);
     for (const double height : heights.cells()) {
       if (height == kNoHeight) continue;
@@ -58,7 +59,7 @@ struct Disagreement {
 
 Disagreement compare(const Mosaic& mosaic, std::size_t first, std::size_t second, const Window& overlap) {
   Disagreement found;
-  for_each_piece(overlap, [&](const Window& piece) {
+  for_each_piece(overlap, kPiece, [&](const Window& piece) {
     const HeightWindow a = mosaic.read_file(first, piece), b = mosaic.read_file(second, piece);
     for (std::int64_t row = 0; row < piece.rows; ++row)
       for (std::int64_t column = 0; column < piece.columns; ++column) {

@@ -7,14 +7,14 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// Random access to the cells of a DEM: squares of 256 cells, read when first asked for; the oldest are
-/// dropped. For one thread.
+/// Random access to the cells of a DEM: squares of 64 cells, read when first asked for; the oldest are
+/// dropped. For one thread. Small, because a search looks at few blocks here and there.
 class DemChunks {
  public:
-  static constexpr std::int64_t kSide = 256;
+  static constexpr std::int64_t kSide = 64;
 
-  /// Holds at most `limit` chunks of half a megabyte.
-  explicit DemChunks(const DemSource& dem, std::size_t limit = 64) : dem_(dem), limit_(limit) {}
+  /// Holds at most `limit` chunks of 32 KiB.
+  explicit DemChunks(const DemSource& dem, std::size_t limit = 256) : dem_(dem), limit_(limit) {}
 
   /// Height of a cell; kNoHeight outside the grid. Columns wrap round where the grid does.
   double operator()(std::int64_t column, std::int64_t row) {

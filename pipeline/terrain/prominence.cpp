@@ -4,9 +4,9 @@
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
-#include <unordered_map>
 
 #include "pipeline/terrain/cell_order.hpp"
 #include "pipeline/terrain/islands.hpp"
@@ -28,18 +28,52 @@ struct Link {
   std::size_t a, b;  // peaks
 };
 
+// The node of each cell on the tiles' borders: open addressing, at most half full. Building a
+// std::unordered_map of them would take longer than the rest of the join.
+class BorderNodes {
+ public:
+  explicit BorderNodes(std::size_t count) : places_(std::bit_ceil(2 * count + 1)) {}
+
+  void add(std::int64_t cell, std::size_t node) { places_[place_of(cell)] = {cell, node}; }
+  std::size_t node(std::int64_t cell) const {
+    const Place& place = places_[place_of(cell)];
+    if (place.cell != cell) throw std::logic_error("a tile of the divide tree is missing");
+    return place.node;
+  }
+
+ private:
+  struct Place {
+    std::int64_t cell = -1;  // -1: free
+    std::size_t node = 0;
+  };
+
+  // Where the cell is, or should be. Neighbouring cells are spread by the golden ratio (Knuth, vol. 3, 6.4).
+  std::size_t place_of(std::int64_t cell) const {
+    const std::size_t last = places_.size() - 1;
+    const std::uint64_t spread = static_cast<std::uint64_t>(cell) * 0x9E3779B97F4A7C15u;
+    std::size_t at = static_cast<std::size_t>(spread >> 32) & last;
+    while (places_[at].cell != cell && places_[at].cell >= 0) at = (at + 1) & last;
+    return at;
+  }
+
+  std::vector<Place> places_;
+};
+
+std::size_t border_count(Tiles tiles) {
+  std::size_t count = 0;
+  for (const auto& tile : tiles) count += tile->border.size();
+  return count;
+}
+
 // The summits of all tiles, and the saddles between them with every portal replaced by the summit it leads
 // to.
 class WholeGrid {
  public:
-  explicit WholeGrid(Tiles tiles) {
-    std::size_t border_count = 0;
-    for (const auto& tile : tiles) border_count += tile->border.size();
-    border_.reserve(border_count);
+  explicit WholeGrid(Tiles tiles) : border_(border_count(tiles)) {
     std::size_t first = 0;
     for (const auto& tile : tiles) {
       for (const auto& border : tile->border)
-        border_[border.cell] = first + static_cast<std::size_t>(border.node);
+        border_.add(border.cell, first + static_cast<std::size_t>(border.node));
       first += tile->nodes.size();
       nodes_.insert(nodes_.end(), tile->nodes.begin(), tile->nodes.end());
     }
@@ -76,16 +110,14 @@ class WholeGrid {
     path.clear();
     while (summit_[node] == kOpen) {
       path.push_back(node);
-      const auto found = border_.find(nodes_[node].cell);
-      if (found == border_.end()) throw std::logic_error("a tile of the divide tree is missing");
-      node = found->second;
+      node = border_.node(nodes_[node].cell);
     }
     for (const std::size_t passed : path) summit_[passed] = summit_[node];
     return summit_[node];
   }
 
   std::vector<DivideTree::Node> nodes_;
-  std::unordered_map<std::int64_t, std::size_t> border_;
+  BorderNodes border_;
   std::vector<std::size_t> summit_;  // of each node, as an index of peaks
   std::vector<std::size_t> path_;
 };
