@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "exporters/aside_folder.hpp"
+#include "exporters/crater_count.hpp"
 #include "exporters/export_check.hpp"
 #include "exporters/map_subset.hpp"
 #include "exporters/ogr_output.hpp"
@@ -119,6 +120,7 @@ void write_map_file(Export& job, const std::vector<std::string>& types, const fs
 }  // namespace
 
 ExportSummary export_map(const fs::path& map_path, const std::string& out, const ExportOptions& options) {
+  if (options.driver.empty() && is_crater_count(out)) return export_crater_count(map_path, out, options);
   const VectorFormat format = vector_format(out, options.driver);
   const MapStore map = MapStore::open(map_path);
   const auto types = chosen_types(map, options.types);

@@ -11,6 +11,7 @@ struct ExportOptions {
   std::vector<std::string> types = {};  ///< landmark types; empty: all the map has
   std::string crs = {};    ///< any text Crs understands; empty: the map's, EPSG:4326 where a format needs it
   bool overwrite = false;  ///< false: an existing output is an error
+  double area_km2 = 0;     ///< counting area of a crater count (.scc, .diam); 0: as the map knows it
 };
 
 struct ExportedLayer {

@@ -17,7 +17,12 @@ class Export final : public Command {
         .name = "export",
         .group = Group::use,
         .summary = "Write the landmarks of a map in another format",
-        .about = "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.",
+        .about =
+            "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.\n\n"
+            "Crater counts for craterstats: .scc has the craters with their places and the outline of the "
+            "area "
+            "they were counted on, .diam their diameters. The area is that of the images' footprints, or of "
+            "the DEM.",
         .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
                       file_word("OUT", &out_, "File to write; its extension tells the format"),
                       Argument{"-of,--format", "OGR_DRIVER", &options_.driver,
@@ -26,11 +31,15 @@ class Export final : public Command {
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
                           .offering(all_types().names()),
                       Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
+                      Argument{"--area", "KM2", &options_.area_km2,
+                               "Counting area of a crater count (.scc, .diam)"}
+                          .or_else("the map's footprints, or its DEM"),
                       {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
         .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
                      {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
                       "A table in UTM metres"},
-                     {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"}}};
+                     {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+                     {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"}}};
   }
 
   int run(const Session&) override {

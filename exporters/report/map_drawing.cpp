@@ -54,9 +54,11 @@ std::string legend(const std::vector<LandmarkSection>& sections, const MapMarker
 
 std::vector<std::string> relief_names(const MapStore& map) {
   if (map.has_dem_coverage()) return {"GPKG:" + map.path().string() + ":dem"};
-  std::vector<std::string> names;
+  std::vector<std::string> names, images;
+  for (const ImageRecord& image : map.images()) images.push_back(image.name);
   for (const RunRecord& run : map.runs())
     for (const InputFile& input : run.inputs) {
+      if (std::ranges::count(images, fs::path(input.path).filename().string()) > 0) continue;  // no heights
       const fs::path beside = map.path().parent_path() / fs::path(input.path).filename();
       std::error_code missing;
       const bool there = input.path.starts_with("/vsi") || fs::exists(input.path, missing);
