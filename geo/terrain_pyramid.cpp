@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 
 namespace waymark {
@@ -146,7 +147,17 @@ PyramidHit Terrain::Pyramid::first_hit(const GridRay& ray, const RayRange& range
   // A vertical ray below the extent's ground would otherwise have an endless piece.
   const double deepest = ray.dz < 0 ? (lowest - 1 - ray.z) / ray.dz : kInfinity;
   const double last = std::min(range.to, std::max(range.from, deepest));
-  push(int(levels.size()) - 1, 0, 0, range.from, std::isfinite(last) ? last : range.from);
+  const double end = std::isfinite(last) ? last : range.from;
+  // Start at the smallest node that holds both ends of the ray: for a steep ray, the very cell it meets.
+  const auto cell = [](double at, std::int64_t count) {
+    return static_cast<std::uint32_t>(std::clamp(at, 0.0, double(count - 1)));
+  };
+  const std::int64_t columns = levels[0].columns(), rows = levels[0].rows();
+  const std::uint32_t c = cell(ray.u + range.from * ray.du, columns),
+                      c_end = cell(ray.u + end * ray.du, columns);
+  const std::uint32_t r = cell(ray.v + range.from * ray.dv, rows), r_end = cell(ray.v + end * ray.dv, rows);
+  const int top = std::bit_width((c ^ c_end) | (r ^ r_end));
+  push(top, static_cast<std::int32_t>(c >> top), static_cast<std::int32_t>(r >> top), range.from, end);
   while (size > 0) {
     const Node node = stack[--size];
     if (node.level == 0) {
