@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/logs/import_log.hpp"
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string recognised(const fs::path& path) {
+  if (fs::is_directory(path)) {
+    if (fs::exists(path / "Barcodes.dat")) return "mrclam";
+    if (fs::exists(path / "LASER.txt") && fs::exists(path / "DRS.txt")) return "victoria-park";
+    throw Error(ErrorCode::input, "the folder holds no log of a known format", path.string(),
+                "known are MRCLAM (Barcodes.dat) and Victoria Park (LASER.txt, DRS.txt)");
+  }
+  if (!fs::exists(path))
+    throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
+  if (path.extension() == ".dat") return "mrclam";
+  const std::string name = path.filename().string();
+  return name == "LASER.txt" || name == "DRS.txt" ? "victoria-park" : "waymark";
+}
+
+}  // namespace
+
+RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
+  const std::string format = how.format.empty() ? recognised(path) : how.format;
+  if (format == "waymark") return import_waymark_log(path, types);
+  if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
+  if (format == "victoria-park")
+    return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
+  throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
+              "known are waymark, mrclam and victoria-park");
+}
+
+}  // namespace waymark

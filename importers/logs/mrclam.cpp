@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/error.hpp"
+#include "importers/logs/import_log.hpp"
+#include "importers/logs/number_table.hpp"
+
+namespace waymark {
+namespace {
+
+// Standard deviations of the camera, the same for all robots: as measured on robots 1 and 2 of set 6.
+constexpr double kRangeSd = 0.15, kRangeSdPerMetre = 0.03, kBearingSd = 0.03;
+constexpr int kRobots = 5;
+
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(path) ? path : path.parent_path();
+}
+
+/// 3 of Robot3_Odometry.dat; 0 for other names.
+std::int64_t robot_in_name(const std::filesystem::path& path) {
+  const std::string name = path.filename().string();
+  return name.size() > 6 && name.starts_with("Robot") && name[5] >= '1' && name[5] <= '9' ? name[5] - '0' : 0;
+}
+
+std::string uid_of(int subject) {
+  return fmt::format("subject_{}", subject);
+}
+
+/// Sightings of one camera frame: same time, nearby lines.
+class Frames {
+ public:
+  void add(double t, const Sighting& sighting) {
+    if (events_.empty() || events_.back().t != t) events_.push_back({t, SightingSet{}});
+    std::get<SightingSet>(events_.back().what).sightings.push_back(sighting);
+  }
+  std::vector<LogEvent> take() { return std::move(events_); }
+
+ private:
+  std::vector<LogEvent> events_;
+};
+
+}  // namespace
+
+RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot, const TypeRegistry& types) {
+  const std::filesystem::path folder = folder_of(path);
+  if (robot == 0) robot = robot_in_name(path);
+  if (robot < 1 || robot > kRobots)
+    throw Error(ErrorCode::usage, "an MRCLAM dataset has the robots 1 to 5: which one?", path.string(),
+                "add --robot 1");
+  const auto file = [&](const char* what) { return folder / fmt::format("Robot{}_{}.dat", robot, what); };
+
+  std::map<int, int> subject_of;  // by bar code
+  const auto codes = number_table(folder / "Barcodes.dat", 2);
+  for (std::size_t i = 0; i < codes.size(); i += 2)
+    subject_of[static_cast<int>(codes[i + 1])] = static_cast<int>(codes[i]);
+
+  const bool has_beacons = types.find("beacon") != nullptr;
+  std::optional<TypeId> beacon;
+  if (has_beacons) beacon = types.id("beacon");
+  Frames frames;
+  std::size_t unknown = 0;
+  const auto seen = number_table(file("Measurement"), 4);
+  for (std::size_t i = 0; i < seen.size(); i += 4) {
+    const auto subject = subject_of.find(static_cast<int>(seen[i + 1]));
+    unknown += subject == subject_of.end();
+    Sighting s{.type = beacon,
+               .bearing = seen[i + 3],
+               .bearing_sd = kBearingSd,
+               .range = seen[i + 2],
+               .range_sd = std::hypot(kRangeSd, kRangeSdPerMetre * seen[i + 2]),
+               .features = {},
+               .identity = {}};
+    if (subject == subject_of.end() || subject->second <= kRobots)
+      s.type = kUnknownType;  // another robot, or a code that was misread
+    if (subject != subject_of.end()) s.identity = landmark_key(uid_of(subject->second));
+    frames.add(seen[i], s);
+  }
+  RobotLog log;
+  log.in_crs = true;
+  const auto odometry = number_table(file("Odometry"), 3);
+  for (std::size_t i = 0; i < odometry.size(); i += 3)
+    log.events.push_back({odometry[i], TwistReading{odometry[i + 1], 0, odometry[i + 2]}});
+  for (LogEvent& e : frames.take()) log.events.push_back(std::move(e));
+  std::ranges::stable_sort(log.events, {}, &LogEvent::t);
+  if (std::filesystem::exists(file("Groundtruth"))) {
+    const auto truth = number_table(file("Groundtruth"), 4);
+    for (std::size_t i = 0; i < truth.size(); i += 4)
+      log.truth.push_back({truth[i], {truth[i + 1], truth[i + 2], truth[i + 3]}});
+  }
+  if (unknown)
+    log.remarks.push_back(fmt::format("{} sightings of bar codes that are not in Barcodes.dat", unknown));
+  tidy(log);
+  return log;
+}
+
+std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path, TypeId type,
+                                              const LandmarkType& declared) {
+  const auto rows =
+      number_table(std::filesystem::is_directory(path) ? path / "Landmark_Groundtruth.dat" : path, 5);
+  std::vector<Landmark> all;
+  for (std::size_t i = 0; i < rows.size(); i += 5) {
+    Landmark landmark;
+    landmark.uid = uid_of(static_cast<int>(rows[i]));
+    landmark.type = type;
+    landmark.position.xyz << rows[i + 1], rows[i + 2], 0;
+    landmark.covariance.diagonal() << rows[i + 3] * rows[i + 3], rows[i + 4] * rows[i + 4], 1e-4;
+    landmark.features.resize(declared.features.size());
+    landmark.attributes.resize(declared.attributes.size());
+    landmark.quality = {1, 1, std::vector<std::optional<double>>(declared.features.size())};
+    all.push_back(std::move(landmark));
+  }
+  return all;
+}
+
+}  // namespace waymark

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "importers/logs/import_log.hpp"
+#include "importers/logs/number_table.hpp"
+
+namespace waymark {
+namespace {
+
+using nlohmann::json;
+
+/// One line of a log; every message names it.
+class Line {
+ public:
+  Line(const std::filesystem::path& file, std::size_t number, const json& object)
+      : file_(file), number_(number), object_(object) {}
+
+  const json& object() const { return object_; }
+  Line part(const json& object) const { return {file_, number_, object}; }
+  bool has(const char* key) const { return object_.contains(key) && !object_[key].is_null(); }
+
+  double number(const char* key) const {
+    if (!has(key)) fail(fmt::format("has no \"{}\"", key));
+    if (!object_[key].is_number())
+      fail(fmt::format("\"{}\" must be a number, is {}", key, object_[key].dump()));
+    return object_[key];
+  }
+  double number(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
+  double positive(const char* key, double otherwise) const {
+    const double value = number(key, otherwise);
+    if (!(value > 0)) fail(fmt::format("\"{}\" must be above 0, is {}", key, value));
+    return value;
+  }
+  /// Radians; what is more than two turns was meant in degrees.
+  double angle(const char* key, std::optional<double> otherwise = {}) const {
+    const double value = otherwise ? number(key, *otherwise) : number(key);
+    if (!(std::abs(value) <= 4 * std::numbers::pi))
+      fail(fmt::format("\"{}\" is {}: angles are radians", key, value));
+    return value;
+  }
+  std::string text(const char* key) const {
+    if (!has(key) || !object_[key].is_string()) fail(fmt::format("\"{}\" must be a text", key));
+    return object_[key];
+  }
+  Pose2 pose() const { return {number("x"), number("y"), angle("yaw", 0)}; }
+  Pose2 mount() const { return has("mount") ? part(object_["mount"]).pose() : Pose2{}; }
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(ErrorCode::input, "the log " + problem, fmt::format("{}, line {}", file_.string(), number_),
+                "docs/log_format.md describes each record");
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::size_t number_;
+  const json& object_;
+};
+
+class Reader {
+ public:
+  explicit Reader(const TypeRegistry& types) : types_(types) {}
+
+  void read(const Line& line) {
+    const std::string kind = line.text("kind");
+    if (kind == "header") return header(line);
+    const double t = line.number("t");
+    if (kind == "odometry")
+      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.number("omega")});
+    else if (kind == "car")
+      add(t, CarReading{line.number("v"), line.angle("steering")});
+    else if (kind == "step")
+      add(t, StepReading{{line.number("dx"), line.number("dy"), line.angle("dyaw")}});
+    else if (kind == "sightings")
+      add(t, sightings(line));
+    else if (kind == "laser")
+      add(t, scan(line));
+    else if (kind == "gnss")
+      add(t, fix(line));
+    else if (kind == "truth")
+      log_.truth.push_back({t, line.pose()});
+    else
+      ++unknown_[kind];
+  }
+
+  RobotLog take() {
+    for (const auto& [kind, count] : unknown_)
+      log_.remarks.push_back(fmt::format("{} records of the kind '{}' are left out", count, kind));
+    for (const auto& [type, count] : no_type_)
+      log_.remarks.push_back(
+          fmt::format("{} sightings of type '{}', which the map does not have", count, type));
+    tidy(log_);
+    return std::move(log_);
+  }
+
+ private:
+  void add(double t, Reading reading) { log_.events.push_back({t, std::move(reading)}); }
+
+  void header(const Line& line) {
+    if (line.has("version") && line.number("version") > 1)
+      line.fail(fmt::format("is of version {}, this program reads version 1", line.number("version")));
+    const std::string frame = line.has("frame") ? line.text("frame") : "map";
+    if (frame != "map" && frame != "crs")
+      line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
+    log_.in_crs = frame == "crs";
+    log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
+    log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
+    if (line.has("start")) log_.start = line.part(line.object()["start"]).pose();
+  }
+
+  SightingSet sightings(const Line& line) {
+    SightingSet set;
+    set.robot_from_sensor = line.mount();
+    if (!line.has("items") || !line.object()["items"].is_array()) line.fail("\"items\" must be a list");
+    for (const json& item : line.object()["items"]) set.sightings.push_back(sighting(line.part(item)));
+    return set;
+  }
+
+  Sighting sighting(const Line& line) {
+    Sighting s;
+    s.bearing = line.angle("bearing");
+    s.bearing_sd = line.positive("bearing_sd", 0.02);
+    if (line.has("range")) s.range = line.number("range");
+    s.range_sd = line.positive("range_sd", s.range ? 0.05 + 0.02 * std::abs(*s.range) : 0.1);
+    s.confidence = line.number("confidence", 1);
+    if (!(s.confidence > 0 && s.confidence <= 1)) line.fail("\"confidence\" must be within (0, 1]");
+    if (line.has("landmark")) s.identity = landmark_key(line.text("landmark"));
+    if (!line.has("type")) return s;
+    const std::string name = line.text("type");
+    const LandmarkType* type = types_.find(name);
+    if (!type) {
+      ++no_type_[name];
+      s.type = kUnknownType;
+      return s;
+    }
+    s.type = types_.id(name);
+    if (line.has("features")) features(line.part(line.object()["features"]), *type, s.features);
+    return s;
+  }
+
+  static void features(const Line& line, const LandmarkType& type, KnownFeatures& into) {
+    for (std::size_t i = 0; i < std::min(type.features.size(), kMaxFeatures); ++i) {
+      const FeatureSpec& spec = type.features[i];
+      if (!line.has(spec.name.c_str())) continue;
+      const json& value = line.object()[spec.name];
+      const bool with_sd = value.is_object();
+      const Line both = with_sd ? line.part(value) : line;
+      into.value[i] = with_sd ? both.number("value") : line.number(spec.name.c_str());
+      const double sd = with_sd ? both.positive("sd", 1) : 0;
+      into.variance[i] = sd * sd;
+      if (spec.scale == Scale::ratio && !(into.value[i] > 0))
+        line.fail(fmt::format("\"{}\" must be above 0, is {}", spec.name, into.value[i]));
+    }
+    for (const auto& [name, value] : line.object().items())
+      if (std::ranges::find(type.features, name, &FeatureSpec::name) == type.features.end())
+        line.fail(fmt::format("has the feature \"{}\", which the type {} has not", name, type.name));
+  }
+
+  static LaserScan scan(const Line& line) {
+    LaserScan scan{.robot_from_sensor = line.mount(),
+                   .first_angle = line.angle("first_angle"),
+                   .angle_step = line.angle("angle_step"),
+                   .ranges = {},
+                   .most_range = line.positive("most_range", 80)};
+    if (!line.has("ranges") || !line.object()["ranges"].is_array()) line.fail("\"ranges\" must be a list");
+    for (const json& range : line.object()["ranges"])
+      scan.ranges.push_back(range.is_number() ? range.get<float>() : 0.0F);
+    return scan;
+  }
+
+  static GnssFix fix(const Line& line) {
+    GnssFix fix;
+    fix.at = {line.number("x"), line.number("y")};
+    fix.sd = line.positive("sd", 3);
+    return fix;
+  }
+
+  const TypeRegistry& types_;
+  RobotLog log_;
+  std::map<std::string, std::size_t> unknown_, no_type_;
+};
+
+}  // namespace
+
+RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
+  std::istringstream text(text_of_file(file));
+  Reader reader(types);
+  std::size_t number = 0, records = 0;
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    const json object = json::parse(line, nullptr, false);
+    if (!object.is_object())
+      throw Error(ErrorCode::input, "this line is no JSON object",
+                  fmt::format("{}, line {}", file.string(), number),
+                  "a log has one object per line (docs/log_format.md); not a number is written null");
+    reader.read({file, number, object});
+    ++records;
+  }
+  if (records == 0) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
+  return reader.take();
+}
+
+}  // namespace waymark

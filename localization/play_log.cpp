@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/play_log.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+class Player {
+ public:
+  Player(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,
+         const Clock& clock)
+      : log_(log), localizer_(localizer), options_(options), detect_(detect), clock_(clock) {}
+
+  Track play() {
+    if (!log_.events.empty()) now_ = log_.events.front().t;
+    for (const LogEvent& event : log_.events) {
+      advance(event.t);
+      TrackRow row;
+      const bool seen = std::visit([&](const auto& reading) { return take(reading, row); }, event.what);
+      if (!seen && !options_.every_event) continue;
+      row.t = event.t;
+      row.at = localizer_.estimate();
+      row.lost = localizer_.trust() != Trust::sure;
+      if (!row.at.pose.finite() || !row.at.covariance.allFinite())
+        throw std::logic_error("a localizer has an estimate that is not finite");
+      track_.rows.push_back(row);
+    }
+    return std::move(track_);
+  }
+
+ private:
+  // The speeds of the last reading hold until `t`, but no longer than longest_hold; then the robot stands,
+  // and only the uncertainty of time grows.
+  void advance(double t) {
+    const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.longest_hold);
+    now_ = std::max(now_, t);
+    if (const auto* twist = std::get_if<TwistReading>(&held_))
+      localizer_.move(twist_motion(twist->speed, twist->sideways, twist->turn, driven, options_.odometry));
+    else if (const auto* car = std::get_if<CarReading>(&held_))
+      localizer_.move(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, options_.odometry));
+    if (seconds > driven) localizer_.move(step_motion({}, seconds - driven, options_.odometry));
+  }
+
+  bool take(const TwistReading& reading, TrackRow&) { return held_ = reading, false; }
+  bool take(const CarReading& reading, TrackRow&) { return held_ = reading, false; }
+  bool take(const StepReading& reading, TrackRow&) {
+    localizer_.move(step_motion(reading.step, std::max(0.0, now_ - last_step_), options_.odometry));
+    last_step_ = now_;
+    return false;
+  }
+  bool take(const GnssFix&, TrackRow&) { return false; }  // kept for comparison, not used
+  bool take(const LaserScan& scan, TrackRow& row) { return detect_ && take(detect_(scan), row); }
+
+  bool take(SightingSet seen, TrackRow& row) {
+    for (Sighting& s : seen.sightings) {
+      s.bearing_sd *= options_.sensor_noise;
+      s.range_sd *= options_.sensor_noise;
+    }
+    const double before = clock_ ? clock_() : 0;
+    const std::vector<Match> matches = localizer_.see(seen);
+    if (clock_) track_.seconds += clock_() - before;
+    ++track_.updates;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      ++track_.verdicts[static_cast<std::size_t>(matches[i].verdict)];
+      if (matches[i].verdict != Verdict::matched) {
+        ++row.rejected;
+        continue;
+      }
+      ++row.matched;
+      if (!seen.sightings[i].identity) continue;
+      ++track_.named;
+      row.wrong += *seen.sightings[i].identity != matches[i].key;
+    }
+    track_.wrong += row.wrong;
+    return true;
+  }
+
+  const RobotLog& log_;
+  Localizer& localizer_;
+  const PlayOptions& options_;
+  const ScanDetector& detect_;
+  const Clock& clock_;
+  Track track_;
+  std::variant<std::monostate, TwistReading, CarReading> held_;
+  double now_ = 0, last_step_ = 0;
+};
+
+}  // namespace
+
+void PlayOptions::describe(OptionVisitor& option) {
+  odometry.describe(option);
+  option("longest_hold", longest_hold,
+         {.help = "Seconds a speed holds without a new reading; then the robot is taken to stand", .min = 0});
+  option("sensor_noise", sensor_noise,
+         {.help = "Factor on the standard deviations of ranges and bearings that the log states",
+          .min = 0.01,
+          .max = 100});
+}
+
+Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,
+           const Clock& clock) {
+  return Player(log, localizer, options, detect, clock).play();
+}
+
+}  // namespace waymark

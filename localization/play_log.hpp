@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include "localization/robot_log.hpp"
+#include "localization/track.hpp"
+namespace waymark {
+
+struct PlayOptions {
+  OdometryNoise odometry;
+  double longest_hold = 1;  ///< s: how long a speed holds without a new reading
+  double sensor_noise = 1;  ///< factor on the standard deviations the log states
+  bool every_event = true;  ///< a row for each event; false: for each set of sightings
+
+  void describe(OptionVisitor& option);
+};
+
+/// Turns a scan into sightings; none given: scans are left out.
+using ScanDetector = std::function<SightingSet(const LaserScan&)>;
+/// Seconds since some moment, to measure updates; none given: not measured.
+using Clock = std::function<double()>;
+
+/// Plays a log to a localizer, from the first event to the last. Every row is finite.
+Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options,
+           const ScanDetector& detect = {}, const Clock& clock = {});
+
+}  // namespace waymark

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/robot_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+bool drives(const LogEvent& e) {
+  return std::holds_alternative<TwistReading>(e.what) || std::holds_alternative<CarReading>(e.what) ||
+         std::holds_alternative<StepReading>(e.what);
+}
+
+bool usable(const LogEvent& e) {
+  if (!std::isfinite(e.t)) return false;
+  if (const auto* twist = std::get_if<TwistReading>(&e.what))
+    return std::isfinite(twist->speed) && std::isfinite(twist->sideways) && std::isfinite(twist->turn);
+  if (const auto* car = std::get_if<CarReading>(&e.what))
+    return std::isfinite(car->wheel_speed) && std::abs(car->steering) < 1.4;
+  if (const auto* step = std::get_if<StepReading>(&e.what)) return step->step.finite();
+  if (const auto* fix = std::get_if<GnssFix>(&e.what)) return fix->at.allFinite() && fix->sd > 0;
+  return true;
+}
+
+}  // namespace
+
+void tidy(RobotLog& log, double longest_gap) {
+  const auto remark = [&](std::size_t count, const char* what) {
+    if (count) log.remarks.push_back(fmt::format("{} {}", count, what));
+  };
+  remark(std::erase_if(log.events, [](const LogEvent& e) { return !usable(e); }),
+         "readings that are no numbers are left out");
+  remark(
+      std::erase_if(log.truth, [](const StampedPose& p) { return !std::isfinite(p.t) || !p.pose.finite(); }),
+      "true poses that are no numbers are left out");
+  std::size_t backwards = 0, twice = 0, gaps = 0;
+  for (std::size_t i = 1; i < log.events.size(); ++i) backwards += log.events[i].t < log.events[i - 1].t;
+  remark(backwards, "times run backwards; the log is sorted by time");
+  std::ranges::stable_sort(log.events, {}, &LogEvent::t);
+  std::ranges::stable_sort(log.truth, {}, &StampedPose::t);
+  const LogEvent* last = nullptr;
+  double widest = 0;
+  for (const LogEvent& e : log.events) {
+    if (!drives(e)) continue;
+    if (last) {
+      twice += e.t == last->t;
+      gaps += e.t - last->t > longest_gap;
+      widest = std::max(widest, e.t - last->t);
+    }
+    last = &e;
+  }
+  remark(twice, "odometry readings have the time of the one before; the last one holds");
+  if (gaps)
+    log.remarks.push_back(fmt::format("{} gaps of more than {} s in the odometry, the longest {:.1f} s", gaps,
+                                      longest_gap, widest));
+}
+
+void place_in(RobotLog& log, const LocalFrame& frame) {
+  if (!log.in_crs) return;
+  const auto placed = [&](double x, double y) -> Eigen::Vector2d {
+    return frame.map_frame_from_crs({{x, y, frame.origin().xyz.z()}}).xyz.head<2>();
+  };
+  const auto place = [&](Pose2& pose) {
+    const Eigen::Vector2d at = placed(pose.x, pose.y);
+    pose.x = at.x(), pose.y = at.y();
+  };
+  for (StampedPose& p : log.truth) place(p.pose);
+  if (log.start) place(*log.start);
+  for (LogEvent& e : log.events)
+    if (auto* fix = std::get_if<GnssFix>(&e.what)) fix->at = placed(fix->at.x(), fix->at.y());
+  log.in_crs = false;
+}
+
+std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double longest_gap) {
+  const auto after = std::ranges::lower_bound(truth, t, {}, &StampedPose::t);
+  if (after == truth.end()) return {};
+  if (after->t == t) return after->pose;
+  if (after == truth.begin()) return {};
+  const StampedPose &a = *(after - 1), &b = *after;
+  if (b.t - a.t > longest_gap) return {};
+  const double k = (t - a.t) / (b.t - a.t);
+  return Pose2{a.pose.x + k * (b.pose.x - a.pose.x), a.pose.y + k * (b.pose.y - a.pose.y),
+               wrapped(a.pose.yaw + k * wrapped(b.pose.yaw - a.pose.yaw))};
+}
+
+}  // namespace waymark

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+#include "geo/local_frame.hpp"
+#include "localization/laser_scan.hpp"
+#include "localization/motion_model.hpp"
+#include "localization/sighting.hpp"
+namespace waymark {
+
+/// Speeds of a differential drive; they hold until the next reading.
+struct TwistReading {
+  double speed = 0, sideways = 0, turn = 0;  ///< m/s forward, m/s left, rad/s left
+};
+/// Encoder and steering of a car; they hold until the next reading.
+struct CarReading {
+  double wheel_speed = 0, steering = 0;  ///< m/s, rad to the left
+};
+/// How the robot moved since the last such reading.
+struct StepReading {
+  Pose2 step;
+};
+struct GnssFix {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double sd = 1;  ///< m, of each coordinate
+};
+using Reading = std::variant<TwistReading, CarReading, StepReading, SightingSet, LaserScan, GnssFix>;
+
+struct LogEvent {
+  double t = 0;  ///< s
+  Reading what;
+};
+
+struct StampedPose {
+  double t = 0;
+  Pose2 pose;
+};
+
+/// What a robot measured on one drive, in the order of time.
+struct RobotLog {
+  std::vector<LogEvent> events;
+  std::vector<StampedPose> truth;  ///< where it really was, as far as that is known; ascending
+  std::optional<Pose2> start;
+  Ackermann car;
+  /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
+  bool in_crs = false;
+  std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people
+};
+
+/// A sighting of something of which the map has no type.
+inline constexpr TypeId kUnknownType = 0xFFFF;
+
+/// Sorts by time (stable), drops events and truth that are not finite, and remarks on that, on gaps in the
+/// odometry above `longest_gap` seconds and on times that occur twice.
+void tidy(RobotLog& log, double longest_gap = 1);
+
+/// Positions from the map's CRS into its frame; nothing where they are there already.
+void place_in(RobotLog& log, const LocalFrame& frame);
+
+/// Pose at a time between two known ones at most `longest_gap` seconds apart, linear, yaw the short way.
+std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double longest_gap = 0.5);
+
+}  // namespace waymark

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+#include "localization/localizer.hpp"
+namespace waymark {
+
+/// Where a localizer believed the robot to be after one event of a log.
+struct TrackRow {
+  double t = 0;  ///< s
+  PoseEstimate at;
+  double z = 0, roll = 0, pitch = 0;  ///< 0 where the ground is not known
+  int matched = 0, rejected = 0;      ///< sightings of this event
+  int wrong = 0;                      ///< matched with another landmark than the log says
+  bool lost = false;
+};
+
+struct Track {
+  std::vector<TrackRow> rows;
+  std::array<std::int64_t, kVerdicts> verdicts{};  ///< sightings by what became of them
+  std::int64_t named = 0;                          ///< matched sightings of which the log knows the landmark
+  std::int64_t wrong = 0;                          ///< of these, matched with another
+  std::int64_t updates = 0;                        ///< sets of sightings
+  double seconds = 0;                              ///< in updates, if it was measured
+};
+
+}  // namespace waymark

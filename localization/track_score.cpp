@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/track_score.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
+
+#include "localization/chi_square.hpp"
+
+namespace waymark {
+namespace {
+
+double root_mean_square(const std::vector<double>& errors) {
+  double sum = 0;
+  for (const double e : errors) sum += e * e;
+  return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+struct Pair {
+  const TrackRow* row;
+  Pose2 truth;
+};
+
+double relative_error(const std::vector<Pair>& pairs, double seconds) {
+  std::vector<double> errors;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    while (j < pairs.size() && pairs[j].row->t < pairs[i].row->t + seconds) ++j;
+    if (j == pairs.size() || pairs[j].row->t > pairs[i].row->t + 2 * seconds) continue;
+    const Pose2 estimated = inverse(pairs[i].row->at.pose) * pairs[j].row->at.pose;
+    const Pose2 real = inverse(pairs[i].truth) * pairs[j].truth;
+    errors.push_back((estimated.at() - real.at()).norm());
+  }
+  return root_mean_square(errors);
+}
+
+// Without headings the motion is compared in the aligned frame.
+double relative_place_error(const std::vector<Pair>& pairs, double seconds, const PlaneAlignment& aligned) {
+  std::vector<double> errors;
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    while (j < pairs.size() && pairs[j].row->t < pairs[i].row->t + seconds) ++j;
+    if (j == pairs.size() || pairs[j].row->t > pairs[i].row->t + 2 * seconds) continue;
+    const Eigen::Vector2d estimated =
+        aligned(pairs[j].row->at.pose.at()) - aligned(pairs[i].row->at.pose.at());
+    errors.push_back((estimated - (pairs[j].truth.at() - pairs[i].truth.at())).norm());
+  }
+  return root_mean_square(errors);
+}
+
+}  // namespace
+
+Eigen::Vector2d PlaneAlignment::operator()(const Eigen::Vector2d& p) const {
+  const double c = std::cos(motion.yaw), s = std::sin(motion.yaw);
+  return {motion.x + scale * (c * p.x() - s * p.y()), motion.y + scale * (s * p.x() + c * p.y())};
+}
+
+PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
+                     Alignment kind) {
+  if (kind == Alignment::none || from.size() < 2) return {};
+  Eigen::Vector2d a = Eigen::Vector2d::Zero(), b = a;
+  for (std::size_t i = 0; i < from.size(); ++i) a += from[i], b += to[i];
+  a /= static_cast<double>(from.size());
+  b /= static_cast<double>(from.size());
+  double dot = 0, cross = 0, spread = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const Eigen::Vector2d p = from[i] - a, q = to[i] - b;
+    dot += p.dot(q);
+    cross += p.x() * q.y() - p.y() * q.x();
+    spread += p.squaredNorm();
+  }
+  if (!(spread > 0)) return {};
+  PlaneAlignment result;
+  result.motion.yaw = std::atan2(cross, dot);
+  if (kind == Alignment::sim2) result.scale = std::hypot(dot, cross) / spread;
+  const Eigen::Vector2d shift = b - result(a);
+  result.motion.x = shift.x(), result.motion.y = shift.y();
+  return result;
+}
+
+TrackScore score(const Track& track, std::span<const StampedPose> truth, Alignment alignment, bool headings,
+                 double rpe_seconds, double longest_gap) {
+  TrackScore s;
+  std::vector<Pair> pairs;
+  std::vector<Eigen::Vector2d> from, to;
+  for (const TrackRow& row : track.rows) {
+    s.matches += row.matched;
+    s.rejected += row.rejected;
+    s.wrong_matches += row.wrong;
+    s.lost += row.lost;
+    if (const auto real = pose_at(truth, row.t, longest_gap)) {
+      pairs.push_back({&row, *real});
+      from.push_back(row.at.pose.at());
+      to.push_back(real->at());
+    }
+  }
+  if (!track.rows.empty()) s.lost /= static_cast<double>(track.rows.size());
+  s.poses = pairs.size();
+  if (pairs.empty()) return s;
+  const PlaneAlignment aligned = align(from, to, alignment);
+  std::vector<double> places, turns;
+  double nees = 0;
+  std::size_t counted = 0;
+  for (const Pair& p : pairs) {
+    const Eigen::Vector2d off = aligned(p.row->at.pose.at()) - p.truth.at();
+    places.push_back(off.norm());
+    const double turn = wrapped(p.row->at.pose.yaw + aligned.motion.yaw - p.truth.yaw);
+    turns.push_back(turn / kRadiansPerDegree);
+    const Eigen::Vector3d e(off.x(), off.y(), turn);
+    const Eigen::LLT<Eigen::Matrix3d> cholesky(p.row->at.covariance);
+    if (alignment != Alignment::none || !headings || cholesky.info() != Eigen::Success) continue;
+    const double square = cholesky.matrixL().solve(e).squaredNorm();
+    if (!std::isfinite(square)) continue;
+    nees += square;
+    ++counted;
+  }
+  s.ate_rmse = root_mean_square(places);
+  s.ate_median = median(places);
+  s.ate_largest = *std::ranges::max_element(places);
+  if (headings) s.heading_rmse_deg = root_mean_square(turns);
+  s.rpe = headings ? relative_error(pairs, rpe_seconds) : relative_place_error(pairs, rpe_seconds, aligned);
+  if (counted) {
+    s.anees = nees / (3 * static_cast<double>(counted));
+    const double freedom = 3 * std::max(1.0, pairs.back().row->t - pairs.front().row->t);
+    s.anees_low = chi_square_quantile(0.025, freedom) / freedom;
+    s.anees_high = chi_square_quantile(0.975, freedom) / freedom;
+  }
+  return s;
+}
+
+}  // namespace waymark
