@@ -40,8 +40,7 @@ std::string facts(const std::vector<LandmarkSection>& sections, const std::vecto
     }
   }
   if (!runs.empty() && runs.back().seconds > 0)
-    items +=
-        fact(number_text(runs.back().seconds, runs.back().seconds < 10 ? 1 : 0) + "\u00a0s", "to make it");
+    items += fact(seconds_text(runs.back().seconds), "to make it");
   return items.empty() ? "" : "<ul class='facts'>" + items + "</ul>\n";
 }
 

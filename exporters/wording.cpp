@@ -40,6 +40,11 @@ std::string number_text(double value, int decimals) {
   return (value < 0 && !zero ? kMinus : "") + digits;
 }
 
+std::string seconds_text(double seconds) {
+  const int decimals = seconds < 0.1 ? 3 : seconds < 1 ? 2 : seconds < 10 ? 1 : 0;
+  return number_text(seconds, decimals) + "\u00a0s";
+}
+
 Reading reading_of(const FeatureSpec& feature, double largest) {
   Reading reading{1, feature.unit, 0};
   if (feature.unit == "rad") reading = {1 / kRadiansPerDegree, "\u00b0", 0};

@@ -13,6 +13,9 @@ std::string title_of(std::string_view name);
 /// Thousands set apart by a narrow space: 12 345. `decimals` as given; not a number reads as a dash.
 std::string number_text(double value, int decimals = 0);
 
+/// Two digits that count, or three: 0.31 s, 4.2 s, 615 s; nothing finer than a millisecond.
+std::string seconds_text(double seconds);
+
 /// How the values of one feature are written side by side: one unit and one precision, chosen by the largest.
 /// Metres become kilometres for a ratio feature beyond 20 km (never for elevations); radians become degrees.
 struct Reading {

@@ -24,6 +24,13 @@ TEST(NumberText, HasAMinusAndNoNegativeZero) {
   EXPECT_EQ(number_text(std::nan("")), "\u2013");
 }
 
+TEST(SecondsText, ShortTimesKeepTheirDigits) {
+  EXPECT_EQ(seconds_text(0.0042), "0.004\u00a0s");
+  EXPECT_EQ(seconds_text(0.307), "0.31\u00a0s");
+  EXPECT_EQ(seconds_text(4.25), "4.2\u00a0s");
+  EXPECT_EQ(seconds_text(614.6), "615\u00a0s");
+}
+
 TEST(Reading, DistancesBecomeKilometresElevationsNever) {
   EXPECT_EQ(reading_of(kIsolation, 62732.6)(62732.6), "62.7\u00a0km");
   EXPECT_EQ(reading_of(kIsolation, 19000)(534), "534\u00a0m");
