@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/score_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace waymark {
+namespace {
+
+using nlohmann::json;
+
+std::string number(double value, int digits = 3) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.1f} %", 100 * share) : "-";
+}
+json finite(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+std::string counts_line(const std::string& what, const ScoreCounts& c) {
+  return fmt::format("{:<14} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n", what, c.truth, c.found, c.matched,
+                     number(c.precision()), number(c.recall()), number(c.f1()));
+}
+
+std::string as_text(const Score& s) {
+  std::string text = fmt::format("{:<14} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n", "diameter", "truth",
+                                 "found", "matched", "precision", "recall", "F1");
+  for (const ScoreCounts& bin : s.by_size)
+    text += counts_line(
+        fmt::format("{:g} - {}", bin.from, std::isfinite(bin.to) ? fmt::format("{:g}", bin.to) : ""), bin);
+  text += counts_line("all", s.all);
+  if (std::isfinite(s.average_precision)) text += "average precision " + number(s.average_precision) + "\n";
+  text += fmt::format("found twice {}\n", s.doubled);
+  text += fmt::format("position error: median {}, 90 % {}, RMS {}; median {} of the diameter\n",
+                      number(s.position_median), number(s.position_p90), number(s.position_rmse),
+                      percent(s.position_median_of_diameter));
+  if (s.with_covariance)
+    text += fmt::format("inside the 90 % ellipse {} of {}; NEES {} (2 is honest)\n", percent(s.inside_90),
+                        s.with_covariance, number(s.nees, 2));
+  for (const auto& [name, e] : s.features)
+    text += fmt::format("{}: bias {} ({}), spread {}, median error {}, n = {}\n", name, number(e.bias),
+                        percent(e.relative_bias), percent(e.relative_sd), number(e.absolute), e.count);
+  const auto calibration = [&](const char* what, const std::vector<CalibrationBin>& bins, double error) {
+    if (bins.empty()) return;
+    text += fmt::format("{}: calibration error {}\n", what, number(error));
+    for (const CalibrationBin& bin : bins)
+      text += fmt::format("  {:.1f} - {:.1f}: {} of {} right, {} claimed\n", bin.from, bin.to, bin.right,
+                          bin.found, number(bin.mean));
+  };
+  calibration("confidence", s.by_confidence, s.confidence_error);
+  calibration("quality", s.by_quality, s.quality_error);
+  return text;
+}
+
+json as_json(const ScoreCounts& c) {
+  return {{"truth", c.truth},
+          {"found", c.found},
+          {"matched", c.matched},
+          {"precision", finite(c.precision())},
+          {"recall", finite(c.recall())},
+          {"f1", finite(c.f1())}};
+}
+
+json as_json(const std::vector<CalibrationBin>& bins) {
+  json all = json::array();
+  for (const CalibrationBin& b : bins)
+    all.push_back(
+        {{"from", b.from}, {"to", b.to}, {"claimed", b.mean}, {"found", b.found}, {"right", b.right}});
+  return all;
+}
+
+json as_json(const Score& s) {
+  json object = as_json(s.all);
+  object["average_precision"] = finite(s.average_precision);
+  object["found_twice"] = s.doubled;
+  object["position_median"] = finite(s.position_median);
+  object["position_p90"] = finite(s.position_p90);
+  object["position_rmse"] = finite(s.position_rmse);
+  object["position_median_of_diameter"] = finite(s.position_median_of_diameter);
+  object["inside_90"] = finite(s.inside_90);
+  object["nees"] = finite(s.nees);
+  object["by_size"] = json::array();
+  for (const ScoreCounts& bin : s.by_size) {
+    json one = as_json(bin);
+    one["from"] = bin.from, one["to"] = finite(bin.to);
+    object["by_size"].push_back(one);
+  }
+  for (const auto& [name, e] : s.features)
+    object["features"][name] = {{"count", e.count},
+                                {"bias", finite(e.bias)},
+                                {"relative_bias", finite(e.relative_bias)},
+                                {"relative_sd", finite(e.relative_sd)},
+                                {"median_error", finite(e.absolute)}};
+  if (!s.by_confidence.empty())
+    object["confidence"] = {{"calibration_error", s.confidence_error}, {"bins", as_json(s.by_confidence)}};
+  if (!s.by_quality.empty())
+    object["quality"] = {{"calibration_error", s.quality_error}, {"bins", as_json(s.by_quality)}};
+  return object;
+}
+
+}  // namespace
+
+std::string scores_as_text(const std::map<std::string, Score>& scores) {
+  std::string text;
+  for (const auto& [type, s] : scores) text += (text.empty() ? "" : "\n") + type + "\n" + as_text(s);
+  return text;
+}
+
+std::string scores_as_json(const std::map<std::string, Score>& scores) {
+  json all = json::object();
+  for (const auto& [type, s] : scores) all[type] = as_json(s);
+  return all.dump(2) + "\n";
+}
+
+}  // namespace waymark

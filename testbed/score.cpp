@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/score.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "testbed/score_match.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kChiSquare90 = 4.605170186;  // of 2 degrees of freedom: -2 ln 0.1
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return kNan;
+  std::sort(values.begin(), values.end());
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return std::lerp(values[below], values[above], place - static_cast<double>(below));
+}
+
+ErrorSummary summary(const std::vector<double>& found, const std::vector<double>& truth) {
+  std::vector<double> error, magnitude, relative, deviation;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    error.push_back(found[i] - truth[i]);
+    magnitude.push_back(std::abs(error.back()));
+    if (truth[i] != 0) relative.push_back(found[i] / truth[i] - 1);
+  }
+  ErrorSummary s;
+  s.count = static_cast<int>(found.size());
+  s.bias = quantile(error, 0.5), s.absolute = quantile(magnitude, 0.5);
+  s.relative_bias = quantile(relative, 0.5);
+  for (const double r : relative) deviation.push_back(std::abs(r - s.relative_bias));
+  s.relative_sd = 1.4826 * quantile(deviation, 0.5);
+  return s;
+}
+
+using Claim = std::function<std::optional<double>(const ScoredThing&)>;
+
+// Ten bins of what finds claim, and the mean distance of claim and truth.
+std::pair<std::vector<CalibrationBin>, double> calibration(std::span<const ScoredThing> found,
+                                                           const std::vector<int>& match,
+                                                           const Claim& claim) {
+  std::vector<CalibrationBin> bins(10);
+  int total = 0;
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    bins[b].from = static_cast<double>(b) / 10, bins[b].to = static_cast<double>(b + 1) / 10;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    const auto value = claim(found[f]);
+    if (!value || match[f] == -2) continue;
+    auto& bin = bins[std::min<std::size_t>(9, static_cast<std::size_t>(std::clamp(*value, 0.0, 1.0) * 10))];
+    ++bin.found, ++total;
+    bin.mean += *value;
+    bin.right += match[f] >= 0;
+  }
+  double error = 0;
+  for (CalibrationBin& bin : bins) {
+    if (bin.found == 0) continue;
+    bin.mean /= bin.found;
+    error += std::abs(bin.mean * bin.found - bin.right) / std::max(total, 1);
+  }
+  std::erase_if(bins, [](const CalibrationBin& bin) { return bin.found == 0; });
+  return {bins, error};
+}
+
+// Area under precision over recall, each precision the best at that recall or beyond.
+double average_precision(std::span<const ScoredThing> found, const std::vector<int>& match, int truth) {
+  std::vector<std::pair<double, bool>> ranked;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (!found[f].confidence) return kNan;
+    if (match[f] != -2) ranked.emplace_back(*found[f].confidence, match[f] >= 0);
+  }
+  if (truth == 0) return kNan;
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<double> precision;
+  int right = 0, seen = 0;
+  for (const auto& [_, is_right] : ranked) {
+    ++seen;
+    if (is_right) precision.push_back(static_cast<double>(++right) / seen);
+  }
+  double area = 0, best = 0;
+  for (auto p = precision.rbegin(); p != precision.rend(); ++p) area += best = std::max(best, *p);
+  return area / truth;
+}
+
+void count(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
+           std::span<const double> edges) {
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    s.by_size.push_back(
+        {edges[i], i + 1 < edges.size() ? edges[i + 1] : std::numeric_limits<double>::infinity()});
+  const auto each = [&](double diameter, const auto& change) {
+    change(s.all);
+    for (ScoreCounts& bin : s.by_size)
+      if (diameter >= bin.from && diameter < bin.to) change(bin);
+  };
+  for (const ScoredThing& t : truth)
+    if (!t.ignored) each(t.diameter, [](ScoreCounts& c) { ++c.truth; });
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (s.match[f] == -2) continue;
+    if (s.match[f] >= 0)
+      each(truth[at(s.match[f])].diameter, [](ScoreCounts& c) { ++c.found, ++c.matched; });
+    else
+      each(found[f].diameter, [](ScoreCounts& c) { ++c.found; });
+  }
+}
+
+void measure_places(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth) {
+  std::vector<double> errors, shares;
+  double squares = 0, nees = 0;
+  int inside = 0;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (s.match[f] < 0) continue;
+    const ScoredThing& t = truth[at(s.match[f])];
+    const Eigen::Vector2d error = found[f].at - t.at;
+    errors.push_back(error.norm());
+    squares += error.squaredNorm();
+    if (t.diameter > 0) shares.push_back(error.norm() / t.diameter);
+    if (!found[f].covariance || !(found[f].covariance->determinant() > 0)) continue;
+    const double distance = error.dot(found[f].covariance->inverse() * error);
+    ++s.with_covariance;
+    nees += distance;
+    inside += distance <= kChiSquare90;
+  }
+  s.position_median = quantile(errors, 0.5), s.position_p90 = quantile(errors, 0.9);
+  s.position_rmse = errors.empty() ? kNan : std::sqrt(squares / static_cast<double>(errors.size()));
+  s.position_median_of_diameter = quantile(shares, 0.5);
+  s.inside_90 = s.with_covariance ? static_cast<double>(inside) / s.with_covariance : kNan;
+  s.nees = s.with_covariance ? nees / s.with_covariance : kNan;
+}
+
+void measure_features(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth) {
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> values;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (s.match[f] < 0) continue;
+    const ScoredThing& t = truth[at(s.match[f])];
+    const auto add = [&](const std::string& name, double a, double b) {
+      if (std::isfinite(a) && std::isfinite(b))
+        values[name].first.push_back(a), values[name].second.push_back(b);
+    };
+    add("diameter", found[f].diameter, t.diameter);
+    for (const auto& [name, value] : found[f].features)
+      if (const auto other = t.features.find(name); other != t.features.end())
+        add(name, value, other->second);
+  }
+  for (const auto& [name, pair] : values) s.features[name] = summary(pair.first, pair.second);
+}
+
+}  // namespace
+
+double ScoreCounts::precision() const {
+  return found ? static_cast<double>(matched) / found : kNan;
+}
+double ScoreCounts::recall() const {
+  return truth ? static_cast<double>(matched) / truth : kNan;
+}
+double ScoreCounts::f1() const {
+  return truth + found ? 2.0 * matched / (truth + found) : kNan;
+}
+
+Score score(std::span<const ScoredThing> found, std::span<const ScoredThing> truth, const MatchRules& rules,
+            std::span<const double> size_edges) {
+  std::vector<ScoredThing> things(truth.begin(), truth.end());
+  for (ScoredThing& t : things) t.ignored = t.ignored || t.diameter < rules.min_diameter;
+  const Pairing pairing = pair_up(found, things, rules);
+  Score s;
+  s.match = pairing.truth_of;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    if (s.match[f] >= 0 && things[at(s.match[f])].ignored) s.match[f] = -2;
+    if (s.match[f] != -1) continue;
+    if (found[f].diameter < rules.min_diameter)
+      s.match[f] = -2;
+    else
+      s.doubled += pairing.near[f];
+  }
+  count(s, found, things, size_edges);
+  s.average_precision = average_precision(found, s.match, s.all.truth);
+  measure_places(s, found, things);
+  measure_features(s, found, things);
+  std::tie(s.by_confidence, s.confidence_error) =
+      calibration(found, s.match, [](const ScoredThing& f) { return f.confidence; });
+  std::tie(s.by_quality, s.quality_error) =
+      calibration(found, s.match, [](const ScoredThing& f) { return f.quality; });
+  return s;
+}
+
+}  // namespace waymark
