@@ -71,6 +71,33 @@ Eigen::Vector3d plane_around(const Grid<float>& heights, const NodeGrid& nodes, 
   return normal.ldlt().solve(right);
 }
 
+// Swarms of craters thrown out by a distant impact: along a line, drawn out along it, half as deep.
+void add_secondaries(std::vector<CraterPlan>& plans, const Ground& ground, std::uint64_t seed) {
+  const CraterLaw& law = ground.craters;
+  const CraterProfiles& profiles = CraterProfiles::instance();
+  Random random(seed, "secondary craters");
+  for (int cluster = 0; cluster < law.clusters; ++cluster) {
+    const double x = ground.east + random.uniform(-0.5, 0.5) * ground.width;
+    const double y = ground.north + random.uniform(-0.5, 0.5) * ground.height;
+    const double azimuth = random.uniform(-kPi / 2, kPi / 2), wear = random.uniform(0.3, 1);
+    const double size = std::min(law.min_diameter * random.uniform(1, 3), law.max_diameter);
+    const auto count = 8 + random.below(25);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const double along = 12 * size * random.normal(), across = 3 * size * random.normal();
+      const double diameter = std::min(size * random.log_uniform(1, 2.5), law.max_diameter);
+      const double ratio = random.uniform(1 - 1.5 * law.elongation, 1);
+      plans.push_back({.east = x + along * std::cos(azimuth) - across * std::sin(azimuth),
+                       .north = y + along * std::sin(azimuth) + across * std::cos(azimuth),
+                       .major = diameter / std::sqrt(ratio),
+                       .minor = diameter * std::sqrt(ratio),
+                       .turn = azimuth,
+                       .age = profiles.age(std::lerp(0.05, 0.12, wear)),
+                       .infill = 0,
+                       .seed = static_cast<std::uint32_t>(random.bits())});
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<CraterPlan> draw_craters(const Ground& ground, std::uint64_t seed) {
@@ -105,6 +132,7 @@ std::vector<CraterPlan> draw_craters(const Ground& ground, std::uint64_t seed) {
         std::abs(plan.north - ground.north) < ground.height / 2 + CraterProfiles::kReach * diameter)
       plans.push_back(plan);
   }
+  add_secondaries(plans, ground, seed);
   const auto time = [](const CraterPlan& p) { return p.age * p.major * p.minor; };
   std::stable_sort(plans.begin(), plans.end(),
                    [&](const auto& a, const auto& b) { return time(a) > time(b); });
@@ -140,11 +168,12 @@ void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) 
       const Eigen::Vector2d unit = frame.unit(dx, dy);
       double r = unit.norm();
       if (r >= CraterProfiles::kReach) continue;
-      const double azimuth = (std::atan2(unit.y(), unit.x()) + kPi) * 32 / kPi;
-      const auto k = std::min<std::size_t>(static_cast<std::size_t>(azimuth), 63);
       // The rim wavers, the bowl and the far ejecta do not.
-      const double rim = 4 * r * r * std::exp(1 - 4 * r * r);
-      r /= 1 + rim * (std::lerp(wobble[k], wobble[k + 1], azimuth - double(k)) - 1);
+      if (const double rim = 4 * r * r * std::exp(1 - 4 * r * r); rim > 0.02) {
+        const double azimuth = (std::atan2(unit.y(), unit.x()) + kPi) * 32 / kPi;
+        const auto k = std::min<std::size_t>(static_cast<std::size_t>(azimuth), 63);
+        r /= 1 + rim * (std::lerp(wobble[k], wobble[k + 1], azimuth - double(k)) - 1);
+      }
       const double place = std::min(r * 128, double(profile.size()) - 1.001);
       const auto m = static_cast<std::size_t>(place);
       const double added = std::lerp(profile[m], profile[m + 1], place - double(m));

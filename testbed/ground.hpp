@@ -24,6 +24,7 @@ struct CraterLaw {
   double fresh = 0.15;         ///< share with depth / diameter near 0.2 and blocky, sharp rims
   double oldest_depth = 0.03;  ///< depth / diameter of the most degraded
   double infill = 0.3;         ///< share with flat floors of sand
+  int clusters = 2;            ///< swarms of secondary craters, shallow and drawn out
   double elongation = 0.12;    ///< 1 - minor / major, the greatest
 };
 

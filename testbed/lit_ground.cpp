@@ -75,6 +75,8 @@ LitGround::LitGround(const Scene& scene, const Sun& sun)
   fine_.amplitude *= scene.ground.relief.roughness;
   fine_.seed = static_cast<std::uint32_t>(named_seed(scene.seed, "relief below the cells"));
 
+  fine_fall_ = std::exp2(-fine_.hurst);
+
   Grid<Eigen::Vector4f> looks(nodes_.columns, nodes_.rows, Eigen::Vector4f::Zero());
   const auto step = static_cast<float>(nodes_.step);
   tbb::parallel_for(std::int64_t{0}, nodes_.rows, [&](std::int64_t j) {
@@ -133,12 +135,12 @@ GroundLook LitGround::look(const Eigen::Vector3d& point, double size) const {
     const double x = point.x() - middle_.x(), y = point.y() - middle_.y();
     for (std::uint32_t octave = 0; length > 1.5 * size && octave < 8; ++octave) {
       const double weight = std::clamp(length / size - 1.5, 0.0, 1.0) * height / length;
-      const double turn = 2.399963 * (octave + 1), c = std::cos(turn), s = std::sin(turn);
+      const auto [c, s] = octave_turn(octave + 1);
       const NoiseValue n =
           gradient_noise((c * x - s * y) / length, (s * x + c * y) / length, fine_.seed + octave);
       result.slope_x += weight * (c * n.dx + s * n.dy);
       result.slope_y += weight * (c * n.dy - s * n.dx);
-      height *= std::exp2(-fine_.hurst), length /= 2;
+      height *= fine_fall_, length /= 2;
     }
   }
   return result;

@@ -34,6 +34,7 @@ class LitGround {
   Grid<float> shadow_;
   std::vector<Grid<Eigen::Vector4f>> looks_;  ///< slope x, slope y, albedo, lit; per level
   Fractal fine_;                              ///< relief below the cell
+  double fine_fall_ = 0.5;                    ///< from one of its octaves to the next
   Eigen::Vector2d middle_;
   double soft_ = 0.01;  ///< metres of height over which a shadow's edge falls
 };

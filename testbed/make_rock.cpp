@@ -36,7 +36,7 @@ struct Outline {
   double longest = 0;
 };
 Outline outline(const std::vector<Eigen::Vector4f>& planes) {
-  constexpr int kSteps = 256;
+  constexpr int kSteps = 96;
   Outline o;
   for (int i = 0; i < kSteps; ++i) {
     const double a = 2 * kPi * i / kSteps, r = outline_radius(planes, a);
@@ -48,10 +48,18 @@ Outline outline(const std::vector<Eigen::Vector4f>& planes) {
   return o;
 }
 
+// The highest point. Planes make a concave roof, so a grid about the best point of a coarser one finds it;
+// good to a hundredth of the reach.
 double peak(const std::vector<Eigen::Vector4f>& planes, double reach) {
-  double best = 0;
-  for (int j = -24; j <= 24; ++j)
-    for (int i = -24; i <= 24; ++i) best = std::max(best, height_at(planes, reach * i / 24, reach * j / 24));
+  double best = -1e9, x = 0, y = 0;
+  for (double half = reach; half > reach / 50; half /= 3) {
+    const double middle_x = x, middle_y = y;
+    for (int j = -3; j <= 3; ++j)
+      for (int i = -3; i <= 3; ++i) {
+        const double at_x = middle_x + half * i / 3, at_y = middle_y + half * j / 3;
+        if (const double z = height_at(planes, at_x, at_y); z > best) best = z, x = at_x, y = at_y;
+      }
+  }
   return best;
 }
 

@@ -64,7 +64,7 @@ Scene make_scene(const Ground& ground, std::uint64_t seed) {
     if (const auto crater = measure(scene.terrain, plan)) scene.craters.push_back(*crater);
   std::stable_sort(scene.craters.begin(), scene.craters.end(),
                    [](const auto& a, const auto& b) { return a.diameter() > b.diameter(); });
-  RockField field = strew_rocks(ground, scene.terrain, plans, seed);
+  RockField field = strew_rocks(ground, scene.terrain, dunes, plans, seed);
   scene.solids = std::move(field.solids);
   scene.rocks = std::move(field.rocks);
   return scene;

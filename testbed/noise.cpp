@@ -31,6 +31,7 @@ std::uint32_t lattice_hash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
   return h ^ (h >> 16);
 }
 
+constexpr std::uint32_t kOctaveSeed = 0x51ed270bu;
 constexpr double kUnitSpread = 3.4;  // measured: gradient noise itself has a standard deviation of 0.29
 
 Grid<float> enlarged(const Grid<float>& coarse, std::int64_t columns, std::int64_t rows) {
@@ -55,34 +56,66 @@ Grid<float> enlarged(const Grid<float>& coarse, std::int64_t columns, std::int64
 
 }  // namespace
 
-NoiseValue gradient_noise(double x, double y, std::uint32_t seed) {
-  const double floor_x = std::floor(x), floor_y = std::floor(y);
-  const auto ix = static_cast<std::int32_t>(floor_x), iy = static_cast<std::int32_t>(floor_y);
-  const double u = x - floor_x, v = y - floor_y;
-  const auto corner = [&](int right, int up) {
-    const std::uint32_t k = lattice_hash(ix + right, iy + up, seed) & 63u;
-    const double gx = kDirections.x[k], gy = kDirections.y[k];
-    return NoiseValue{gx * (u - right) + gy * (v - up), gx, gy};
-  };
-  const NoiseValue a = corner(0, 0), b = corner(1, 0), c = corner(0, 1), d = corner(1, 1);
-  const double su = u * u * u * (u * (u * 6 - 15) + 10), sv = v * v * v * (v * (v * 6 - 15) + 10);
-  const double du = 30 * u * u * (u - 1) * (u - 1), dv = 30 * v * v * (v - 1) * (v - 1);
-  const double k1 = b.value - a.value, k2 = c.value - a.value, k3 = a.value - b.value - c.value + d.value;
-  const auto blend = [&](double p, double q, double r, double s) {
+namespace {
+
+// The cell of the lattice that holds a point, with the offsets of its corners along their directions.
+struct Lattice {
+  double u, v;
+  NoiseValue a, b, c, d;  // lower left, lower right, upper left, upper right
+  double su, sv;
+
+  Lattice(double x, double y, std::uint32_t seed) {
+    const double floor_x = std::floor(x), floor_y = std::floor(y);
+    const auto ix = static_cast<std::int32_t>(floor_x), iy = static_cast<std::int32_t>(floor_y);
+    u = x - floor_x, v = y - floor_y;
+    const auto corner = [&](int right, int up) {
+      const std::uint32_t k = lattice_hash(ix + right, iy + up, seed) & 63u;
+      const double gx = kDirections.x[k], gy = kDirections.y[k];
+      return NoiseValue{gx * (u - right) + gy * (v - up), gx, gy};
+    };
+    a = corner(0, 0), b = corner(1, 0), c = corner(0, 1), d = corner(1, 1);
+    su = u * u * u * (u * (u * 6 - 15) + 10), sv = v * v * v * (v * (v * 6 - 15) + 10);
+  }
+  double blend(double p, double q, double r, double s) const {
     return p + su * (q - p) + sv * (r - p) + su * sv * (p - q - r + s);
-  };
-  return {kUnitSpread * blend(a.value, b.value, c.value, d.value),
-          kUnitSpread * (blend(a.dx, b.dx, c.dx, d.dx) + du * (k1 + k3 * sv)),
-          kUnitSpread * (blend(a.dy, b.dy, c.dy, d.dy) + dv * (k2 + k3 * su))};
+  }
+};
+
+}  // namespace
+
+NoiseValue gradient_noise(double x, double y, std::uint32_t seed) {
+  const Lattice n(x, y, seed);
+  const double du = 30 * n.u * n.u * (n.u - 1) * (n.u - 1), dv = 30 * n.v * n.v * (n.v - 1) * (n.v - 1);
+  const double k1 = n.b.value - n.a.value, k2 = n.c.value - n.a.value,
+               k3 = n.a.value - n.b.value - n.c.value + n.d.value;
+  return {kUnitSpread * n.blend(n.a.value, n.b.value, n.c.value, n.d.value),
+          kUnitSpread * (n.blend(n.a.dx, n.b.dx, n.c.dx, n.d.dx) + du * (k1 + k3 * n.sv)),
+          kUnitSpread * (n.blend(n.a.dy, n.b.dy, n.c.dy, n.d.dy) + dv * (k2 + k3 * n.su))};
+}
+
+double gradient_noise_value(double x, double y, std::uint32_t seed) {
+  const Lattice n(x, y, seed);
+  return kUnitSpread * n.blend(n.a.value, n.b.value, n.c.value, n.d.value);
+}
+
+OctaveTurn octave_turn(std::uint32_t octave) {
+  static const auto turns = [] {
+    std::array<OctaveTurn, 32> table;
+    for (std::size_t i = 0; i < table.size(); ++i)
+      table[i] = {std::cos(2.399963 * double(i)), std::sin(2.399963 * double(i))};  // the golden angle
+    return table;
+  }();
+  return turns[octave & 31u];
 }
 
 NoiseValue Fractal::at(double x, double y) const {
   NoiseValue sum;
+  const double fall = std::exp2(-hurst);
   double height = amplitude, length = longest;
-  for (std::uint32_t octave = 0; length > shortest; ++octave, length /= 2, height *= std::exp2(-hurst)) {
-    // Each octave is turned by the golden angle, so that their lattices never line up.
-    const double turn = 2.399963 * octave, c = std::cos(turn) / length, s = std::sin(turn) / length;
-    const NoiseValue n = gradient_noise(c * x - s * y, s * x + c * y, seed + octave * 0x51ed270bu);
+  for (std::uint32_t octave = 0; length > shortest; ++octave, length /= 2, height *= fall) {
+    const auto [cos, sin] = octave_turn(octave);
+    const double c = cos / length, s = sin / length;
+    const NoiseValue n = gradient_noise(c * x - s * y, s * x + c * y, seed + octave * kOctaveSeed);
     sum.value += height * n.value;
     sum.dx += height * (c * n.dx + s * n.dy);
     sum.dy += height * (c * n.dy - s * n.dx);
@@ -108,16 +141,24 @@ Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes) {
   }
   if (!(here.longest > here.shortest)) return result;
   const auto first = static_cast<std::uint32_t>(std::lround(std::log2(fractal.longest / here.longest)));
+  struct Octave {
+    double c, s, height;
+    std::uint32_t seed;
+  };
+  std::vector<Octave> octaves;
+  for (double height = here.amplitude, length = here.longest; length > here.shortest; length /= 2) {
+    const auto octave = first + static_cast<std::uint32_t>(octaves.size());
+    const OctaveTurn turn = octave_turn(octave);
+    octaves.push_back({turn.c / length, turn.s / length, height, fractal.seed + octave * kOctaveSeed});
+    height *= std::exp2(-here.hurst);
+  }
   tbb::parallel_for(std::int64_t{0}, nodes.rows, [&](std::int64_t j) {
+    const double y = nodes.y(j);
     for (std::int64_t i = 0; i < nodes.columns; ++i) {
-      double height = here.amplitude, length = here.longest, sum = 0;
-      for (std::uint32_t octave = first; length > here.shortest;
-           ++octave, length /= 2, height *= std::exp2(-here.hurst)) {
-        const double turn = 2.399963 * octave, c = std::cos(turn) / length, s = std::sin(turn) / length;
-        const double x = nodes.x(i), y = nodes.y(j);
-        sum +=
-            height * gradient_noise(c * x - s * y, s * x + c * y, fractal.seed + octave * 0x51ed270bu).value;
-      }
+      const double x = nodes.x(i);
+      double sum = 0;
+      for (const Octave& o : octaves)
+        sum += o.height * gradient_noise_value(o.c * x - o.s * y, o.s * x + o.c * y, o.seed);
       result(i, j) += static_cast<float>(sum);
     }
   });

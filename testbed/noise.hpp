@@ -11,6 +11,13 @@ struct NoiseValue {
   double value = 0, dx = 0, dy = 0;
 };
 NoiseValue gradient_noise(double x, double y, std::uint32_t seed);
+double gradient_noise_value(double x, double y, std::uint32_t seed);  ///< the value alone, at half the cost
+
+/// Cosine and sine of the angle by which an octave is turned, so that the lattices of octaves never line up.
+struct OctaveTurn {
+  double c = 1, s = 0;
+};
+OctaveTurn octave_turn(std::uint32_t octave);
 
 /// Octaves of gradient noise, from `longest` halved and halved again while above `shortest` (metres);
 /// the standard deviation of the first is `amplitude`, of each next one 2^-hurst of the one before.

@@ -76,8 +76,8 @@ double rocks_per_area(const RockLaw& law, double diameter) {
   return diameter < law.max_diameter ? cumulative_numbers(above, 400).front() : 0;
 }
 
-RockField strew_rocks(const Ground& ground, const Terrain& terrain, const std::vector<CraterPlan>& craters,
-                      std::uint64_t seed) {
+RockField strew_rocks(const Ground& ground, const Terrain& terrain, const Grid<float>& dunes,
+                      const std::vector<CraterPlan>& craters, std::uint64_t seed) {
   const RockLaw& law = ground.rocks;
   if (!(law.k > 0) || !(law.max_diameter > law.min_diameter)) return {};
   const std::vector<double> numbers = cumulative_numbers(law, 400);
@@ -115,6 +115,9 @@ RockField strew_rocks(const Ground& ground, const Terrain& terrain, const std::v
   for (const Seed& s : seeds) {
     const auto ground_height = terrain.height(s.x, s.y);
     if (!ground_height) continue;
+    const auto column = static_cast<std::int64_t>((s.x - terrain.x0()) / terrain.step_x());
+    const auto row = static_cast<std::int64_t>((terrain.y0() - s.y) / terrain.step_y());
+    if (Random(s.seed, "buried").chance(0.9 * double(dunes(column, row)))) continue;
     const auto c = static_cast<std::int64_t>((s.x - ground.east + ground.width / 2) / square) + 1;
     const auto r = static_cast<std::int64_t>((ground.north + ground.height / 2 - s.y) / square) + 1;
     bool free = c + 1 < taken.columns() && r + 1 < taken.rows();

@@ -49,6 +49,9 @@ void describe_craters(Scenario& s, OptionVisitor& field) {
   field("oldest_depth", c.oldest_depth,
         {.help = "Depth / diameter of the most worn", .min = 0.005, .max = 0.19});
   field("infill", c.infill, {.help = "Share of craters with floors of sand", .min = 0, .max = 1});
+  std::int64_t clusters = c.clusters;
+  field("clusters", clusters, {.help = "Swarms of secondary craters", .min = 0, .max = 10000});
+  c.clusters = static_cast<int>(clusters);
   field("elongation", c.elongation, {.help = "1 - minor / major axis, the greatest", .min = 0, .max = 0.6});
 }
 
