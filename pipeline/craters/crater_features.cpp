@@ -18,9 +18,9 @@ using Patch = std::array<float, kPatchSide * kPatchSide>;
 double normalise(Patch& patch) {
   double sum = 0, squares = 0;
   for (const float v : patch) sum += v;
-  const double mean = sum / patch.size();
+  const double mean = sum / double(patch.size());
   for (const float v : patch) squares += (v - mean) * (v - mean);
-  const double deviation = std::sqrt(squares / patch.size());
+  const double deviation = std::sqrt(squares / double(patch.size()));
   const double scale = deviation > 0 ? 1 / deviation : 0;
   for (float& v : patch) v = static_cast<float>(std::clamp((v - mean) * scale, -3.0, 3.0));
   return deviation;

@@ -41,7 +41,8 @@ double probability_of(double correlation) {
 }
 
 Detection detection_of(const CraterCandidate& c, const Pixels& image, Radians sun, TypeId type) {
-  Detection d{.type = type};
+  Detection d;
+  d.type = type;
   d.outline = {.x = c.x, .y = c.y, .major = c.diameter, .minor = c.diameter, .angle = 0};
   double centre_sd = 0.06 * c.diameter;
   d.diameter_sd = 0.08 * c.diameter;

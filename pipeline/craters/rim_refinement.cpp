@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/craters/rim_refinement.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
+#include "pipeline/craters/harmonic_rim.hpp"
 #include "pipeline/craters/sample.hpp"
 
 namespace waymark {
@@ -17,10 +17,6 @@ constexpr int kAzimuths = 36;
 constexpr double kNearest = 0.6, kFarthest = 1.45;  // radii searched
 constexpr double kExpected = 0.18;                  // radii: spread of the crest about the candidate's circle
 constexpr double kSunward = 0.35;  // least |cosine| of azimuth from the light that shows an edge
-
-struct RimPoint {
-  double azimuth, radius, weight;  // radii of the candidate
-};
 
 // Place of the steepest outward change of `sign` brightness along one azimuth.
 std::optional<RimPoint> edge(const Pixels& image, const CraterCandidate& c, double azimuth, double sign) {
@@ -45,55 +41,11 @@ std::optional<RimPoint> edge(const Pixels& image, const CraterCandidate& c, doub
   return RimPoint{azimuth, kNearest + (double(best - steepness.begin()) + offset) * step, *best};
 }
 
-using Harmonics = Eigen::Matrix<double, 5, 1>;
-
-Harmonics harmonics(double azimuth) {
-  return {1, std::cos(azimuth), std::sin(azimuth), std::cos(2 * azimuth), std::sin(2 * azimuth)};
-}
-
-struct Fit {
-  Harmonics shape;  // radii; shape[0] includes the 1 of the circle
-  double centre_sd = 0, radius_sd = 0;
-};
-
-Fit fit(const std::vector<RimPoint>& points, double mean_weight) {
-  // Soft knowledge: sd of size, shift and ellipticity, radii.
-  constexpr std::array<double, 5> prior{0.15, 0.15, 0.15, 0.04, 0.04};
-  Harmonics shape = Harmonics::Zero();
-  shape[0] = 1;
-  double noise = 0.1;
-  Eigen::Matrix<double, 5, 5> information;
-  for (int round = 0; round < 6; ++round) {
-    information.setZero();
-    Harmonics right = Harmonics::Zero();
-    for (int i = 0; i < 5; ++i) {
-      information(i, i) = 1 / (prior[static_cast<std::size_t>(i)] * prior[static_cast<std::size_t>(i)]);
-      right[i] = i == 0 ? information(0, 0) : 0;
-    }
-    double squares = 0, total = 0;
-    for (const RimPoint& p : points) {
-      const Harmonics h = harmonics(p.azimuth);
-      const double off = p.radius - h.dot(shape), limit = 1.5 * noise;
-      const double trust =
-          std::min(1.0, p.weight / mean_weight) * (std::abs(off) > limit ? limit / std::abs(off) : 1);
-      information += trust / (noise * noise) * h * h.transpose();
-      right += trust / (noise * noise) * p.radius * h;
-      squares += trust * off * off;
-      total += trust;
-    }
-    shape = information.ldlt().solve(right);
-    noise = std::clamp(std::sqrt(squares / std::max(1.0, total)), 0.02, 0.2);
-  }
-  const Eigen::Matrix<double, 5, 5> covariance = information.inverse();
-  // Neighbouring azimuths see the same ground: about half of them count.
-  return {shape, std::sqrt(covariance(1, 1) + covariance(2, 2)), std::sqrt(2 * covariance(0, 0))};
-}
-
 }  // namespace
 
 std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candidate, Radians sun_angle) {
   CraterCandidate about = candidate;
-  Fit found;
+  RimShape found;
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<RimPoint> points;
     double total = 0;
@@ -108,23 +60,17 @@ std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candid
       points.push_back(*point);
     }
     if (points.size() < 8) return {};
-    found = fit(points, total / double(points.size()));
+    found = fit_rim(points, total / double(points.size()));
     const double radius = about.diameter / 2;
     if (pass == 0) {
-      about.x += found.shape[1] * radius;
-      about.y += found.shape[2] * radius;
-      about.diameter *= std::clamp(found.shape[0], 0.75, 1.3);
+      about.x += found.terms[1] * radius;
+      about.y += found.terms[2] * radius;
+      about.diameter *= std::clamp(found.terms[0], 0.75, 1.3);
     }
   }
-  const double radius = about.diameter / 2, r0 = found.shape[0] * radius;
-  const double stretch = std::min(0.4 * r0, std::hypot(found.shape[3], found.shape[4]) * radius);
+  const double radius = about.diameter / 2;
   Rim rim;
-  rim.ellipse = {.x = about.x + found.shape[1] * radius,
-                 .y = about.y + found.shape[2] * radius,
-                 .major = 2 * (r0 + stretch),
-                 .minor = 2 * (r0 - stretch),
-                 .angle = std::atan2(found.shape[4], found.shape[3]) / 2};
-  if (rim.ellipse.angle <= -std::numbers::pi / 2) rim.ellipse.angle += std::numbers::pi;
+  rim.ellipse = found.ellipse(about.x, about.y, radius);
   rim.centre_sd = found.centre_sd * radius / std::numbers::sqrt2;
   rim.diameter_sd = 2 * found.radius_sd * radius;
   const double moved = std::hypot(rim.ellipse.x - candidate.x, rim.ellipse.y - candidate.y);
