@@ -11,8 +11,10 @@ namespace waymark {
 
 /// What a camera file does not say itself.
 struct CameraImport {
-  std::string crs = {};         ///< of the map: projected, or "local"; empty: the one the file names
-  std::string camera_crs = {};  ///< of positions in the file, where it does not say; empty: the map's
+  std::string crs = {};  ///< of the map: projected, or "local"; empty: the one the file names
+  /// Of positions in the file, where it does not say; empty: the map's. Of a frame that the file leaves
+  /// arbitrary it says which it is: a projected CRS, or EPSG:4978, fixed to the body from its centre.
+  std::string camera_crs = {};
   /// Added to every camera height to give heights of the DEM, metres: minus the height of the DEM's zero
   /// (geoid, areoid) above the cameras' (ellipsoid, sphere).
   double height_offset = 0;

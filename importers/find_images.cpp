@@ -4,6 +4,7 @@
 #include <cpl_conv.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
@@ -30,10 +31,18 @@ bool exists(const std::string& path) {
   return VSIStatL(path.c_str(), &status) == 0;
 }
 
+bool is_pattern(const std::string& path) {
+  return path.find_first_of("*?[") != std::string::npos && !exists(path);
+}
+
 // Where the files of a camera set are looked for.
 std::vector<std::string> folders_of(const std::vector<std::string>& files, const std::string& camera_file) {
   std::vector<std::string> folders;
-  std::ranges::copy_if(files, std::back_inserter(folders), is_folder);
+  for (const std::string& file : files)
+    if (is_folder(file))
+      folders.push_back(file);
+    else if (is_pattern(file))
+      folders.push_back(fs::path(file).parent_path().string());
   if (!files.empty()) return folders;
   const fs::path folder =
       is_folder(camera_file) ? fs::path(camera_file) : fs::path(camera_file).parent_path();
@@ -81,6 +90,19 @@ bool is_image_name(const std::string& name) {
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
+std::vector<std::string> matching(const std::string& pattern) {
+  if (!is_pattern(pattern)) return {pattern};
+  const fs::path folder = fs::path(pattern).parent_path();
+  const std::string wanted = fs::path(pattern).filename().string();
+  const std::string place = folder.empty() ? "." : folder.string();
+  const std::unique_ptr<char*, decltype(&CSLDestroy)> names(VSIReadDir(place.c_str()), &CSLDestroy);
+  std::vector<std::string> found;
+  for (char** name = names.get(); name && *name; ++name)
+    if (fnmatch(wanted.c_str(), *name, FNM_PERIOD) == 0) found.push_back((folder / *name).string());
+  std::ranges::sort(found);
+  return found;
+}
+
 std::vector<std::string> image_files_in(const std::string& folder) {
   const std::unique_ptr<char*, decltype(&CSLDestroy)> names(VSIReadDir(folder.c_str()), &CSLDestroy);
   std::vector<std::string> images;
@@ -98,7 +120,7 @@ std::vector<FoundImage> find_images(const std::vector<std::string>& files, const
     if (is_folder(file))
       for (std::string& image : image_files_in(file)) paths.push_back(std::move(image));
     else
-      paths.push_back(file);
+      for (std::string& image : matching(file)) paths.push_back(std::move(image));
   if (cameras) {
     const std::vector<std::string> folders = folders_of(files, camera_file);
     std::map<std::string, std::string> by_stem;

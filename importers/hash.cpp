@@ -98,7 +98,8 @@ InputFile hash_file(const std::string& path) {
     input.sha256 = sum.hex();
     return input;
   }
-  for (const std::string& part : parts_of(path)) input.bytes += add_content(part, sum);
+  for (const std::string& file : matching(path))
+    for (const std::string& part : parts_of(file)) input.bytes += add_content(part, sum);
   input.sha256 = sum.hex();
   return input;
 }

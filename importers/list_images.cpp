@@ -29,7 +29,11 @@ std::string some_of(const std::vector<std::string>& names) {
 
 std::optional<CameraSet> read_cameras(const ImageListing& listing, std::vector<std::string>& warnings) {
   std::optional<CameraSet> all;
-  for (const std::string& file : listing.cameras) {
+  if (listing.cameras.empty()) return all;
+  const std::vector<std::string> files = matching(listing.cameras);
+  if (files.empty())
+    throw Error(ErrorCode::input, "no camera file matches the pattern", listing.cameras, "check the path");
+  for (const std::string& file : files) {
     CameraSet set = import_cameras(file, listing.format, listing.import);
     for (const std::string& warning : set.warnings) warnings.push_back(warning);
     if (!all) {
@@ -204,11 +208,10 @@ ListedImages list_images(const ImageListing& listing) {
                 "name images or their folder in files, or a camera file");
   ListedImages out;
   const auto cameras = read_cameras(listing, out.warnings);
-  const auto found = find_images(listing.files, cameras ? &*cameras : nullptr,
-                                 listing.cameras.empty() ? "" : listing.cameras[0]);
+  const auto found = find_images(listing.files, cameras ? &*cameras : nullptr, listing.cameras);
   if (found.empty())
     throw Error(ErrorCode::input, "there are no images",
-                listing.files.empty() ? listing.cameras[0] : listing.files[0],
+                listing.files.empty() ? listing.cameras : listing.files[0],
                 "a folder is searched for .tif .png .jpg .pgm .img .jp2 ... files, not below");
   Lister lister(listing, cameras, out);
   for (const FoundImage& image : found) lister.add(image);

@@ -9,10 +9,10 @@ namespace waymark {
 
 /// Which images there are and what is known of them.
 struct ImageListing {
-  std::vector<std::string> files = {};    ///< images, or folders: every image in them
-  std::vector<std::string> cameras = {};  ///< camera files; several of one format add up
-  std::string format = {};                ///< of the camera files; empty: recognised
-  CameraImport import = {};               ///< `crs` is of orthophotos too
+  std::vector<std::string> files = {};  ///< images, patterns, or folders: every image in them
+  std::string cameras = {};             ///< a camera file, or a pattern for several of one format
+  std::string format = {};              ///< of the camera files; empty: recognised
+  CameraImport import = {};             ///< `crs` is of orthophotos too
 
   enum class SunFrom { all, time, nothing };
   SunFrom sun_from = SunFrom::all;

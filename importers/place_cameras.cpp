@@ -20,6 +20,7 @@ namespace {
 using Covariance = Eigen::Matrix<double, 6, 6>;
 using Axes = CameraWorld::Axes;
 
+constexpr const char* kGeocentric = "EPSG:4978";
 constexpr double kStretchTold = 2e-3;  // of a metre per metre, between axes
 
 Crs map_crs(const CameraFile& file, const std::string& path, const CameraImport& import) {
@@ -154,9 +155,14 @@ class Placer {
 
 }  // namespace
 
-CameraSet place_cameras(const CameraFile& file, const std::string& path, const CameraImport& import) {
-  if (file.images.empty())
+CameraSet place_cameras(const CameraFile& told, const std::string& path, const CameraImport& import) {
+  if (told.images.empty())
     throw Error(ErrorCode::input, "the camera file names no images", path, "check that it is the right file");
+  CameraFile file = told;
+  if (file.world.axes == Axes::arbitrary && !import.camera_crs.empty()) {
+    file.world.axes = import.camera_crs == kGeocentric ? Axes::earth : Axes::grid;
+    file.world.crs = import.camera_crs == kGeocentric ? "" : import.camera_crs;
+  }
   CameraSet set;
   set.crs = map_crs(file, path, import);
   set.warnings = file.warnings;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "importers/camera_file.hpp"
+#include "importers/interior.hpp"
 #include "importers/json_value.hpp"
 #include "importers/sun_position.hpp"
 
@@ -44,39 +45,6 @@ Sun sun_of(const JsonValue& sun) {
   return {.azimuth = Degrees{azimuth < 0 ? azimuth + 360 : azimuth},
           .elevation = Degrees{elevation},
           .sd = Degrees{sd}};
-}
-
-double positive(const JsonValue& value) {
-  const double number = value.number();
-  if (!(number > 0)) value.refuse(fmt::format("this must be positive, is {}", number));
-  return number;
-}
-
-Camera camera_of(const JsonValue& json) {
-  json.expect_only({"columns", "rows", "fx", "fy", "cx", "cy", "skew", "lens", "distortion"});
-  Camera camera;
-  camera.columns = json["columns"].integer();
-  camera.rows = json["rows"].integer();
-  if (camera.columns < 1 || camera.rows < 1)
-    json.refuse(fmt::format("an image of {} x {} pixels", camera.columns, camera.rows),
-                "columns and rows are 1 or more");
-  camera.fx = positive(json["fx"]);
-  camera.fy = positive(json["fy"]);
-  camera.cx = json["cx"].number();
-  camera.cy = json["cy"].number();
-  camera.skew = json.number("skew", 0);
-  const std::string lens = json.has("lens") ? json["lens"].text() : "brown";
-  if (lens != "brown" && lens != "fisheye")
-    json["lens"].refuse(fmt::format("'{}' is no lens", lens), "lenses: brown, fisheye");
-  camera.lens = lens == "fisheye" ? Camera::Lens::fisheye : Camera::Lens::brown;
-  if (!json.has("distortion")) return camera;
-  const auto numbers = json["distortion"].numbers();
-  const std::size_t most = camera.lens == Camera::Lens::fisheye ? 4 : 8;
-  if (numbers.size() > most)
-    json["distortion"].refuse(fmt::format("{} coefficients, a {} lens has {}", numbers.size(), lens, most),
-                              "brown: k1 k2 p1 p2 k3 k4 k5 k6; fisheye: k1 k2 k3 k4");
-  std::copy(numbers.begin(), numbers.end(), camera.distortion.begin());
-  return camera;
 }
 
 Eigen::Matrix3d rotation_of(const JsonValue& image) {
@@ -128,7 +96,8 @@ class Reader {
                                      "it reads layout 1");
     if (root.has("sun")) sun_ = sun_of(root["sun"]);
     if (root.has("cameras"))
-      for (const std::string& name : root["cameras"].keys()) lenses_[name] = camera_of(root["cameras"][name]);
+      for (const std::string& name : root["cameras"].keys())
+        lenses_[name] = camera_from_json(root["cameras"][name]);
   }
 
   CameraRecord record(const JsonValue& image) const {
@@ -156,7 +125,7 @@ class Reader {
 
  private:
   Camera lens_of(const JsonValue& lens) const {
-    if (!lens.is_text()) return camera_of(lens);
+    if (!lens.is_text()) return camera_from_json(lens);
     const auto found = lenses_.find(lens.text());
     if (found == lenses_.end())
       lens.refuse(fmt::format("there is no camera '{}'", lens.text()), "cameras are listed at /cameras");

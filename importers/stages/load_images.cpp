@@ -23,8 +23,8 @@ std::vector<std::string> format_names() {
 
 struct LoadImages {
   struct Options {
-    std::vector<std::string> files, cameras;
-    std::string camera_format = "auto", interior, crs, camera_crs, control_points, similarity;
+    std::vector<std::string> files;
+    std::string cameras, camera_format = "auto", interior, crs, camera_crs, control_points, similarity;
     Meters height_offset{0}, position_sd{0}, gsd{0};
     Degrees rotation_sd{0}, sun_azimuth{0}, sun_elevation{0}, sun_sd{Sun{}.sd};
     std::string sun = "auto", image_sun_angle, time_zone;
@@ -32,9 +32,12 @@ struct LoadImages {
     std::int64_t band = 0;
 
     void describe(OptionVisitor& option) {
-      option("files", files,
-             {.help = "Images, or folders of images; empty: those the camera file names, near it"});
-      option("cameras", cameras, {.help = "Camera files, one or several of one format; none: orthophotos"});
+      option(
+          "files", files,
+          {.help =
+               "Images, patterns (*.png) or folders of images; empty: those the camera file names, near it"});
+      option("cameras", cameras,
+             {.help = "Camera file, or a pattern for several of one format; empty: orthophotos"});
       option("camera_format", camera_format,
              {.help = "Format of the camera files", .choices = format_names()});
       option("interior", interior,
@@ -107,17 +110,16 @@ struct LoadImages {
   // Images are hashed one by one, as what they are to their own units; what counts here is which there are.
   static std::vector<std::string> input_files(const Options& options) {
     namespace fs = std::filesystem;
-    std::vector<std::string> files = options.cameras;
-    for (const std::string& file : {options.interior, options.control_points})
+    std::vector<std::string> files;
+    for (const std::string& file : {options.cameras, options.interior, options.control_points})
       if (!file.empty()) files.push_back(file);
     std::set<std::string> folders;
     for (const std::string& file : options.files)
       folders.insert((is_image_name(file) ? fs::path(file).parent_path() / "." : fs::path(file)).string() +
                      "/");
     if (options.files.empty())
-      for (const std::string& file : options.cameras)
-        for (const char* place : {"./", "images/", "../images/"})
-          folders.insert((fs::path(file).parent_path() / place).string());
+      for (const char* place : {"./", "images/", "../images/", "../../images/"})
+        folders.insert((fs::path(options.cameras).parent_path() / place).string());
     files.insert(files.end(), folders.begin(), folders.end());
     return files;
   }
@@ -126,7 +128,7 @@ struct LoadImages {
     const auto path = [&](const std::string& file) { return file.empty() ? file : unit.path(file); };
     ImageListing listing;
     for (const std::string& file : options.files) listing.files.push_back(path(file));
-    for (const std::string& file : options.cameras) listing.cameras.push_back(path(file));
+    listing.cameras = path(options.cameras);
     if (options.camera_format != "auto") listing.format = options.camera_format;
     listing.import = {.crs = options.crs,
                       .camera_crs = options.camera_crs,

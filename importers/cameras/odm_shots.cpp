@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// OpenDroneMap: shots.geojson with cameras.json beside it (or named by `interior`).
+//  - translation is the place of the camera in a UTM zone, not the t of OpenSfM; the zone is not named, but
+//  follows
+//    from the longitude and latitude of the point.
+//  - rotation is an angle-axis vector, world to camera, world axes those of the grid.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "geo/crs.hpp"
+#include "importers/camera_file.hpp"
+#include "importers/interior.hpp"
+#include "importers/json_value.hpp"
+
+namespace waymark {
+namespace {
+
+std::string utm_zone(double lon, double lat) {
+  const int zone = static_cast<int>(std::clamp(std::floor((lon + 180) / 6) + 1, 1.0, 60.0));
+  return fmt::format("EPSG:{}", (lat < 0 ? 32700 : 32600) + zone);
+}
+
+// The zone, where the places are in it within a metre; else nothing: camera_crs or the map's CRS counts.
+std::string crs_of(const JsonValue& feature) {
+  const JsonValue point = feature["geometry"]["coordinates"];
+  const double lon = point[0].number(), lat = point[1].number();
+  const Eigen::Vector3d place = feature["properties"]["translation"].vector3();
+  const std::string crs = utm_zone(lon, lat);
+  const auto [x, y] = CrsTransform(Crs::from_text("EPSG:4326"), Crs::from_text(crs))(lon, lat);
+  return std::hypot(x - place.x(), y - place.y()) < 1 ? crs : "";
+}
+
+std::map<std::string, Camera> lenses_of(const CameraSource& source) {
+  const std::string beside = (std::filesystem::path(source.path).parent_path() / "cameras.json").string();
+  const std::string path = source.interior.empty() ? beside : source.interior;
+  std::error_code ignored;
+  if (source.interior.empty() && !std::filesystem::exists(beside, ignored)) return {};
+  return read_interior(path);
+}
+
+// Without cameras.json: focal length and size are in the shot, the distortion is not.
+Camera plain_lens(const JsonValue& shot) {
+  Camera camera;
+  camera.columns = shot["width"].integer();
+  camera.rows = shot["height"].integer();
+  const auto width = static_cast<double>(camera.columns), height = static_cast<double>(camera.rows);
+  camera.fx = camera.fy = shot["focal"].number() * std::max(width, height);
+  camera.cx = width / 2 - 0.5;
+  camera.cy = height / 2 - 0.5;
+  return camera;
+}
+
+Eigen::Isometry3d world_from_camera(const JsonValue& shot) {
+  const Eigen::Vector3d turn = shot["rotation"].vector3();
+  const double angle = turn.norm();
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (angle > 0) pose.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix().transpose();
+  pose.translation() = shot["translation"].vector3();
+  return pose;
+}
+
+CameraFile read(const CameraSource& source) {
+  const JsonValue root = JsonValue::from_file(source.path);
+  const JsonValue features = root["features"];
+  const auto lenses = lenses_of(source);
+  CameraFile file;
+  file.world.axes = CameraWorld::Axes::grid;
+  if (features.size() > 0) file.world.crs = crs_of(features[0]);
+  if (lenses.empty())
+    file.warnings.push_back(fmt::format(
+        "{}: there is no cameras.json beside it: the lens distortion is unknown and taken as none",
+        source.path));
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const JsonValue shot = features[i]["properties"];
+    CameraRecord record;
+    record.image = shot["filename"].text();
+    record.place = "at " + shot.place();
+    record.camera =
+        lenses.empty() ? plain_lens(shot) : interior_named(lenses, shot["camera"].text(), source.path);
+    record.world_from_camera = world_from_camera(shot);
+    file.images.push_back(std::move(record));
+  }
+  return file;
+}
+
+}  // namespace
+
+void register_camera_format_odm_shots(CameraFormats& formats);
+void register_camera_format_odm_shots(CameraFormats& formats) {
+  formats.add({.name = "odm_shots",
+               .summary = "OpenDroneMap: shots.geojson with cameras.json",
+               .recognises =
+                   [](const CameraSource& s) {
+                     return s.head.find("FeatureCollection") != s.head.npos &&
+                            s.head.find("\"capture_time\"") != s.head.npos;
+                   },
+               .read = read});
+}
+
+}  // namespace waymark
