@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/dem_handle.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/craters/dem_blocks.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+
+namespace waymark {
+namespace {
+
+struct CratersFromDem {
+  struct Options {
+    double min_diameter = DemSurvey{}.min_diameter;
+    double max_diameter = DemSurvey{}.max_diameter;
+    double min_confidence = DemSurvey{}.min_confidence;
+    void describe(OptionVisitor& option) {
+      option("min_diameter", min_diameter,
+             {.help = "Smallest crater kept, in cells of the DEM", .min = 6, .max = kDemLargest});
+      option("max_diameter", max_diameter,
+             {.help = "Largest crater kept, in cells; larger ones need a coarser DEM",
+              .min = 6,
+              .max = kDemLargest});
+      option("min_confidence", min_confidence,
+             {.help = "Craters less probable than this are left out", .min = 0, .max = 1});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr Out<std::vector<Observation>> observations{"observations"};
+
+  static StageSpec spec() {
+    return {.name = "craters_from_dem",
+            .summary = "Finds craters in a DEM: dishes with rims, their depth and rim height",
+            .version = 1,
+            .scope = Scope::tile,
+            .halo = kDemCore + kDemMargin,
+            .inputs = {dem},
+            .outputs = {observations}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    auto found = survey_craters(*unit.read(dem), unit.tile().cells,
+                                {.type = types.id("crater"),
+                                 .min_diameter = options.min_diameter,
+                                 .max_diameter = options.max_diameter,
+                                 .min_confidence = options.min_confidence});
+    unit.count_out(static_cast<std::int64_t>(found.size()));
+    unit.write(observations, std::move(found));
+  }
+};
+
+}  // namespace
+
+void register_stage_craters_from_dem(Registry& registry);
+void register_stage_craters_from_dem(Registry& registry) {
+  registry.add<CratersFromDem>();
+}
+
+}  // namespace waymark
