@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
-#include <numeric>
+#include <cmath>
+#include <utility>
 
 #include "pipeline/rocks/shadow_map.hpp"
 namespace waymark {
@@ -51,6 +51,39 @@ void for_neighbours(const DarkPixels& dark, std::int32_t cell, Visit visit) {
     }
 }
 
+constexpr float kMiddle = 0.6F;              // share of the peak that marks the dark middle of a shadow
+constexpr std::int64_t kNear = 2, kFar = 4;  // pixels: the ring that shows the ground beside it
+
+// Shading of slopes finer than the background's tiles lies on the ground beside a shadow as on the shadow.
+float base_of(const Grid<float>& smooth, const std::vector<std::int32_t>& middle, float peak) {
+  const std::int64_t columns = smooth.columns();
+  std::int64_t x0 = columns, x1 = 0, y0 = smooth.rows(), y1 = 0;
+  for (const std::int32_t cell : middle) {
+    x0 = std::min<std::int64_t>(x0, cell % columns);
+    x1 = std::max<std::int64_t>(x1, cell % columns);
+    y0 = std::min<std::int64_t>(y0, cell / columns);
+    y1 = std::max<std::int64_t>(y1, cell / columns);
+  }
+  Grid<char> near(x1 - x0 + 1 + 2 * kFar, y1 - y0 + 1 + 2 * kFar, 0);  // 2: within kNear, 1: within kFar
+  for (const std::int32_t cell : middle) {
+    const std::int64_t u = cell % columns - x0 + kFar, v = cell / columns - y0 + kFar;
+    for (std::int64_t dv = -kFar; dv <= kFar; ++dv)
+      for (std::int64_t du = -kFar; du <= kFar; ++du) {
+        const char mark = std::max(std::abs(du), std::abs(dv)) <= kNear ? 2 : 1;
+        near(u + du, v + dv) = std::max(near(u + du, v + dv), mark);
+      }
+  }
+  std::vector<float> beside;
+  for (std::int64_t v = 0; v < near.rows(); ++v)
+    for (std::int64_t u = 0; u < near.columns(); ++u)
+      if (near(u, v) == 1 && smooth.contains(u + x0 - kFar, v + y0 - kFar))
+        beside.push_back(smooth(u + x0 - kFar, v + y0 - kFar));
+  if (beside.empty()) return 0;
+  const auto half = beside.begin() + static_cast<std::ptrdiff_t>(beside.size() / 2);
+  std::nth_element(beside.begin(), half, beside.end());
+  return std::clamp(*half, -0.3F, 0.6F * peak);
+}
+
 }  // namespace
 
 std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimits& limits) {
@@ -88,21 +121,38 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
     const auto [high, low] = higher(a, b) ? std::pair{a, b} : std::pair{b, a};
     if (pass.height > limits.merge * value(low)) parent[static_cast<std::size_t>(low)] = high;
   }
-  std::vector<std::int32_t> segment_of(dark.cells.size(), -1);
-  std::vector<ShadowSegment> segments;
-  for (std::int32_t i = 0; i < count; ++i) {
-    const auto summit = static_cast<std::size_t>(root(parent, i));
-    if (value(static_cast<std::int32_t>(summit)) <= limits.seed) continue;
-    if (segment_of[summit] < 0) {
-      segment_of[summit] = static_cast<std::int32_t>(segments.size());
-      const auto columns = static_cast<std::int32_t>(map.smooth.columns());
-      segments.push_back({.x = dark.cells[summit] % columns,
-                          .y = dark.cells[summit] / columns,
-                          .peak = value(static_cast<std::int32_t>(summit)),
-                          .cells = {}});
+  std::vector<std::size_t> catchment(dark.cells.size(), 0);
+  for (std::int32_t i = 0; i < count; ++i) ++catchment[static_cast<std::size_t>(root(parent, i))];
+  const auto columns = static_cast<std::int32_t>(map.smooth.columns());
+  std::vector<std::int32_t> visit(dark.cells.size(), -1);  // stamp of the flood that reached a pixel last
+  std::int32_t stamp = 0;
+  const auto flood = [&](std::int32_t summit, float least) {
+    std::vector<std::int32_t> open{summit}, cells;
+    visit[static_cast<std::size_t>(summit)] = ++stamp;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      cells.push_back(dark.cells[static_cast<std::size_t>(open[k])]);
+      for_neighbours(dark, cells.back(), [&](std::int32_t j) {
+        auto& seen = visit[static_cast<std::size_t>(j)];
+        if (seen == stamp || !(value(j) > least) || root(parent, j) != summit) return;
+        seen = stamp;
+        open.push_back(j);
+      });
     }
-    segments[static_cast<std::size_t>(segment_of[summit])].cells.push_back(
-        dark.cells[static_cast<std::size_t>(i)]);
+    std::sort(cells.begin(), cells.end());
+    return cells;
+  };
+  std::vector<ShadowSegment> segments;
+  for (std::int32_t summit = 0; summit < count; ++summit) {
+    if (parent[static_cast<std::size_t>(summit)] != summit || value(summit) <= limits.seed) continue;
+    const std::int32_t cell = dark.cells[static_cast<std::size_t>(summit)];
+    ShadowSegment segment{.x = cell % columns, .y = cell / columns, .peak = value(summit), .cells = {}};
+    segment.surroundings = catchment[static_cast<std::size_t>(summit)];
+    const auto middle = flood(summit, kMiddle * segment.peak);
+    if (limits.most_cells > 0 && middle.size() > limits.most_cells) continue;
+    segment.base = base_of(map.smooth, middle, segment.peak);
+    if (!(segment.peak - segment.base > limits.seed)) continue;
+    segment.cells = flood(summit, segment.base + limits.core * (segment.peak - segment.base));
+    segments.push_back(std::move(segment));
   }
   if (limits.most_cells > 0)
     std::erase_if(segments, [&](const ShadowSegment& s) { return s.cells.size() > limits.most_cells; });

@@ -98,7 +98,7 @@ std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& li
   for (const ShadowSegment& segment : find_segments(map, limits)) {
     RockCandidate rock;
     rock.shadow = measure_shadow(map, segment, light);
-    rock.segment_cells = segment.cells.size();
+    rock.segment_cells = segment.surroundings;
     if (!(rock.shadow.area > 0)) continue;
     JudgedRock one;
     one.noise = static_cast<double>(map.noise);
@@ -120,20 +120,20 @@ std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& sear
   const Radians elevation = search.sun_elevation.value_or(kUsualElevation);
   std::vector<JudgedRock> all;
   std::optional<float> umbra;
+  std::optional<RockTable> table;
   Pixels coarse;
   double blur = search.blur > 0 ? search.blur : 0.6;
   for (double scale = 1;; scale *= 2) {
     if (scale > 1) {
       coarse = halved(scale > 2 ? coarse : image);
-      // Halved, pixel and blur count half; what the wider pixel adds is not blur.
-      blur = std::max(0.25, std::sqrt(blur * blur + 1.0 / 12) / 2);
+      blur = std::max(0.25, blur / 2);  // from there on pixels are sharp: one table serves all coarser scales
     }
     const Pixels& pixels = scale > 1 ? coarse : image;
     const auto map = map_shadows(pixels, kTile, umbra);
     if (!map) break;
     umbra = map->umbra;
-    const RockTable table(elevation, search.sun_elevation.has_value(), blur);
-    for (JudgedRock& one : judge_shadows(*map, light, table)) {
+    if (scale <= 2) table = RockTable(elevation, search.sun_elevation.has_value(), blur);
+    for (JudgedRock& one : judge_shadows(*map, light, *table)) {
       const double diameter = 2 * one.rock.size.radius;
       one.scale = scale;
       if (scale == 1 || diameter > kSmallestAtCoarse) all.push_back(std::move(one));

@@ -68,7 +68,7 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
           std::max(near_left, near_right),
           std::min(far_left, far_right),
           std::max(far_left, far_right),
-          std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))};
+          std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells)))};
 }
 
 }  // namespace waymark

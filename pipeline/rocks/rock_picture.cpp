@@ -68,7 +68,10 @@ std::vector<float> gaussian(double sd) {
 }  // namespace
 
 Grid<float> draw_rock(const RockPicture& rock, std::int64_t columns, std::int64_t rows) {
-  const int fine = rock.radius < 1.5 ? 6 : rock.radius < 4 ? 4 : 3;  // samples per pixel and direction
+  const int fine = rock.radius < 1   ? 6
+                   : rock.radius < 2 ? 4
+                   : rock.radius < 5 ? 3
+                                     : 2;  // samples per pixel and direction
   const LightFrame light = LightFrame::of(rock.sun_angle);
   const double tan_elevation = std::tan(rock.elevation.value);
   const std::int64_t w = columns * fine, h = rows * fine;

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kFirstRadius = 0.45, kRadiusStep = 1.26;  // pixels, factor
+constexpr double kFirstRadius = 0.45, kRadiusStep = 1.36;  // pixels, factor
 constexpr double kLeastHeight = 0.12, kMostHeight = 1.6;   // height / diameter, ends of the table
 constexpr double kMeanHeight = 0.45;    // height / diameter, median of rocks (Golombek 2008: about 0.5)
 constexpr double kHeightSpread = 0.45;  // of its logarithm

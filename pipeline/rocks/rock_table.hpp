@@ -26,7 +26,7 @@ struct RockSize {
 /// one.
 class RockTable {
  public:
-  /// Sun elevation in (0, pi/2); `known` narrows what is expected of heights. Takes some 50 ms.
+  /// Sun elevation in (0, pi/2); `known` narrows what is expected of heights. Takes some 30 ms.
   RockTable(Radians elevation, bool known, double blur);
 
   /// The rock that explains a shadow best; `noise` and `texture` are standard deviations in alpha.
@@ -36,7 +36,7 @@ class RockTable {
   double usual_log_ratio() const { return ratio_mean_; }
 
  private:
-  static constexpr int kRadii = 14, kHeights = 9;
+  static constexpr int kRadii = 11, kHeights = 8;
   ShadowMeasure at(double log_radius, double log_ratio) const;
 
   double tan_elevation_ = 1;

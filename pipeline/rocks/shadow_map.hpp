@@ -29,15 +29,19 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
 
 /// The connected dark pixels of one shadow.
 struct ShadowSegment {
-  std::int32_t x = 0, y = 0;        ///< darkest pixel (of the smoothed map)
-  float peak = 0;                   ///< smoothed alpha there
-  std::vector<std::int32_t> cells;  ///< row * columns + column, ascending
+  std::int32_t x = 0, y = 0;  ///< darkest pixel (of the smoothed map)
+  float peak = 0;             ///< smoothed alpha there
+  float base = 0;             ///< median of the smoothed map three to four pixels beyond its dark middle
+  std::vector<std::int32_t>
+      cells;  ///< row * columns + column: connected, above a share of peak over base, ascending
+  std::size_t surroundings = 0;  ///< dark pixels of its whole catchment, texture of the ground included
 };
 
 struct SegmentLimits {
   float grow = 0.12F;   ///< pixels below do not belong to any shadow
-  float seed = 0.2F;    ///< shadows whose darkest pixel is below are left out
+  float seed = 0.2F;    ///< shadows whose peak is less above their base are left out
   float merge = 0.75F;  ///< two darks are one where the pass between them is above this share of the lesser
+  float core = 0.4F;    ///< share of peak over base above which a pixel belongs to a shadow
   std::size_t most_cells = 0;  ///< larger segments are left out; 0: no limit
 };
 

@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-constexpr float kShareOfPeak = 0.25F;
+constexpr float kOtherShadow = 0.4F;         // share of the peak above which a ring pixel is another shadow's
 constexpr float kMeanOfClippedNoise = 0.4F;  // E max(0, n) of a unit normal is 1 / sqrt(2 pi)
 
 enum Role : char { outside, ring, core };
@@ -27,11 +27,8 @@ Stencil stencil_of(const ShadowMap& map, const ShadowSegment& segment) {
     y1 = std::max(y1, cell / columns);
   }
   Stencil stencil{x0 - 1, y0 - 1, Grid<char>(x1 - x0 + 3, y1 - y0 + 3, outside)};
-  const float least = kShareOfPeak * segment.peak;
-  for (const std::int32_t cell : segment.cells) {
-    const std::int32_t x = cell % columns, y = cell / columns;
-    if (map.smooth(x, y) > least) stencil.role(x - stencil.x0, y - stencil.y0) = core;
-  }
+  for (const std::int32_t cell : segment.cells)
+    stencil.role(cell % columns - stencil.x0, cell / columns - stencil.y0) = core;
   for (std::int64_t y = 0; y < stencil.role.rows(); ++y)
     for (std::int64_t x = 0; x < stencil.role.columns(); ++x) {
       if (stencil.role(x, y) != core) continue;
@@ -46,8 +43,9 @@ Stencil stencil_of(const ShadowMap& map, const ShadowSegment& segment) {
 
 ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, const LightFrame& light) {
   const Stencil stencil = stencil_of(map, segment);
-  ShadowShape shape{.peak = segment.peak};
-  const float least = kShareOfPeak * segment.peak;
+  ShadowShape shape;
+  shape.peak = static_cast<double>((segment.peak - segment.base) / (1 - segment.base));
+  const float least = segment.base + kOtherShadow * (segment.peak - segment.base);
   double sum_x = 0, sum_y = 0, sum_tt = 0, sum_ss = 0, sum_st = 0;
   for (std::int64_t v = 0; v < stencil.role.rows(); ++v)
     for (std::int64_t u = 0; u < stencil.role.columns(); ++u) {
@@ -58,7 +56,7 @@ ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, c
         shape.cut = true;
         continue;
       }
-      double weight = std::max(0.0F, map.alpha(x, y));
+      double weight = std::max(0.0F, (map.alpha(x, y) - segment.base) / (1 - segment.base));
       if (role == core) {
         ++shape.cells;
         weight = std::min(weight, 1.15);

@@ -22,13 +22,14 @@ struct ShadowShape {
   double area = 0;                                                 ///< sum of alpha, pixels
   double x = 0, y = 0;                                             ///< centroid, pixels of the image
   double along_variance = 0, across_variance = 0, covariance = 0;  ///< about it, px^2
-  double peak = 0;                                                 ///< greatest alpha of the smoothed map
+  double peak = 0;   ///< greatest alpha of the smoothed map, from the base
   int cells = 0;     ///< pixels that entered, without the ring around
   bool cut = false;  ///< touches the border of the map
 };
 
-/// Measures the pixels of a segment above a quarter of its peak and a ring of one pixel about them, where
-/// light of other shadows is left out and the mean that noise adds to a clipped pixel is taken off.
+/// Measures the pixels of a segment and a ring of one pixel about them, alpha counted from the segment's
+/// base. In the ring, pixels of other shadows are left out, and the mean that noise adds to a clipped pixel
+/// is taken off.
 ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, const LightFrame& light);
 
 }  // namespace waymark
