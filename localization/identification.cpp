@@ -120,6 +120,24 @@ std::vector<Match> by_probability(const std::vector<Candidates>& all,
   return matches;
 }
 
+PoseEstimate mixture(const PoseEstimate& before, const std::vector<JointHypothesis>& hypotheses) {
+  std::vector<PoseEstimate> after;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // relative to the pose before
+  const auto off = [](const Pose2& from, const Pose2& to) {
+    return Eigen::Vector3d(to.x - from.x, to.y - from.y, wrapped(to.yaw - from.yaw));
+  };
+  for (const JointHypothesis& h : hypotheses) {
+    after.push_back(updated(before, h.evidence));
+    mean += h.probability * off(before.pose, after.back().pose);
+  }
+  PoseEstimate mixed{pose_of(before.pose.vector() + mean), Eigen::Matrix3d::Zero()};
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const Eigen::Vector3d d = off(mixed.pose, after[i].pose);
+    mixed.covariance += hypotheses[i].probability * (after[i].covariance + d * d.transpose());
+  }
+  return mixed;
+}
+
 }  // namespace
 
 void IdentificationOptions::describe(OptionVisitor& option) {
@@ -143,6 +161,11 @@ void IdentificationOptions::describe(OptionVisitor& option) {
   option("bearing_reach", bearing_reach,
          {.help = "How far, in metres, a sighting without range may be", .min = 0.1, .max = 1e6});
   option("node_limit", node_limit, {.help = "Steps of a joint search", .min = 1, .max = 1e9});
+  option("quality_floor", quality_floor,
+         {.help = "The noise of a landmark is divided by its quality, but by no less than this; 1 turns "
+                  "quality off",
+          .min = 1e-3,
+          .max = 1});
   option("use_identities", use_identities, {.help = "Believe landmarks that say who they are"});
 }
 
@@ -162,6 +185,7 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
   const bool paper = options.distance == "paper";
   const Pose2 sensor = robot.pose * robot_from_sensor;
   std::vector<std::uint32_t> reach;
+  if (seen.type == kNoSuchType) return {Verdict::unknown_type, {}};
   const bool known = options.use_identities && seen.identity;
   if (known) {
     const auto found = map.find(*seen.identity);
@@ -183,7 +207,8 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
       continue;
     }
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
-    Pairing p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance)};
+    const double trust = options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
+    Pairing p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance, trust)};
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;
@@ -202,14 +227,14 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
   return result;
 }
 
-std::vector<Match> identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
-                            const FeatureScales& scales, const IdentificationOptions& options) {
+Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
+                        const FeatureScales& scales, const IdentificationOptions& options) {
   std::vector<Candidates> all;
   for (const Sighting& sighting : seen.sightings)
     all.push_back(candidates(sighting, seen.robot_from_sensor, robot, map, scales, options));
   if (options.association == "joint") {
     if (const auto hypotheses = joint_hypotheses(all, seen, map, robot.covariance, options))
-      return by_probability(all, *hypotheses, options);
+      return {by_probability(all, *hypotheses, options), mixture(robot, *hypotheses)};
   } else if (options.association == "jcbb") {
     if (const auto choice = most_compatible(all, robot.covariance, options)) {
       std::vector<Match> matches;
@@ -218,10 +243,10 @@ std::vector<Match> identify(const SightingSet& seen, const PoseEstimate& robot, 
         matches.push_back(
             from(all[i], c < 0 ? std::nullopt : std::optional<std::size_t>(c), Verdict::too_far));
       }
-      return matches;
+      return {std::move(matches), {}};
     }
   }
-  return one_by_one(all, options);
+  return {one_by_one(all, options), {}};
 }
 
 }  // namespace waymark

@@ -28,6 +28,9 @@ struct IdentificationOptions {
   double bearing_reach = 100;       ///< m: how far a sighting without range may be
   std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` decides
   bool use_identities = true;       ///< believe landmarks that say who they are
+  /// A landmark of quality q has its noise divided by max(q, quality_floor) (section 4.3); 1: quality is not
+  /// used.
+  double quality_floor = 0.1;
 
   void describe(OptionVisitor& option);
 };
@@ -70,6 +73,14 @@ struct Match {
   double probability = 1;  ///< of the pairing, given that the map is right; only `joint` computes it
 };
 
+struct Identification {
+  std::vector<Match> matches;  ///< one per sighting, in their order
+  /// `joint` only: the pose after a Kalman update by every hypothesis, mixed by their probabilities and
+  /// collapsed to one Gaussian (coupled PDA, Blom & Bloem 2000). Sightings too doubtful to be called matched
+  /// still count, by as much as they can be trusted.
+  std::optional<PoseEstimate> posterior;
+};
+
 /// Candidates by type, place and features (section 4.1, first step). Landmarks within the gate of the pose's
 /// and the sensor's uncertainty; for sightings without range, of the wedge of figure 2.
 Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
@@ -77,7 +88,7 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
                       const IdentificationOptions& options);
 
 /// Second step: the best landmark for each sighting of a set.
-std::vector<Match> identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
-                            const FeatureScales& scales, const IdentificationOptions& options);
+Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
+                        const FeatureScales& scales, const IdentificationOptions& options);
 
 }  // namespace waymark

@@ -135,6 +135,7 @@ std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Can
                                                              const IdentificationOptions& options) {
   HypothesisList all(sets, seen, map, pose, options);
   if (!all.list()) return {};
+  for (JointHypothesis& h : all.found) h.log_weight = h.probability;
   std::ranges::stable_sort(all.found, std::greater<>{}, &JointHypothesis::probability);
   const double best = all.found[0].probability;
   double total = 0;

@@ -16,7 +16,8 @@ std::optional<JointChoice> most_compatible(std::span<const Candidates> sets, con
 struct JointHypothesis {
   JointChoice choice;
   JointEvidence evidence;
-  double probability = 0;
+  double probability = 0;  ///< among all hypotheses of the set
+  double log_weight = 0;   ///< ln of the density of the set under it, for comparing sets of several poses
 };
 
 /// All ways to pair a set, with their probabilities: Gaussian densities of the joint innovations times the

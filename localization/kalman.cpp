@@ -8,6 +8,8 @@
 namespace waymark {
 namespace {
 
+constexpr double kCertain = 0.999;  // pairings above need no mixture
+
 // Landmarks further than this from where the robot believes to be are not asked for.
 double reach_of(const SightingSet& seen, const PoseEstimate& robot, const IdentificationOptions& options) {
   double farthest = 0;
@@ -24,11 +26,6 @@ Eigen::Vector3d widest(const Eigen::Vector3d& sd) {
 }
 
 void KalmanOptions::describe(OptionVisitor& option) {
-  option("quality_floor", quality_floor,
-         {.help = "The noise of a landmark is divided by its quality, but by no less than this; 1 turns "
-                  "quality off",
-          .min = 1e-3,
-          .max = 1});
   option("lost_after", lost_after,
          {.help = "Sets of sightings in a row without a match after which the filter searches",
           .min = 1,
@@ -47,23 +44,26 @@ KalmanLocalizer::KalmanLocalizer(LandmarkWindow map, FeatureScales scales,
 std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
   const PoseEstimate before = estimate();
   const LandmarkGrid& map = map_.around(before.pose.at(), reach_of(seen, before, identification_));
-  std::vector<Match> matches = identify(seen, before, map, scales_, identification_);
+  auto [matches, posterior] = identify(seen, before, map, scales_, identification_);
   std::vector<Use> uses;
-  bool any = false;  // that should have matched
+  bool doubtful = false, strange = false;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Match& match = matches[i];
-    any = any || match.verdict == Verdict::nothing_near || match.verdict == Verdict::too_far;
+    Match& match = matches[i];
+    doubtful = doubtful || match.verdict == Verdict::ambiguous || match.probability < kCertain;
+    strange = strange || match.verdict == Verdict::nothing_near || match.verdict == Verdict::too_far;
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
-    uses.push_back({&seen.sightings[i], &landmark, std::max(landmark.quality, options_.quality_floor)});
-    if (options_.quality_floor >= 1) uses.back().trust = 1;
+    match.key = landmark.key;
+    const double floor = identification_.quality_floor;
+    uses.push_back({&seen.sightings[i], &landmark, floor < 1 ? std::max(landmark.quality, floor) : 1});
   }
-  for (Match& match : matches)
-    if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
-  if (!uses.empty()) {
+  if (posterior && doubtful) {
+    missed_ = 0;
+    replace(*posterior);
+  } else if (!uses.empty()) {
     missed_ = 0;
     update(uses, seen.robot_from_sensor);
-  } else if (any && ++missed_ >= options_.lost_after) {
+  } else if (strange && ++missed_ >= options_.lost_after) {
     widen(options_.search_growth);
   }
   return matches;

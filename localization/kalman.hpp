@@ -5,9 +5,6 @@
 namespace waymark {
 
 struct KalmanOptions {
-  /// A landmark of quality q has its noise divided by max(q, quality_floor) (section 4.3); 1: quality is not
-  /// used.
-  double quality_floor = 0.1;
   std::int64_t lost_after = 10;  ///< sets in a row without a match until the search begins
   double search_growth = 2;      ///< by which the standard deviations grow with each further set
 
@@ -31,6 +28,7 @@ class KalmanLocalizer : public Localizer {
     double trust = 1;
   };
   virtual void update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) = 0;
+  virtual void replace(const PoseEstimate& estimate) = 0;
   virtual void widen(double factor) = 0;
 
  private:
@@ -52,6 +50,7 @@ class ExtendedKalman final : public KalmanLocalizer {
 
  private:
   void update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) override;
+  void replace(const PoseEstimate& estimate) override { estimate_ = estimate; }
   void widen(double factor) override;
   PoseEstimate estimate_;
 };
@@ -74,6 +73,7 @@ class UnscentedKalman final : public KalmanLocalizer {
 
  private:
   void update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) override;
+  void replace(const PoseEstimate& estimate) override;
   void widen(double factor) override;
   Pose2 pose_;
   Eigen::Matrix3d root_;  ///< lower triangular

@@ -61,6 +61,12 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow
       scales_(std::move(scales)),
       identification_(std::move(identification)),
       options_(std::move(options)) {
+  // What both say is said once, for the identification.
+  options_.weight.clutter = identification_.clutter;
+  options_.weight.quality_floor = identification_.quality_floor;
+  options_.weight.feature_tolerance = identification_.feature_tolerance;
+  options_.weight.feature_limit = identification_.feature_limit;
+  options_.weight.bearing_reach = identification_.bearing_reach;
   if (!start) {
     searching_ = true;
     const Eigen::AlignedBox2d box = map_.around({0, 0}, 0).bounds();
@@ -188,7 +194,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
     draw_again(seen, map);
 
-  std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_);
+  std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
   for (Match& match : matches)
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
   return matches;

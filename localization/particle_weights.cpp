@@ -26,23 +26,14 @@ void WeightOptions::describe(OptionVisitor& option) {
   option("weights", weights,
          {.help = "How particles are weighed: by probability, or by eqs. 12-14",
           .choices = {"likelihood", "paper"}});
-  option("clutter", clutter,
-         {.help = "Density of false sightings per metre of range and radian of bearing", .min = 1e-12});
   option("temper", temper,
          {.help = "Power of each probability; below 1 where errors of successive sightings are alike",
           .min = 0.01,
           .max = 1});
-  option("quality_floor", quality_floor,
-         {.help = "Least quality a landmark counts with; 1 turns quality off", .min = 1e-3, .max = 1});
-  option("gate", gate, {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
+  option("particle_gate", gate,
+         {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
   option("unmatched_cost", unmatched_cost,
          {.help = "paper: what a sighting without landmark costs; negative: the gate"});
-  option("feature_tolerance", feature_tolerance,
-         {.help = "Part of a feature's value two sensors may disagree by", .min = 0, .max = 10});
-  option("feature_limit", feature_limit,
-         {.help = "Squared standard deviations one feature may differ", .min = 0});
-  option("bearing_reach", bearing_reach,
-         {.help = "How far, in metres, a sighting without range may be", .min = 0.1, .max = 1e6});
 }
 
 SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,

@@ -50,9 +50,6 @@ struct RobotLog {
   std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people
 };
 
-/// A sighting of something of which the map has no type.
-inline constexpr TypeId kUnknownType = 0xFFFF;
-
 /// Sorts by time (stable), drops events and truth that are not finite, and remarks on that, on gaps in the
 /// odometry above `longest_gap` seconds and on times that occur twice.
 void tidy(RobotLog& log, double longest_gap = 1);

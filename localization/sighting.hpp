@@ -7,6 +7,9 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
+/// Type of a sighting of something of which the map has no type.
+inline constexpr TypeId kNoSuchType = 0xFFFF;
+
 /// A landmark seen by the robot: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
 /// the left; ranges are metres on the ground to the middle of the landmark, absent for a camera that measures
 /// directions only. Features lie in the order of the type.

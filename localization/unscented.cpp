@@ -96,6 +96,11 @@ void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_fr
   }
 }
 
+void UnscentedKalman::replace(const PoseEstimate& estimate) {
+  pose_ = estimate.pose;
+  root_ = square_root(estimate.covariance);
+}
+
 void UnscentedKalman::widen(double factor) {
   const Eigen::Vector3d sd = (root_ * root_.transpose()).diagonal().cwiseSqrt();
   root_ = widest(sd * factor).asDiagonal();

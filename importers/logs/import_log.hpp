@@ -15,7 +15,7 @@ struct LogImport {
 };
 
 /// Reads a log of any format. `types` gives the sightings their type ids; sightings of a type it does not
-/// have get kUnknownType. Throws Error{input} naming file and line, and Error{usage} for an unknown format.
+/// have get kNoSuchType. Throws Error{input} naming file and line, and Error{usage} for an unknown format.
 RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types, const LogImport& how = {});
 
 /// Ours: JSON, one object per line (docs/log_format.md).

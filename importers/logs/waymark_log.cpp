@@ -137,7 +137,7 @@ class Reader {
     const LandmarkType* type = types_.find(name);
     if (!type) {
       ++no_type_[name];
-      s.type = kUnknownType;
+      s.type = kNoSuchType;
       return s;
     }
     s.type = types_.id(name);

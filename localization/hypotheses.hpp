@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "localization/landmark_window.hpp"
+#include "localization/localizer.hpp"
+namespace waymark {
+
+struct HypothesesOptions {
+  std::int64_t most = 40;        ///< Gaussians kept
+  double least = 1e-4;           ///< weight of a Gaussian, relative to the best, to be kept
+  double merge = 0.5;            ///< Gaussians nearer than this (squared Mahalanobis distance) become one
+  double split_yaw = 0.25;       ///< rad: Gaussians wider than this are split before they meet sightings
+  std::int64_t lost_after = 10;  ///< sets in a row that fit nowhere until the search begins
+  double search_growth = 2;      ///< of the standard deviations per further set
+
+  void describe(OptionVisitor& option);
+};
+
+/// An extended Kalman filter for landmarks that do not say who they are: a sum of Gaussians, one for each way
+/// to pair what was seen with the map that is still probable (multiple hypotheses: Reid 1979; for
+/// localization Jensfelt & Kristensen 2001). A doubtful pairing is not decided, it waits for more sightings.
+/// Sightings are called matched when all Gaussians together are certain enough (IdentificationOptions).
+class HypothesesFilter final : public Localizer {
+ public:
+  HypothesesFilter(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
+                   IdentificationOptions identification = {}, HypothesesOptions options = {});
+  void move(const BodyMotion& motion) override;
+  std::vector<Match> see(const SightingSet& seen) override;
+  /// Mean and covariance of the Gaussians that agree with the best one within a metre; of all where these
+  /// have less than half the weight.
+  PoseEstimate estimate() const override;
+  Trust trust() const override { return missed_ >= options_.lost_after ? Trust::lost : Trust::sure; }
+
+  std::size_t hypotheses() const { return parts_.size(); }
+
+ private:
+  struct Part {
+    PoseEstimate at;
+    double weight = 1;        // they sum to 1
+    std::vector<int> choice;  // landmark of each sighting of the set at hand, or -1
+  };
+  void split();
+  void prune();
+  void see_some(const SightingSet& some, const LandmarkGrid& map);
+
+  LandmarkWindow map_;
+  FeatureScales scales_;
+  IdentificationOptions identification_;
+  HypothesesOptions options_;
+  std::vector<Part> parts_;
+  std::int64_t missed_ = 0;
+};
+
+}  // namespace waymark
