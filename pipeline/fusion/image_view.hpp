@@ -32,6 +32,9 @@ struct ImageView {
   std::vector<Ring> footprint;  ///< ground it shows, hidden ground left out; one ring per part, no holes
   double area = 0;              ///< of the footprint, square metres
   double gsd = std::numeric_limits<double>::quiet_NaN();  ///< typical ground sample distance, metres
+  /// East, north: what all images of the map are off by together, square metres; not in the covariances of
+  /// observations that were aligned (see alignment.hpp).
+  Eigen::Matrix2d common = Eigen::Matrix2d::Zero();
 };
 
 /// Model and pose of the camera, or the georeference of the orthophoto, as the map's layer `image` tells it:

@@ -62,6 +62,7 @@ void write(ByteWriter& out, const ImageView& image) {
     for (const auto& corner : ring) layout(out, corner);
   }
   out(image.area), out(image.gsd);
+  layout(out, image.common);
 }
 
 ImageView read_image(ByteReader& in) {
@@ -75,6 +76,7 @@ ImageView read_image(ByteReader& in) {
     for (auto& corner : ring) layout(in, corner);
   }
   in(image.area), in(image.gsd);
+  layout(in, image.common);
   return image;
 }
 
@@ -102,7 +104,7 @@ std::string Codec<std::vector<ImageView>>::encode(const std::vector<ImageView>& 
 
 std::vector<ImageView> Codec<std::vector<ImageView>>::decode(std::string_view bytes) {
   ByteReader in(bytes);
-  std::vector<ImageView> images(in.length(51));
+  std::vector<ImageView> images(in.length(83));
   for (ImageView& image : images) image = read_image(in);
   in.expect_end();
   return images;

@@ -122,6 +122,7 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
                           body ? body->metres : 0};
       counted = count_by_sight(known, detected, thing, terrain, metres_per_unit, rules);
     }
+    if (!detected.empty()) landmark.covariance.topLeftCorner<2, 2>() += known.all[*detected.begin()].common;
     landmark.quality.seen = counted.seen + static_cast<int>(surveys.size());
     landmark.quality.visible = counted.visible + static_cast<int>(surveys.size());
     landmark.quality.of_feature.assign(type.features.size(), std::nullopt);

@@ -32,6 +32,7 @@ struct ValuationRules {
 /// for the paper expects L to be seen again "in other images showing the same region with the same or better
 /// resolution"; an image that detected L counts as covering it. A source without an ImageView (a DEM, a
 /// table) is a survey of its own: it detected L and could have.
+/// What all images are off by together (ImageView::common) is added to the covariances.
 /// `terrain` may be null. Positions in units of a CRS of `metres_per_unit`. `evidence` names landmarks by
 /// uid.
 void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation> evidence,

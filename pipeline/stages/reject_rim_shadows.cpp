@@ -36,7 +36,7 @@ struct RejectRimShadows {
   static constexpr In<DemHandle> dem{"dem"};
   static constexpr Gather<ImageView> image_view{"image_view"};
   static constexpr Gather<std::vector<Observation>> lit{"lit"};
-  static constexpr Out<std::vector<Observation>> observations{"observations"};
+  static constexpr Out<std::vector<Observation>> cleaned{"cleaned"};
 
   static StageSpec spec() {
     return {.name = "reject_rim_shadows",
@@ -44,7 +44,7 @@ struct RejectRimShadows {
             .version = 1,
             .scope = Scope::map,
             .inputs = {dem, image_view, lit},
-            .outputs = {observations}};
+            .outputs = {cleaned}};
   }
 
   static void run(const Options& options, StageContext& unit) {
@@ -63,7 +63,7 @@ struct RejectRimShadows {
                         .min_share = options.min_share,
                         .min_confidence = options.min_confidence});
     count.close(all);
-    unit.write(observations, std::move(all));
+    unit.write(cleaned, std::move(all));
   }
 };
 

@@ -30,7 +30,7 @@ struct ValueLandmarks {
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
-  static constexpr Gather<ImageView> image_view{"image_view"};
+  static constexpr In<std::vector<ImageView>> aligned_views{"aligned_views"};
   static constexpr In<std::vector<Landmark>> merged{"merged"};
   static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
   static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
@@ -42,15 +42,14 @@ struct ValueLandmarks {
             .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
             .version = 1,
             .scope = Scope::map,
-            .inputs = {dem, image_view, merged, merged_evidence},
+            .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};
   }
 
   static void run(const Options& options, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
-    std::vector<ImageView> images;
-    for (const auto& image : unit.read_all(image_view)) images.push_back(*image);
+    const std::vector<ImageView>& images = unit.read(aligned_views);
     std::vector<Landmark> all = unit.read(merged);
     const auto& seen = unit.read(merged_evidence);
     const DemHandle& ground = unit.read(dem);
@@ -64,7 +63,7 @@ struct ValueLandmarks {
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
     unit.write(evidence, seen);
-    unit.write(image_views, std::move(images));
+    unit.write(image_views, images);
   }
 };
 

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/alignment.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "pipeline/fusion/body_radius.hpp"
+#include "pipeline/fusion/clustering.hpp"
+#include "pipeline/fusion/local_ground.hpp"
+#include "pipeline/fusion/place_covariance.hpp"
+
+namespace waymark {
+namespace {
+
+using Index = std::uint32_t;
+using Matrix26 = Eigen::Matrix<double, 2, 6>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+// An observation that can tie its image to others.
+struct Tie {
+  Index observation = 0;
+  int image = 0;  // of the views
+  Matrix26 per_pose = Matrix26::Zero();
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d own;  // covariance without the pose's part
+  Sighting sighting;    // place as told
+};
+
+Eigen::Matrix2d positive(const Eigen::Matrix2d& matrix, double least) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver((matrix + matrix.transpose()) / 2);
+  const Eigen::Vector2d values = solver.eigenvalues().cwiseMax(least * least);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+class Bundle {
+ public:
+  Bundle(std::span<const Observation> observations, std::span<const ImageView> images, const Terrain& terrain,
+         const TypeRegistry& types, const Crs& crs, const AlignmentRules& rules)
+      : images_(images), plane_(crs), metres_per_unit_(crs.metres_per_unit()), rules_(rules) {
+    const auto n = static_cast<Eigen::Index>(images.size());
+    correction_ = Eigen::VectorXd::Zero(6 * n);
+    prior_ = Eigen::MatrixXd::Zero(6 * n, 6 * n);
+    middle_ = Eigen::MatrixXd::Zero(2, 6 * n);
+    std::map<std::string_view, int> index;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const ImageView& image = images[static_cast<std::size_t>(i)];
+      index.emplace(image.name, static_cast<int>(i));
+      Matrix6 prior = Matrix6::Zero();
+      if (image.view) prior = image.view->covariance;
+      // Poses told to be exact stay: a tenth of a microradian and of a millimetre.
+      prior.diagonal() += Eigen::Vector<double, 6>::Constant(1e-14);
+      prior.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
+      prior_.block<6, 6>(6 * i, 6 * i) = prior;
+    }
+    posterior_ = prior_;
+    std::vector<std::optional<BodySize>> sizes;
+    for (const LandmarkType& type : types) sizes.push_back(body_size(type));
+    std::vector<int> count(images.size(), 0);
+    for (Index o = 0; o < observations.size(); ++o) {
+      const auto image = index.find(observations[o].source);
+      if (!observations[o].rejected.empty() || image == index.end()) continue;
+      add(observations[o], o, image->second,
+          body_radius(sizes[observations[o].type], observations[o].features), terrain);
+      middle_.block<2, 6>(0, 6 * image->second) += ties_.back().per_pose;
+      ++count[static_cast<std::size_t>(image->second)];
+    }
+    int with_ties = 0;
+    for (const int c : count) with_ties += c > 0;
+    for (Eigen::Index i = 0; i < n; ++i)
+      middle_.block<2, 6>(0, 6 * i) /=
+          std::max(count[static_cast<std::size_t>(i)], 1) * std::max(with_ties, 1);
+  }
+
+  void solve() {
+    for (int round = 0; round < rules_.rounds; ++round) {
+      const std::vector<IndexPair> pairs = only_candidates();
+      pairs_ = static_cast<int>(pairs.size());
+      if (pairs.empty()) return;
+      for (int k = 0; k < rules_.solutions; ++k) solve(pairs);
+      posterior_ = normal_.llt().solve(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols()));
+    }
+  }
+
+  int pairs() const { return pairs_; }
+  std::span<const Tie> ties() const { return ties_; }
+  Eigen::Vector<double, 6> correction(int image) const { return correction_.segment<6>(6 * image); }
+  Matrix6 covariance(int image) const { return posterior_.block<6, 6>(6 * image, 6 * image); }
+  /// Covariance of the mean shift of all images.
+  Eigen::Matrix2d common() const { return middle_ * posterior_ * middle_.transpose(); }
+  Eigen::Vector2d shift(const Tie& tie) const { return tie.per_pose * correction(tie.image); }
+  /// Of a tie's place against the mean of all images.
+  Eigen::Matrix2d relative(const Tie& tie, const Eigen::MatrixXd& middle_posterior,
+                           const Eigen::Matrix2d& mean) const {
+    const Matrix26 cross = middle_posterior.block<2, 6>(0, 6 * tie.image);
+    const Eigen::Matrix2d both = tie.per_pose * cross.transpose();
+    return tie.per_pose * covariance(tie.image) * tie.per_pose.transpose() - both - both.transpose() + mean;
+  }
+  Eigen::MatrixXd middle_posterior() const { return middle_ * posterior_; }
+
+ private:
+  void add(const Observation& o, Index number, int image, const std::optional<BodyRadius>& body,
+           const Terrain& terrain) {
+    Tie tie;
+    tie.observation = number, tie.image = image;
+    const ImageView& view = images_[static_cast<std::size_t>(image)];
+    const Eigen::Vector3d at(o.position.xyz.x() * metres_per_unit_, o.position.xyz.y() * metres_per_unit_,
+                             o.position.xyz.z());
+    const double cell = std::max(terrain.step_x(), terrain.step_y());
+    if (const auto ground = local_ground(terrain, at.x(), at.y(), std::max(cell, body ? body->metres : 0)))
+      tie.gradient = ground->gradient;
+    if (view.view) {
+      const Eigen::Vector3d along = at - view.view->centre().xyz;
+      const GroundPlane ground{at, tie.gradient};
+      tie.per_pose = pose_jacobian(view, {view.view->centre(), {along.normalized()}}, ground).topRows<2>();
+    }
+    const double least = std::max(0.01, body ? 0.03 * body->metres : 0);
+    const Eigen::Matrix2d told = o.covariance.topLeftCorner<2, 2>();
+    const Eigen::Matrix2d pose =
+        tie.per_pose * prior_.block<6, 6>(6 * image, 6 * image) * tie.per_pose.transpose();
+    tie.own = told.allFinite() ? positive(told - pose, least) : Eigen::Matrix2d::Identity();
+    tie.sighting.at = o.position.xyz.head<2>();
+    tie.sighting.type = o.type;
+    tie.sighting.source = static_cast<Index>(image);
+    if (body)
+      tie.sighting.log_size = std::log(body->metres), tie.sighting.log_size_variance = body->log_variance;
+    ties_.push_back(tie);
+  }
+
+  Eigen::Vector2d place(const Tie& tie) const { return plane_.moved(tie.sighting.at, shift(tie)); }
+
+  // Pairs that have no other candidate in either image.
+  std::vector<IndexPair> only_candidates() const {
+    const Eigen::MatrixXd cross = middle_posterior();
+    const Eigen::Matrix2d mean = common();
+    std::vector<Sighting> seen;
+    for (const Tie& tie : ties_) {
+      seen.push_back(tie.sighting);
+      seen.back().at = place(tie);
+      seen.back().covariance = tie.own + positive(relative(tie, cross, mean), 0);
+    }
+    IdentityRules identity = rules_.identity;
+    identity.overlap = 0;
+    std::vector<IndexPair> pairs = possible_pairs(seen, plane_, identity);
+    std::map<std::pair<Index, Index>, int> candidates;  // of a tie in an image
+    for (const IndexPair& p : pairs)
+      ++candidates[{p.first, seen[p.second].source}], ++candidates[{p.second, seen[p.first].source}];
+    std::erase_if(pairs, [&](const IndexPair& p) {
+      return candidates[{p.first, seen[p.second].source}] > 1 ||
+             candidates[{p.second, seen[p.first].source}] > 1;
+    });
+    return pairs;
+  }
+
+  void solve(const std::vector<IndexPair>& pairs) {
+    std::vector<int> degree(ties_.size(), 0);
+    for (const IndexPair& p : pairs) ++degree[p.first], ++degree[p.second];
+    normal_ = Eigen::MatrixXd::Zero(prior_.rows(), prior_.cols());
+    for (Eigen::Index i = 0; i < prior_.rows(); i += 6)
+      normal_.block<6, 6>(i, i) = prior_.block<6, 6>(i, i).inverse();
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(prior_.rows());
+    for (const IndexPair& p : pairs) {
+      const Tie &a = ties_[p.first], &b = ties_[p.second];
+      const Eigen::Vector2d apart = plane_.offset(b.sighting.at, a.sighting.at);  // a - b as told
+      const Eigen::Vector2d left = apart + shift(a) - shift(b);
+      const Eigen::Matrix2d information = (a.own + b.own).inverse();
+      const double cauchy = 1 / (1 + left.dot(information * left) / 4);
+      // A thing seen n times has n (n - 1) / 2 pairs but n - 1 independent ones.
+      const double weight = cauchy * 2 / (1 + std::max(degree[p.first], degree[p.second]));
+      const Eigen::Index i = 6 * a.image, j = 6 * b.image;
+      const Eigen::Matrix<double, 6, 2> wa = weight * a.per_pose.transpose() * information;
+      const Eigen::Matrix<double, 6, 2> wb = weight * b.per_pose.transpose() * information;
+      normal_.block<6, 6>(i, i) += wa * a.per_pose;
+      normal_.block<6, 6>(j, j) += wb * b.per_pose;
+      normal_.block<6, 6>(i, j) -= wa * b.per_pose;
+      normal_.block<6, 6>(j, i) -= wb * a.per_pose;
+      right.segment<6>(i) -= wa * apart;
+      right.segment<6>(j) += wb * apart;
+    }
+    correction_ = normal_.llt().solve(right);
+  }
+
+  std::span<const ImageView> images_;
+  MapPlane plane_;
+  double metres_per_unit_;
+  const AlignmentRules& rules_;
+  std::vector<Tie> ties_;
+  Eigen::VectorXd correction_;
+  Eigen::MatrixXd prior_, posterior_, normal_;
+  Eigen::MatrixXd middle_;  // 2 x 6 n: mean shift of the ties of all images per correction
+  int pairs_ = 0;
+};
+
+void correct(ImageView& image, const Eigen::Vector<double, 6>& by, const Matrix6& covariance) {
+  if (!image.view) return;
+  auto& pose = image.view->grid_from_camera.transform;
+  const Eigen::Vector3d turn = by.head<3>();
+  if (turn.norm() > 0) pose.linear() = pose.linear() * Eigen::AngleAxisd(turn.norm(), turn.normalized());
+  pose.translation() += by.tail<3>();
+  image.view->covariance = covariance;
+}
+
+}  // namespace
+
+Alignment align_images(std::vector<Observation> observations, std::vector<ImageView> images,
+                       const Terrain& terrain, const TypeRegistry& types, const Crs& crs,
+                       const AlignmentRules& rules) {
+  Alignment aligned{std::move(observations), std::move(images), {}, 0, false};
+  aligned.moved.assign(aligned.images.size(), 0);
+  const bool movable = std::any_of(aligned.images.begin(), aligned.images.end(), [](const ImageView& image) {
+    return image.view && image.view->covariance.trace() > 0;
+  });
+  aligned.too_many = static_cast<int>(aligned.images.size()) > rules.most_images;
+  if (!movable || aligned.too_many) return aligned;
+  const MapPlane plane(crs);
+  Bundle bundle(aligned.observations, aligned.images, terrain, types, crs, rules);
+  bundle.solve();
+  aligned.pairs = bundle.pairs();
+  const Eigen::Matrix2d common = positive(bundle.common(), 0);
+  const Eigen::MatrixXd cross = bundle.middle_posterior();
+  std::vector<Eigen::Vector2d> mean(aligned.images.size(), Eigen::Vector2d::Zero());
+  std::vector<int> count(aligned.images.size(), 0);
+  for (const Tie& tie : bundle.ties()) {
+    Observation& o = aligned.observations[tie.observation];
+    const Eigen::Vector2d shift = bundle.shift(tie);
+    mean[static_cast<std::size_t>(tie.image)] += shift, ++count[static_cast<std::size_t>(tie.image)];
+    o.position.xyz.head<2>() = plane.moved(o.position.xyz.head<2>(), shift);
+    o.position.xyz.z() += tie.gradient.dot(shift);
+    const Eigen::Matrix2d before = o.covariance.topLeftCorner<2, 2>();
+    const Eigen::Matrix2d now = tie.own + positive(bundle.relative(tie, cross, common), 0);
+    o.covariance.topLeftCorner<2, 2>() = now;
+    // Keeps the correlation with height.
+    const double scale = before.trace() > 0 ? std::sqrt(now.trace() / before.trace()) : 1;
+    o.covariance.block<2, 1>(0, 2) *= std::min(scale, 1.0);
+    o.covariance.block<1, 2>(2, 0) *= std::min(scale, 1.0);
+  }
+  for (std::size_t i = 0; i < aligned.images.size(); ++i) {
+    if (count[i]) aligned.moved[i] = (mean[i] / count[i]).norm();
+    correct(aligned.images[i], bundle.correction(static_cast<int>(i)),
+            bundle.covariance(static_cast<int>(i)));
+    aligned.images[i].common = common;
+  }
+  return aligned;
+}
+
+}  // namespace waymark

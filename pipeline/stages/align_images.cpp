@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/alignment.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/image_view_codec.hpp"
+#include "pipeline/fusion/terrain_of.hpp"
+
+namespace waymark {
+namespace {
+
+struct AlignImages {
+  struct Options {
+    bool enabled = true;
+    std::int64_t most_images = AlignmentRules{}.most_images;
+    void describe(OptionVisitor& option) {
+      option("enabled", enabled, {.help = "false: poses are left as they are told"});
+      option("most_images", most_images,
+             {.help = "More images are left as they are: the time grows with the third power",
+              .min = 2,
+              .max = 2000});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr Gather<ImageView> image_view{"image_view"};
+  static constexpr In<std::vector<Observation>> cleaned{"cleaned"};
+  static constexpr Out<std::vector<Observation>> observations{"observations"};
+  static constexpr Out<std::vector<ImageView>> aligned_views{"aligned_views"};
+
+  static StageSpec spec() {
+    return {.name = "align_images",
+            .summary = "Takes out what the poses of images are off by, from landmarks they share",
+            .version = 1,
+            .scope = Scope::map,
+            .inputs = {dem, image_view, cleaned},
+            .outputs = {observations, aligned_views}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<ImageView> images;
+    for (const auto& image : unit.read_all(image_view)) images.push_back(*image);
+    const DemHandle& ground = unit.read(dem);
+    Alignment aligned{unit.read(cleaned), std::move(images), {}, 0, false};
+    if (options.enabled) {
+      AlignmentRules rules;
+      rules.most_images = static_cast<int>(options.most_images);
+      aligned = align_images(std::move(aligned.observations), std::move(aligned.images), terrain_of(ground),
+                             types, ground->geometry().where.crs, rules);
+    }
+    if (aligned.too_many)
+      unit.warn(fmt::format("{} images are too many to align; most_images allows {}", aligned.images.size(),
+                            options.most_images));
+    unit.write(observations, std::move(aligned.observations));
+    unit.write(aligned_views, std::move(aligned.images));
+  }
+};
+
+}  // namespace
+
+void register_stage_align_images(Registry& registry);
+void register_stage_align_images(Registry& registry) {
+  registry.add<AlignImages>();
+}
+
+}  // namespace waymark
