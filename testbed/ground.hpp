@@ -5,7 +5,7 @@ namespace waymark {
 
 /// Relief without landmarks: fractal noise (each octave an octave shorter and 2^-hurst lower) and mountains.
 struct Relief {
-  double rms = 6;        ///< metres, over `longest`
+  double rms = 5;        ///< metres, over `longest`
   double longest = 600;  ///< metres, longest wavelength
   double hurst = 0.85;   ///< 0.5 rough, 1 smooth
   double roughness = 1;  ///< of the relief finer than a cell, seen only as shading; 1: continues the fractal
@@ -48,10 +48,10 @@ struct DuneLaw {
 };
 
 struct AlbedoLaw {
-  double mean = 0.25;       ///< normal albedo
-  double variation = 0.12;  ///< standard deviation of log albedo, over `longest`
-  double longest = 300;     ///< metres
-  double rays = 0.15;       ///< how much brighter the ejecta of the freshest craters are
+  double mean = 0.25;      ///< normal albedo
+  double variation = 0.1;  ///< standard deviation of log albedo, over `longest`
+  double longest = 300;    ///< metres
+  double rays = 0.15;      ///< how much brighter the ejecta of the freshest craters are
 };
 
 /// A made piece of planet. Metres in a grid frame whose origin is the middle of the site.
