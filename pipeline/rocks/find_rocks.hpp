@@ -18,10 +18,10 @@ struct RockSearch {
   RockMethod method = RockMethod::shadow;
   TypeId type = 0;  ///< id of the landmark type `rock`, copied into the detections
   /// Towards the sun in the image, from x (right) towards y (down). Unknown: estimated from the shadows.
-  std::optional<Radians> sun_angle;
+  std::optional<Radians> sun_angle = {};
   /// Above the ground. Unknown: 40 degrees are assumed; outlines and `shadow_reach` depend on it weakly, and
   /// their standard deviations allow for that. Heights need the true one.
-  std::optional<Radians> sun_elevation;
+  std::optional<Radians> sun_elevation = {};
   double blur = 0;              ///< standard deviation of the point spread, pixels; 0: unknown (0.6)
   double saturated = 0;         ///< pixels at or above are blown out; 0: unknown
   double min_diameter = 1.5;    ///< pixels; smaller rocks are left out

@@ -8,6 +8,7 @@
 
 #include "core/random.hpp"
 #include "pipeline/rocks/find_shadow_rocks.hpp"
+#include "tests/rocks/made_view.hpp"
 #include "tests/rocks/rock_score.hpp"
 namespace waymark::testing {
 namespace {
@@ -80,14 +81,21 @@ RockScene random_scene(int number) {
   return scene;
 }
 
-std::vector<ConfidenceSample> confidence_samples(int number) {
-  const RockScene scene = random_scene(number);
-  const RockImage image = render(scene);
+std::vector<ConfidenceSample> confidence_samples(int number, bool made) {
+  MadeView view;
+  if (made) {
+    view = made_view(number);
+  } else {
+    const RockScene scene = random_scene(number);
+    view = {render(scene), to_radians(scene.sun_angle).value,
+            to_radians(Degrees{90 - scene.incidence.value})};
+  }
+  const RockImage& image = view.image;
   Random random(static_cast<std::uint64_t>(number), "what the detector is told");
   RockSearch search;
-  const double sun = to_radians(scene.sun_angle).value;
+  const double sun = view.sun_angle;
   const double told = sun + (random.chance(0.5) ? random.normal(0, 0.06) : 0);
-  if (random.chance(0.6)) search.sun_elevation = to_radians(Degrees{90 - scene.incidence.value});
+  if (random.chance(0.6)) search.sun_elevation = view.elevation;
   const auto judged = judge_scales(image.pixels, search, Radians{told});
   std::vector<ConfidenceSample> samples;
   std::vector<Detection> spots;
@@ -118,8 +126,8 @@ std::vector<ConfidenceSample> confidence_samples(int number) {
     const bool rock = alike && (match.rock_of[i] >= 0 || judged[i].scale > 1);
     const double margin = 3;
     if (!rock && (spots[i].outline.x < margin || spots[i].outline.y < margin ||
-                  spots[i].outline.x > static_cast<double>(scene.columns - 1) - margin ||
-                  spots[i].outline.y > static_cast<double>(scene.rows - 1) - margin))
+                  spots[i].outline.x > static_cast<double>(image.pixels.columns() - 1) - margin ||
+                  spots[i].outline.y > static_cast<double>(image.pixels.rows() - 1) - margin))
       continue;  // its rock may stand outside
     samples.push_back({number, rock, diameter, judged[i].evidence});
   }

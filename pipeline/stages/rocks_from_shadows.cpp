@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/image_source.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/craters/image_light.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/rocks/find_rocks.hpp"
+
+namespace waymark {
+namespace {
+
+struct RocksFromShadows {
+  struct Options {
+    std::string method = "shadow";
+    double min_diameter = RockSearch{}.min_diameter;
+    double max_diameter = RockSearch{}.max_diameter;
+    double min_confidence = RockSearch{}.min_confidence;
+    double blur = 0;
+    void describe(OptionVisitor& option) {
+      option("method", method,
+             {.help = "How shadows are told from ground: shadow (against the ground around each), "
+                      "classic (one threshold, as published)",
+              .choices = {"shadow", "classic"}});
+      option("min_diameter", min_diameter,
+             {.help = "Smallest rock kept, in pixels of the image", .min = 0.5, .max = 1e4});
+      option("max_diameter", max_diameter,
+             {.help = "Largest rock kept, in pixels of the image", .min = 1, .max = 1e5});
+      option("min_confidence", min_confidence,
+             {.help = "Rocks less probable than this are left out", .min = 0, .max = 1});
+      option("blur", blur,
+             {.help = "Standard deviation of the camera's point spread, in pixels; 0: unknown, 0.6 is taken",
+              .min = 0,
+              .max = 5});
+    }
+  };
+  static constexpr In<ImageSet> image_set{"image_set"};
+  static constexpr Out<std::vector<Detection>> detections{"detections"};
+
+  static StageSpec spec() {
+    return {.name = "rocks_from_shadows",
+            .summary = "Finds rocks in an image by their shadows, with widths, heights and confidence",
+            .version = 1,
+            .scope = Scope::image,
+            .inputs = {image_set},
+            .outputs = {detections}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
+    TypeRegistry types;
+    register_landmark_types(types);
+    RockSearch search{.method = options.method == "classic" ? RockMethod::classic : RockMethod::shadow,
+                      .type = types.id("rock"),
+                      .sun_angle = image_light(image.info()),
+                      .blur = options.blur,
+                      .saturated = image.info().saturated,
+                      .min_diameter = options.min_diameter,
+                      .max_diameter = options.max_diameter,
+                      .min_confidence = options.min_confidence};
+    if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
+    const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
+    auto found = find_rocks(pixels, search);
+    unit.count_out(static_cast<std::int64_t>(found.size()));
+    unit.write(detections, std::move(found));
+  }
+};
+
+}  // namespace
+
+void register_stage_rocks_from_shadows(Registry& registry);
+void register_stage_rocks_from_shadows(Registry& registry) {
+  registry.add<RocksFromShadows>();
+}
+
+}  // namespace waymark
