@@ -42,15 +42,13 @@ struct Node {
   double from = 0, to = 0;
 };
 
-// When the ray crosses the line `at`; and whether it is beyond it (towards greater values) at time t.
+// When a ray crosses lines of one direction, and on which side of one it is.
 struct Crossing {
-  double at, start, speed, t;
-  Crossing(double line, double begin, double velocity)
-      : at(line), start(begin), speed(velocity), t(velocity != 0 ? (line - begin) / velocity : kInfinity) {}
-  bool beyond(double now) const {
-    if (speed > 0) return now >= t;
-    if (speed < 0) return now < t;
-    return start >= at;
+  double start, speed, per_speed;
+  Crossing(double begin, double velocity) : start(begin), speed(velocity), per_speed(1 / velocity) {}
+  double time(double line) const { return speed != 0 ? (line - start) * per_speed : kInfinity; }
+  bool beyond(double line, double crossed, double now) const {  // towards greater values
+    return speed > 0 ? now >= crossed : speed < 0 ? now < crossed : start >= line;
   }
 };
 
@@ -158,6 +156,7 @@ PyramidHit Terrain::Pyramid::first_hit(const GridRay& ray, const RayRange& range
   const std::uint32_t r = cell(ray.v + range.from * ray.dv, rows), r_end = cell(ray.v + end * ray.dv, rows);
   const int top = std::bit_width((c ^ c_end) | (r ^ r_end));
   push(top, static_cast<std::int32_t>(c >> top), static_cast<std::int32_t>(r >> top), range.from, end);
+  const Crossing u(ray.u, ray.du), v(ray.v, ray.dv);
   while (size > 0) {
     const Node node = stack[--size];
     if (node.level == 0) {
@@ -170,19 +169,21 @@ PyramidHit Terrain::Pyramid::first_hit(const GridRay& ray, const RayRange& range
         return {RayEnd::ground, *t};
       continue;
     }
-    const double half = double(std::int64_t{1} << (node.level - 1));
-    const Crossing u((2 * node.column + 1) * half, ray.u, ray.du);
-    const Crossing v((2 * node.row + 1) * half, ray.v, ray.dv);
-    const double cut_u = u.t > node.from && u.t < node.to ? u.t : node.to;
-    const double cut_v = v.t > node.from && v.t < node.to ? v.t : node.to;
+    const int below = node.level - 1;
+    const std::int32_t column = 2 * node.column, row = 2 * node.row;
+    const double half = double(std::int64_t{1} << below);
+    const double line_u = (column + 1) * half, line_v = (row + 1) * half;
+    const double t_u = u.time(line_u), t_v = v.time(line_v);
+    const std::int32_t right = u.beyond(line_u, t_u, node.from), lower = v.beyond(line_v, t_v, node.from);
+    const double cut_u = t_u > node.from && t_u < node.to ? t_u : node.to;
+    const double cut_v = t_v > node.from && t_v < node.to ? t_v : node.to;
     const double first = std::min(cut_u, cut_v), second = std::max(cut_u, cut_v);
-    const auto child = [&](double from, double to, bool after_u, bool after_v) {
-      const bool right = u.beyond(node.from) != after_u, below = v.beyond(node.from) != after_v;
-      push(node.level - 1, 2 * node.column + right, 2 * node.row + below, from, to);
-    };
-    if (second < node.to) child(second, node.to, true, true);  // the last piece lies deepest in the stack
-    if (first < node.to) child(first, second, cut_u <= cut_v, cut_v <= cut_u);
-    child(node.from, first, false, false);
+    // The last piece lies deepest in the stack.
+    if (second < node.to) push(below, column + 1 - right, row + 1 - lower, second, node.to);
+    if (first < node.to)
+      push(below, column + (cut_u <= cut_v ? 1 - right : right), row + (cut_v <= cut_u ? 1 - lower : lower),
+           first, second);
+    push(below, column + right, row + lower, node.from, first);
   }
   return {};
 }
