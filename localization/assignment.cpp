@@ -9,19 +9,19 @@
 
 namespace waymark {
 
-Assignment assign_greedily(const std::vector<std::vector<Choice>>& rows) {
+ChosenColumns assign_greedily(const std::vector<std::vector<Choice>>& rows) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> all;
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t c = 0; c < rows[r].size(); ++c) all.emplace_back(rows[r][c].cost, r, c);
   std::ranges::sort(all);
-  Assignment chosen(rows.size());
+  ChosenColumns chosen(rows.size());
   std::set<int> taken;
   for (const auto& [cost, r, c] : all)
     if (!chosen[r] && taken.insert(rows[r][c].column).second) chosen[r] = c;
   return chosen;
 }
 
-Assignment assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost) {
+ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost) {
   constexpr double kNever = 1e15;
   const std::size_t n = rows.size();
   std::map<int, std::size_t> columns;
@@ -63,7 +63,7 @@ Assignment assign_cheapest(const std::vector<std::vector<Choice>>& rows, double 
     for (; j0; j0 = way[j0]) owner[j0] = owner[way[j0]];
   }
 
-  Assignment chosen(n);
+  ChosenColumns chosen(n);
   for (std::size_t r = 0; r < n; ++r)
     for (std::size_t c = 0; c < rows[r].size(); ++c)
       if (owner[columns.at(rows[r][c].column) + 1] == r + 1) chosen[r] = c;

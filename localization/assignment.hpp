@@ -11,13 +11,13 @@ struct Choice {
 };
 
 /// For each row one of its choices, or none, no column twice. `none_cost`: of a row without choice.
-using Assignment = std::vector<std::optional<std::size_t>>;  ///< index into the row's choices
+using ChosenColumns = std::vector<std::optional<std::size_t>>;  ///< index into the row's choices
 
 /// Cheapest entries first.
-Assignment assign_greedily(const std::vector<std::vector<Choice>>& rows);
+ChosenColumns assign_greedily(const std::vector<std::vector<Choice>>& rows);
 
 /// The least total cost (Kuhn 1955; shortest augmenting paths, Jonker & Volgenant 1987), each row having a
 /// dummy column of its own at `none_cost`. O(rows^2 (rows + columns)).
-Assignment assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost);
+ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost);
 
 }  // namespace waymark

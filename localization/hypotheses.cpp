@@ -78,9 +78,9 @@ void HypothesesFilter::see_some(const SightingSet& some, const LandmarkGrid& map
   std::vector<double> logs;
   for (const Part& part : parts_) {
     std::vector<Candidates> sets;
-    for (const Sighting& s : some.sightings) {
+    for (const SeenLandmark& s : some.sightings) {
       sets.push_back(candidates(s, some.robot_from_sensor, part.at, map, scales_, identification_));
-      std::erase_if(sets.back().pairings, [&](const Pairing& p) {
+      std::erase_if(sets.back().pairings, [&](const CandidatePair& p) {
         return std::ranges::find(part.choice, static_cast<int>(p.landmark)) != part.choice.end();
       });
     }
@@ -138,7 +138,7 @@ void HypothesesFilter::prune() {
 std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
   const PoseEstimate before = estimate();
   double farthest = 0;
-  for (const Sighting& s : seen.sightings)
+  for (const SeenLandmark& s : seen.sightings)
     if (s.sound())
       farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : identification_.bearing_reach);
   const double width = std::sqrt(before.covariance(0, 0) + before.covariance(1, 1));
@@ -154,7 +154,7 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
     some.sightings.clear();
   };
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    const Sighting& s = seen.sightings[i];
+    const SeenLandmark& s = seen.sightings[i];
     const bool named = identification_.use_identities && s.identity;
     matches[i].verdict = !s.sound()                                                   ? Verdict::unsound
                          : s.type == kNoSuchType || (named && !map.find(*s.identity)) ? Verdict::unknown_type

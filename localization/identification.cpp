@@ -29,8 +29,9 @@ double largest_sd(const Eigen::Matrix2d& c) {
 }
 
 /// Where the landmark of a sighting may be: landmarks outside cannot pass the gate.
-std::vector<std::uint32_t> within_reach(const Sighting& seen, const Pose2& sensor, const PoseEstimate& robot,
-                                        const LandmarkGrid& map, const IdentificationOptions& options) {
+std::vector<std::uint32_t> within_reach(const SeenLandmark& seen, const Pose2& sensor,
+                                        const PoseEstimate& robot, const LandmarkGrid& map,
+                                        const IdentificationOptions& options) {
   std::vector<std::uint32_t> found;
   const double sigmas = std::sqrt(gate_of(options, 2 + static_cast<int>(kMaxFeatures)));
   const double place = largest_sd(robot.covariance.topLeftCorner<2, 2>());
@@ -62,7 +63,7 @@ std::vector<std::uint32_t> within_reach(const Sighting& seen, const Pose2& senso
   return found;
 }
 
-double paper_distance(const Sighting& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
+double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
   const double range = seen.range ? v[0] / seen.range_sd : 0, bearing = v[1] / seen.bearing_sd;
   return range * range + bearing * bearing + features.squares;
 }
@@ -75,11 +76,11 @@ Match from(const Candidates& c, std::optional<std::size_t> chosen, Verdict other
 
 std::vector<Match> one_by_one(const std::vector<Candidates>& all, const IdentificationOptions& options) {
   const bool exclusive = options.association != "nearest";
-  Assignment chosen(all.size());
+  ChosenColumns chosen(all.size());
   std::vector<std::vector<Choice>> rows;
   for (std::size_t i = 0; i < all.size(); ++i) {
     auto& row = rows.emplace_back();
-    for (const Pairing& p : all[i].pairings) row.push_back({static_cast<int>(p.landmark), p.score});
+    for (const CandidatePair& p : all[i].pairings) row.push_back({static_cast<int>(p.landmark), p.score});
     if (!row.empty()) chosen[i] = 0;  // best first
   }
   if (options.association == "greedy") chosen = assign_greedily(rows);
@@ -88,7 +89,7 @@ std::vector<Match> one_by_one(const std::vector<Candidates>& all, const Identifi
   for (std::size_t i = 0; i < all.size(); ++i) {
     matches.push_back(from(all[i], chosen[i], Verdict::taken));
     if (matches[i].verdict != Verdict::matched || !(options.ambiguity > 0)) continue;
-    for (const Pairing& p : all[i].pairings)
+    for (const CandidatePair& p : all[i].pairings)
       if (p.landmark != matches[i].pairing.landmark && p.score < matches[i].pairing.score + options.ambiguity)
         matches[i].verdict = Verdict::ambiguous;
   }
@@ -177,7 +178,7 @@ std::string_view wording(Verdict verdict) {
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
-Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
+Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
                       const LandmarkGrid& map, const FeatureScales& scales,
                       const IdentificationOptions& options) {
   Candidates result;
@@ -208,7 +209,7 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
     }
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
     const double trust = options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
-    Pairing p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance, trust)};
+    CandidatePair p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance, trust)};
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;
@@ -223,14 +224,14 @@ Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, cons
     else
       result.pairings.push_back(p);
   }
-  std::ranges::stable_sort(result.pairings, {}, &Pairing::score);
+  std::ranges::stable_sort(result.pairings, {}, &CandidatePair::score);
   return result;
 }
 
 Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
                         const FeatureScales& scales, const IdentificationOptions& options) {
   std::vector<Candidates> all;
-  for (const Sighting& sighting : seen.sightings)
+  for (const SeenLandmark& sighting : seen.sightings)
     all.push_back(candidates(sighting, seen.robot_from_sensor, robot, map, scales, options));
   if (options.association == "joint") {
     if (const auto hypotheses = joint_hypotheses(all, seen, map, robot.covariance, options))

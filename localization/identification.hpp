@@ -20,7 +20,7 @@ struct IdentificationOptions {
   /// `jcbb` (Neira & Tardos 2001) or `joint`: probabilities of all joint hypotheses, doubtful ones rejected.
   std::string association = "joint";
   double gate = 0.99;               ///< probability that a right pairing passes
-  double certainty = 0.9;           ///< `joint`: least probability of a pairing that is kept
+  double certainty = 0.6;           ///< `joint`: least probability of a pairing that is kept
   double ambiguity = 0;             ///< others: least lead in squared distance over the next landmark
   double feature_tolerance = 0.15;  ///< relative standard deviation two sensors may disagree by
   double feature_limit = 9;         ///< squared standard deviations a single feature may differ
@@ -50,7 +50,7 @@ inline constexpr int kVerdicts = 8;
 std::string_view wording(Verdict verdict);
 
 /// A sighting and a landmark that could be it.
-struct Pairing {
+struct CandidatePair {
   std::uint32_t landmark = 0;  ///< index into the grid
   double squares = 0;          ///< squared distance; chi-square under `mahalanobis`, eq. 11 under `paper`
   double score = 0;            ///< what is minimised: squares + ln|S| under `mahalanobis`
@@ -62,13 +62,13 @@ struct Pairing {
 /// All pairings of one sighting inside the gate, best first.
 struct Candidates {
   Verdict verdict = Verdict::matched;  ///< why there is none
-  std::vector<Pairing> pairings;
+  std::vector<CandidatePair> pairings;
 };
 
 /// ident(d) of eq. 9: for each sighting its landmark, or why it has none.
 struct Match {
   Verdict verdict = Verdict::nothing_near;
-  Pairing pairing;         ///< of no meaning unless matched
+  CandidatePair pairing;   ///< of no meaning unless matched
   LandmarkKey key = 0;     ///< of the landmark; 0 unless matched
   double probability = 1;  ///< of the pairing, given that the map is right; only `joint` computes it
 };
@@ -83,7 +83,7 @@ struct Identification {
 
 /// Candidates by type, place and features (section 4.1, first step). Landmarks within the gate of the pose's
 /// and the sensor's uncertainty; for sightings without range, of the wedge of figure 2.
-Candidates candidates(const Sighting& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
+Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
                       const LandmarkGrid& map, const FeatureScales& scales,
                       const IdentificationOptions& options);
 

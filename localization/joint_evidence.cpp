@@ -14,7 +14,7 @@ JointEvidence& JointEvidence::operator+=(const JointEvidence& more) {
   return *this;
 }
 
-JointEvidence evidence_of(const Sighting& seen, const ExpectedSighting& expected,
+JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expected,
                           const Eigen::Matrix2d& landmark_covariance, double trust) {
   const Eigen::Vector2d v = innovation(seen, expected.value);
   const Eigen::Matrix2d r =

@@ -19,7 +19,7 @@ struct JointEvidence {
 };
 
 /// Of one pairing. R is the sensor's noise plus the landmark's covariance, divided by `trust` in (0, 1].
-JointEvidence evidence_of(const Sighting& seen, const ExpectedSighting& expected,
+JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expected,
                           const Eigen::Matrix2d& landmark_covariance, double trust = 1);
 
 /// Of all innovations together, correlated by the uncertain pose (covariance p, may be singular).

@@ -88,7 +88,7 @@ class HypothesisList {
       found.push_back({choice, so_far, log_weight + (so_far.rows ? density : 0)});
       return;
     }
-    const Sighting& seen = seen_.sightings[depth];
+    const SeenLandmark& seen = seen_.sightings[depth];
     const auto& pairings = sets_[depth].pairings;
     for (std::size_t i = 0; i < pairings.size(); ++i) {
       if (taken(depth, pairings[i].landmark, choice)) continue;
@@ -105,7 +105,9 @@ class HypothesisList {
   }
 
   // What features cost a right pairing on average, so that unpaired sightings are judged by the same measure.
-  static double typical_features(const std::vector<Pairing>& pairings) { return pairings[0].feature_count; }
+  static double typical_features(const std::vector<CandidatePair>& pairings) {
+    return pairings[0].feature_count;
+  }
 
   bool taken(std::size_t depth, std::uint32_t landmark, const JointChoice& choice) const {
     for (std::size_t d = 0; d < depth; ++d)

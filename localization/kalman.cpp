@@ -13,7 +13,7 @@ constexpr double kCertain = 0.999;  // pairings above need no mixture
 // Landmarks further than this from where the robot believes to be are not asked for.
 double reach_of(const SightingSet& seen, const PoseEstimate& robot, const IdentificationOptions& options) {
   double farthest = 0;
-  for (const Sighting& s : seen.sightings)
+  for (const SeenLandmark& s : seen.sightings)
     if (s.sound()) farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options.bearing_reach);
   const double spread = std::sqrt(std::max(robot.covariance(0, 0), robot.covariance(1, 1)));
   return farthest + 6 * spread + std::hypot(seen.robot_from_sensor.x, seen.robot_from_sensor.y);
@@ -89,7 +89,7 @@ void ExtendedKalman::widen(double factor) {
   estimate_.covariance = wide.cwiseAbs2().asDiagonal();
 }
 
-PoseEstimate kalman_updated(const PoseEstimate& estimate, const Sighting& seen,
+PoseEstimate kalman_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
                             const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
   const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, landmark.at);
   Eigen::Matrix<double, 2, 3> h = e.by_pose;

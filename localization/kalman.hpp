@@ -23,7 +23,7 @@ class KalmanLocalizer : public Localizer {
 
  protected:
   struct Use {
-    const Sighting* seen = nullptr;
+    const SeenLandmark* seen = nullptr;
     const MapLandmark* landmark = nullptr;
     double trust = 1;
   };
@@ -59,7 +59,7 @@ class ExtendedKalman final : public KalmanLocalizer {
 Eigen::Vector3d widest(const Eigen::Vector3d& sd);
 
 /// One update of an EKF by one sighting, Joseph form. `trust` as in KalmanOptions.
-PoseEstimate kalman_updated(const PoseEstimate& estimate, const Sighting& seen,
+PoseEstimate kalman_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
                             const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust = 1);
 
 /// Unscented filter with the symmetric points of Arasaratnam & Haykin (2009, "cubature"), which have positive

@@ -20,11 +20,11 @@ ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, cons
   return e;
 }
 
-Eigen::Vector2d innovation(const Sighting& seen, const Eigen::Vector2d& expected) {
+Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expected) {
   return {seen.range ? *seen.range - expected[0] : 0, wrapped(seen.bearing - expected[1])};
 }
 
-Eigen::Matrix2d sensor_noise(const Sighting& seen) {
+Eigen::Matrix2d sensor_noise(const SeenLandmark& seen) {
   return Eigen::Vector2d(seen.range ? seen.range_sd * seen.range_sd : 1, seen.bearing_sd * seen.bearing_sd)
       .asDiagonal();
 }

@@ -16,9 +16,9 @@ struct ExpectedSighting {
 ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, const Eigen::Vector2d& landmark);
 
 /// Measured minus expected, the bearing the short way round. Row 0 is 0 for a sighting without range.
-Eigen::Vector2d innovation(const Sighting& seen, const Eigen::Vector2d& expected);
+Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expected);
 
 /// Sensor noise. A missing range has variance 1 and must be left out by who uses it.
-Eigen::Matrix2d sensor_noise(const Sighting& seen);
+Eigen::Matrix2d sensor_noise(const SeenLandmark& seen);
 
 }  // namespace waymark

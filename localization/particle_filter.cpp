@@ -111,7 +111,7 @@ void ParticleFilter::spread() {
 
 std::optional<Pose2> ParticleFilter::pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                                         Random& random) const {
-  const Sighting& s = seen.sightings[random.below(seen.sightings.size())];
+  const SeenLandmark& s = seen.sightings[random.below(seen.sightings.size())];
   if (!s.sound() || map.empty()) return {};
   const auto known = identification_.use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
   const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.below(map.size()));
@@ -178,7 +178,7 @@ void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map
 std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   spread();
   double farthest = 0;
-  for (const Sighting& s : seen.sightings)
+  for (const SeenLandmark& s : seen.sightings)
     if (s.sound())
       farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
   const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));

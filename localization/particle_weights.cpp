@@ -44,7 +44,7 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
       robot_from_sensor_(seen.robot_from_sensor),
       paper_(options.weights == "paper") {
   const double gate = chi_square_quantile(options.gate, 2), sigmas = std::sqrt(gate);
-  for (const Sighting& s : seen.sightings) {
+  for (const SeenLandmark& s : seen.sightings) {
     if (!s.sound()) continue;
     Prepared p{.seen = s,
                .cosine = std::cos(s.bearing),

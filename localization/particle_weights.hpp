@@ -41,7 +41,7 @@ class SightingScore {
 
  private:
   struct Prepared {
-    Sighting seen;
+    SeenLandmark seen;
     double cosine, sine;  ///< of the bearing
     double range_variance, bearing_variance;
     double radius;       ///< m about the expected place; about the sensor where there is no range

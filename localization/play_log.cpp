@@ -54,7 +54,7 @@ class Player {
   bool take(const LaserScan& scan, TrackRow& row) { return detect_ && take(detect_(scan), row); }
 
   bool take(SightingSet seen, TrackRow& row) {
-    for (Sighting& s : seen.sightings) {
+    for (SeenLandmark& s : seen.sightings) {
       s.bearing_sd *= options_.sensor_noise;
       s.range_sd *= options_.sensor_noise;
     }

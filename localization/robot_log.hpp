@@ -27,11 +27,11 @@ struct GnssFix {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double sd = 1;  ///< m, of each coordinate
 };
-using Reading = std::variant<TwistReading, CarReading, StepReading, SightingSet, LaserScan, GnssFix>;
+using LogReading = std::variant<TwistReading, CarReading, StepReading, SightingSet, LaserScan, GnssFix>;
 
 struct LogEvent {
   double t = 0;  ///< s
-  Reading what;
+  LogReading what;
 };
 
 struct StampedPose {
@@ -47,6 +47,7 @@ struct RobotLog {
   Ackermann car;
   /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
   bool in_crs = false;
+  std::string crs;                   ///< of positions `in_crs`, if the log says; any text Crs understands
   std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people
 };
 

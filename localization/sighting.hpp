@@ -13,7 +13,7 @@ inline constexpr TypeId kNoSuchType = 0xFFFF;
 /// A landmark seen by the robot: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
 /// the left; ranges are metres on the ground to the middle of the landmark, absent for a camera that measures
 /// directions only. Features lie in the order of the type.
-struct Sighting {
+struct SeenLandmark {
   std::optional<TypeId> type;  ///< absent: could be of any type; features are not compared then
   double bearing = 0, bearing_sd = 0.02;
   std::optional<double> range;
@@ -29,10 +29,10 @@ struct Sighting {
 /// What a sensor saw at one time. Sightings of one set belong to different landmarks.
 struct SightingSet {
   Pose2 robot_from_sensor;
-  std::vector<Sighting> sightings;
+  std::vector<SeenLandmark> sightings;
 };
 
-inline bool Sighting::sound() const {
+inline bool SeenLandmark::sound() const {
   return std::isfinite(bearing) && std::isfinite(bearing_sd) && bearing_sd > 0 && confidence > 0 &&
          confidence <= 1 &&
          (!range || (std::isfinite(*range) && *range > 0 && std::isfinite(range_sd) && range_sd > 0));

@@ -63,8 +63,8 @@ Eigen::Vector2d PlaneAlignment::operator()(const Eigen::Vector2d& p) const {
 }
 
 PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
-                     Alignment kind) {
-  if (kind == Alignment::none || from.size() < 2) return {};
+                     TrackAlignment kind) {
+  if (kind == TrackAlignment::none || from.size() < 2) return {};
   Eigen::Vector2d a = Eigen::Vector2d::Zero(), b = a;
   for (std::size_t i = 0; i < from.size(); ++i) a += from[i], b += to[i];
   a /= static_cast<double>(from.size());
@@ -79,14 +79,14 @@ PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eige
   if (!(spread > 0)) return {};
   PlaneAlignment result;
   result.motion.yaw = std::atan2(cross, dot);
-  if (kind == Alignment::sim2) result.scale = std::hypot(dot, cross) / spread;
+  if (kind == TrackAlignment::sim2) result.scale = std::hypot(dot, cross) / spread;
   const Eigen::Vector2d shift = b - result(a);
   result.motion.x = shift.x(), result.motion.y = shift.y();
   return result;
 }
 
-TrackScore score(const Track& track, std::span<const StampedPose> truth, Alignment alignment, bool headings,
-                 double rpe_seconds, double longest_gap) {
+TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAlignment alignment,
+                 bool headings, double rpe_seconds, double longest_gap) {
   TrackScore s;
   std::vector<Pair> pairs;
   std::vector<Eigen::Vector2d> from, to;
@@ -115,7 +115,7 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, Alignme
     turns.push_back(turn / kRadiansPerDegree);
     const Eigen::Vector3d e(off.x(), off.y(), turn);
     const Eigen::LLT<Eigen::Matrix3d> cholesky(p.row->at.covariance);
-    if (alignment != Alignment::none || !headings || cholesky.info() != Eigen::Success) continue;
+    if (alignment != TrackAlignment::none || !headings || cholesky.info() != Eigen::Success) continue;
     const double square = cholesky.matrixL().solve(e).squaredNorm();
     if (!std::isfinite(square)) continue;
     nees += square;

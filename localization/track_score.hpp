@@ -8,7 +8,7 @@
 namespace waymark {
 
 /// How a track is laid over the truth before errors are measured (Umeyama 1991).
-enum class Alignment { none, se2, sim2 };
+enum class TrackAlignment { none, se2, sim2 };
 
 /// A similarity of the plane: p -> scale R(yaw) p + (x, y).
 struct PlaneAlignment {
@@ -19,7 +19,7 @@ struct PlaneAlignment {
 
 /// Least squares over pairs of points; identity with fewer than two different ones.
 PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eigen::Vector2d> to,
-                     Alignment kind);
+                     TrackAlignment kind);
 
 struct TrackScore {
   std::size_t poses = 0;                                 ///< rows with a true pose at their time
@@ -34,7 +34,7 @@ struct TrackScore {
 
 /// `headings`: whether the yaw of the truth means anything (a GNSS track has none). ANEES is measured with
 /// alignment `none` only. `longest_gap`: s between two true poses that may be interpolated.
-TrackScore score(const Track& track, std::span<const StampedPose> truth, Alignment alignment, bool headings,
-                 double rpe_seconds = 1, double longest_gap = 0.5);
+TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAlignment alignment,
+                 bool headings, double rpe_seconds = 1, double longest_gap = 0.5);
 
 }  // namespace waymark

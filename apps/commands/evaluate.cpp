@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "apps/evaluate_track.hpp"
 #include "apps/score_text.hpp"
 #include "apps/scored_table.hpp"
 #include "core/error.hpp"
@@ -12,7 +13,7 @@ namespace {
 class Evaluate final : public Command {
  public:
   CommandSpec describe() override {
-    return {
+    CommandSpec spec{
         .name = "evaluate",
         .group = Group::look_up,
         .summary = "Compare a map or a list of detections with the truth",
@@ -28,7 +29,7 @@ class Evaluate final : public Command {
             "(--by overlap: most confident find first, circles with intersection over union of 0.5). True "
             "things that no image shows wholly, or none larger than --min-pixels, are not asked for (columns "
             "images and pixels of a testbed's truth), nor are those of --ignore.",
-        .arguments = {Argument{"", "WHAT", &what_, "What is compared"}.one_of({"landmarks"}).needed(),
+        .arguments = {Argument{"", "WHAT", &what_, "What is compared"}.one_of({"landmarks", "track"}).needed(),
                       file_word("RESULT", &result_, "Map or table of what was found"),
                       Argument{"--truth", "FILE", &truth_, "Map or table of what is there"}
                           .offering(Offer::file)
@@ -57,9 +58,15 @@ class Evaluate final : public Command {
                       "A landing map against its testbed"},
                      {"waymark evaluate landmarks out.csv --truth tile_gt.csv --by overlap --min-diameter 16",
                       "Craters of one image against a catalogue, in pixels"}}};
+    for (Argument& argument : track_arguments(track_)) spec.arguments.push_back(argument);
+    return spec;
   }
 
   int run(const Session&) override {
+    if (what_ == "track") {
+      std::cout << evaluate_track(result_, truth_, format_, track_);
+      return 0;
+    }
     if (!(share_ >= 0) || !(least_ >= 0) || !(min_diameter_ >= 0))
       throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
     const ScoredTables found = scored_things(result_, type_, 0);
@@ -82,6 +89,7 @@ class Evaluate final : public Command {
   }
 
  private:
+  TrackEvaluation track_;
   std::string what_, result_, truth_, ignore_, type_, by_ = "distance", format_ = "text";
   double share_ = 0.75, least_ = 0, min_diameter_ = 0, min_pixels_ = 3;
   std::vector<double> edges_;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
+#include <filesystem>
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
@@ -13,6 +14,7 @@
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
+#include "importers/logs/import_log.hpp"
 #include "importers/table_landmarks.hpp"
 #include "pipeline/engine/report.hpp"
 
@@ -100,17 +102,9 @@ class Import final : public Command {
   }
 
   int run(const Session& session) override {
-    if (from_ == "mrclam")
-      throw Error(ErrorCode::usage, "MRCLAM landmark tables are not read yet", table_,
-                  "their columns are subject, x, y and deviations: pass --from csv --map-crs local --columns "
-                  "uid=c1,x=c2,y=c3,x_sd=c4,y_sd=c5");
     check_map_output(map_);
     const auto started = Clock::now();
-    const TableFormat format = from_ == "csv"   ? TableFormat::csv
-                               : from_ == "ogr" ? TableFormat::ogr
-                                                : TableFormat::by_name;
-    const auto source = open_table(table_, format, layer_, how_.type);
-    ImportedTable table = import_table(*source, all_types(), how_);
+    ImportedTable table = from_ == "mrclam" ? mrclam_table() : generic_table();
     MapContents contents;
     contents.types = all_types();
     contents.crs = table.crs;
@@ -124,6 +118,27 @@ class Import final : public Command {
   }
 
  private:
+  ImportedTable generic_table() {
+    const TableFormat format = from_ == "csv"   ? TableFormat::csv
+                               : from_ == "ogr" ? TableFormat::ogr
+                                                : TableFormat::by_name;
+    const auto source = open_table(table_, format, layer_, how_.type);
+    return import_table(*source, all_types(), how_);
+  }
+
+  /// Landmark_Groundtruth.dat: numbered posts in a local CRS.
+  ImportedTable mrclam_table() {
+    if (std::filesystem::is_directory(table_))
+      table_ = (std::filesystem::path(table_) / "Landmark_Groundtruth.dat").string();
+    const std::string type = how_.type.empty() ? "beacon" : how_.type;
+    ImportedTable table;
+    table.landmarks = import_mrclam_landmarks(table_, all_types().id(type), *all_types().find(type));
+    table.rows = static_cast<std::int64_t>(table.landmarks.size());
+    table.types = {type};
+    table.bindings = {"uid: subject", "x", "y", "covariance: deviations of x and y"};
+    return table;
+  }
+
   void tell(const ImportedTable& table) const {
     say(fmt::format("{}\n", fmt::join(table.bindings, ", ")));
     for (const std::string& warning : table.warnings) log_warning(warning);

@@ -22,7 +22,7 @@ RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types
 RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types);
 
 /// UTIAS MRCLAM (Leung et al. 2011): a dataset's folder with `robot`, or one of its RobotK_*.dat. Landmarks
-/// are of type `beacon` and known by their subject number, uid "subject_6"; other robots have no type. Where
+/// are of type `beacon` and known by their subject number, uid "6"; other robots have no type. Where
 /// the map has no type `beacon`, sightings are of any type.
 RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot, const TypeRegistry& types);
 

@@ -30,13 +30,13 @@ std::int64_t robot_in_name(const std::filesystem::path& path) {
 }
 
 std::string uid_of(int subject) {
-  return fmt::format("subject_{}", subject);
+  return std::to_string(subject);
 }
 
 /// Sightings of one camera frame: same time, nearby lines.
 class Frames {
  public:
-  void add(double t, const Sighting& sighting) {
+  void add(double t, const SeenLandmark& sighting) {
     if (events_.empty() || events_.back().t != t) events_.push_back({t, SightingSet{}});
     std::get<SightingSet>(events_.back().what).sightings.push_back(sighting);
   }
@@ -70,13 +70,13 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
   for (std::size_t i = 0; i < seen.size(); i += 4) {
     const auto subject = subject_of.find(static_cast<int>(seen[i + 1]));
     unknown += subject == subject_of.end();
-    Sighting s{.type = beacon,
-               .bearing = seen[i + 3],
-               .bearing_sd = kBearingSd,
-               .range = seen[i + 2],
-               .range_sd = std::hypot(kRangeSd, kRangeSdPerMetre * seen[i + 2]),
-               .features = {},
-               .identity = {}};
+    SeenLandmark s{.type = beacon,
+                   .bearing = seen[i + 3],
+                   .bearing_sd = kBearingSd,
+                   .range = seen[i + 2],
+                   .range_sd = std::hypot(kRangeSd, kRangeSdPerMetre * seen[i + 2]),
+                   .features = {},
+                   .identity = {}};
     if (subject == subject_of.end() || subject->second <= kRobots)
       s.type = kNoSuchType;  // another robot, or a code that was misread
     if (subject != subject_of.end()) s.identity = landmark_key(uid_of(subject->second));

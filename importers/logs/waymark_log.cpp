@@ -101,7 +101,7 @@ class Reader {
   }
 
  private:
-  void add(double t, Reading reading) { log_.events.push_back({t, std::move(reading)}); }
+  void add(double t, LogReading reading) { log_.events.push_back({t, std::move(reading)}); }
 
   void header(const Line& line) {
     if (line.has("version") && line.number("version") > 1)
@@ -110,6 +110,7 @@ class Reader {
     if (frame != "map" && frame != "crs")
       line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
     log_.in_crs = frame == "crs";
+    if (line.has("crs")) log_.crs = line.text("crs");
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
     log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
     if (line.has("start")) log_.start = line.part(line.object()["start"]).pose();
@@ -123,8 +124,8 @@ class Reader {
     return set;
   }
 
-  Sighting sighting(const Line& line) {
-    Sighting s;
+  SeenLandmark sighting(const Line& line) {
+    SeenLandmark s;
     s.bearing = line.angle("bearing");
     s.bearing_sd = line.positive("bearing_sd", 0.02);
     if (line.has("range")) s.range = line.number("range");

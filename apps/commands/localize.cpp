@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "apps/command.hpp"
+#include "apps/localize_settings.hpp"
+#include "apps/log.hpp"
+#include "apps/parse.hpp"
+#include "apps/registries.hpp"
+#include "apps/robot_map.hpp"
+#include "apps/session.hpp"
+#include "core/error.hpp"
+#include "exporters/track_file.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/detectors/laser_stems.hpp"
+
+namespace waymark {
+namespace {
+
+class Localize final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "localize",
+        .group = Group::use,
+        .summary = "Follow a robot through a map by its log",
+        .about =
+            "Writes where the robot was after each event of the log, with covariances. Methods: odometry "
+            "alone; ekf and ukf, which need to know the start; pf, particles, which find it; global, pf "
+            "without "
+            "a start. With --ids unknown the landmarks are recognised by type, place and features; ekf then "
+            "keeps a sum of Gaussians, one for each way to recognise them that is still probable.\n\n"
+            "Metres are those of the map's east-north-up frame about the middle of its landmarks; of a local "
+            "CRS, its own coordinates. --crs writes coordinates of the map's CRS.",
+        .arguments =
+            {file_word("MAP.gpkg", &map_, "Map to use; it is not changed"),
+             Argument{"", "LOG", &log_, "Log of the robot: a file, or the folder of a dataset"}
+                 .needed()
+                 .offering(Offer::file),
+             Argument{"-o,--output", "TRACK", &output_, "Track to write, .csv or .gpkg"}.needed().offering(
+                 Offer::file),
+             Argument{"--method", "NAME", &method_, "How to localize"}
+                 .one_of({"odometry", "pf", "ekf", "ukf", "global"})
+                 .or_else("ekf"),
+             Argument{"--sensor", "NAME", &sensor_,
+                      "Sensor whose view of the landmarks' quality counts (eq. 8)"}
+                 .offering(all_sensors().names()),
+             Argument{"--seed", "N", &settings_.particles.seed, "Seed of all random numbers"}.or_else("1"),
+             Argument{"--log-format", "FORMAT", &how_.format, "Format of the log"}
+                 .one_of({"waymark", "mrclam", "victoria-park"})
+                 .or_else("recognised by what is there"),
+             Argument{"--robot", "K", &how_.robot, "Which robot of an MRCLAM dataset"},
+             Argument{"--ids", "HOW", &ids_, "Whether landmarks that say who they are are believed"}
+                 .one_of({"known", "unknown"})
+                 .or_else("known"),
+             Argument{"--start", "X,Y,YAW", &start_,
+                      "Where the robot starts, metres and radians; truth: as the log says; none: unknown"}
+                 .offering({"truth", "none"})
+                 .or_else("truth, or the log's start, or none for pf"),
+             Argument{"--set", "OPTION=VALUE", &sets_, "Change a setting of the method; may be repeated"},
+             Argument{"--settings", "", &list_, "Write the track, and list all settings with their defaults"},
+             Argument{"--crs", "", &in_crs_, "Write positions in the map's CRS"}},
+        .examples = {
+            {"waymark localize site.gpkg drive.jsonl -o track.csv --method pf --start none",
+             "Find the robot and follow it"},
+            {"waymark localize mrclam.gpkg MRCLAM_Dataset6 --robot 1 --method ekf -o track.csv",
+             "A robot of MRCLAM"},
+            {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1", "How well that went"}}};
+  }
+
+  int run(const Session& session) override {
+    const std::filesystem::path out(output_);
+    if (out.extension() != ".csv" && out.extension() != ".gpkg")
+      throw Error(ErrorCode::usage, "a track is written as .csv or .gpkg", output_, "e.g. -o track.csv");
+    for (const std::string& setting : sets_) set(settings_, setting);
+    settings_.identification.use_identities = ids_ == "known";
+    settings_.particles.threads = session.threads;
+    const SensorProfile* sensor = sensor_.empty() ? nullptr : &all_sensors().at(sensor_);
+    OpenedMap opened = open_robot_map(map_, sensor);
+    RobotLog log = import_log(log_, opened.map.types(), how_);
+    check_place(log, opened.map);
+    place_in(log, opened.map.frame);
+    for (const std::string& remark : log.remarks) log_warning(remark + ": " + log_);
+    if (log.events.empty())
+      throw Error(ErrorCode::input, "the log has no readings", log_,
+                  "docs/log_format.md says what a log holds");
+
+    const std::optional<PoseEstimate> start = start_of(log);
+    if (start) check_distance(*start, opened.map);
+    const auto localizer = make(start, std::move(opened.window), FeatureScales(opened.map.types()));
+    const LaserStems stems{.type = opened.map.types().find("tree")
+                                       ? std::optional<TypeId>(opened.map.types().id("tree"))
+                                       : std::nullopt};
+    const Track track = play(
+        log, *localizer, settings_.play,
+        [&](const LaserScan& scan) { return sightings_of_stems(scan, stems); },
+        [] {
+          return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+        });
+
+    TrackOutput form{.frame = in_crs_ ? &opened.map.frame : nullptr, .crs = &opened.map.crs()};
+    if (out.extension() == ".gpkg") {
+      form.frame = &opened.map.frame;
+      write_track_geopackage(out, track, form);
+    } else {
+      write_track_csv(out, track, form);
+    }
+    tell(track);
+    if (list_) say(settings_as_text());
+    return 0;
+  }
+
+ private:
+  void check_place(const RobotLog& log, const RobotMap& map) const {
+    if (log.in_crs && !log.crs.empty() && !Crs::from_text(log.crs).same_as(map.crs()))
+      throw Error(ErrorCode::input,
+                  fmt::format("the log's positions are in {}, the map is in {}", Crs::from_text(log.crs).id(),
+                              map.crs().id()),
+                  log_, "use a map in that CRS: waymark export MAP OUT --crs ...");
+  }
+
+  void check_distance(const PoseEstimate& start, const RobotMap& map) const {
+    if (map.bounds.isEmpty()) return;
+    const double away = map.bounds.exteriorDistance(start.pose.at());
+    if (away > std::max(1000.0, map.bounds.diagonal().norm()))
+      throw Error(
+          ErrorCode::input,
+          fmt::format("the robot starts {:.1f} km from the nearest landmark of the map", away / 1000), log_,
+          "is it the right map, and is the start in the map's frame (or the log's \"frame\" \"crs\")?");
+  }
+
+  std::optional<PoseEstimate> start_of(const RobotLog& log) const {
+    PoseEstimate start;
+    start.covariance.diagonal() << settings_.start_sd * settings_.start_sd,
+        settings_.start_sd * settings_.start_sd, settings_.start_yaw_sd * settings_.start_yaw_sd;
+    const bool searches = method_ == "pf" || method_ == "global";
+    if (method_ == "global" || start_ == "none") {
+      if (!searches)
+        throw Error(ErrorCode::usage, "--method " + method_ + " must know where the robot starts",
+                    "--start none", "give --start X,Y,YAW, or use --method pf");
+      return {};
+    }
+    const bool from_truth = start_.empty() || start_ == "truth";
+    if (!from_truth) {
+      const auto words = numbers(start_);
+      start.pose = {words[0], words[1], wrapped(words[2])};
+      return start;
+    }
+    if (!log.truth.empty()) {
+      const auto known = pose_at(log.truth, log.events.front().t, 5);
+      start.pose = known ? *known : log.truth.front().pose;
+      return start;
+    }
+    if (log.start && start_.empty()) {
+      start.pose = *log.start;
+      return start;
+    }
+    if (searches && start_.empty()) return {};
+    throw Error(ErrorCode::input, "nothing says where the robot starts", log_,
+                "give --start X,Y,YAW (metres and radians), or use --method pf");
+  }
+
+  static std::vector<double> numbers(const std::string& text) {
+    std::vector<double> all;
+    std::size_t from = 0;
+    while (from <= text.size()) {
+      const std::size_t comma = std::min(text.find(',', from), text.size());
+      all.push_back(to_number("each of X,Y,YAW of --start", text.substr(from, comma - from)));
+      from = comma + 1;
+    }
+    if (all.size() != 3)
+      throw Error(ErrorCode::usage, "--start takes X,Y,YAW, truth or none, is '" + text + "'", "",
+                  "e.g. --start 12.5,-3,1.57");
+    return all;
+  }
+
+  std::unique_ptr<Localizer> make(const std::optional<PoseEstimate>& start, LandmarkWindow window,
+                                  FeatureScales scales) const {
+    const IdentificationOptions& id = settings_.identification;
+    if (method_ == "odometry") return std::make_unique<DeadReckoning>(*start);
+    if (method_ == "ukf")
+      return std::make_unique<UnscentedKalman>(*start, std::move(window), std::move(scales), id,
+                                               settings_.kalman);
+    if (method_ == "pf" || method_ == "global")
+      return std::make_unique<ParticleFilter>(start, std::move(window), std::move(scales), id,
+                                              settings_.particles);
+    if (!id.use_identities && id.association == "joint")
+      return std::make_unique<HypothesesFilter>(*start, std::move(window), std::move(scales), id,
+                                                settings_.hypotheses);
+    return std::make_unique<ExtendedKalman>(*start, std::move(window), std::move(scales), id,
+                                            settings_.kalman);
+  }
+
+  void tell(const Track& track) const {
+    std::vector<std::string> parts;
+    for (int v = 0; v < kVerdicts; ++v)
+      if (const auto count = track.verdicts[static_cast<std::size_t>(v)])
+        parts.push_back(fmt::format("{} {}", count, wording(static_cast<Verdict>(v))));
+    say(fmt::format("{}: {} rows\n", output_, track.rows.size()));
+    if (!parts.empty()) say(fmt::format("sightings: {}\n", fmt::join(parts, ", ")));
+    if (track.named && ids_ == "unknown")
+      say(fmt::format("wrong matches, by the identities in the log: {} of {}\n", track.wrong, track.named));
+    if (track.updates)
+      say(fmt::format("{:.1f} us per update\n", 1e6 * track.seconds / static_cast<double>(track.updates)));
+    const auto lost = std::ranges::count(track.rows, true, &TrackRow::lost);
+    if (lost) {
+      const auto first = std::ranges::find(track.rows, true, &TrackRow::lost);
+      log_warning(fmt::format("lost in {} of {} rows, first at {:.3f} s", lost, track.rows.size(), first->t));
+    }
+  }
+
+  std::string map_, log_, output_, method_ = "ekf", sensor_, ids_ = "known", start_;
+  LogImport how_;
+  std::vector<std::string> sets_;
+  bool in_crs_ = false, list_ = false;
+  LocalizeSettings settings_;
+};
+
+}  // namespace
+
+void register_command_localize(CommandTable& commands);
+void register_command_localize(CommandTable& commands) {
+  commands.add<Localize>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "localization/hypotheses.hpp"
+#include "localization/kalman.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/play_log.hpp"
+namespace waymark {
+
+/// All that --set of `waymark localize` changes.
+struct LocalizeSettings {
+  IdentificationOptions identification;
+  KalmanOptions kalman;
+  HypothesesOptions hypotheses;
+  ParticleOptions particles;
+  PlayOptions play;
+  double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: how well --start is known
+
+  void describe(OptionVisitor& option);
+};
+
+/// Sets OPTION=VALUE. Throws Error{usage}: no such option (with the nearest name), a value out of range.
+void set(LocalizeSettings& settings, const std::string& setting);
+
+/// Each option with its default and what it does, a line each.
+std::string settings_as_text();
+
+}  // namespace waymark

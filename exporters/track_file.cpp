@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/track_file.hpp"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "exporters/gdal_messages.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 15> kColumns{"t",       "x",       "y",        "z",     "roll",
+                                               "pitch",   "yaw",     "var_x",    "var_y", "cov_xy",
+                                               "var_yaw", "matched", "rejected", "wrong", "lost"};
+using Values = std::array<double, kColumns.size()>;
+
+Values values_of(const TrackRow& row, const LocalFrame* frame) {
+  const Eigen::Matrix3d& c = row.at.covariance;
+  Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
+  if (frame) at = frame->crs_from_map_frame({at}).xyz;
+  return {row.t,
+          at.x(),
+          at.y(),
+          at.z(),
+          row.roll,
+          row.pitch,
+          row.at.pose.yaw,
+          c(0, 0),
+          c(1, 1),
+          c(0, 1),
+          c(2, 2),
+          double(row.matched),
+          double(row.rejected),
+          double(row.wrong),
+          double(row.lost)};
+}
+
+TrackRow row_of(const Values& v) {
+  TrackRow row{.t = v[0],
+               .at = {{v[1], v[2], wrapped(v[6])}, Eigen::Matrix3d::Zero()},
+               .z = v[3],
+               .roll = v[4],
+               .pitch = v[5]};
+  row.at.covariance << v[7], v[9], 0, v[9], v[8], 0, 0, 0, v[10];
+  row.matched = static_cast<int>(v[11]);
+  row.rejected = static_cast<int>(v[12]);
+  row.wrong = static_cast<int>(v[13]);
+  row.lost = v[14] != 0;
+  return row;
+}
+
+[[noreturn]] void cannot_write(const fs::path& file, const std::string& why) {
+  throw Error(ErrorCode::output, "cannot write the track: " + why, file.string(), "choose another -o");
+}
+
+}  // namespace
+
+void write_track_csv(const fs::path& file, const Track& track, const TrackOutput& output) {
+  const fs::path aside = file.string() + ".part";
+  std::ofstream out(aside, std::ios::binary);
+  if (!out) cannot_write(file, std::strerror(errno));
+  fmt::memory_buffer text;
+  for (std::size_t i = 0; i < kColumns.size(); ++i)
+    fmt::format_to(std::back_inserter(text), "{}{}", i ? "," : "", kColumns[i]);
+  text.push_back('\n');
+  const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
+  for (const TrackRow& row : track.rows) {
+    const Values v = values_of(row, output.frame);
+    const int places = degrees ? 9 : 4;
+    fmt::format_to(std::back_inserter(text), "{:.4f},{:.{}f},{:.{}f},{:.4f},{:.6f},{:.6f},{:.6f}", v[0], v[1],
+                   places, v[2], places, v[3], v[4], v[5], v[6]);
+    for (std::size_t i = 7; i < 11; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
+    for (std::size_t i = 11; i < v.size(); ++i) fmt::format_to(std::back_inserter(text), ",{:g}", v[i]);
+    text.push_back('\n');
+  }
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) cannot_write(file, "the disk may be full");
+  std::error_code problem;
+  fs::rename(aside, file, problem);
+  if (problem) cannot_write(file, problem.message());
+}
+
+void write_track_geopackage(const fs::path& file, const Track& track, const TrackOutput& output) {
+  const GdalMessages messages;
+  const fs::path aside = file.string() + ".part.gpkg";
+  std::error_code ignored;
+  fs::remove(aside, ignored);
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+  std::unique_ptr<GDALDataset> set(driver ? driver->Create(aside.c_str(), 0, 0, 0, GDT_Unknown, nullptr)
+                                          : nullptr);
+  if (!set) cannot_write(file, messages.cause("GDAL has no GeoPackage driver"));
+  OGRSpatialReference srs;
+  const bool on_body = output.crs->kind() != CrsKind::local;
+  if (on_body) {
+    srs.importFromWkt(output.crs->wkt2().c_str());
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  OGRLayer* layer = set->CreateLayer("track", on_body ? &srs : nullptr, wkbPoint25D, nullptr);
+  if (!layer) cannot_write(file, messages.cause("no layer"));
+  for (const char* name : kColumns) {
+    OGRFieldDefn field(name, OFTReal);
+    if (layer->CreateField(&field) != OGRERR_NONE) cannot_write(file, messages.cause("no column"));
+  }
+  set->StartTransaction();
+  for (const TrackRow& row : track.rows) {
+    const Values v = values_of(row, output.frame);
+    OGRFeature feature(layer->GetLayerDefn());
+    for (std::size_t i = 0; i < v.size(); ++i) feature.SetField(static_cast<int>(i), v[i]);
+    OGRPoint point(v[1], v[2], v[3]);
+    feature.SetGeometry(&point);
+    if (layer->CreateFeature(&feature) != OGRERR_NONE)
+      cannot_write(file, messages.cause("a row was refused"));
+  }
+  set->CommitTransaction();
+  set.reset();
+  if (!messages.failures().empty()) cannot_write(file, messages.cause("the disk may be full"));
+  std::error_code problem;
+  fs::rename(aside, file, problem);
+  if (problem) cannot_write(file, problem.message());
+}
+
+Track read_track_csv(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line))
+    throw Error(ErrorCode::input, "cannot read the track", file.string(), "is it there, and not empty?");
+  std::vector<std::size_t> column;  // of ours, by column of the file; kColumns.size(): none
+  std::array<bool, kColumns.size()> found{};
+  std::istringstream names(line);
+  for (std::string name; std::getline(names, name, ',');) {
+    while (!name.empty() && name.back() <= ' ') name.pop_back();
+    std::size_t i = 0;
+    while (i < kColumns.size() && name != kColumns[i]) ++i;
+    column.push_back(i);
+    if (i < found.size()) found[i] = true;
+  }
+  if (!found[0] || !found[1] || !found[2])
+    throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
+                "waymark localize writes such files");
+  Track track;
+  for (std::size_t number = 2; std::getline(in, line); ++number) {
+    if (line.find_first_not_of(" \r\t") == std::string::npos) continue;
+    Values values{};
+    const char *at = line.data(), *end = at + line.size();
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      double value = 0;
+      const auto [rest, problem] = std::from_chars(at, end, value);
+      const bool last = rest == end || *rest == '\r';
+      if (problem != std::errc() || !std::isfinite(value) || (!last && *rest != ','))
+        throw Error(ErrorCode::input, fmt::format("column {} of the track is no number", i + 1),
+                    fmt::format("{}, line {}", file.string(), number), "");
+      if (column[i] < values.size()) values[column[i]] = value;
+      at = last ? end : rest + 1;
+    }
+    track.rows.push_back(row_of(values));
+  }
+  return track;
+}
+
+}  // namespace waymark
