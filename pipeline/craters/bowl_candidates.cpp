@@ -9,7 +9,7 @@ namespace waymark {
 std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSearch& search) {
   const auto shapes = [&](double diameter) {
     std::vector<Pixels> lights;
-    for (const BowlLight light : {BowlLight::slope, BowlLight::low_shadow, BowlLight::deep_shadow})
+    for (const BowlLight light : search.lights)
       lights.push_back(bowl_template(diameter, search.sun_angle, light));
     return lights;
   };

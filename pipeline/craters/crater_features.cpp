@@ -112,4 +112,20 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
   return result;
 }
 
+double PatchSource::slope_correlation(const CraterCandidate& c) const {
+  const Patch seen = patch(c);
+  constexpr double step = 2 * kPatchReach / kPatchSide;  // radii between samples
+  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (int j = 0; j < kPatchSide; ++j)
+    for (int i = 0; i < kPatchSide; ++i) {
+      const double u = (i - (kPatchSide - 1) / 2.0) * step, v = (j - (kPatchSide - 1) / 2.0) * step;
+      if (std::max(std::abs(u), std::abs(v)) > 1.35) continue;
+      const double r = std::hypot(u, v), bowl = r < 1 ? -u : 0.45 * u / std::pow(r, 5);
+      const double value = seen[static_cast<std::size_t>(j * kPatchSide + i)];
+      ++n, a += value, b += bowl, aa += value * value, bb += bowl * bowl, ab += value * bowl;
+    }
+  const double spread = (aa - a * a / n) * (bb - b * b / n);
+  return spread > 0 ? (ab - a * b / n) / std::sqrt(spread) : 0;
+}
+
 }  // namespace waymark

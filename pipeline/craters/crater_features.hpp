@@ -31,6 +31,8 @@ class PatchSource {
   /// Brightness at kPatchSide x kPatchSide samples, +x towards the sun, row by row; not normalised.
   std::array<float, kPatchSide * kPatchSide> patch(const CraterCandidate& candidate,
                                                    bool mirrored = false) const;
+  /// Correlation of the patch with a bowl lit by slope (BowlLight::slope), [-1, 1].
+  double slope_correlation(const CraterCandidate& candidate) const;
   Radians sun_angle() const { return sun_angle_; }
 
  private:

@@ -33,8 +33,9 @@ CraterVerdict judge(const CraterModel& model, const CraterFeatures& features);
 /// The circle the verdict speaks of.
 CraterCandidate corrected(const CraterCandidate& candidate, const CraterVerdict& verdict, Radians sun_angle);
 
-/// Text: a line `waymark crater model 1`, a line of provenance, then per layer its sizes, a scale per output
-/// and weights in sixteen bits, base 64. parse throws Error{input} naming the line that does not fit.
+/// Text: a line `waymark crater model 1`, a line of provenance, then per layer its sizes and per output a
+/// line: bias, largest weight, and the weights as sixteen-bit shares of it in three base-64 digits each.
+/// parse throws Error{input} naming the line that does not fit.
 std::string as_text(const CraterModel& model);
 CraterModel parse_crater_model(std::string_view text, const std::string& where);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/random.hpp"
@@ -11,7 +12,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kClear = 0.5;
+constexpr double kClear = 0.4;
 
 // A layer with its gradients and Adam's moments.
 struct Learning {
@@ -65,7 +66,7 @@ void step(Learning& l, double rate, double decay, int step_count, double example
     l.square[i] = static_cast<float>(0.999 * l.square[i] + 0.001 * g * g);
     float& value = i < weights ? l.layer.weights[i] : l.layer.biases[i - weights];
     const double move = l.mean[i] / correct1 / (std::sqrt(l.square[i] / correct2) + 1e-8);
-    value -= static_cast<float>(rate * (move + (i < weights ? decay * 100 * value : 0)));
+    value -= static_cast<float>(rate * (move + (i < weights ? decay * value : 0)));
     l.gradient[i] = 0;
   }
 }
@@ -110,7 +111,7 @@ std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t se
       const double common = overlap(c, {k.x, k.y, k.diameter, 0});
       if (common > most) most = common, best = &k;
     }
-    const bool crater = most >= 0.4 && best->clarity >= kClear;
+    const bool crater = most >= 0.45 && best->clarity >= kClear;
     if (!crater && most > 0.25) continue;
     if (!crater && random.chance(0.5)) continue;
     const double dx = best ? (best->x - c.x) / c.diameter : 0, dy = best ? (best->y - c.y) / c.diameter : 0;
@@ -165,7 +166,7 @@ CraterModel train_crater_model(std::span<const CraterExample> examples, const Cr
               if (layers[l - 1].out[k] < 0) error[k] *= 0.1F;
         }
       }
-      const double rate = 2e-3 * 0.5 * (1 + std::cos(3.14159265358979 * steps / all_steps));
+      const double rate = 2e-3 * 0.5 * (1 + std::cos(std::numbers::pi * steps / all_steps));
       ++steps;
       for (Learning& l : layers) step(l, rate, training.decay, steps, double(end - begin));
     }

@@ -21,9 +21,9 @@ struct CraterExample {
 std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t seed);
 
 struct CraterTraining {
-  int rounds = 12;  ///< times through the examples
+  int rounds = 4;  ///< times through the examples
   std::vector<int> hidden{32, 16};
-  double decay = 1e-4;  ///< of weights, per step and learning rate
+  double decay = 0.03;  ///< of weights, per step and unit of learning rate (Loshchilov & Hutter 2019)
   std::uint64_t seed = 1;
 };
 

@@ -8,12 +8,13 @@
 
 #include "core/error.hpp"
 #include "pipeline/craters/bowl_candidates.hpp"
-#include "pipeline/craters/filled_image.hpp"
-#include "pipeline/craters/rim_refinement.hpp"
+#include "pipeline/craters/bowl_verification.hpp"
+#include "pipeline/craters/edge_pairs.hpp"
 
 namespace waymark {
 namespace {
 
+constexpr double kLeastCorrelation = 0.5;
 constexpr double kLeastKnown = 2.0 / 3;  // share of a crater's square that must have data
 
 void check(const CraterSearch& search) {
@@ -34,26 +35,29 @@ void check(const CraterSearch& search) {
     refuse(fmt::format("min_confidence is {}", search.min_confidence), "it is a probability, 0 to 1");
 }
 
-// Correlation of an untrained candidate as the probability that it is a crater: logistic, fitted on made-up
-// scenes.
-double probability_of(double correlation) {
-  return 1 / (1 + std::exp(-18 * (correlation - 0.66)));
-}
+struct Sizes {
+  double smallest, largest;  // pixels
+};
 
-Detection detection_of(const CraterCandidate& c, const Pixels& image, Radians sun, TypeId type) {
+Detection detection_of(const VerifiedBowl& bowl, TypeId type) {
   Detection d;
   d.type = type;
-  d.outline = {.x = c.x, .y = c.y, .major = c.diameter, .minor = c.diameter, .angle = 0};
-  double centre_sd = 0.06 * c.diameter;
-  d.diameter_sd = 0.08 * c.diameter;
-  if (const auto rim = refine_rim(image, c, sun)) {
-    d.outline = rim->ellipse;
-    centre_sd = std::hypot(rim->centre_sd, 0.03 * c.diameter);
-    d.diameter_sd = std::hypot(rim->diameter_sd, 0.05 * c.diameter);
-  }
-  d.covariance = Eigen::Matrix2d::Identity() * centre_sd * centre_sd;
-  d.confidence = std::clamp(c.score, 1e-6, 1.0);
+  d.outline = bowl.outline;
+  d.covariance = Eigen::Matrix2d::Identity() * bowl.centre_sd * bowl.centre_sd;
+  d.diameter_sd = bowl.diameter_sd;
+  d.confidence = std::clamp(bowl.circle.score, 1e-6, 1.0);
   return d;
+}
+
+std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const CraterSearch& search,
+                                   const Sizes& sizes) {
+  const auto candidates =
+      suppress_overlaps(bowl_candidates(image.pixels, {.sun_angle = sun,
+                                                       .min_diameter = 0.9 * sizes.smallest,
+                                                       .max_diameter = sizes.largest,
+                                                       .min_correlation = kLeastCorrelation}),
+                        0.5);
+  return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr);
 }
 
 }  // namespace
@@ -69,18 +73,25 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   if (!sun) return {};
 
   const double side = double(std::min(image.columns(), image.rows()));
-  const double largest = search.max_diameter > 0 ? search.max_diameter : 0.6 * side;
-  auto candidates = suppress_overlaps(bowl_candidates(whole.pixels, {.sun_angle = *sun,
-                                                                     .min_diameter = search.min_diameter,
-                                                                     .max_diameter = largest,
-                                                                     .min_correlation = 0.5}));
+  const Sizes sizes{search.min_diameter, search.max_diameter > 0 ? search.max_diameter : 0.6 * side};
+  if (sizes.largest < sizes.smallest) return {};
+
+  const auto bowls = search.method == CraterMethod::edges
+                         ? craters_by_edges(whole, *sun, sizes.smallest, sizes.largest)
+                         : bowls_in(whole, *sun, search, sizes);
+  std::vector<CraterCandidate> circles;
+  for (const VerifiedBowl& bowl : bowls) {
+    CraterCandidate c = bowl.circle;
+    if (c.score < search.min_confidence || c.diameter < sizes.smallest || c.diameter > sizes.largest ||
+        whole.known(c.x, c.y, c.diameter) < kLeastKnown)
+      continue;
+    circles.push_back(c);
+  }
   std::vector<Detection> found;
-  for (CraterCandidate& c : candidates) {
-    c.score = probability_of(c.score);
-    if (c.score < search.min_confidence || whole.known(c.x, c.y, c.diameter) < kLeastKnown) continue;
-    Detection d = detection_of(c, whole.pixels, *sun, search.type);
-    const double diameter = d.outline.diameter();
-    if (diameter >= search.min_diameter && diameter <= largest) found.push_back(d);
+  for (const CraterCandidate& c : suppress_overlaps(circles)) {
+    const auto bowl =
+        std::find_if(bowls.begin(), bowls.end(), [&](const VerifiedBowl& b) { return b.circle == c; });
+    found.push_back(detection_of(*bowl, search.type));
   }
   return found;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kSizesPerOctave = 7;
 constexpr int kTile = 256;           // side of a transform
-constexpr double kLargestBowl = 16;  // pixels at the level it is sought on
+constexpr double kLargestBowl = 24;  // pixels at the level it is sought on
 
 // One size of bowl: the spectra of its templates, ready to multiply.
 struct Bowl {
@@ -104,7 +104,8 @@ void collect(const cv::Mat1f& score, const cv::Rect& core, double least, const T
 std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search) {
   std::vector<Bowl> bowls;
   const double shrink = std::exp2(level);
-  for (int i = 0; i < kSizesPerOctave; ++i) {
+  // The finest level also has the bowls too small for an octave of their own.
+  for (int i = level == 0 ? -kSizesPerOctave : 0; i < kSizesPerOctave; ++i) {
     const double diameter = kLargestBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
     if (diameter * shrink < search.min_diameter * 0.95 || diameter * shrink > search.max_diameter * 1.05)
       continue;
