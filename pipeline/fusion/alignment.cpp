@@ -114,7 +114,9 @@ class Bundle {
       tie.gradient = ground->gradient;
     if (view.view) {
       const Eigen::Vector3d along = at - view.view->centre().xyz;
-      const GroundPlane ground{at, tie.gradient};
+      // Level: with slopes the pairs would tell where all images lie together by how relief shifts between
+      // them, which the errors of a DEM's slopes make a fiction.
+      const GroundPlane ground{at, Eigen::Vector2d::Zero()};
       tie.per_pose = pose_jacobian(view, {view.view->centre(), {along.normalized()}}, ground).topRows<2>();
     }
     const double least = std::max(0.01, body ? 0.03 * body->metres : 0);
@@ -157,7 +159,12 @@ class Bundle {
 
   void solve(const std::vector<IndexPair>& pairs) {
     std::vector<int> degree(ties_.size(), 0);
-    for (const IndexPair& p : pairs) ++degree[p.first], ++degree[p.second];
+    std::vector<double> of_image(images_.size(), 0);
+    for (const IndexPair& p : pairs) {
+      ++degree[p.first], ++degree[p.second];
+      ++of_image[static_cast<std::size_t>(ties_[p.first].image)];
+      ++of_image[static_cast<std::size_t>(ties_[p.second].image)];
+    }
     normal_ = Eigen::MatrixXd::Zero(prior_.rows(), prior_.cols());
     for (Eigen::Index i = 0; i < prior_.rows(); i += 6)
       normal_.block<6, 6>(i, i) = prior_.block<6, 6>(i, i).inverse();
@@ -169,7 +176,10 @@ class Bundle {
       const Eigen::Matrix2d information = (a.own + b.own).inverse();
       const double cauchy = 1 / (1 + left.dot(information * left) / 4);
       // A thing seen n times has n (n - 1) / 2 pairs but n - 1 independent ones.
-      const double weight = cauchy * 2 / (1 + std::max(degree[p.first], degree[p.second]));
+      const double crowd =
+          std::max(of_image[static_cast<std::size_t>(a.image)], of_image[static_cast<std::size_t>(b.image)]);
+      const double weight = cauchy * 2 / (1 + std::max(degree[p.first], degree[p.second])) *
+                            std::min(1.0, rules_.independent_pairs / crowd);
       const Eigen::Index i = 6 * a.image, j = 6 * b.image;
       const Eigen::Matrix<double, 6, 2> wa = weight * a.per_pose.transpose() * information;
       const Eigen::Matrix<double, 6, 2> wb = weight * b.per_pose.transpose() * information;
@@ -193,6 +203,18 @@ class Bundle {
   Eigen::MatrixXd middle_;  // 2 x 6 n: mean shift of the ties of all images per correction
   int pairs_ = 0;
 };
+
+// Gives a covariance another level part; height keeps how it hangs on the place, and its own uncertainty.
+void replace_level_part(Eigen::Matrix3d& covariance, const Eigen::Matrix2d& level) {
+  const Eigen::Matrix2d before =
+      positive(covariance.topLeftCorner<2, 2>(), 1e-6) + 1e-12 * Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d rise = before.inverse() * covariance.block<2, 1>(0, 2);
+  const double alone = std::max(covariance(2, 2) - rise.dot(before * rise), 0.0);
+  covariance.topLeftCorner<2, 2>() = level;
+  covariance.block<2, 1>(0, 2) = level * rise;
+  covariance.block<1, 2>(2, 0) = (level * rise).transpose();
+  covariance(2, 2) = std::isfinite(covariance(2, 2)) ? alone + rise.dot(level * rise) : covariance(2, 2);
+}
 
 void correct(ImageView& image, const Eigen::Vector<double, 6>& by, const Matrix6& covariance) {
   if (!image.view) return;
@@ -229,13 +251,7 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
     mean[static_cast<std::size_t>(tie.image)] += shift, ++count[static_cast<std::size_t>(tie.image)];
     o.position.xyz.head<2>() = plane.moved(o.position.xyz.head<2>(), shift);
     o.position.xyz.z() += tie.gradient.dot(shift);
-    const Eigen::Matrix2d before = o.covariance.topLeftCorner<2, 2>();
-    const Eigen::Matrix2d now = tie.own + positive(bundle.relative(tie, cross, common), 0);
-    o.covariance.topLeftCorner<2, 2>() = now;
-    // Keeps the correlation with height.
-    const double scale = before.trace() > 0 ? std::sqrt(now.trace() / before.trace()) : 1;
-    o.covariance.block<2, 1>(0, 2) *= std::min(scale, 1.0);
-    o.covariance.block<1, 2>(2, 0) *= std::min(scale, 1.0);
+    replace_level_part(o.covariance, tie.own + positive(bundle.relative(tie, cross, common), 0));
   }
   for (std::size_t i = 0; i < aligned.images.size(); ++i) {
     if (count[i]) aligned.moved[i] = (mean[i] / count[i]).norm();

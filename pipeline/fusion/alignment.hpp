@@ -12,8 +12,10 @@ namespace waymark {
 
 struct AlignmentRules {
   IdentityRules identity;
-  int rounds = 4;         ///< of pairing anew with the gates the last round left
-  int solutions = 4;      ///< reweighted solutions per round
+  int rounds = 4;     ///< of pairing anew with the gates the last round left
+  int solutions = 4;  ///< reweighted solutions per round
+  /// Neighbouring pairs share errors of the DEM: more pairs of an image tell no more than so many.
+  double independent_pairs = 100;
   int most_images = 250;  ///< more are left as they are: 6 n unknowns are solved densely
 };
 
