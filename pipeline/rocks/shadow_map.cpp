@@ -10,6 +10,7 @@ namespace waymark {
 namespace {
 
 constexpr float kDarkest = 1.3F, kBrightest = -1.5F;  // beyond lies noise, not shadow
+constexpr float kBrightestSmoothed = -0.2F;  // a lit face must not blot out the small shadow beside it
 
 float median_of(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -57,7 +58,9 @@ Grid<float> smoothed(const Grid<float>& alpha) {
   for (std::int64_t y = 0; y < rows; ++y) {
     const auto above = alpha.row(std::max<std::int64_t>(0, y - 1)), here = alpha.row(y);
     const auto below = alpha.row(std::min(rows - 1, y + 1));
-    for (std::size_t x = 0; x < columns; ++x) sum[x] = 0.25F * (above[x] + below[x]) + 0.5F * here[x];
+    const auto dim = [](float a) { return std::max(kBrightestSmoothed, a); };
+    for (std::size_t x = 0; x < columns; ++x)
+      sum[x] = 0.25F * (dim(above[x]) + dim(below[x])) + 0.5F * dim(here[x]);
     const auto out = smooth.row(y);
     for (std::size_t x = 1; x + 1 < columns; ++x) out[x] = 0.25F * (sum[x - 1] + sum[x + 1]) + 0.5F * sum[x];
     out[0] = sum[0];

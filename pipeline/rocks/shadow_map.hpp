@@ -20,7 +20,8 @@ struct ShadowMap {
   float texture_at(double x, double y) const;
 };
 
-/// The binomial mask (1 2 1) / 4 both ways; border pixels are smoothed along the border alone.
+/// The binomial mask (1 2 1) / 4 both ways; of alpha from -0.2 up, so that a lit face does not blot out
+/// the small shadow beside it; border pixels are smoothed along the border alone.
 Grid<float> smoothed(const Grid<float>& alpha);
 
 /// What is needed to tell the umbra from the ground; finer scales hand theirs to the coarser.
@@ -41,7 +42,7 @@ struct SegmentLimits {
   float grow = 0.12F;   ///< pixels below do not belong to any shadow
   float seed = 0.2F;    ///< shadows whose peak is less above their base are left out
   float merge = 0.75F;  ///< two darks are one where the pass between them is above this share of the lesser
-  float core = 0.4F;    ///< share of peak over base above which a pixel belongs to a shadow
+  float core = 0.5F;    ///< share of peak over base above which a pixel belongs to a shadow
   std::size_t most_cells = 0;  ///< larger segments are left out; 0: no limit
 };
 

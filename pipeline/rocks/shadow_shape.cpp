@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-constexpr float kOtherShadow = 0.4F;         // share of the peak above which a ring pixel is another shadow's
+constexpr float kOtherShadow = 0.5F;         // share of the peak above which a ring pixel is another shadow's
 constexpr float kMeanOfClippedNoise = 0.4F;  // E max(0, n) of a unit normal is 1 / sqrt(2 pi)
 
 enum Role : char { outside, ring, core };

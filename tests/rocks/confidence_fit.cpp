@@ -131,6 +131,11 @@ std::vector<ConfidenceSample> confidence_samples(int number, bool made) {
       continue;  // its rock may stand outside
     samples.push_back({number, rock, diameter, judged[i].evidence});
   }
+  // At most this many of one scene, at random: scenes count alike, crowded or bare.
+  constexpr std::size_t kMostPerScene = 300;
+  for (std::size_t i = 0; i < samples.size() && i < kMostPerScene; ++i)
+    std::swap(samples[i], samples[i + random.below(samples.size() - i)]);
+  if (samples.size() > kMostPerScene) samples.resize(kMostPerScene);
   return samples;
 }
 

@@ -13,7 +13,7 @@ MadeView made_view(int number) {
   Ground ground;
   ground.width = ground.height = 200;
   ground.cell = 0.5;
-  ground.rocks.k = random.log_uniform(0.03, 0.3);
+  ground.rocks.k = random.log_uniform(0.006, 0.3);
   ground.rocks.min_diameter = 0.35;
   ground.rocks.max_diameter = random.uniform(3, 8);
   ground.dunes.cover = random.uniform(0, 0.4);
