@@ -26,6 +26,9 @@ struct CameraWorld {
       Eigen::Vector3d::Zero();  ///< of `enu`: longitude, latitude, height; degrees, metres
 };
 
+/// "EPSG:32651": the UTM zone of a place on Earth, without the exceptions of Norway and Svalbard.
+std::string utm_zone(double lon, double lat);
+
 /// An image as its camera file tells it.
 struct CameraRecord {
   std::string image = {};

@@ -5,6 +5,8 @@
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "core/error.hpp"
@@ -73,6 +75,11 @@ WorldToGrid from_grid(const std::string& definition, const Crs& map, double offs
 }
 
 }  // namespace
+
+std::string utm_zone(double lon, double lat) {
+  const int zone = static_cast<int>(std::clamp(std::floor((lon + 180) / 6) + 1, 1.0, 60.0));
+  return fmt::format("EPSG:{}", (lat < 0 ? 32700 : 32600) + zone);
+}
 
 WorldToGrid world_to_grid(const CameraWorld& world, const std::string& camera_crs, const Crs& map,
                           double height_offset, const std::string& path) {

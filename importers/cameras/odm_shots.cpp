@@ -6,7 +6,6 @@
 //  - rotation is an angle-axis vector, world to camera, world axes those of the grid.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -18,11 +17,6 @@
 
 namespace waymark {
 namespace {
-
-std::string utm_zone(double lon, double lat) {
-  const int zone = static_cast<int>(std::clamp(std::floor((lon + 180) / 6) + 1, 1.0, 60.0));
-  return fmt::format("EPSG:{}", (lat < 0 ? 32700 : 32600) + zone);
-}
 
 // The zone, where the places are in it within a metre; else nothing: camera_crs or the map's CRS counts.
 std::string crs_of(const JsonValue& feature) {
@@ -48,7 +42,7 @@ Camera plain_lens(const JsonValue& shot) {
   camera.columns = shot["width"].integer();
   camera.rows = shot["height"].integer();
   const auto width = static_cast<double>(camera.columns), height = static_cast<double>(camera.rows);
-  camera.fx = camera.fy = shot["focal"].number() * std::max(width, height);
+  camera.fx = camera.fy = shot["focal"].number() * std::fmax(width, height);
   camera.cx = width / 2 - 0.5;
   camera.cy = height / 2 - 0.5;
   return camera;

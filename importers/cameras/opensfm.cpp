@@ -2,10 +2,17 @@
 // OpenSfM and OpenDroneMap: reconstruction.json.
 //  - shot.rotation is an angle-axis vector, world to camera; shot.translation is t in X_camera = R X_world +
 //  t.
-//  - The world is east, north, up about reference_lla; without one it is arbitrary.
+//  - OpenSfM's world is east, north, up about reference_lla; without one it is arbitrary.
+//  - OpenDroneMap turns the same file into the axes of a UTM zone, less a whole number of metres, and moves
+//  reference_lla
+//    to that origin. The difference is the meridian convergence, up to 3 deg: a reference that lies on whole
+//    metres of its zone within 2 mm is taken for OpenDroneMap's.
 //  - capture_time is EXIF's local time counted as if it were UTC: it is not used.
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "geo/crs.hpp"
 #include "importers/camera_file.hpp"
 #include "importers/interior.hpp"
 #include "importers/json_value.hpp"
@@ -24,6 +31,19 @@ Eigen::Isometry3d world_from_camera(const JsonValue& shot) {
   return pose;
 }
 
+void set_world(const JsonValue& lla, CameraFile& file) {
+  const double lon = lla["longitude"].number(), lat = lla["latitude"].number(),
+               height = lla["altitude"].number();
+  const std::string zone = utm_zone(lon, lat);
+  const auto [x, y] = CrsTransform(Crs::from_text("EPSG:4326"), Crs::from_text(zone))(lon, lat);
+  constexpr double kWhole = 2e-3;
+  if (std::abs(x - std::round(x)) < kWhole && std::abs(y - std::round(y)) < kWhole)
+    file.world = {
+        .axes = CameraWorld::Axes::grid, .crs = zone, .origin = {std::round(x), std::round(y), height}};
+  else
+    file.world = {.axes = CameraWorld::Axes::enu, .origin = {lon, lat, height}};
+}
+
 void add_reconstruction(const JsonValue& part, CameraFile& file) {
   for (const std::string& name : part["shots"].keys()) {
     const JsonValue shot = part["shots"][name];
@@ -32,6 +52,7 @@ void add_reconstruction(const JsonValue& part, CameraFile& file) {
     record.place = "at " + shot.place();
     record.camera = camera_from_opensfm(part["cameras"][shot["camera"].text()]);
     record.world_from_camera = world_from_camera(shot);
+    if (file.world.axes == CameraWorld::Axes::grid) record.world_from_camera->pretranslate(file.world.origin);
     file.images.push_back(std::move(record));
   }
 }
@@ -42,11 +63,7 @@ CameraFile read(const CameraSource& source) {
     root.refuse("this must be an array of reconstructions, at least one");
   const JsonValue first = root[0];
   CameraFile file;
-  if (first.has("reference_lla")) {
-    const JsonValue lla = first["reference_lla"];
-    file.world.axes = CameraWorld::Axes::enu;
-    file.world.origin = {lla["longitude"].number(), lla["latitude"].number(), lla["altitude"].number()};
-  }
+  if (first.has("reference_lla")) set_world(first["reference_lla"], file);
   add_reconstruction(first, file);
   if (root.size() > 1)
     file.warnings.push_back(

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geo/image_source.hpp"
+#include "pipeline/craters/image_light.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/vision/sun_angle.hpp"
+
+namespace waymark {
+namespace {
+
+/// What the image says about the light it was taken in.
+struct SunCheck {
+  bool known = false, seen = false;
+  double off = 0;  ///< degrees, [0, 180]
+  double sd = 0;
+  int shadows = 0;
+};
+
+struct CheckSun {
+  struct Options {
+    Degrees tolerance{15};
+    std::int64_t most_pixels = 2048;
+    void describe(OptionVisitor& option) {
+      option("tolerance", tolerance,
+             {.help = "Difference between the given sun and the shadows above which a warning is given",
+              .min = 1,
+              .max = 180});
+      option("most_pixels", most_pixels,
+             {.help = "Side of the square in the middle of the image that is looked at",
+              .min = 64,
+              .max = 65536});
+    }
+  };
+  static constexpr In<ImageSet> image_set{"image_set"};
+
+  static StageSpec spec() {
+    return {.name = "check_sun",
+            .summary = "Compares the given sun with the shadows in each image and warns where they disagree",
+            .version = 1,
+            .scope = Scope::image,
+            .inputs = {image_set}};
+  }
+
+  static SunCheck check(const ImageSource& image, std::int64_t most) {
+    SunCheck made;
+    const auto given = image_light(image.info());
+    made.known = given.has_value();
+    if (!given) return made;
+    const std::int64_t columns = std::min(image.info().columns, most),
+                       rows = std::min(image.info().rows, most);
+    const auto seen = estimate_sun_angle(
+        image.read({(image.info().columns - columns) / 2, (image.info().rows - rows) / 2, columns, rows}));
+    if (!seen) return made;
+    made.seen = true;
+    made.off =
+        std::abs(std::remainder(seen->angle.value - given->value, 2 * std::numbers::pi)) / kRadiansPerDegree;
+    made.sd = seen->sd.value / kRadiansPerDegree;
+    made.shadows = seen->shadows;
+    return made;
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
+    const SunCheck found = check(image, options.most_pixels);
+    const std::string& name = image.info().name;
+    if (!found.known)
+      unit.warn(fmt::format("{}: the sun is not known: detectors estimate it from the image", name));
+    // Three standard deviations, or the shadows prove nothing.
+    if (!found.seen || !(found.off > std::max(options.tolerance.value, 3 * found.sd))) return;
+    const bool opposite = found.off > 180 - options.tolerance.value;
+    unit.warn(fmt::format(
+        "{}: {} shadows point {:.0f} deg (sd {:.0f}) away from where the given sun puts them{}", name,
+        found.shadows, found.off, found.sd,
+        opposite ? ": towards the sun; either the azimuth given is the shadows', or most are hollows"
+                 : "; check azimuth (clockwise from map north), time zone and pose"));
+  }
+};
+
+}  // namespace
+
+void register_stage_check_sun(Registry& registry);
+void register_stage_check_sun(Registry& registry) {
+  registry.add<CheckSun>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "importers/camera_set.hpp"
+#include "importers/text_table.hpp"
+namespace waymark::testing {
+
+/// Real camera files; they stay outside the repository.
+inline std::string camera_data(const std::string& name) {
+  return WAYMARK_SOURCE_DIR "/../shared/data/cameras/" + name;
+}
+
+#define SKIP_WITHOUT_CAMERA_DATA()                        \
+  if (!std::filesystem::exists(camera_data("README.md"))) \
+  GTEST_SKIP() << "the camera files are not on this machine"
+
+inline const PosedCamera& view_of(const CameraSet& set, const std::string& image) {
+  const ImageCamera* found = camera_of(set, image);
+  if (!found || !found->view) throw std::runtime_error("no pose for " + image);
+  return *found->view;
+}
+
+/// Where the middle of the image looks, in the grid.
+inline Eigen::Vector3d looks_along(const PosedCamera& view) {
+  const auto& c = view.camera;
+  return ray(view, {static_cast<double>(c.columns - 1) / 2, static_cast<double>(c.rows - 1) / 2})
+      .value()
+      .along.unit;
+}
+
+/// The angle between two orientations, degrees.
+inline double turn_between(const PosedCamera& a, const PosedCamera& b) {
+  return Eigen::AngleAxisd(a.grid_from_camera.transform.linear().transpose() *
+                           b.grid_from_camera.transform.linear())
+             .angle() /
+         kRadiansPerDegree;
+}
+
+}  // namespace waymark::testing

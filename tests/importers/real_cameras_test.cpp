@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+// Conventions of foreign camera files, on real ones: each test fails by the classic mistake named in it.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "importers/dem.hpp"
+#include "importers/image_set.hpp"
+#include "importers/interior.hpp"
+#include "importers/list_images.hpp"
+#include "tests/importers/camera_data.hpp"
+#include "tests/importers/misregistration.hpp"
+#include "tests/importers/raster_maker.hpp"
+
+namespace waymark::testing {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+const char* const kNgiCrs =
+    "+proj=tmerc +lat_0=0 +lon_0=25 +k=1 +x_0=0 +y_0=0 +datum=WGS84 +units=m +no_defs";
+
+Terrain terrain_from(const std::string& path) {
+  const auto dem = import_dem({.files = {path}});
+  const GridGeometry& g = dem->geometry();
+  const HeightWindow heights = dem->read({0, 0, g.columns, g.rows});
+  Grid<float> cells(g.columns, g.rows);
+  for (std::int64_t r = 0; r < g.rows; ++r)
+    for (std::int64_t c = 0; c < g.columns; ++c) cells(c, r) = static_cast<float>(heights(c, r));
+  return Terrain(std::move(cells), g.where.x0, g.where.y0, g.where.dx, -g.where.dy);
+}
+
+std::vector<Photo> photos(const ListedImages& listed, double half_pixels = 0) {
+  std::vector<Photo> all;
+  for (const ImageHandle& image : image_set(listed.images)) {
+    all.push_back(photo(*image));
+    all.back().view.camera.cx += half_pixels;
+    all.back().view.camera.cy += half_pixels;
+  }
+  return all;
+}
+
+std::vector<Eigen::Vector2d> all_shifts(const std::vector<Photo>& photos, const Terrain& terrain,
+                                        double gsd) {
+  std::vector<Eigen::Vector2d> all;
+  for (std::size_t i = 0; i < photos.size(); ++i)
+    for (std::size_t j = i + 1; j < photos.size(); ++j)
+      for (const auto& shift : shifts(photos[i], photos[j], terrain, gsd, 40)) all.push_back(shift);
+  return all;
+}
+
+ListedImages odm_images() {
+  return list_images({.files = {camera_data("orthority/odm/images")},
+                      .cameras = camera_data("orthority/odm/opensfm/reconstruction.json"),
+                      .import = {.crs = "EPSG:32651"}});
+}
+
+ListedImages ngi_images() {
+  return list_images({.files = {camera_data("orthority/ngi/3324c_*.tif")},
+                      .cameras = camera_data("orthority/ngi/camera_pos_ori.txt"),
+                      .import = {.crs = kNgiCrs, .interior = camera_data("orthority/ngi/config.yaml")}});
+}
+
+TEST(OpenSfm, ImagesOfOneGroundAgreeWithinADecimetre) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const Terrain terrain = terrain_from(camera_data("orthority/odm/odm_dem/dsm.tif"));
+  const ListedImages listed = odm_images();
+  ASSERT_EQ(listed.images.size(), 4u);
+  const auto right = all_shifts(photos(listed), terrain, 0.2);
+  const auto half_off = all_shifts(photos(listed, 0.5), terrain, 0.2);
+  RecordProperty("shift_m", std::to_string(median_length(right)));
+  RecordProperty("shift_with_half_a_pixel_m", std::to_string(median_length(half_off)));
+  EXPECT_GT(right.size(), 150u);
+  EXPECT_LT(median_length(right), 0.11);
+  EXPECT_GT(median_length(half_off), 1.7 * median_length(right));
+}
+
+// The two files were written by different programs from one adjustment; ENU axes instead of the grid's put
+// the cameras up to 2.2 m and 0.86 deg off.
+TEST(OpenSfm, OpenDroneMapsAxesAreThoseOfTheGrid) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet sfm =
+      import_cameras(camera_data("orthority/odm/opensfm/reconstruction.json"), "", {.crs = "EPSG:32651"});
+  const CameraSet opk = import_cameras(
+      camera_data("orthority/io/odm_xyz_opk.csv"), "",
+      {.crs = "EPSG:32651", .interior = camera_data("orthority/odm/opensfm/reconstruction.json")});
+  EXPECT_EQ(sfm.format, "opensfm");
+  EXPECT_EQ(opk.format, "opk");
+  ASSERT_EQ(opk.images.size(), 4u);
+  for (const ImageCamera& image : opk.images) {
+    const PosedCamera& a = view_of(sfm, image.image);
+    EXPECT_LT((a.centre().xyz - image.view->centre().xyz).norm(), 0.01) << image.image;
+    EXPECT_LT(turn_between(a, *image.view), 0.01) << image.image;
+    EXPECT_LT(looks_along(a).z(), -0.8) << image.image;
+  }
+}
+
+// Plain OpenSfM is east-north-up about its reference: in the grid it turns by the meridian convergence, 0.87
+// deg east of the middle of zone 33 ... and west of it the other way.
+TEST(OpenSfm, EastNorthUpTurnsIntoTheGridAtTheCamera) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const std::string path = camera_data("opensfm_berlin/reconstruction_example.json");
+  const CameraSet west = import_cameras(path, "opensfm", {.crs = "EPSG:32633"});
+  const CameraSet east = import_cameras(path, "opensfm", {.crs = "EPSG:32632"});
+  ASSERT_EQ(west.images.size(), 3u);
+  const double lon = 13.4004, lat = 52.51896;
+  const auto convergence = [&](double meridian) {
+    return std::atan(std::tan((lon - meridian) * kRadiansPerDegree) * std::sin(lat * kRadiansPerDegree)) /
+           kRadiansPerDegree;
+  };
+  EXPECT_NEAR(turn_between(*west.images[0].view, *east.images[0].view), convergence(9) - convergence(15),
+              1e-3);
+  EXPECT_NEAR(west.images[0].view->centre().xyz.x(), 391400, 100);
+  EXPECT_NEAR(west.images[0].view->centre().xyz.z(), 26, 15);
+}
+
+TEST(Opk, ImagesOfOneGroundAgreeWithinAThirdOfAPixel) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const Terrain terrain = terrain_from(camera_data("orthority/ngi/dem.tif"));
+  const ListedImages listed = ngi_images();
+  ASSERT_EQ(listed.images.size(), 4u);
+  const auto right = all_shifts(photos(listed), terrain, 5);
+  const auto half_off = all_shifts(photos(listed, 0.5), terrain, 5);
+  RecordProperty("shift_m", std::to_string(median_length(right)));
+  RecordProperty("shift_with_half_a_pixel_m", std::to_string(median_length(half_off)));
+  EXPECT_GT(right.size(), 300u);
+  EXPECT_LT(median_length(right), 1.7);  // pixels are 5.6 m
+  EXPECT_GT(median_length(half_off), 1.7 * median_length(right));
+}
+
+TEST(Opk, ReadsTheCrsBesideIt) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("orthority/io/ngi_xyz_opk.csv"), "",
+                                       {.interior = camera_data("orthority/io/ngi_int_param.yaml")});
+  EXPECT_TRUE(set.crs.same_as(Crs::from_text(kNgiCrs)));
+  const PosedCamera& view = view_of(set, "3324c_2015_1004_05_0182_RGB.tif");
+  EXPECT_NEAR(view.camera.fx, 120 / 92.16 * 640, 1e-9);
+  EXPECT_NEAR(view.camera.cy, 575.5, 1e-9);
+  EXPECT_LT(looks_along(view).z(), -0.99);
+  // kappa is -179 deg: the image's upper edge is to the south.
+  EXPECT_GT(view.grid_from_camera.transform.linear()(1, 1), 0.99);
+}
+
+TEST(Opk, SaysThatTheLensIsMissing) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  EXPECT_THAT(message_of([] {
+                import_cameras(camera_data("orthority/io/odm_xyz_opk.csv"), "", {.crs = "EPSG:32651"});
+              }),
+              HasSubstr("option interior"));
+}
+
+// The flight went up and down lanes with the top of the image ahead: a transposed rotation would put the tops
+// to the mirrored side.
+TEST(OdmShots, ImageTopsPointAlongTheFlight) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("odm_fynnher/shots.geojson"), "", {});
+  EXPECT_EQ(set.format, "odm_shots");
+  EXPECT_EQ(set.crs.id(), "EPSG:32632");
+  ASSERT_EQ(set.images.size(), 394u);
+  EXPECT_NE(set.images[0].view->camera.distortion[0], 0);
+  double along = 0, mirrored = 0;
+  int steps = 0;
+  for (std::size_t i = 0; i + 1 < set.images.size(); ++i) {
+    const PosedCamera &a = *set.images[i].view, &b = *set.images[i + 1].view;
+    const Eigen::Vector2d step = (b.centre().xyz - a.centre().xyz).head<2>();
+    const Eigen::Vector2d up = -a.grid_from_camera.transform.linear().col(1).head<2>();
+    const Eigen::Vector2d up_transposed = -a.grid_from_camera.transform.linear().row(1).head<2>();
+    if (step.norm() < 3 || step.norm() > 60 || up.norm() < 0.9 || up_transposed.norm() < 0.9) continue;
+    ++steps;
+    along += std::abs(up.normalized().dot(step.normalized()));
+    mirrored += std::abs(up_transposed.normalized().dot(step.normalized()));
+    EXPECT_LT(looks_along(a).z(), -0.8);
+  }
+  EXPECT_GT(steps, 100);
+  RecordProperty("along", std::to_string(along / steps));
+  RecordProperty("mirrored", std::to_string(mirrored / steps));
+  EXPECT_GT(along, mirrored);
+}
+
+TEST(Colmap, ReadsBinaryModels) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  EXPECT_THAT(message_of([] { import_cameras(camera_data("colmap"), "", {.crs = "EPSG:32651"}); }),
+              HasSubstr("neither place, direction nor scale"));
+  const CameraSet set = import_cameras(camera_data("colmap"), "", {.crs = "local", .camera_crs = "local"});
+  EXPECT_EQ(set.format, "colmap");
+  ASSERT_FALSE(set.images.empty());
+  for (const ImageCamera& image : set.images) {
+    ASSERT_TRUE(image.view);
+    const Camera& c = image.view->camera;
+    // COLMAP starts from the middle of the image, width / 2 from the corner: (width - 1) / 2 for us.
+    EXPECT_NEAR(c.cx, static_cast<double>(c.columns - 1) / 2, 0.05 * static_cast<double>(c.columns));
+  }
+  RecordProperty("cx", std::to_string(set.images[0].view->camera.cx));
+}
+
+// Cameras that look at one object: the rays through the middles of the images meet in front of them, not
+// behind.
+TEST(Colmap, PosesAreWorldToCamera) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("colmap"), "", {.crs = "local", .camera_crs = "local"});
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const ImageCamera& image : set.images) {
+    const Eigen::Vector3d d = looks_along(*image.view);
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
+    sum += across;
+    right += across * image.view->centre().xyz;
+  }
+  const Eigen::Vector3d meeting = sum.ldlt().solve(right);
+  int before = 0;
+  for (const ImageCamera& image : set.images)
+    before += looks_along(*image.view).dot(meeting - image.view->centre().xyz) > 0;
+  RecordProperty("before", before);
+  EXPECT_GT(before, static_cast<int>(0.8 * static_cast<double>(set.images.size())));
+}
+
+TEST(Metashape, CountsCamerasThatAreNotAligned) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("metashape/hwiyoung_cameras.xml"), "",
+                                       {.crs = "local", .camera_crs = "local"});
+  EXPECT_EQ(set.format, "metashape");
+  EXPECT_EQ(set.images.size(), 120u);
+  EXPECT_THAT(set.warnings, Contains(HasSubstr("120 of 120 cameras have no pose")));
+}
+
+TEST(Metashape, ReadsPosesAndAdjustedLenses) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("metashape/bitbyt3r_cameras.xml"), "",
+                                       {.crs = "local", .camera_crs = "local"});
+  int posed = 0;
+  const ImageCamera* first = nullptr;
+  for (const ImageCamera& image : set.images) {
+    posed += image.view.has_value();
+    if (!first && image.view) first = &image;
+  }
+  EXPECT_EQ(posed, 94);
+  const Camera& c = first->view->camera;
+  EXPECT_NEAR(c.fx, 8397.0800252741 + 0.256163863908223, 1e-9);  // f + b1
+  EXPECT_NEAR(c.fy, 8397.0800252741, 1e-9);
+  EXPECT_NEAR(c.skew, -22.8315524998528, 1e-9);               // b2
+  EXPECT_NEAR(c.distortion[2], 0.00126022593561743, 1e-12);   // OpenCV's p1 is p2
+  EXPECT_NEAR(c.distortion[3], -0.00119014441157678, 1e-12);  // and its p2 is p1
+  EXPECT_NEAR(c.cx, 2591.5, 1e-9);
+}
+
+// Camera to chunk: 94 cameras on a turntable look at what stands on it.
+TEST(Metashape, TransformsAreCameraToChunk) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set = import_cameras(camera_data("metashape/bitbyt3r_cameras.xml"), "",
+                                       {.crs = "local", .camera_crs = "local"});
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (const ImageCamera& image : set.images) {
+    if (!image.view) continue;
+    const Eigen::Vector3d d = looks_along(*image.view);
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
+    sum += across;
+    right += across * image.view->centre().xyz;
+  }
+  const Eigen::Vector3d meeting = sum.ldlt().solve(right);
+  int before = 0;
+  for (const ImageCamera& image : set.images)
+    if (image.view) before += looks_along(*image.view).dot(meeting - image.view->centre().xyz) > 0;
+  EXPECT_EQ(before, 94);
+}
+
+TEST(Tsai, ReadsOldFilesWithoutHeader) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const CameraSet set =
+      import_cameras(camera_data("asp/black_left.tsai"), "", {.crs = "local", .camera_crs = "local"});
+  EXPECT_EQ(set.format, "tsai");
+  const PosedCamera& view = view_of(set, "black_left.tif");
+  EXPECT_NEAR(view.camera.fx, 620.857971191406, 1e-9);
+  EXPECT_NEAR(view.camera.cx, 526.128784179688, 1e-9);
+  EXPECT_NEAR(view.camera.distortion[3], 0.00110327918082476, 1e-15);
+  EXPECT_LT((view.centre().xyz - Eigen::Vector3d(0.0751, -0.065, -0.902)).norm(), 1e-12);
+  // R is camera to world: its columns are the camera's axes. A stereo pair of a rover looks ahead and down (z
+  // down).
+  EXPECT_NEAR(looks_along(view).x(), 0.93, 0.1);
+  EXPECT_GT(looks_along(view).z(), 0.2);
+}
+
+TEST(CsmIsd, PutsTheRoverIntoGaleCrater) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const std::string path = camera_data("isd/msl_nadir_isd.json");
+  const Crs degrees = Crs::from_text("IAU_2015:49900");
+  const std::string local = local_projection(degrees, 137.4, -4.7);
+  const CameraSet set = import_cameras(path, "", {.crs = local});
+  EXPECT_EQ(set.format, "csm_isd");
+  const PosedCamera& view = view_of(set, "msl_nadir_isd.img");
+  const auto [lon, lat] =
+      CrsTransform(set.crs, geographic_of(set.crs))(view.centre().xyz.x(), view.centre().xyz.y());
+  EXPECT_NEAR(lon, 137.4, 0.1);  // from J2000 without the rotation of Mars: anywhere
+  EXPECT_NEAR(lat, -4.7, 0.1);
+  EXPECT_LT(looks_along(view).z(), -0.99);  // the file's orientation was made to look straight down
+  ASSERT_TRUE(set.images[0].sun);
+  EXPECT_GT(set.images[0].sun->elevation.value, 0);
+}
+
+TEST(CsmIsd, LooksAtVestaFromOrbit) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const Crs vesta = Crs::from_text("+proj=longlat +a=289000 +b=229000 +no_defs");
+  const CameraSet set =
+      import_cameras(camera_data("isd/dawnfc_radtan.json"), "", {.crs = local_projection(vesta, 0, 0)});
+  ASSERT_EQ(set.images.size(), 1u);
+}
+
+TEST(CsmIsd, RefusesLineScanners) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  EXPECT_THAT(
+      message_of([] { import_cameras(camera_data("isd/ctx_isd.json"), "", {.crs = "IAU_2015:49910"}); }),
+      HasSubstr("use orthophotos"));
+}
+
+// EXIF says 11:01 local time in Taiwan, 8 h ahead; counted as UTC it would be dusk there.
+TEST(SunOfPhotos, NeedsTheTimeZone) {
+  SKIP_WITHOUT_CAMERA_DATA();
+  const ListedImages without = odm_images();
+  EXPECT_FALSE(without.images[0].sun);
+  EXPECT_THAT(without.warnings, Contains(HasSubstr("have no offset from UTC")));
+  ImageListing listing{.files = {camera_data("orthority/odm/images")},
+                       .cameras = camera_data("orthority/odm/opensfm/reconstruction.json"),
+                       .import = {.crs = "EPSG:32651"},
+                       .time_zone = "+08:00"};
+  const ListedImages with = list_images(listing);
+  ASSERT_TRUE(with.images[0].sun);
+  EXPECT_EQ(with.images[0].taken_utc, "2019-04-11T03:01:21Z");
+  EXPECT_NEAR(with.images[0].sun->elevation.value, 66, 2);
+  EXPECT_NEAR(with.images[0].sun->azimuth.value, 123, 6);
+  listing.time_zone = "Z";
+  EXPECT_THAT(list_images(listing).warnings, Contains(HasSubstr("below the horizon")));
+}
+
+}  // namespace
+}  // namespace waymark::testing
