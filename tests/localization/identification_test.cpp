@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include "localization/assignment.hpp"
+#include "localization/chi_square.hpp"
+#include "localization/joint_search.hpp"
+#include "localization/landmark_window.hpp"
+#include "localization/particle_weights.hpp"
+#include "localization/resampling.hpp"
+#include "made_world.hpp"
+
+namespace waymark::testing {
+namespace {
+
+TEST(ChiSquare, TablesAgree) {
+  EXPECT_NEAR(chi_square_quantile(0.99, 2), 9.21034, 1e-5);
+  EXPECT_NEAR(chi_square_quantile(0.95, 1), 3.84146, 1e-5);
+  EXPECT_NEAR(chi_square_quantile(0.975, 100), 129.5612, 1e-4);
+}
+
+TEST(LandmarkGrid, FindsWhatASearchOfAllFinds) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    Random random(seed, "queries");
+    const auto all = strewn(seed % 5 ? 300 : 1, seed % 3 ? 40 : 0.001, seed);
+    const LandmarkGrid grid(all, seed % 7 ? 0 : 3);
+    for (int q = 0; q < 40; ++q) {
+      const Eigen::Vector2d at(random.uniform(-30, 30), random.uniform(-30, 30));
+      const double radius = random.uniform(0, 25);
+      std::set<LandmarkKey> found, expected;
+      grid.near(at, radius, [&](std::uint32_t i) { EXPECT_TRUE(found.insert(grid[i].key).second); });
+      for (const MapLandmark& l : all)
+        if ((l.at - at).squaredNorm() <= radius * radius) expected.insert(l.key);
+      ASSERT_EQ(found, expected) << "seed " << seed;
+    }
+  }
+}
+
+TEST(LandmarkWindow, AnswersAsTheWholeMapDoes) {
+  const auto all = strewn(2000, 400, 1);
+  const LandmarkGrid whole(all);
+  int reads = 0;
+  LandmarkWindow window(
+      [&](const Eigen::AlignedBox2d& box) {
+        ++reads;
+        std::vector<MapLandmark> inside;
+        for (const MapLandmark& l : all)
+          if (box.contains(l.at)) inside.push_back(l);
+        return inside;
+      },
+      30);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector2d at(-150 + 1.5 * i, 20);
+    std::set<LandmarkKey> a, b;
+    const LandmarkGrid& near = window.around(at, 20);
+    near.near(at, 20, [&](std::uint32_t k) { a.insert(near[k].key); });
+    whole.near(at, 20, [&](std::uint32_t k) { b.insert(whole[k].key); });
+    ASSERT_EQ(a, b);
+  }
+  EXPECT_LT(reads, 12);
+}
+
+/// The cheapest of all assignments, by trying them all.
+double cheapest(const std::vector<std::vector<Choice>>& rows, double none, std::size_t row,
+                std::set<int>& taken) {
+  if (row == rows.size()) return 0;
+  double best = none + cheapest(rows, none, row + 1, taken);
+  for (const Choice& c : rows[row])
+    if (taken.insert(c.column).second) {
+      best = std::min(best, c.cost + cheapest(rows, none, row + 1, taken));
+      taken.erase(c.column);
+    }
+  return best;
+}
+
+TEST(AssignCheapest, IsTheBestOfAll) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    Random random(seed);
+    std::vector<std::vector<Choice>> rows(1 + random.below(5));
+    for (auto& row : rows)
+      for (int c = 0; c < 5; ++c)
+        if (random.chance(0.5)) row.push_back({c, random.uniform(-3, 9)});
+    const auto chosen = assign_cheapest(rows, 6);
+    double total = 0;
+    std::set<int> taken;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      total += chosen[r] ? rows[r][*chosen[r]].cost : 6;
+      if (chosen[r]) {
+        EXPECT_TRUE(taken.insert(rows[r][*chosen[r]].column).second);
+      }
+    }
+    taken.clear();
+    ASSERT_NEAR(total, cheapest(rows, 6, 0, taken), 1e-9) << "seed " << seed;
+  }
+}
+
+SeenLandmark seen_at(double range, double bearing) {
+  SeenLandmark s;
+  s.range = range;
+  s.range_sd = 0.1;
+  s.bearing = bearing;
+  s.bearing_sd = 0.02;
+  return s;
+}
+
+MapLandmark landmark_at(double x, double y, LandmarkKey key) {
+  MapLandmark l;
+  l.key = key;
+  l.at = {x, y};
+  return l;
+}
+
+// Two landmarks abreast, the robot's heading uncertain: each sighting for itself is nearest to the left one,
+// but together they fit only one way.
+TEST(Identify, JointAssociationsUseTheSharedHeading) {
+  const LandmarkGrid map({landmark_at(10, 0, 1), landmark_at(10, 1, 2), landmark_at(10, -8, 3)});
+  PoseEstimate robot;
+  robot.covariance = Eigen::Vector3d(1e-4, 1e-4, 0.01).asDiagonal();
+  const double turn = 0.07;  // the real heading is 0.07 rad to the right
+  SightingSet seen{{}, {}};
+  for (const auto& at : {Eigen::Vector2d(10, 0), Eigen::Vector2d(10, 1), Eigen::Vector2d(10, -8)})
+    seen.sightings.push_back(seen_at(at.norm(), std::atan2(at.y(), at.x()) + turn));
+  for (const char* association : {"jcbb", "joint"}) {
+    IdentificationOptions options;
+    options.association = association;
+    const auto matches = identify(seen, robot, map, {}, options).matches;
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_EQ(matches[i].verdict, Verdict::matched) << association << i;
+      EXPECT_EQ(map[matches[i].pairing.landmark].key, i + 1) << association;
+    }
+  }
+}
+
+TEST(Identify, MutualExclusion) {
+  const LandmarkGrid map({landmark_at(10, 0, 1)});
+  const SightingSet twice{{}, {seen_at(10, 0), seen_at(10.1, 0.01)}};
+  IdentificationOptions options;
+  const auto count = [&](const char* association) {
+    options.association = association;
+    return std::ranges::count(identify(twice, {}, map, {}, options).matches, Verdict::matched,
+                              &Match::verdict);
+  };
+  EXPECT_EQ(count("nearest"), 2) << "eq. 10 lets both have it";
+  EXPECT_EQ(count("greedy"), 1);
+  EXPECT_EQ(count("hungarian"), 1);
+  EXPECT_EQ(count("jcbb"), 1);
+  EXPECT_LE(count("joint"), 1);
+}
+
+TEST(Identify, SaysWhyNot) {
+  MapLandmark rock = landmark_at(10, 0, 1);
+  rock.features.value[0] = 1;
+  const LandmarkGrid map({rock});
+  const auto verdict = [&](SeenLandmark s) {
+    IdentificationOptions options;
+    return identify({{}, {s}}, {}, map, {}, options).matches[0].verdict;
+  };
+  SeenLandmark s = seen_at(10, 0);
+  s.type = TypeId{0};
+  EXPECT_EQ(verdict(s), Verdict::matched);
+  s.features.value[0] = 3;  // three times as wide
+  EXPECT_EQ(verdict(s), Verdict::features_differ);
+  s.type = TypeId{1};
+  EXPECT_EQ(verdict(s), Verdict::nothing_near);
+  s.type = kNoSuchType;
+  EXPECT_EQ(verdict(s), Verdict::unknown_type);
+  EXPECT_EQ(verdict(seen_at(30, 0)), Verdict::nothing_near);
+  EXPECT_EQ(verdict(seen_at(10.35, 0)), Verdict::too_far);
+  s = seen_at(10, 0);
+  s.identity = 99;
+  EXPECT_EQ(verdict(s), Verdict::unknown_type);
+}
+
+TEST(Identify, TwinsAreAmbiguousUntilFeaturesTellThemApart) {
+  MapLandmark small = landmark_at(10, 0.1, 1), large = landmark_at(10, -0.1, 2);
+  small.features.value[0] = 0.3;
+  large.features.value[0] = 0.6;
+  const LandmarkGrid map({small, large});
+  PoseEstimate robot;
+  robot.covariance = Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal();
+  SeenLandmark s = seen_at(10, 0);
+  s.type = TypeId{0};
+  EXPECT_EQ(identify({{}, {s}}, robot, map, {}, {}).matches[0].verdict, Verdict::ambiguous);
+  s.features.value[0] = 0.6;
+  const auto matches = identify({{}, {s}}, robot, map, {}, {}).matches;
+  ASSERT_EQ(matches[0].verdict, Verdict::matched);
+  EXPECT_EQ(map[matches[0].pairing.landmark].key, 2u);
+}
+
+// A landmark of which less is known must not win by that.
+TEST(Identify, MissingFeaturesNeitherHelpNorHurt) {
+  MapLandmark known = landmark_at(10, 0.05, 1), bare = landmark_at(10, -0.05, 2);
+  known.features.value[0] = 0.5;
+  const LandmarkGrid map({known, bare});
+  SeenLandmark s = seen_at(10, 0);
+  s.type = TypeId{0};
+  s.features.value[0] = 0.5;  // fits exactly
+  IdentificationOptions options;
+  options.association = "nearest";
+  const auto matches = identify({{}, {s}}, {}, map, {}, options).matches;
+  EXPECT_EQ(map[matches[0].pairing.landmark].key, 1u);
+}
+
+TEST(Identify, WedgeOfABearingFindsWhatASearchOfAllFinds) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed, "wedge");
+    const auto all = strewn(200, 150, seed);
+    const LandmarkGrid map(all);
+    PoseEstimate robot{{random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-3, 3)}, {}};
+    robot.covariance =
+        Eigen::Vector3d(random.uniform(0, 4), random.uniform(0, 4), random.uniform(0, 0.02)).asDiagonal();
+    SeenLandmark s;
+    s.bearing = random.uniform(-3, 3);
+    s.bearing_sd = random.uniform(0.001, 0.1);
+    IdentificationOptions options;
+    options.bearing_reach = 60;
+    std::set<LandmarkKey> found, expected;
+    for (const CandidatePair& p : candidates(s, {}, robot, map, {}, options).pairings)
+      found.insert(map[p.landmark].key);
+    for (const MapLandmark& l : all) {
+      const double range = (l.at - robot.pose.at()).norm();
+      if (range > 59 || range < 8) continue;  // near the apex and the rim the gate is not linear
+      const auto e = evidence_of(s, expect(robot.pose, {}, l.at), l.covariance);
+      if (joint_distance(e, robot.covariance).squares <= chi_square_quantile(0.99, 1)) expected.insert(l.key);
+    }
+    EXPECT_TRUE(std::ranges::includes(found, expected)) << "seed " << seed;
+  }
+}
+
+TEST(Paper, DistanceIsEquation11) {
+  const LandmarkGrid map({landmark_at(10, 0, 1)});
+  IdentificationOptions options;
+  options.distance = "paper";
+  const auto found = candidates(seen_at(10.1, 0.02), {}, {}, map, {}, options);
+  ASSERT_EQ(found.pairings.size(), 1u);
+  EXPECT_NEAR(found.pairings[0].squares, 1 + 1, 1e-9);  // one standard deviation each
+}
+
+TEST(Paper, WeightsOfEquation14) {
+  EXPECT_EQ(paper_weights(std::vector<double>{0, 5, 10}), (std::vector<double>{1, 0.5, 0}));
+  const std::vector<double> same{1, 1, 1};
+  EXPECT_EQ(paper_weights(std::vector<double>{0, 0, 0}), same) << "e_max = 0";
+  EXPECT_EQ(paper_weights(std::vector<double>{7, 7, 7}), same) << "all equal: 0 for each by the letter";
+  EXPECT_EQ(paper_weights(std::vector<double>{7}), std::vector<double>{1}) << "a single particle";
+}
+
+// By the letter of eqs. 12-14 a particle that matches nothing has error 0, the best there is.
+TEST(Paper, UnmatchedSightingsCostTheGate) {
+  const LandmarkGrid map({landmark_at(10, 0, 1)});
+  const FeatureScales scales;
+  WeightOptions options;
+  options.weights = "paper";
+  const SightingSet seen{{}, {seen_at(10, 0)}};
+  const Pose2 near{0.1, 0, 0}, nowhere{100, 0, 0};
+  const SightingScore sound(seen, map, scales, options, false);
+  EXPECT_LT(sound(near), sound(nowhere));
+  options.unmatched_cost = 0;
+  const SightingScore letter(seen, map, scales, options, false);
+  EXPECT_GT(letter(near), letter(nowhere));
+}
+
+TEST(SightingScore, IsTheDensityOfTheNearestLandmark) {
+  Random random(3);
+  const auto all = strewn(40, 20, 2, 0.1);
+  const LandmarkGrid map(all);
+  const FeatureScales scales;
+  WeightOptions options;
+  options.temper = 1;
+  const SightingSet seen{{0.3, 0.1, 0.2}, {seen_at(4, 0.3), seen_at(6, -0.8)}};
+  const SightingScore score(seen, map, scales, options, false);
+  for (int i = 0; i < 200; ++i) {
+    const Pose2 robot{random.uniform(-8, 8), random.uniform(-8, 8), random.uniform(-3, 3)};
+    double expected = 0;
+    for (const SeenLandmark& s : seen.sightings) {
+      double best = 0;
+      for (const MapLandmark& l : all) {
+        const auto e = evidence_of(s, expect(robot, seen.robot_from_sensor, l.at), l.covariance);
+        if (e.squares > chi_square_quantile(options.gate, 2)) continue;
+        best = std::max(best, std::exp(-(e.squares + e.log_det) / 2) / (2 * std::numbers::pi));
+      }
+      expected += std::log(options.clutter + best);
+    }
+    ASSERT_NEAR(score(robot), expected, 2e-3 * std::max(1.0, std::abs(expected)));
+  }
+}
+
+TEST(Resampling, DrawsEachWithinOneOfItsShare) {
+  Random random(9);
+  for (int i = 0; i < 100; ++i) {
+    std::vector<double> logs(50);
+    for (double& w : logs) w = random.uniform(-5, 0);
+    const auto weights = normalised(logs);
+    std::vector<int> count(50, 0);
+    for (const auto k : resample(weights, 200, random.uniform())) ++count[k];
+    for (std::size_t k = 0; k < 50; ++k) EXPECT_LT(std::abs(count[k] - 200 * weights[k]), 1 + 1e-9);
+  }
+}
+
+TEST(Resampling, HopelessWeightsBecomeEqual) {
+  const double none = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(normalised(std::vector<double>{none, none}), (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(normalised(std::vector<double>{-1e6, none}), (std::vector<double>{1, 0})) << "no underflow";
+}
+
+TEST(Resampling, KldCountOfFox) {
+  EXPECT_EQ(kld_count(1, 0.05), 1u);
+  EXPECT_NEAR(static_cast<double>(kld_count(100, 0.05)), 1349, 6);  // chi2(0.99, 99) = 134.64 over 2 x 0.05
+}
+
+}  // namespace
+}  // namespace waymark::testing
