@@ -47,6 +47,14 @@ struct DuneLaw {
   double brightness = 0.1;  ///< albedo against the ground's: +0.1 is a tenth brighter
 };
 
+/// Bright, knobby rock with scarps about it, standing above the regolith: what detectors should leave alone.
+struct OutcropLaw {
+  double cover = 0;         ///< share of the area
+  double height = 1.5;      ///< metres, of the scarp
+  double longest = 80;      ///< metres, of the largest patches
+  double brightness = 0.3;  ///< albedo against the ground's
+};
+
 struct AlbedoLaw {
   double mean = 0.25;      ///< normal albedo
   double variation = 0.1;  ///< standard deviation of log albedo, over `longest`
@@ -63,6 +71,7 @@ struct Ground {
   CraterLaw craters;
   RockLaw rocks;
   DuneLaw dunes;
+  OutcropLaw outcrops;
   AlbedoLaw albedo;
 };
 

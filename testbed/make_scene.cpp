@@ -44,6 +44,7 @@ Scene make_scene(const Ground& ground, std::uint64_t seed) {
   Grid<float> heights = coarse_relief(ground, nodes, finest, seed);
   const std::vector<CraterPlan> plans = draw_craters(ground, seed);
   for (const CraterPlan& plan : plans) dig(heights, nodes, plan);
+  const Grid<float> outcrops = raise_outcrops(heights, ground, nodes, seed);
   const Grid<float> dunes = blow_dunes(heights, ground, nodes, seed);
 
   Fractal all = relief_fractal(ground.relief, 2 * ground.cell, seed);
@@ -56,7 +57,7 @@ Scene make_scene(const Ground& ground, std::uint64_t seed) {
   Scene scene{.ground = ground,
               .seed = seed,
               .terrain = Terrain(std::move(heights), nodes.x0, nodes.y0, nodes.step, nodes.step),
-              .albedo = paint(ground, nodes, dunes, plans, seed),
+              .albedo = paint(ground, nodes, dunes, outcrops, plans, seed),
               .solids = {},
               .rocks = {},
               .craters = {}};

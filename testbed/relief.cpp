@@ -133,7 +133,7 @@ Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGri
 }
 
 Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>& dunes,
-                  const std::vector<CraterPlan>& craters, std::uint64_t seed) {
+                  const Grid<float>& outcrops, const std::vector<CraterPlan>& craters, std::uint64_t seed) {
   const AlbedoLaw& law = ground.albedo;
   NodeGrid about_middle = nodes;
   about_middle.x0 -= ground.east;
@@ -164,11 +164,12 @@ Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>
             freshness * fade * std::clamp(0.7 + std::min(1.0, 2.5 * (r - 0.8)) * streak, 0.0, 1.6));
       }
   }
-  const double brightness = std::log1p(std::max(-0.9, law.mean > 0 ? ground.dunes.brightness : 0));
+  const double sand = std::log1p(ground.dunes.brightness), stone = std::log1p(ground.outcrops.brightness);
   for (std::int64_t j = 0; j < nodes.rows; ++j)
     for (std::int64_t i = 0; i < nodes.columns; ++i)
       albedo(i, j) =
-          static_cast<float>(law.mean * std::exp(double(albedo(i, j)) + brightness * double(dunes(i, j))));
+          static_cast<float>(law.mean * std::exp(double(albedo(i, j)) + sand * double(dunes(i, j)) +
+                                                 stone * double(outcrops(i, j))));
   return albedo;
 }
 

@@ -20,8 +20,12 @@ Grid<float> coarse_relief(const Ground& ground, const NodeGrid& nodes, double fi
 /// How much of each node dunes cover, [0, 1], and how high they stand there (added to `heights`).
 Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGrid& nodes, std::uint64_t seed);
 
+/// Raises outcrops onto `heights` and returns how much of each node they cover.
+Grid<float> raise_outcrops(Grid<float>& heights, const Ground& ground, const NodeGrid& nodes,
+                           std::uint64_t seed);
+
 /// Normal albedo of each node.
 Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>& dunes,
-                  const std::vector<CraterPlan>& craters, std::uint64_t seed);
+                  const Grid<float>& outcrops, const std::vector<CraterPlan>& craters, std::uint64_t seed);
 
 }  // namespace waymark

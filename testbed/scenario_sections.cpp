@@ -78,6 +78,14 @@ void describe_dunes(Scenario& s, OptionVisitor& field) {
         {.help = "Against the ground: 0.1 is a tenth brighter", .min = -0.9, .max = 2});
 }
 
+void describe_outcrops(Scenario& s, OptionVisitor& field) {
+  OutcropLaw& o = s.ground.outcrops;
+  field("cover", o.cover, {.help = "Share of the ground that is bare rock", .min = 0, .max = 1});
+  field("height", o.height, {.help = "Of its scarps, metres", .min = 0, .max = 1e3});
+  field("longest", o.longest, {.help = "Largest patches, metres", .min = 0.1, .max = 1e5});
+  field("brightness", o.brightness, {.help = "Against the ground", .min = -0.9, .max = 3});
+}
+
 void describe_albedo(Scenario& s, OptionVisitor& field) {
   AlbedoLaw& a = s.ground.albedo;
   field("mean", a.mean, {.help = "Normal albedo", .min = 0.01, .max = 1});
@@ -149,6 +157,7 @@ const std::vector<ScenarioSection>& scenario_sections() {
       {"craters", "Size law and wear of the craters", describe_craters},
       {"rocks", "Size law and shapes of the rocks", describe_rocks},
       {"dunes", "Ripples and dunes", describe_dunes},
+      {"outcrops", "Bare rock with scarps", describe_outcrops},
       {"albedo", "Brightness of the ground", describe_albedo},
       {"sun", "Where the light comes from", describe_sun},
       {"picture", "Light, air and sensor", describe_picture},

@@ -56,10 +56,9 @@ std::string job_file(const Scenario& scenario) {
   if (scenario.crs == "local") dem["crs"] = "local";
   stages.push_back(dem);
   stages.push_back(images);
-  for (const char* stage :
-       {"rocks_from_shadows", "craters_from_bowls", "project_to_ground", "reject_implausible",
-        "reject_terrain_shadows", "reject_rim_shadows", "align_images", "merge_observations",
-        "value_landmarks"})
+  for (const char* stage : {"rocks_from_shadows", "craters_from_bowls", "project_to_ground",
+                            "reject_implausible", "reject_terrain_shadows", "reject_rim_shadows",
+                            "align_images", "merge_observations", "value_landmarks"})
     stages.push_back({{"stage", stage}});
   return Json{{"name", scenario.name}, {"stages", stages}}.dump(2) + "\n";
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -26,6 +27,16 @@ std::string whole_file(const std::string& path) {
   std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file && text.empty()) throw Error(ErrorCode::input, "cannot read the scenario", path);
   return text;
+}
+
+// Images of an older scene in the folder would be taken for images of this one.
+void check_strangers(const fs::path& images, const std::vector<Shot>& shots) {
+  for (const auto& entry : fs::directory_iterator(images)) {
+    const std::string name = entry.path().filename();
+    if (std::none_of(shots.begin(), shots.end(), [&](const Shot& shot) { return shot.name == name; }))
+      throw Error(ErrorCode::output, fmt::format("{} is not an image of this scene", name), images,
+                  "write to another folder, or remove the older images");
+  }
 }
 
 class Simulate final : public Command {
@@ -70,6 +81,7 @@ class Simulate final : public Command {
       fs::create_directories(folder / part, failed);
       if (failed) fail_output(folder / part, failed.message());
     }
+    check_strangers(folder / "images", shots);
     const GivenDem dem = given_dem(scenario, scene);
     const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
     write_raster(folder / "dem.tif", dem.heights,
