@@ -8,12 +8,14 @@
 
 #include "exporters/aside_folder.hpp"
 #include "exporters/report/histogram.hpp"
+#include "exporters/report/image_section.hpp"
 #include "exporters/report/landmark_section.hpp"
 #include "exporters/report/landmark_table.hpp"
 #include "exporters/report/map_drawing.hpp"
 #include "exporters/report/map_markers.hpp"
 #include "exporters/report/page_style.hpp"
 #include "exporters/report/run_section.hpp"
+#include "exporters/report/size_frequency.hpp"
 #include "exporters/wording.hpp"
 #include "geodb/map_store.hpp"
 
@@ -50,11 +52,19 @@ std::string place_of(const Crs& crs) {
   return crs.body().name + " \u00b7 " + crs.name() + code;
 }
 
-std::string section_html(const LandmarkSection& section, const Crs& crs, std::int64_t top) {
+bool counts_craters(const std::vector<LandmarkSection>& sections) {
+  return std::ranges::any_of(sections, [](const LandmarkSection& section) {
+    return section.type.drawn_as == Solid::bowl && !section.landmarks.empty();
+  });
+}
+
+std::string section_html(const LandmarkSection& section, const Crs& crs, const std::optional<CountArea>& area,
+                         std::int64_t top) {
   if (section.landmarks.empty()) return {};
-  return fmt::format("<section><h2>{}{}</h2><p>{}</p>\n{}{}</section>\n", svg_symbol(section.type, 20),
+  return fmt::format("<section><h2>{}{}</h2><p>{}</p>\n{}{}{}</section>\n", svg_symbol(section.type, 20),
                      escaped(title_of(section.type.name)), escaped(section.type.summary),
-                     histogram_figures(section), landmark_table(section, crs, top));
+                     histogram_figures(section), size_frequency_figures(section, area),
+                     landmark_table(section, crs, top));
 }
 
 std::string page(const MapStore& map, const std::string& title, const ReportOptions& options) {
@@ -69,7 +79,11 @@ std::string page(const MapStore& map, const std::string& title, const ReportOpti
       "header>\n<main>\n",
       escaped(title), kPageStyle, escaped(place_of(map.crs())));
   html += facts(sections, runs) + warning_list(latest) + map_figure(map, sections, options.relief_pixels);
-  for (const LandmarkSection& section : sections) html += section_html(section, map.crs(), options.top);
+  const auto area = counts_craters(sections) ? count_area(map) : std::nullopt;
+  for (const LandmarkSection& section : sections) html += section_html(section, map.crs(), area, options.top);
+  html += quality_section(map, sections, options.checks);
+  if (const std::string images = image_figures(map, options.images); !images.empty())
+    html += "<section><h2>Images</h2>" + images + "</section>\n";
   if (const std::string stages = stage_table(latest); !stages.empty())
     html += "<section><h2>What the run did</h2>" + stages + "</section>\n";
   html += "<section><h2>Where it comes from</h2>" + provenance(runs) +

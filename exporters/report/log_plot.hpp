@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+namespace waymark {
+
+/// A point with its standard deviation, all > 0 but for the deviation.
+struct LogPoint {
+  double x = 0, y = 0, sd = 0;
+  std::string tip;  ///< shown beside the pointer
+};
+
+/// What stands on and beside a plot.
+struct LogPlot {
+  std::string title, about, x_label, y_label;
+  std::string colour;  ///< of the points
+  std::vector<LogPoint> points;
+};
+
+/// A plot with logarithmic axes and equal decades both ways, as an HTML figure; bars reach one deviation up
+/// and down, to the frame where y - sd is not above 0. Empty for fewer than two points.
+std::string log_plot_figure(const LogPlot& plot);
+
+}  // namespace waymark
