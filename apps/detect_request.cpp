@@ -189,7 +189,7 @@ std::vector<Argument> arguments(DetectRequest& request) {
           "brightness of a colour image, else the first"),
       Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
       Argument{"--tile-pixels", "N", &request.piece, "Side of the pieces a large image is searched in"}
-          .or_else("4096")};
+          .or_else("8192")};
 }
 
 DetectPlan plan_of(const DetectRequest& request) {

@@ -22,7 +22,7 @@ struct DetectRequest {
   double min_diameter = std::numeric_limits<double>::quiet_NaN();
   double max_diameter = std::numeric_limits<double>::quiet_NaN();
   double min_confidence = 0.5;
-  std::int64_t band = 0, piece = 4096;
+  std::int64_t band = 0, piece = 8192;
 };
 std::vector<Argument> arguments(DetectRequest& request);
 

@@ -20,6 +20,12 @@ constexpr std::int64_t kLeastMargin = 64;  // pixels: shadows and backgrounds of
 constexpr double kShare = 16;              // a piece is so many times larger than the largest thing in it
 constexpr double kReach = 1.5;             // diameters about the centre that a detector looks at
 
+/// A length cut into as few equal parts as are no longer than `most`.
+std::int64_t equal_share(std::int64_t length, std::int64_t most) {
+  const std::int64_t parts = (length + most - 1) / most;
+  return (length + parts - 1) / parts;
+}
+
 std::vector<Piece> pieces_of(const ImageInfo& info, std::int64_t side, double max_diameter) {
   if (std::max(info.columns, info.rows) <= side) {
     const Window all{0, 0, info.columns, info.rows};
@@ -27,11 +33,12 @@ std::vector<Piece> pieces_of(const ImageInfo& info, std::int64_t side, double ma
   }
   const auto wanted = static_cast<std::int64_t>(std::ceil(kReach * max_diameter));
   const std::int64_t margin = std::clamp(wanted, kLeastMargin, 3 * side / 8);
-  const std::int64_t step = side - 2 * margin;
+  const std::int64_t across = equal_share(info.columns, side - 2 * margin),
+                     down = equal_share(info.rows, side - 2 * margin);
   std::vector<Piece> pieces;
-  for (std::int64_t row = 0; row < info.rows; row += step)
-    for (std::int64_t column = 0; column < info.columns; column += step) {
-      const Window own{column, row, std::min(step, info.columns - column), std::min(step, info.rows - row)};
+  for (std::int64_t row = 0; row < info.rows; row += down)
+    for (std::int64_t column = 0; column < info.columns; column += across) {
+      const Window own{column, row, std::min(across, info.columns - column), std::min(down, info.rows - row)};
       const std::int64_t left = std::max<std::int64_t>(0, column - margin),
                          top = std::max<std::int64_t>(0, row - margin);
       const std::int64_t right = std::min(info.columns, own.end_column() + margin),

@@ -10,7 +10,7 @@ namespace waymark {
 struct ImageSearch {
   double min_diameter = 8;       ///< pixels
   double max_diameter = 0;       ///< pixels; 0: 0.6 of the image's shorter side
-  std::int64_t piece = 4096;     ///< longest side of what is searched at once, pixels, >= 256
+  std::int64_t piece = 8192;     ///< longest side of what is searched at once, pixels, >= 256
   bool reduce_for_large = true;  ///< false: nothing larger than a sixteenth of a piece is looked for
   int threads = 0;               ///< 0: one per processor
 };
@@ -20,9 +20,9 @@ using FindThings = std::function<std::vector<Detection>(const Pixels&, double mi
 
 /// Searches an image piece by piece, so that memory does not grow with it; one that fits is searched whole.
 /// Pieces overlap by what the largest thing looked for needs, and keep what lies in their own part. Things
-/// larger than a sixteenth of a piece are looked for in the image reduced by a whole number. What two pieces or
-/// two scales found twice is kept once, the more certain. The most certain first, ties by row, then column:
-/// the same for any number of threads.
+/// larger than a sixteenth of a piece are looked for in the image reduced by a whole number. What two pieces
+/// or two scales found twice is kept once, the more certain. The most certain first, ties by row, then
+/// column: the same for any number of threads.
 std::vector<Detection> search_image(const ImageSource& image, const ImageSearch& search,
                                     const FindThings& find);
 

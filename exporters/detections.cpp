@@ -64,20 +64,23 @@ double rounded(double value, double steps) {
 class JsonPlaces {
  public:
   explicit JsonPlaces(const ImageDetections& found) : found_(found) {
-    if (!found.place || found.place->crs.kind() == CrsKind::local) return;
+    if (!found.place || found.place->crs.kind() == CrsKind::local) {
+      crs_ = Crs::local();
+      return;
+    }
     const bool on_earth = found.place->crs.body().name == earth().name;
-    Crs target = on_earth ? Crs::from_text("EPSG:4326") : geographic_of(found.place->crs);
-    to_degrees_.emplace(found.place->crs, target);
-    if (!on_earth && !target.authority().empty())
-      crs_ = {{"type", "name"},
-              {"properties",
-               {{"name", fmt::format("urn:ogc:def:crs:{}::{}", target.authority(), target.code())}}}};
-    named_ = on_earth || !crs_.is_null();
+    const Crs degrees = on_earth ? Crs::from_text("EPSG:4326") : geographic_of(found.place->crs);
+    to_degrees_.emplace(found.place->crs, degrees);
+    if (!on_earth) crs_ = degrees;
   }
 
-  /// RFC 7946 has no such member: it is only there where positions are not WGS 84.
+  /// RFC 7946 has no such member and means WGS 84: it is only there where positions are not. GDAL reads it.
   void name_crs(Json& collection) const {
-    if (!to_degrees_ || !named_ || !crs_.is_null()) collection["crs"] = crs_;
+    if (!crs_) return;
+    const std::string name = crs_->authority().empty()
+                                 ? crs_->wkt2()
+                                 : fmt::format("urn:ogc:def:crs:{}::{}", crs_->authority(), crs_->code());
+    collection["crs"] = {{"type", "name"}, {"properties", {{"name", name}}}};
   }
 
   Json coordinates(const PixelEllipse& outline) const {
@@ -91,8 +94,7 @@ class JsonPlaces {
  private:
   const ImageDetections& found_;
   std::optional<CrsTransform> to_degrees_;
-  Json crs_;
-  bool named_ = false;
+  std::optional<Crs> crs_;
 };
 
 Json value_or_null(double value, double steps) {

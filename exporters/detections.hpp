@@ -36,7 +36,7 @@ std::string detections_as_csv(const ImageDetections& found, const LandmarkType& 
 
 /// A GeoJSON collection of points with the same properties. A placed image on Earth gives longitude and
 /// latitude (RFC 7946); on another body positions in its geographic CRS, named by a `crs` member; an image
-/// that is not placed gives pixels, with `"crs": null`.
+/// that is not placed gives pixels, with a local one.
 std::string detections_as_geojson(const ImageDetections& found, const LandmarkType& type);
 
 /// A map: every detection is a landmark with one observation, the image has its outline. An image that is not
