@@ -64,19 +64,27 @@ double image_odds(const std::vector<double>& evidence) {
 
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,
                                        const std::vector<CraterCandidate>& candidates,
-                                       const CraterModel* model) {
+                                       const CraterModel* model, double min_probability) {
   const PatchSource patches(image.pixels, sun_angle);
-  std::vector<VerifiedBowl> bowls(candidates.size());
   std::vector<double> evidence(candidates.size());
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     const CraterCandidate& c = candidates[i];
     const double correlation = (patches.slope_correlation(c) + c.score) / 2;
-    const double seen = model ? model_evidence(*model, patches, c) : 0;
+    // What correlates this little stays below one in a hundred whatever the model says.
+    const bool hopeless = correlation < kEven - 0.14;
+    const double seen = !model ? 0 : hopeless ? -4.6 : model_evidence(*model, patches, c);
     evidence[i] = kTemperature * (seen + kPerCorrelation * (correlation - kEven));
-    bowls[i] = with_rim(image.pixels, c, sun_angle);
   });
   const double odds = kPriorTrust * image_odds(evidence);
-  for (std::size_t i = 0; i < bowls.size(); ++i) bowls[i].circle.score = logistic(evidence[i] + odds);
+  std::vector<CraterCandidate> likely;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (const double p = logistic(evidence[i] + odds); p >= min_probability) {
+      likely.push_back(candidates[i]);
+      likely.back().score = p;
+    }
+  std::vector<VerifiedBowl> bowls(likely.size());
+  tbb::parallel_for(std::size_t{0}, likely.size(),
+                    [&](std::size_t i) { bowls[i] = with_rim(image.pixels, likely[i], sun_angle); });
   return bowls;
 }
 

@@ -20,6 +20,6 @@ struct VerifiedBowl {
 /// order, deterministic.
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,
                                        const std::vector<CraterCandidate>& candidates,
-                                       const CraterModel* model);
+                                       const CraterModel* model, double min_probability = 0);
 
 }  // namespace waymark

@@ -57,7 +57,8 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                                        .max_diameter = sizes.largest,
                                                        .min_correlation = kLeastCorrelation}),
                         0.5);
-  return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr);
+  return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr,
+                      search.min_confidence);
 }
 
 }  // namespace

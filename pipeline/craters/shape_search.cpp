@@ -43,15 +43,19 @@ Bowl make_bowl(double diameter, const std::vector<Pixels>& shapes) {
 struct Sums {
   cv::Mat1d sum, squares;
   explicit Sums(const cv::Mat1f& tile) { cv::integral(tile, sum, squares, CV_64F, CV_64F); }
-  // n times the variance over the square of `half` about (column, row).
-  double spread(int column, int row, int half) const {
+  // n times the variance over squares of `half` about `count` cells of a row, from (column, row) on.
+  void spreads(int column, int row, int half, int count, double* out) const {
     const int side = 2 * half + 1;
-    const auto box = [&](const cv::Mat1d& s) {
-      return s(row - half + side, column - half + side) - s(row - half, column - half + side) -
-             s(row - half + side, column - half) + s(row - half, column - half);
-    };
-    const double total = box(sum);
-    return std::max(0.0, box(squares) - total * total / (side * side));
+    const double each = 1.0 / (double(side) * side);
+    const double *top = sum.ptr<double>(row - half) + column - half,
+                 *low = sum.ptr<double>(row - half + side) + column - half;
+    const double *top2 = squares.ptr<double>(row - half) + column - half,
+                 *low2 = squares.ptr<double>(row - half + side) + column - half;
+    for (int i = 0; i < count; ++i) {
+      const double total = low[i + side] - top[i + side] - low[i] + top[i];
+      const double total2 = low2[i + side] - top2[i + side] - low2[i] + top2[i];
+      out[i] = std::max(0.0, total2 - total * total * each);
+    }
   }
 };
 
@@ -67,11 +71,14 @@ cv::Mat1f correlation(const cv::Mat1f& spectrum, const Sums& sums, const Bowl& b
     cv::max(cv::InputArray(best), cv::InputArray(response(valid)), cv::OutputArray(best));
   }
   const double cells = (2.0 * bowl.half + 1) * (2.0 * bowl.half + 1);
-  for (int y = 0; y < inner; ++y)
-    for (int x = 0; x < inner; ++x) {
-      const double spread = sums.spread(x + margin, y + margin, bowl.half) + cells * noise * noise;
-      best(y, x) = spread > 0 ? static_cast<float>(best(y, x) / std::sqrt(spread)) : 0.0F;
-    }
+  std::vector<double> spread(static_cast<std::size_t>(inner));
+  const double floor = cells * noise * noise + 1e-30;
+  for (int y = 0; y < inner; ++y) {
+    sums.spreads(margin, y + margin, bowl.half, inner, spread.data());
+    float* row = best.ptr<float>(y);
+    for (int x = 0; x < inner; ++x)
+      row[x] /= static_cast<float>(std::sqrt(spread[static_cast<std::size_t>(x)] + floor));
+  }
   return best;
 }
 
@@ -89,7 +96,7 @@ void collect(const cv::Mat1f& score, const cv::Rect& core, double least, const T
   for (int y = core.y; y < core.y + core.height; ++y)
     for (int x = core.x; x < core.x + core.width; ++x) {
       const float s = score(y, x);
-      if (!(s >= least)) continue;
+      if (!(s >= least) || s < score(y, x - 1)) continue;
       bool highest = true;
       for (int j = -1; j <= 1 && highest; ++j)
         for (int i = -1; i <= 1 && highest; ++i)
