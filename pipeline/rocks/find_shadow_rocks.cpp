@@ -15,7 +15,7 @@ constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of t
 
 // Rocks are no ellipsoids: what the fit's own standard deviations are to be widened by (views 0 to 109 of the
 // testbed, docs/rocks.md).
-constexpr double kModelShare = 1.6;
+constexpr double kWidthShare = 1.7, kReachShare = 2.2;
 
 Pixels halved(const Pixels& image) {
   Pixels half(image.columns() / 2, image.rows() / 2);
@@ -41,8 +41,8 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   turn << light.ux, -light.uy, light.uy, light.ux;
   found.covariance =
       turn * Eigen::Vector2d{along_sd * along_sd, across_sd * across_sd}.asDiagonal() * turn.transpose();
-  found.diameter_sd = 2 * scale * kModelShare * rock.size.radius_sd;
-  found.shadow_reach = Measured{scale * rock.size.reach, scale * kModelShare * rock.size.reach_sd};
+  found.diameter_sd = 2 * scale * kWidthShare * rock.size.radius_sd;
+  found.shadow_reach = Measured{scale * rock.size.reach, scale * kReachShare * rock.size.reach_sd};
   found.confidence = judged.confidence;
   return found;
 }

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// How good the detector is, on views that nothing was fitted to. The figures are those of docs/rocks.md.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "pipeline/rocks/find_rocks.hpp"
+#include "tests/rocks/confidence_fit.hpp"
+#include "tests/rocks/made_view.hpp"
+#include "tests/rocks/rock_score.hpp"
+namespace waymark::testing {
+namespace {
+
+void print(const char* title, const RockScore& score) {
+  std::printf("%s\n%s", title, score.text().c_str());
+}
+
+RockScore score_of(RockScene scene, int scenes, RockMethod method = RockMethod::shadow) {
+  RockScore score;
+  for (int k = 0; k < scenes; ++k) {
+    scene.seed = static_cast<std::uint64_t>(900 + k);
+    scene.sun_angle = {40.0 + 77 * k};
+    const RockImage image = render(scene);
+    const double sun = to_radians(scene.sun_angle).value;
+    score.add(image,
+              find_rocks(image.pixels, {.method = method,
+                                        .sun_angle = Radians{sun},
+                                        .sun_elevation = to_radians(Degrees{90 - scene.incidence.value})}),
+              sun);
+  }
+  return score;
+}
+
+class AtIncidence : public ::testing::TestWithParam<double> {};
+
+TEST_P(AtIncidence, EllipsoidsOnLevelGround) {
+  const RockScore score = score_of({.columns = 256, .rows = 256, .incidence = {GetParam()}}, 2);
+  print("ellipsoids", score);
+  EXPECT_GE(score.recall(1), 0.95);
+  EXPECT_GE(score.recall(2), 0.98);
+  EXPECT_GE(score.precision(), 0.95);
+  EXPECT_LE(std::abs(score.width(1).bias), 0.10);
+  EXPECT_LE(std::abs(score.width(2).bias), 0.10);
+  EXPECT_LE(score.median_offset(2), 0.5);
+}
+
+TEST_P(AtIncidence, MixedShapesAmongDunesAndCraters) {
+  const RockScore score = score_of({.columns = 256,
+                                    .rows = 256,
+                                    .incidence = {GetParam()},
+                                    .shape = RockScene::Shape::mixed,
+                                    .dunes = 1.2,
+                                    .craters = 0.15},
+                                   2);
+  print("mixed, dunes, craters", score);
+  EXPECT_GE(score.recall(1), 0.85);
+  EXPECT_GE(score.recall(2), 0.9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sun, AtIncidence, ::testing::Values(30.0, 45.0, 60.0, 72.0));
+
+// Of the testbed's views, never used for fitting: craters, dunes, slopes, all rocks down to 1 px.
+TEST(RockTargets, MadeViews) {
+  const char* more = std::getenv("WAYMARK_ROCK_VIEWS");
+  const int views = more != nullptr ? std::atoi(more) : 6;
+  RockScore score, guessed, classic;
+  for (int k = 1000; k < 1000 + views; ++k) {
+    const MadeView view = made_view(k);
+    RockSearch search{.sun_angle = Radians{view.sun_angle}, .sun_elevation = view.elevation};
+    score.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
+    guessed.add(view.image, find_rocks(view.image.pixels, {}), view.sun_angle);
+    search.method = RockMethod::classic;
+    classic.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
+  }
+  print("testbed", score);
+  print("testbed, sun unknown", guessed);
+  print("testbed, classic", classic);
+  EXPECT_GE(score.recall(1), 0.85);
+  EXPECT_GE(score.precision(), 0.85);
+  EXPECT_GT(score.recall(0), classic.recall(0));
+}
+
+TEST(RockConfidence, DISABLED_Fit) {
+  std::vector<ConfidenceSample> samples;
+  for (const bool made : {true, false})
+    for (int k = 0; k < (made ? 110 : 15); ++k)
+      for (const auto& sample : confidence_samples(k, made)) samples.push_back(sample);
+  std::FILE* file = std::fopen("rock_confidence_weights.hpp", "w");
+  ASSERT_NE(file, nullptr);
+  std::fputs(fit_confidence(samples).c_str(), file);
+  std::fclose(file);
+}
+
+}  // namespace
+}  // namespace waymark::testing
