@@ -17,7 +17,7 @@ struct CraterSearch {
   CraterMethod method = CraterMethod::bowl;
   TypeId type = 0;  ///< id of the landmark type `crater`, copied into the detections
   /// Towards the sun in the image, from x (right) towards y (down). Unknown: estimated from the craters.
-  std::optional<Radians> sun_angle;
+  std::optional<Radians> sun_angle = {};
   double min_diameter = 8;      ///< pixels, >= 6
   double max_diameter = 0;      ///< pixels; 0: 0.6 of the image's shorter side
   double min_confidence = 0.5;  ///< weaker candidates are left out; 0 keeps all

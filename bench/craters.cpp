@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Craters in a made-up scene: pixels per second. Target: 1.5 Mpx/s per core.
+#include <benchmark/benchmark.h>
+
+#include "pipeline/craters/find_craters.hpp"
+#include "pipeline/craters/shaded_scene.hpp"
+
+namespace {
+
+using namespace waymark;
+
+const KnownScene& scene() {
+  static const KnownScene made = shaded_scene(5001, 1024);
+  return made;
+}
+
+void find(benchmark::State& state, CraterMethod method, bool verify) {
+  CraterSearch search;
+  search.method = method;
+  search.verify = verify;
+  search.sun_angle = scene().sun_angle;
+  for (auto _ : state) benchmark::DoNotOptimize(find_craters(scene().image, search));
+  state.SetItemsProcessed(state.iterations() * scene().image.columns() * scene().image.rows());
+}
+
+BENCHMARK_CAPTURE(find, bowl, CraterMethod::bowl, true)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(find, bowl_without_model, CraterMethod::bowl, false)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(find, edges, CraterMethod::edges, true)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+
+void sun(benchmark::State& state) {
+  for (auto _ : state) benchmark::DoNotOptimize(estimate_crater_sun_angle(scene().image));
+  state.SetItemsProcessed(state.iterations() * scene().image.columns() * scene().image.rows());
+}
+BENCHMARK(sun)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
