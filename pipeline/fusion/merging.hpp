@@ -20,7 +20,7 @@ struct MergeRules {
   double least_sd = 0.01, least_sd_of_radius = 0.03;
   /// Share of a position's variance that all images of a landmark have in common (shape, light, DEM), so that
   /// more images do not reduce it, [0, 1].
-  double common_share = 0.1;
+  double common_share = 0.15;
 };
 
 struct MergedObservations {

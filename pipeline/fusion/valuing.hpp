@@ -23,8 +23,8 @@ enum class CoverRule {
 struct ValuationRules {
   CoverRule cover = CoverRule::sound;
   SpreadRule spread = SpreadRule::sound;
-  CoveringRules covering;
-  ExistenceRules existence;
+  CoveringRules covering = {};
+  ExistenceRules existence = {};
 };
 
 /// Values landmarks (Rossmann et al. 3.3): #I that detected and #I that cover each (eqs. 4-5), q_f per
