@@ -226,7 +226,8 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
   result.types = row_types.names();
   const ColumnBindings bindings = bind_columns(how.columns, header, types, result.types);
   for (const auto& [target, expression] : bindings)
-    result.bindings.push_back(fmt::format("{} = {}", target, expression.text()));
+    result.bindings.push_back(
+        target == expression.text() ? target : fmt::format("{} = {}", target, expression.text()));
   TablePlaces places(header, how.table_crs, how.map_crs, names_say_degrees(bindings));
   result.crs = places.map_crs();
 

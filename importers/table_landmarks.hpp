@@ -27,7 +27,7 @@ struct ImportedTable {
   std::int64_t rows = 0;              ///< = landmarks + rejected
   std::map<std::string, std::int64_t> rejected_by_reason;
   std::string first_rejection;        ///< where and why; empty: none
-  std::vector<std::string> bindings;  ///< "radius = Diam_km*1000/2"
+  std::vector<std::string> bindings;  ///< "radius = Diam_km*1000/2"; "depth" for a column of that name
   std::vector<std::string> warnings;
 };
 
@@ -36,7 +36,7 @@ struct ImportedTable {
 /// type not asked for is rejected too. Missing features are unknown. Deviations stand for a spread; counts
 /// not given are 1. Throws Error: a cell that is no number or a broken row (naming its line), a uid used
 /// twice, no CRS told, and a table none of whose rows is plausible (most likely its unit is another).
-/// 0.3 M rows/s.
+/// About 0.15 M rows/s; memory is that of the landmarks.
 ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how);
 
 }  // namespace waymark

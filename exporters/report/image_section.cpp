@@ -175,11 +175,12 @@ std::string image_figures(const MapStore& map, std::int64_t most) {
   const auto images = seen_images(records, observations);
   if (images.empty()) return {};
   const std::size_t shown = std::min(images.size(), static_cast<std::size_t>(most));
-  std::string html = fmt::format(
-      "<p>{} of {} images, those in which most was found. Outlines: used, or dashed where rejected; the "
-      "reason "
-      "stands beside the pointer.</p>\n",
-      shown, number_text(static_cast<double>(records.size())));
+  std::string html = "<p>";
+  if (shown < records.size())
+    html += fmt::format("{} of {} images, those in which most was found. ", shown,
+                        number_text(static_cast<double>(records.size())));
+  html +=
+      "Outlined is what was used, and dashed what was rejected; the reason stands beside the pointer.</p>\n";
   for (std::size_t i = 0; i < shown; ++i) html += image_html(map, images[i]);
   return html;
 }
