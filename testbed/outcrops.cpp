@@ -21,9 +21,9 @@ Grid<float> raise_outcrops(Grid<float>& heights, const Ground& ground, const Nod
     return static_cast<std::uint32_t>(named_seed(seed, name));
   };
   const Grid<float> fields = fractal_grid({.longest = law.longest,
-                                           .shortest = std::max(2 * ground.cell, law.longest / 64),
+                                           .shortest = std::max(2 * ground.cell, law.longest / 12),
                                            .amplitude = 1,
-                                           .hurst = 0.7,
+                                           .hurst = 1.1,
                                            .seed = noise_seed("outcrops")},
                                           about_middle);
   std::vector<float> sorted(fields.cells().begin(), fields.cells().end());
@@ -35,7 +35,7 @@ Grid<float> raise_outcrops(Grid<float>& heights, const Ground& ground, const Nod
   const Fractal knobs{.longest = law.longest / 10,
                       .shortest = 2 * ground.cell,
                       .amplitude = 0.5,
-                      .hurst = 0.6,
+                      .hurst = 0.9,
                       .seed = noise_seed("outcrop knobs")};
   const Grid<float> rough = fractal_grid(knobs, about_middle);
   tbb::parallel_for(std::int64_t{0}, nodes.rows, [&](std::int64_t j) {
@@ -45,7 +45,7 @@ Grid<float> raise_outcrops(Grid<float>& heights, const Ground& ground, const Nod
       if (!(inside > 0)) continue;
       const double edge = inside * inside * (3 - 2 * inside);
       const double knob = 1 - std::min(1.5, 2 * std::abs(double(rough(i, j))));
-      heights(i, j) += static_cast<float>(law.height * edge * (0.7 + 0.3 * knob));
+      heights(i, j) += static_cast<float>(law.height * edge * (0.8 + 0.2 * knob));
       cover(i, j) = static_cast<float>(edge * (0.75 + 0.25 * knob));
     }
   });

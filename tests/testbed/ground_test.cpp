@@ -168,6 +168,23 @@ TEST(Rocks, FollowGolombeksLaw) {
     EXPECT_LE(scene.rocks[i].width, scene.rocks[i - 1].width);
 }
 
+TEST(Outcrops, StandAboveTheGroundAndAreBright) {
+  Ground ground = bare_site();
+  ground.width = ground.height = 300;
+  const Scene bare = make_scene(ground, 2);
+  ground.outcrops = {.cover = 0.2, .height = 3, .longest = 60, .brightness = 0.5};
+  const Scene rocky = make_scene(ground, 2);
+  double covered = 0;
+  for (std::size_t i = 0; i < bare.albedo.cells().size(); ++i) {
+    const float rise = rocky.terrain.heights().cells()[i] - bare.terrain.heights().cells()[i];
+    ASSERT_GE(rise, 0);
+    ASSERT_LE(rise, 3.01F);
+    covered += rise > 0 ? 1 : 0;
+    ASSERT_EQ(rise > 0, rocky.albedo.cells()[i] > bare.albedo.cells()[i] * 1.0001F || rise < 0.01F);
+  }
+  EXPECT_NEAR(covered / double(bare.albedo.cells().size()), 0.2, 0.01);
+}
+
 TEST(Scene, IsTheSameBitForBitOnOneThread) {
   const Scene many = make_scene(small_site(), 5);
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
