@@ -15,6 +15,7 @@ namespace waymark {
 std::string text_of_file(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
+  if (in && !std::filesystem::is_directory(file) && in.peek() == std::ifstream::traits_type::eof()) return {};
   if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf()))
     throw Error(ErrorCode::input, "cannot read the file", file.string(), "is it there, and may it be read?");
   return text.str();

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/error.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/detectors/laser_stems.hpp"
+#include "localization/hypotheses.hpp"
+#include "localization/kalman.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/play_log.hpp"
+#include "localization/track_score.hpp"
+
+namespace waymark::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TypeRegistry all_types() {
+  TypeRegistry types;
+  register_landmark_types(types);
+  return types;
+}
+
+class WaymarkLog : public ::testing::Test {
+ protected:
+  RobotLog read(const std::string& text) {
+    std::ofstream(file_) << text;
+    return import_log(file_, all_types());
+  }
+  std::string refusal(const std::string& text) {
+    try {
+      read(text);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "none";
+  }
+  void TearDown() override { fs::remove(file_); }
+  fs::path file_ = fs::temp_directory_path() / ("waymark_log_" + std::to_string(getpid()) + ".jsonl");
+};
+
+TEST_F(WaymarkLog, HoldsAllSensors) {
+  const RobotLog log = read(
+      R"({"kind":"header","version":1,"frame":"map","start":{"x":1,"y":2,"yaw":0.5}}
+{"kind":"truth","t":0,"x":1,"y":2,"yaw":0.5}
+{"kind":"odometry","t":0,"v":1,"omega":0.1}
+
+{"kind":"sightings","t":0.5,"mount":{"x":0.3,"y":0},"items":[{"type":"rock","range":4,"bearing":-0.2,"landmark":"rk-1","features":{"radius":{"value":0.4,"sd":0.05}}},{"bearing":1}]}
+{"kind":"laser","t":0.6,"first_angle":-1.57,"angle_step":0.1,"ranges":[1,null,3]}
+{"kind":"gnss","t":0.7,"x":1,"y":2,"sd":3}
+{"kind":"car","t":0.8,"v":1,"steering":0.1}
+{"kind":"step","t":0.9,"dx":1,"dy":0,"dyaw":0.1}
+{"kind":"sonar","t":1}
+)");
+  ASSERT_EQ(log.events.size(), 6u);
+  EXPECT_EQ(log.truth.size(), 1u);
+  EXPECT_EQ(log.start, (Pose2{1, 2, 0.5}));
+  const auto& seen = std::get<SightingSet>(log.events[1].what);
+  EXPECT_EQ(seen.robot_from_sensor.x, 0.3);
+  EXPECT_EQ(seen.sightings[0].identity, landmark_key("rk-1"));
+  EXPECT_EQ(seen.sightings[0].features.value[0], 0.4);
+  EXPECT_DOUBLE_EQ(seen.sightings[0].features.variance[0], 0.0025);
+  EXPECT_FALSE(seen.sightings[1].range);
+  EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
+}
+
+TEST_F(WaymarkLog, SaysWhatIsWrongAndWhere) {
+  const std::string ok = R"({"kind":"odometry","t":0,"v":1,"omega":0})"
+                         "\n";
+  EXPECT_THAT(refusal(""), HasSubstr("the log is empty"));
+  EXPECT_THAT(refusal(ok + "nonsense\n"), AllOf(HasSubstr("no JSON object"), HasSubstr("line 2")));
+  EXPECT_THAT(refusal(ok + R"({"kind":"odometry","t":NaN,"v":1,"omega":0})"), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal(R"({"kind":"odometry","t":0,"omega":0})"), HasSubstr("has no \"v\""));
+  EXPECT_THAT(refusal(R"({"kind":"odometry","t":"0","v":1,"omega":0})"), HasSubstr("\"t\" must be a number"));
+  EXPECT_THAT(refusal(R"({"kind":"sightings","t":0,"items":[{"bearing":35}]})"),
+              HasSubstr("\"bearing\" is 35: angles are radians"));
+  EXPECT_THAT(refusal(R"({"kind":"sightings","t":0,"items":[{"bearing":0,"range_sd":-1}]})"),
+              HasSubstr("\"range_sd\" must be above 0"));
+  EXPECT_THAT(
+      refusal(
+          R"({"kind":"sightings","t":0,"items":[{"type":"tree","bearing":0,"features":{"diameter":-0.3}}]})"),
+      HasSubstr("\"diameter\" must be above 0, is -0.3"));
+  EXPECT_THAT(
+      refusal(R"({"kind":"sightings","t":0,"items":[{"type":"tree","bearing":0,"features":{"radius":1}}]})"),
+      HasSubstr("the feature \"radius\", which the type tree has not"));
+  EXPECT_THAT(refusal(R"({"kind":"header","version":2})"), HasSubstr("is of version 2"));
+  EXPECT_THAT(refusal(R"({"kind":"header","frame":"utm"})"), HasSubstr("must be \"map\" or \"crs\""));
+}
+
+TEST_F(WaymarkLog, TimeThatRunsBackwardsIsSortedAndReported) {
+  const RobotLog log = read(R"({"kind":"odometry","t":5,"v":1,"omega":0}
+{"kind":"odometry","t":1,"v":2,"omega":0}
+{"kind":"odometry","t":1,"v":3,"omega":0}
+)");
+  EXPECT_EQ(log.events.front().t, 1);
+  EXPECT_THAT(log.remarks,
+              ElementsAre(HasSubstr("1 times run backwards"), HasSubstr("1 odometry readings have the time"),
+                          HasSubstr("1 gaps of more than 1 s in the odometry, the longest 4.0 s")));
+}
+
+TEST_F(WaymarkLog, TypesTheMapLacksAreRejectedNotMatched) {
+  const RobotLog log =
+      read(R"({"kind":"sightings","t":0,"items":[{"type":"boulder","bearing":0,"range":3}]})");
+  EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("type 'boulder', which the map does not have")));
+  MapLandmark landmark;
+  landmark.at = {3, 0};
+  ExtendedKalman filter({}, LandmarkWindow{LandmarkGrid({landmark})}, FeatureScales(all_types()));
+  const Track track = play(log, filter, {});
+  EXPECT_EQ(track.verdicts[static_cast<std::size_t>(Verdict::unknown_type)], 1);
+}
+
+TEST(PlayLog, ASpeedHoldsNoLongerThanItMay) {
+  RobotLog log;
+  log.events.push_back({0, TwistReading{1, 0, 0}});
+  log.events.push_back({10, TwistReading{0, 0, 0}});
+  DeadReckoning robot({});
+  PlayOptions options;
+  options.longest_hold = 2;
+  const Track track = play(log, robot, options);
+  EXPECT_DOUBLE_EQ(track.rows.back().at.pose.x, 2);
+}
+
+TEST(TrackScore, AlignmentTakesTurnShiftAndScaleAway) {
+  Track track;
+  std::vector<StampedPose> truth;
+  const PlaneAlignment by{{5, -3, 0.7}, 2};
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector2d p(i * 0.1, std::sin(i * 0.2));
+    const Eigen::Vector2d q = by(p);
+    TrackRow row;
+    row.t = i;
+    row.at = {{p.x(), p.y(), 0}, Eigen::Matrix3d::Identity()};
+    track.rows.push_back(row);
+    truth.push_back({static_cast<double>(i), {q.x(), q.y(), 0.7}});
+  }
+  EXPECT_NEAR(score(track, truth, TrackAlignment::sim2, true).ate_rmse, 0, 1e-9);
+  EXPECT_GT(score(track, truth, TrackAlignment::se2, true).ate_rmse, 0.5);
+  EXPECT_NEAR(*score(track, truth, TrackAlignment::se2, true).heading_rmse_deg, 0, 1e-6);
+}
+
+TEST(LaserStems, FindsAPostBeforeTheBackground) {
+  LaserScan scan{.robot_from_sensor = {},
+                 .first_angle = -1.5,
+                 .angle_step = 0.01,
+                 .ranges = std::vector<float>(301, 81.0F),
+                 .most_range = 80};
+  for (const std::size_t i : {150, 151, 152, 153, 154}) scan.ranges[i] = 10;  // 0.5 m wide
+  for (std::size_t i = 200; i < 240; ++i) scan.ranges[i] = 12;                // a wall of 4.8 m
+  const auto stems = find_stems(scan, {});
+  ASSERT_EQ(stems.size(), 1u);
+  EXPECT_NEAR(stems[0].bearing, 0.02, 1e-9);
+  EXPECT_NEAR(stems[0].range, 10.25, 0.01);
+  EXPECT_NEAR(stems[0].diameter, 0.5, 0.01);
+  EXPECT_TRUE(find_stems({}, {}).empty());
+}
+
+/// Real robots with motion-capture truth; the data stay outside the repository.
+class Mrclam : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(folder_)) GTEST_SKIP() << folder_ << " is not on this machine";
+  }
+  struct Pooled {
+    double rmse = 0, heading = 0;
+    std::vector<double> medians;
+    std::int64_t named = 0, wrong = 0;
+  };
+  template <class Make>
+  Pooled follow(bool identities, Make&& make) {
+    const TypeRegistry types = all_types();
+    const TypeId beacon = types.id("beacon");
+    const SemanticMap map(types, Crs::local(), import_mrclam_landmarks(folder_, beacon, types[beacon]), {});
+    IdentificationOptions options;
+    options.use_identities = identities;
+    Pooled all;
+    double rows = 0;
+    for (int robot = 1; robot <= 5; ++robot) {
+      RobotLog log = import_mrclam_log(folder_, robot, types);
+      place_in(log, map.frame());
+      PoseEstimate start{*pose_at(log.truth, log.events.front().t, 5), {}};
+      start.covariance = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal();
+      const auto localizer =
+          make(start, LandmarkWindow{LandmarkGrid(landmarks_of(map))}, FeatureScales(types), options);
+      const Track track = play(log, *localizer, {});
+      const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
+      const auto n = static_cast<double>(s.poses);
+      all.rmse += n * s.ate_rmse * s.ate_rmse;
+      all.heading += n * *s.heading_rmse_deg * *s.heading_rmse_deg;
+      all.medians.push_back(s.ate_median);
+      all.named += track.named;
+      all.wrong += track.wrong;
+      rows += n;
+    }
+    all.rmse = std::sqrt(all.rmse / rows);
+    all.heading = std::sqrt(all.heading / rows);
+    return all;
+  }
+  fs::path folder_ = fs::path(WAYMARK_SOURCE_DIR) / "../shared/data/localization/mrclam/MRCLAM_Dataset6";
+};
+
+TEST_F(Mrclam, ExtendedKalmanWithIdentities) {
+  const Pooled all = follow(true, [](auto&&... given) { return std::make_unique<ExtendedKalman>(given...); });
+  EXPECT_LE(all.rmse, 0.25);
+  EXPECT_LE(all.heading, 6.6);
+}
+
+TEST_F(Mrclam, UnscentedKalmanWithIdentities) {
+  const Pooled all =
+      follow(true, [](auto&&... given) { return std::make_unique<UnscentedKalman>(given...); });
+  EXPECT_LE(all.rmse, 0.25);
+}
+
+TEST_F(Mrclam, HypothesesWithoutIdentities) {
+  const Pooled all =
+      follow(false, [](auto&&... given) { return std::make_unique<HypothesesFilter>(given...); });
+  EXPECT_LE(all.rmse, 0.35);
+  EXPECT_GT(all.named, 5000);
+  EXPECT_LT(static_cast<double>(all.wrong), 0.05 * static_cast<double>(all.named));
+}
+
+TEST_F(Mrclam, ParticlesWithIdentities) {
+  const Pooled all = follow(true, [](auto&&... given) { return std::make_unique<ParticleFilter>(given...); });
+  EXPECT_LE(all.rmse, 0.35);
+}
+
+TEST_F(Mrclam, ParticlesFromNowhereWithoutIdentities) {
+  const Pooled all = follow(false, [](const PoseEstimate&, auto&&... given) {
+    return std::make_unique<ParticleFilter>(std::nullopt, given...);
+  });
+  for (const double median : all.medians) EXPECT_LT(median, 0.5);
+}
+
+}  // namespace
+}  // namespace waymark::testing
