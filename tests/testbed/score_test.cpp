@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/score.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "testbed/score_match.hpp"
+
+namespace waymark::testing {
+namespace {
+
+ScoredThing thing(double x, double y, double diameter) {
+  ScoredThing t;
+  t.at = {x, y};
+  t.diameter = diameter;
+  return t;
+}
+
+TEST(Score, CountsByHand) {
+  const std::vector<ScoredThing> truth{thing(0, 0, 4), thing(10, 0, 4), thing(20, 0, 2)};
+  const std::vector<ScoredThing> found{thing(1, 0, 4.4), thing(0.5, 0.5, 4), thing(30, 0, 4)};
+  const Score s = score(found, truth, {}, std::vector<double>{0, 3});
+  EXPECT_EQ(s.match, (std::vector<int>{-1, 0, -1}));  // the nearest is the match, the other its double
+  EXPECT_EQ(s.all.truth, 3);
+  EXPECT_EQ(s.all.matched, 1);
+  EXPECT_EQ(s.doubled, 1);
+  EXPECT_DOUBLE_EQ(s.all.precision(), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(s.all.recall(), 1.0 / 3);
+  EXPECT_EQ(s.by_size[0].truth, 1);
+  EXPECT_EQ(s.by_size[1].truth, 2);
+  EXPECT_DOUBLE_EQ(s.position_median, std::sqrt(0.5));
+}
+
+TEST(Score, IgnoredTruthCountsNeitherWay) {
+  std::vector<ScoredThing> truth{thing(0, 0, 4), thing(10, 0, 4)};
+  truth[0].ignored = true;
+  const std::vector<ScoredThing> found{thing(0, 0, 4), thing(10, 0, 4)};
+  const Score s = score(found, truth, {});
+  EXPECT_EQ(s.match, (std::vector<int>{-2, 1}));
+  EXPECT_EQ(s.all.f1(), 1);
+}
+
+TEST(Score, SmallThingsAreNotAskedFor) {
+  const Score s =
+      score(std::vector{thing(0, 0, 3), thing(9, 9, 3)}, std::vector{thing(0, 0, 3)}, {.min_diameter = 5});
+  EXPECT_EQ(s.all.truth, 0);
+  EXPECT_EQ(s.all.found, 0);
+  EXPECT_TRUE(std::isnan(s.all.recall()));
+}
+
+TEST(Score, SizesMustBeAlike) {
+  EXPECT_EQ(score(std::vector{thing(0, 0, 1)}, std::vector{thing(0, 0, 10)}, {}).all.matched, 0);
+  EXPECT_EQ(score(std::vector{thing(0, 0, 1)}, std::vector{thing(0, 0, 10)}, {.size_ratio = 0}).all.matched,
+            1);
+}
+
+TEST(Score, OverlapOfCircles) {
+  EXPECT_DOUBLE_EQ(circle_overlap(0, 2, 2), 1);
+  EXPECT_DOUBLE_EQ(circle_overlap(0, 2, 4), 0.25);
+  EXPECT_DOUBLE_EQ(circle_overlap(3, 2, 4), 0);
+  EXPECT_NEAR(circle_overlap(1, 2, 2), 0.243, 1e-3);  // lens 1.2284 of 2 pi - 1.2284
+}
+
+TEST(Score, ByOverlapTheMostConfidentComesFirst) {
+  std::vector<ScoredThing> found{thing(0.2, 0, 10), thing(0.5, 0, 10)};
+  found[0].confidence = 0.5, found[1].confidence = 0.9;
+  const Score s = score(found, std::vector{thing(0, 0, 10)}, {.by = MatchRules::By::overlap});
+  EXPECT_EQ(s.match, (std::vector<int>{-1, 0}));
+  EXPECT_DOUBLE_EQ(s.average_precision, 1);  // the right one is ranked first
+}
+
+TEST(Score, EllipsesAndCalibration) {
+  std::vector<ScoredThing> found, truth;
+  for (int i = 0; i < 10; ++i) {
+    found.push_back(thing(100.0 * i + (i < 9 ? 1 : 3), 0, 20));
+    found.back().covariance = Eigen::Matrix2d::Identity();
+    found.back().confidence = 0.85;
+    if (i != 5) truth.push_back(thing(100.0 * i, 0, 20));
+  }
+  const Score s = score(found, truth, {});
+  EXPECT_EQ(s.with_covariance, 9);
+  EXPECT_NEAR(s.inside_90, 8.0 / 9, 1e-12);  // 3 sd is outside
+  EXPECT_NEAR(s.nees, (8 * 1 + 9) / 9.0, 1e-12);
+  EXPECT_NEAR(s.confidence_error, std::abs(0.85 - 0.9), 1e-12);
+}
+
+TEST(Score, FeaturesAreComparedByName) {
+  std::vector<ScoredThing> found{thing(0, 0, 4)}, truth{thing(0, 0, 5)};
+  found[0].features = {{"height", 1.1}, {"other", 3}};
+  truth[0].features = {{"height", 1.0}};
+  const Score s = score(found, truth, {});
+  EXPECT_NEAR(s.features.at("height").relative_bias, 0.1, 1e-12);
+  EXPECT_NEAR(s.features.at("diameter").bias, -1, 1e-12);
+  EXPECT_FALSE(s.features.contains("other"));
+}
+
+TEST(Score, NothingAgainstNothing) {
+  const Score s = score({}, {}, {});
+  EXPECT_TRUE(std::isnan(s.all.f1()));
+  EXPECT_TRUE(std::isnan(s.inside_90));
+}
+
+}  // namespace
+}  // namespace waymark::testing
