@@ -33,7 +33,7 @@ std::string utm_zone(double lon, double lat);
 struct CameraRecord {
   std::string image = {};
   std::string place = {};             ///< in the file, for messages: "/images/3", "line 12"
-  std::optional<Camera> camera = {};  ///< columns and rows 0: not said, cx and cy count from the middle
+  std::optional<Camera> camera = {};  ///< columns and rows 0: not said; cx, cy NaN: the middle
   std::optional<Eigen::Isometry3d> world_from_camera = {};     ///< OpenCV axes: x right, y down, z forward
   std::optional<Eigen::Matrix<double, 6, 6>> covariance = {};  ///< as PosedCamera's, in the world's axes
   std::optional<Sun> sun = {};

@@ -23,9 +23,9 @@ Camera fit_camera(const Camera& camera, std::int64_t columns, std::int64_t rows,
   Camera fitted = camera;
   fitted.columns = columns;
   fitted.rows = rows;
-  if (camera.columns == 0) {
-    fitted.cx += static_cast<double>(columns) / 2 - 0.5;
-    fitted.cy += static_cast<double>(rows) / 2 - 0.5;
+  if (std::isnan(camera.cx)) {
+    fitted.cx = static_cast<double>(columns - 1) / 2;
+    fitted.cy = static_cast<double>(rows - 1) / 2;
   }
   if (camera.columns == 0 || (camera.columns == columns && camera.rows == rows)) return fitted;
   const double across = static_cast<double>(columns) / static_cast<double>(camera.columns);
@@ -55,8 +55,8 @@ void check_camera(const Camera& camera, const std::string& file, const std::stri
   if (!(camera.fx != 0 && camera.fy > 0))
     refuse(fmt::format("the focal length is {} x {} pixels", camera.fx, camera.fy),
            "it must be positive; of a mirrored image fx is negative");
-  bool finite = std::isfinite(camera.fx) && std::isfinite(camera.fy) && std::isfinite(camera.cx) &&
-                std::isfinite(camera.cy) && std::isfinite(camera.skew);
+  bool finite = std::isfinite(camera.fx) && std::isfinite(camera.fy) && std::isfinite(camera.skew);
+  finite = finite && (camera.columns == 0 || (std::isfinite(camera.cx) && std::isfinite(camera.cy)));
   for (const double k : camera.distortion) finite = finite && std::isfinite(k);
   if (!finite) refuse("a number of the camera is not finite", "correct the file");
   if (camera.columns == 0) return;

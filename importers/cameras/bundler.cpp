@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "core/error.hpp"
 #include "importers/camera_file.hpp"
@@ -58,6 +59,7 @@ CameraRecord next_record(Numbers& numbers) {
   for (int i = 0; i < 9; ++i) camera_from_world.linear()(i / 3, i % 3) = numbers.next("R");
   for (int i = 0; i < 3; ++i) camera_from_world.translation()[i] = numbers.next("t");
   if (!(camera.fx > 0)) return record;
+  camera.cx = camera.cy = std::numeric_limits<double>::quiet_NaN();  // the middle of the image
   record.camera = camera;
   record.world_from_camera = Eigen::Isometry3d(camera_from_world.inverse());
   record.world_from_camera->linear() *= Eigen::Vector3d(1, -1, -1).asDiagonal();

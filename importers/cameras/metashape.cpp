@@ -42,7 +42,10 @@ class Reader {
     const std::string content = content_of(path_);
     const GdalListener gdal;
     document_.reset(CPLParseXMLString(content.c_str()));
-    chunk_ = document_ ? CPLSearchXMLNode(document_.get(), "chunk") : nullptr;
+    Node root = document_ ? CPLGetXMLNode(document_.get(), "=document") : nullptr;
+    const auto chunks = children(root, "chunk");
+    if (chunks.size() > 1) file_.warnings.push_back(path_ + ": it has several chunks, the first is used");
+    chunk_ = chunks.empty() ? nullptr : chunks.front();
     if (!chunk_)
       throw Error(ErrorCode::input, "this is no camera file of Metashape: it has no chunk", path_,
                   "export it with File > Export > Export Cameras, format Agisoft XML");
@@ -55,8 +58,6 @@ class Reader {
     if (without_pose_ > 0)
       file_.warnings.push_back(fmt::format("{}: {} of {} cameras have no pose: not aligned", path_,
                                            without_pose_, file_.images.size()));
-    if (children(document_.get(), "chunk").size() > 1)
-      file_.warnings.push_back(path_ + ": it has several chunks, the first is used");
     return std::move(file_);
   }
 

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "importers/hash.hpp"
+#include "importers/image_set.hpp"
+#include "importers/list_images.hpp"
+#include "importers/stages.hpp"
+#include "pipeline/engine/image_item.hpp"
+#include "pipeline/engine/runner.hpp"
+#include "tests/importers/raster_maker.hpp"
+
+namespace waymark::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// A folder with images of 4 x 4 pixels.
+fs::path folder_of(const std::string& name, const std::vector<std::string>& images) {
+  const fs::path folder = fs::path(write_text(name + ".txt", "")).parent_path() / name;
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  for (const std::string& image : images) {
+    fs::create_directories((folder / image).parent_path());
+    std::ofstream(folder / image) << "P5 4 4 255\nabcdefghijklmnop";
+  }
+  return folder;
+}
+
+std::string cameras_in(const fs::path& folder, const std::vector<std::string>& images,
+                       const std::string& extra = "") {
+  std::string list;
+  for (const std::string& image : images)
+    list +=
+        (list.empty() ? "" : ",") + std::string(R"({"name": ")") + image +
+        R"(", "camera": {"columns": 4, "rows": 4, "fx": 5, "fy": 5, "cx": 1.5, "cy": 1.5}, "centre": [0, 0, 10],)" +
+        R"("rotation": [[1, 0, 0], [0, -1, 0], [0, 0, -1]]})";
+  const std::string path = (folder / "cameras.json").string();
+  std::ofstream(path) << R"({"waymark_cameras": 1, "frame": {"axes": "grid", "crs": "local"},)" << extra
+                      << R"("images": [)" << list << "]}";
+  return path;
+}
+
+TEST(ListImages, FindsTheImagesOfACameraFileBesideIt) {
+  const fs::path folder = folder_of("beside", {"images/b.pgm", "images/a.pgm", "images/notes.txt"});
+  const ListedImages listed = list_images({.cameras = cameras_in(folder, {"b.pgm", "a.pgm"})});
+  ASSERT_EQ(listed.images.size(), 2u);
+  EXPECT_EQ(listed.images[0].name, "a.pgm");
+  EXPECT_TRUE(listed.images[0].view);
+  EXPECT_THAT(listed.warnings, ElementsAre());
+}
+
+TEST(ListImages, MissingAndDamagedImagesAreListedAndTheRestGoesOn) {
+  const fs::path folder = folder_of("half", {"a.pgm", "c.pgm"});
+  std::ofstream(folder / "d.pgm") << "no image";
+  const ListedImages listed = list_images(
+      {.files = {folder.string()}, .cameras = cameras_in(folder, {"a.pgm", "b.pgm", "c.pgm", "d.pgm"})});
+  ASSERT_EQ(listed.images.size(), 4u);
+  EXPECT_EQ(listed.images[1].columns, 0);
+  EXPECT_EQ(listed.images[2].columns, 4);
+  EXPECT_THAT(listed.warnings, ElementsAre(AllOf(HasSubstr("2 of 4 images cannot be read"),
+                                                 HasSubstr("b.pgm: there is no such file"))));
+  const ImageSet set = image_set(listed.images);
+  EXPECT_THAT(message_of([&] { set[1]->read({0, 0, 4, 4}); }), HasSubstr("no such file"));
+  EXPECT_EQ(set[2]->read({0, 0, 1, 1})(0, 0), 'a');
+}
+
+TEST(ListImages, ASingleImageOfACameraFileIsNoGap) {
+  const fs::path folder = folder_of("single", {"a.pgm", "b.pgm"});
+  const ListedImages listed = list_images(
+      {.files = {(folder / "a.pgm").string()}, .cameras = cameras_in(folder, {"a.pgm", "b.pgm"})});
+  EXPECT_EQ(listed.images.size(), 1u);
+}
+
+TEST(ListImages, SaysWhichImagesHaveNoPlace) {
+  const fs::path folder = folder_of("placeless", {"a.pgm", "z.pgm"});
+  const ListedImages listed =
+      list_images({.files = {(folder / "*.pgm").string()}, .cameras = cameras_in(folder, {"a.pgm"})});
+  EXPECT_FALSE(listed.images[1].view);
+  EXPECT_THAT(listed.warnings,
+              ElementsAre(HasSubstr("1 of 2 images have neither a pose nor a usable georeference: z.pgm")));
+}
+
+TEST(ListImages, FoldersTellImagesOfOneNameApart) {
+  const fs::path folder = folder_of("twins", {"left/1.pgm", "right/1.pgm"});
+  const ListedImages listed =
+      list_images({.files = {(folder / "left").string(), (folder / "right").string()}});
+  ASSERT_EQ(listed.images.size(), 2u);
+  EXPECT_EQ(listed.images[0].name, "left/1.pgm");
+  EXPECT_EQ(listed.images[1].name, "right/1.pgm");
+}
+
+TEST(ListImages, TheSunGivenHoldsForAll) {
+  const fs::path folder = folder_of("sunny", {"a.pgm"});
+  const std::string cameras = cameras_in(folder, {"a.pgm"}, R"("sun": {"azimuth": 100, "elevation": 30},)");
+  EXPECT_EQ(list_images({.cameras = cameras}).images[0].sun->azimuth.value, 100);
+  EXPECT_EQ(
+      list_images({.cameras = cameras, .sun = Sun{Degrees{7}, Degrees{8}}}).images[0].sun->azimuth.value, 7);
+  EXPECT_FALSE(list_images({.cameras = cameras, .sun_from = ImageListing::SunFrom::nothing}).images[0].sun);
+}
+
+TEST(ListImages, NothingIsAnError) {
+  EXPECT_THAT(message_of([] { list_images({}); }), HasSubstr("no images are given"));
+  EXPECT_THAT(message_of([] { list_images({.files = {folder_of("empty", {}).string()}}); }),
+              HasSubstr("there are no images"));
+}
+
+RunResult load(const std::string& options) {
+  Registry registry;
+  register_importer_stages(registry);
+  Pipeline pipeline(registry);
+  pipeline.add("load_images", options);
+  return run(pipeline, {.hash_file = hash_file});
+}
+
+TEST(LoadImages, ListsImagesByWhatMakesThemWhatTheyAre) {
+  const fs::path folder = folder_of("stage", {"a.pgm", "b.pgm"});
+  const std::string options = R"({"cameras": ")" + cameras_in(folder, {"a.pgm", "b.pgm"}) +
+                              R"(", "sun_azimuth": 90, "sun_elevation": 40})";
+  const RunResult result = load(options);
+  const auto& items = result.artifact<std::vector<ImageItem>>("images");
+  ASSERT_EQ(items.size(), 2u);
+  EXPECT_EQ(items[1].index, 1);
+  EXPECT_EQ(items[1].file, (folder / "b.pgm").string());
+  EXPECT_THAT(items[1].content,
+              AllOf(HasSubstr("\"sun\":[90.0,40.0,0.5]"), ::testing::Not(HasSubstr(folder.string()))));
+  EXPECT_EQ(result.artifact<ImageSet>("image_set").size(), 2u);
+}
+
+TEST(LoadImages, ChecksItsOptions) {
+  EXPECT_THAT(message_of([] { load(R"({"files": ["a"], "image_sun_angle": "left"})"); }),
+              HasSubstr("image_sun_angle is 'left'"));
+  EXPECT_THAT(message_of([] { load(R"({"files": ["a"], "sun": "moon"})"); }), HasSubstr("auto, time, none"));
+}
+
+TEST(HashFile, OfAFolderNoticesANewImage) {
+  const fs::path folder = folder_of("hashed", {"a.pgm"});
+  const std::string before = hash_file(folder.string() + "/").sha256;
+  std::ofstream(folder / "notes.txt") << "nothing";
+  EXPECT_EQ(hash_file(folder.string() + "/").sha256, before);
+  std::ofstream(folder / "b.pgm") << "P5";
+  EXPECT_NE(hash_file(folder.string() + "/").sha256, before);
+  EXPECT_FALSE(hash_file("/no/such/folder/").sha256.empty());
+}
+
+}  // namespace
+}  // namespace waymark::testing
