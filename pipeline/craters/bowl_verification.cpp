@@ -14,27 +14,35 @@ namespace {
 // Set on HRSC tile 1_24 (which no other figure of ours then counts as unseen), a grid of three values each.
 constexpr double kTemperature = 0.5;  // of all evidence: its parts are not independent
 constexpr double kPerCorrelation = 20;
-constexpr double kEven = 0.59;        // correlation that tells nothing
-constexpr double kPriorTrust = 0.45;  // how far towards the image's own share of craters
+constexpr double kEven = 0.59;            // correlation that tells nothing
+constexpr double kModelSize = 0.2;        // weight of the model's diameter against the edges'
+constexpr double kEvenUntrained = 0.645;  // without a model, which then decides alone
+constexpr double kPriorTrust = 0.45;      // how far towards the image's own share of craters
 
 double logistic(double x) {
   return 1 / (1 + std::exp(-x));
 }
 
-// Log odds of the model at the place it corrects the candidate to.
-double model_evidence(const CraterModel& model, const PatchSource& patches,
-                      const CraterCandidate& candidate) {
+// What the model makes of a candidate.
+struct Opinion {
+  double log_odds = 0;  // at the circle it corrects the candidate to
+  double diameter = 0;  // of that circle; 0: none
+};
+
+Opinion opinion_of(const CraterModel& model, const PatchSource& patches, const CraterCandidate& candidate) {
   CraterCandidate at = candidate;
   for (int i = 0; i < 2; ++i) {
     const CraterVerdict verdict = judge(model, patches.features(at, candidate.score));
-    if (i == 0 && verdict.probability < 0.01) return -4.6;
+    if (i == 0 && verdict.probability < 0.01) return {-4.6, 0};
     at = corrected(at, verdict, patches.sun_angle());
   }
   const double p = judge(model, patches.features(at, candidate.score)).probability;
-  return std::log(std::max(1e-6, p) / std::max(1e-6, 1 - p));
+  return {std::log(std::max(1e-6, p) / std::max(1e-6, 1 - p)), at.diameter};
 }
 
-VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun) {
+// The steepest change of brightness lies inside the crest of a worn rim; the model has learnt by how much.
+// Its size has a weight of its own, since it knows made-up craters only.
+VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun, double model_diameter) {
   VerifiedBowl bowl{c,
                     {.x = c.x, .y = c.y, .major = c.diameter, .minor = c.diameter, .angle = 0},
                     0.08 * c.diameter,
@@ -43,7 +51,12 @@ VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun
     bowl.outline = rim->ellipse;
     bowl.centre_sd = std::hypot(rim->centre_sd, 0.03 * c.diameter);
     bowl.diameter_sd = std::hypot(rim->diameter_sd, 0.05 * c.diameter);
-    bowl.circle = {rim->ellipse.x, rim->ellipse.y, rim->ellipse.diameter(), c.score};
+    if (model_diameter > 0) {
+      const double ratio = std::clamp(model_diameter / rim->ellipse.diameter(), 0.7, 1.5);
+      const double grow = std::pow(ratio, kModelSize);
+      bowl.outline.major *= grow, bowl.outline.minor *= grow;
+    }
+    bowl.circle = {rim->ellipse.x, rim->ellipse.y, bowl.outline.diameter(), c.score};
   }
   return bowl;
 }
@@ -67,24 +80,29 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
                                        const CraterModel* model, double min_probability) {
   const PatchSource patches(image.pixels, sun_angle);
   std::vector<double> evidence(candidates.size());
+  std::vector<Opinion> opinions(candidates.size());
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     const CraterCandidate& c = candidates[i];
     const double correlation = (patches.slope_correlation(c) + c.score) / 2;
     // What correlates this little stays below one in a hundred whatever the model says.
     const bool hopeless = correlation < kEven - 0.14;
-    const double seen = !model ? 0 : hopeless ? -4.6 : model_evidence(*model, patches, c);
-    evidence[i] = kTemperature * (seen + kPerCorrelation * (correlation - kEven));
+    if (model) opinions[i] = hopeless ? Opinion{-4.6, 0} : opinion_of(*model, patches, c);
+    evidence[i] = model ? kTemperature * (opinions[i].log_odds + kPerCorrelation * (correlation - kEven))
+                        : kPerCorrelation * (correlation - kEvenUntrained);
   });
-  const double odds = kPriorTrust * image_odds(evidence);
+  const double odds = model ? kPriorTrust * image_odds(evidence) : 0;
   std::vector<CraterCandidate> likely;
+  std::vector<double> sizes;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (const double p = logistic(evidence[i] + odds); p >= min_probability) {
       likely.push_back(candidates[i]);
+      sizes.push_back(opinions[i].diameter);
       likely.back().score = p;
     }
   std::vector<VerifiedBowl> bowls(likely.size());
-  tbb::parallel_for(std::size_t{0}, likely.size(),
-                    [&](std::size_t i) { bowls[i] = with_rim(image.pixels, likely[i], sun_angle); });
+  tbb::parallel_for(std::size_t{0}, likely.size(), [&](std::size_t i) {
+    bowls[i] = with_rim(image.pixels, likely[i], sun_angle, sizes[i]);
+  });
   return bowls;
 }
 

@@ -7,7 +7,7 @@ namespace waymark {
 const CraterModel& built_in_crater_model() {
   static const CraterModel model = parse_crater_model(
       "waymark crater model 1\n"
-      "made-up scenes 0 to 229\n"
+      "made-up scenes 0 to 229 of 640 px, 202405 examples, 4 rounds, bowls of three lights\n"
       "layer 303 32\n"
       "0.096102975 0.98182213 H07HWqHe7H65HbjIVlHS2HwbH1aHkkH2DH1UInvHsaHy1H2lHw0H0KI7rHpPHbPHqfI"
       "P7HTmGwVHR8HIzHb3IXDHeQIPoHz9HRHIBWIBMH7/HujHqNH2/HqGIE9Hl3HvkJZJH4UGVkHVEIJcIFkHnaIfNH82I"

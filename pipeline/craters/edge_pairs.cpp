@@ -19,6 +19,7 @@ constexpr std::size_t kShortest = 6;  // pixels of an edge, at its octave
 constexpr double kLengthRatio = 2.5;  // greatest, of the two edges of a crater
 constexpr double kDistance = 3.7;     // greatest, of their middles / the shorter edge
 constexpr double kCone = 0.5;         // greatest offset across the light / distance along it
+constexpr double kEvenCost = 2.35;    // of a pair as likely as not, set on HRSC tile 1_24
 constexpr double kSmallestAtOctave = 10, kLargestAtOctave = 64;  // pixels, diameters sought at one octave
 
 // One arc of a rim.
@@ -130,7 +131,8 @@ VerifiedBowl through(const Arc& opening, const Arc& closing, double cost, double
       .minor = std::min(width, height) * shrink,
       .angle = std::remainder(width >= height ? angle : angle + std::numbers::pi / 2, std::numbers::pi)};
   if (bowl.outline.angle <= -std::numbers::pi / 2) bowl.outline.angle += std::numbers::pi;
-  bowl.circle = {bowl.outline.x, bowl.outline.y, bowl.outline.diameter(), 1 / (1 + 0.2 * cost)};
+  bowl.circle = {bowl.outline.x, bowl.outline.y, bowl.outline.diameter(),
+                 1 / (1 + std::exp(cost - kEvenCost))};
   bowl.centre_sd = 0.06 * bowl.circle.diameter + 0.3 * shrink;
   bowl.diameter_sd = 0.1 * bowl.circle.diameter + 0.5 * shrink;
   return bowl;
