@@ -154,7 +154,8 @@ std::vector<Detection> search_image(const ImageSource& image, const ImageSearch&
   const double asked = search.max_diameter > 0 ? search.max_diameter
                                                : 0.6 * static_cast<double>(std::min(info.columns, info.rows));
   const double fits = static_cast<double>(search.piece) / kShare;
-  const double max = whole ? search.max_diameter : std::min(asked, fits);
+  // beyond what fits, so that a large crater is not taken for a smaller one inside it
+  const double max = whole ? search.max_diameter : std::min(asked, 1.5 * fits);
   const auto pieces = pieces_of(info, search.piece, max);
   std::vector<std::vector<Detection>> found(pieces.size());
   tbb::task_arena arena(search.threads > 0 ? search.threads : tbb::task_arena::automatic);
@@ -162,9 +163,9 @@ std::vector<Detection> search_image(const ImageSource& image, const ImageSearch&
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
       found[i] = search_piece(image, pieces[i], search.min_diameter, max, find);
     });
-    if (whole || !search.reduce_for_large || asked <= fits) return;
+    if (whole || !search.reduce_for_large || asked <= 1.5 * fits) return;
     const std::int64_t factor = (std::max(info.columns, info.rows) + search.piece - 1) / search.piece;
-    const double least = std::max({0.8 * fits, search.min_diameter, 8.0 * static_cast<double>(factor)});
+    const double least = std::max({fits, search.min_diameter, 8.0 * static_cast<double>(factor)});
     if (least < asked) found.push_back(search_reduced(image, factor, least, asked, find));
   });
   return joined(found);
