@@ -75,7 +75,8 @@ Pixels square_cells(const HeightWindow& heights, double cell_width, double cell_
   return square;
 }
 
-// Logistic in correlation and the rim's weakest part, fitted on the western half of a GLD100 highland piece.
+// Logistic in correlation and the rim's weakest part; weights set by hand on a GLD100 highland piece
+// (docs/craters.md).
 double probability(double correlation, const DemRim& rim, double cell) {
   const double d = std::sqrt(rim.major * rim.minor) * cell,
                weakest = std::clamp(rim.weakest / d, -0.02, 0.12);
