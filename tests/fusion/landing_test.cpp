@@ -112,7 +112,7 @@ TEST(Landing, RockHeightsAndCraterDepthsAreRight) {
     const auto& features = made.observations[i].features;
     if (t >= made.scene.craters.size())
       heights.push_back(features[1].value / made.scene.rocks[t - made.scene.craters.size()].height);
-    else if (features[1].known() && made.scene.craters[t].diameter() > 20)
+    else if (features[1].known() && made.scene.craters[t].diameter() > 14)
       depths.push_back(features[1].value / made.scene.craters[t].depth);
   }
   const auto median = [](std::vector<double>& v) {
@@ -120,7 +120,7 @@ TEST(Landing, RockHeightsAndCraterDepthsAreRight) {
     return v[v.size() / 2];
   };
   ASSERT_GT(heights.size(), 50u);
-  ASSERT_GT(depths.size(), 20u);
+  ASSERT_GT(depths.size(), 12u);
   EXPECT_NEAR(median(heights), 1, 0.05);
   EXPECT_NEAR(median(depths), 1, 0.1);
 }
