@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geo/image_source.hpp"
+#include "pipeline/craters/find_craters.hpp"
 #include "pipeline/craters/image_light.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/vision/sun_angle.hpp"
@@ -46,27 +47,40 @@ struct CheckSun {
             .inputs = {image_set}};
   }
 
-  static SunCheck check(const ImageSource& image, std::int64_t most) {
+  static double apart(Radians a, Radians b) {
+    return std::abs(std::remainder(a.value - b.value, 2 * std::numbers::pi)) / kRadiansPerDegree;
+  }
+
+  static Pixels middle_of(const ImageSource& image, std::int64_t most) {
+    const std::int64_t columns = std::min(image.info().columns, most),
+                       rows = std::min(image.info().rows, most);
+    return image.read({(image.info().columns - columns) / 2, (image.info().rows - rows) / 2, columns, rows});
+  }
+
+  static SunCheck check(const ImageSource& image, const Options& options) {
     SunCheck made;
     const auto given = image_light(image.info());
     made.known = given.has_value();
     if (!given) return made;
-    const std::int64_t columns = std::min(image.info().columns, most),
-                       rows = std::min(image.info().rows, most);
-    const auto seen = estimate_sun_angle(
-        image.read({(image.info().columns - columns) / 2, (image.info().rows - rows) / 2, columns, rows}));
+    const auto seen = estimate_sun_angle(middle_of(image, options.most_pixels));
     if (!seen) return made;
-    made.seen = true;
-    made.off =
-        std::abs(std::remainder(seen->angle.value - given->value, 2 * std::numbers::pi)) / kRadiansPerDegree;
+    made.off = apart(seen->angle, *given);
     made.sd = seen->sd.value / kRadiansPerDegree;
     made.shadows = seen->shadows;
+    // Small hollows look like rocks under the opposite sun: ask the craters.
+    if (made.off > 180 - options.tolerance.value) {
+      constexpr std::int64_t kEnough = 1024;  // a second of work
+      const auto bowls = estimate_crater_sun_angle(middle_of(image, std::min(options.most_pixels, kEnough)));
+      if (bowls && apart(bowls->angle, *given) < options.tolerance.value + 30) return made;
+    }
+    made.seen = true;
     return made;
   }
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    const SunCheck found = check(image, options.most_pixels);
+    if (image.info().columns == 0) return;  // missing: load_images has said so
+    const SunCheck found = check(image, options);
     const std::string& name = image.info().name;
     if (!found.known)
       unit.warn(fmt::format("{}: the sun is not known: detectors estimate it from the image", name));
