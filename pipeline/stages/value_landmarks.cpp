@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
 #include "pipeline/fusion/image_view_codec.hpp"
@@ -8,6 +10,13 @@
 
 namespace waymark {
 namespace {
+
+// A row of a map must have a variance of height: one that nobody knows has a deviation of 1000 km.
+void tell_unknown_height(Eigen::Matrix3d& covariance) {
+  if (std::isfinite(covariance(2, 2))) return;
+  covariance.row(2).setZero(), covariance.col(2).setZero();
+  covariance(2, 2) = 1e12;
+}
 
 struct ValueLandmarks {
   struct Options {
@@ -51,7 +60,7 @@ struct ValueLandmarks {
     register_landmark_types(types);
     const std::vector<ImageView>& images = unit.read(aligned_views);
     std::vector<Landmark> all = unit.read(merged);
-    const auto& seen = unit.read(merged_evidence);
+    std::vector<Observation> seen = unit.read(merged_evidence);
     const DemHandle& ground = unit.read(dem);
     const Terrain terrain = terrain_of(ground);
     ValuationRules rules;
@@ -60,9 +69,11 @@ struct ValueLandmarks {
     rules.covering.least_diameter = options.least_diameter;
     value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
                     rules);
+    for (Landmark& landmark : all) tell_unknown_height(landmark.covariance);
+    for (Observation& observation : seen) tell_unknown_height(observation.covariance);
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
-    unit.write(evidence, seen);
+    unit.write(evidence, std::move(seen));
     unit.write(image_views, images);
   }
 };
