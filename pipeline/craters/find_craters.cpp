@@ -83,13 +83,15 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   std::vector<CraterCandidate> circles;
   for (const VerifiedBowl& bowl : bowls) {
     CraterCandidate c = bowl.circle;
-    if (c.score < search.min_confidence || c.diameter < sizes.smallest || c.diameter > sizes.largest ||
+    if (c.score < search.min_confidence || c.diameter < 0.9 * sizes.smallest || c.diameter > sizes.largest ||
         whole.known(c.x, c.y, c.diameter) < kLeastKnown)
       continue;
     circles.push_back(c);
   }
   std::vector<Detection> found;
+  // Smaller ones than asked for have had their say in which circles stand for the same rim.
   for (const CraterCandidate& c : suppress_overlaps(circles)) {
+    if (c.diameter < sizes.smallest) continue;
     const auto bowl =
         std::find_if(bowls.begin(), bowls.end(), [&](const VerifiedBowl& b) { return b.circle == c; });
     found.push_back(detection_of(*bowl, search.type));
