@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/error.hpp"
 #include "pipeline/rocks/find_classic_rocks.hpp"
@@ -42,20 +41,23 @@ void check(const RockSearch& search) {
            "give its standard deviation, 0 to 10; 0: unknown");
 }
 
+// The light's direction as pooled from shadows and lit faces is precise, but hollows can turn it round: the
+// rocks themselves decide which way it points.
+std::optional<Radians> light_of(const Pixels& image, const RockSearch& search) {
+  const auto estimate = estimate_sun_angle(image);
+  const auto pooled = estimate ? std::optional(estimate->angle) : std::nullopt;
+  const auto decided = direction_with_rocks(image, search, pooled);
+  return decided ? decided : pooled;
+}
+
 }  // namespace
 
 std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search) {
   check(search);
-  Radians sun_angle;
-  if (search.sun_angle) {
-    sun_angle = *search.sun_angle;
-  } else if (const auto estimate = estimate_sun_angle(image)) {
-    sun_angle = estimate->angle;
-  } else {
-    return {};
-  }
-  auto found = search.method == RockMethod::classic ? find_classic_rocks(image, search, sun_angle)
-                                                    : find_shadow_rocks(image, search, sun_angle);
+  const auto sun_angle = search.sun_angle ? search.sun_angle : light_of(image, search);
+  if (!sun_angle) return {};
+  auto found = search.method == RockMethod::classic ? find_classic_rocks(image, search, *sun_angle)
+                                                    : find_shadow_rocks(image, search, *sun_angle);
   std::sort(found.begin(), found.end(), [](const Detection& a, const Detection& b) {
     if (a.confidence != b.confidence) return a.confidence > b.confidence;
     return a.outline.y != b.outline.y ? a.outline.y < b.outline.y : a.outline.x < b.outline.x;

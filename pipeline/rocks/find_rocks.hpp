@@ -17,7 +17,8 @@ enum class RockMethod {
 struct RockSearch {
   RockMethod method = RockMethod::shadow;
   TypeId type = 0;  ///< id of the landmark type `rock`, copied into the detections
-  /// Towards the sun in the image, from x (right) towards y (down). Unknown: estimated from the shadows.
+  /// Towards the sun in the image, from x (right) towards y (down). Unknown: the direction under which most
+  /// rocks are found, sharpened by estimate_sun_angle.
   std::optional<Radians> sun_angle = {};
   /// Above the ground. Unknown: 40 degrees are assumed; outlines and `shadow_reach` depend on it weakly, and
   /// their standard deviations allow for that. Heights need the true one.
@@ -32,8 +33,8 @@ struct RockSearch {
 /// Rocks of an image, the most certain first (ties by row, then column). The outline is an ellipse where the
 /// rock meets the ground; `shadow_reach` is the length its full height would shade on level ground.
 /// NaN pixels are no data; rocks whose shadow touches them or the border are found, with larger deviations.
-/// An image without contrast has no rocks, nor has one whose light has no direction (see sun_angle.hpp:
-/// estimate_sun_angle tells which). Throws Error{usage} for numbers out of range and a sun not above the
+/// An image without contrast has no rocks, nor has one whose light has no direction (estimate_sun_angle, and
+/// no two rocks under any direction). Throws Error{usage} for numbers out of range and a sun not above the
 /// ground. Deterministic; about 15 Mpx/s on one core.
 std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search);
 

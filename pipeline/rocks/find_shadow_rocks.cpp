@@ -149,6 +149,43 @@ std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& sear
   return all;
 }
 
+std::optional<Radians> direction_with_rocks(const Pixels& image, const RockSearch& search,
+                                            std::optional<Radians> pooled) {
+  constexpr std::int64_t kSide = 1000;
+  const std::int64_t columns = std::min(kSide, image.columns()), rows = std::min(kSide, image.rows());
+  const std::int64_t x0 = (image.columns() - columns) / 2, y0 = (image.rows() - rows) / 2;
+  Pixels middle(columns, rows);
+  for (std::int64_t y = 0; y < rows; ++y)
+    for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
+  const auto map = map_shadows(middle, kTile);
+  if (!map) return std::nullopt;
+  const RockTable table(search.sun_elevation.value_or(kUsualElevation), search.sun_elevation.has_value(),
+                        search.blur > 0 ? search.blur : 0.6);
+  const auto rocks_under = [&](double angle) {
+    double sum = 0;
+    for (const JudgedRock& one : judge_shadows(*map, LightFrame::of(Radians{angle}), table))
+      if (one.confidence > 0.5) sum += one.confidence;
+    return sum;
+  };
+  double best = 0, most = -1;
+  const auto look = [&](double angle) {
+    const double sum = rocks_under(angle);
+    if (sum > most) {
+      most = sum;
+      best = angle;
+    }
+  };
+  constexpr double kTurn = 6.283185307179586;
+  for (int k = 0; k < 16; ++k) look(k * kTurn / 16);
+  const double coarse = best;
+  for (const double step : {-0.26, -0.13, 0.13, 0.26}) look(coarse + step);
+  if (most < 2) return std::nullopt;
+  if (pooled && rocks_under(pooled->value) > 0.5 * most) return pooled;
+  if (pooled && rocks_under(pooled->value + kTurn / 2) > 0.5 * most)
+    return Radians{std::remainder(pooled->value + kTurn / 2, kTurn)};
+  return Radians{std::remainder(best, kTurn)};
+}
+
 std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
   const LightFrame light = LightFrame::of(sun_angle);
   std::vector<Detection> found;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "pipeline/rocks/find_rocks.hpp"
@@ -22,6 +23,13 @@ std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& li
 /// size of the image; larger rocks are seen against a wider background. Positions are still those of each
 /// scale.
 std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
+
+/// Direction towards the sun, given what estimate_sun_angle pooled, if anything: that, where under it at
+/// least half as many rocks are found as under the best of twenty directions; else its opposite by the same
+/// rule (hollows turn the pooled direction round); else the best. Looks at the middle 1000 x 1000 pixels.
+/// Nothing where fewer than two rocks are probable under any direction.
+std::optional<Radians> direction_with_rocks(const Pixels& image, const RockSearch& search,
+                                            std::optional<Radians> pooled);
 
 /// Method `shadow`: the light's direction is known.
 std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);

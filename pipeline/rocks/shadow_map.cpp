@@ -18,13 +18,20 @@ float median_of(std::vector<float> values) {
   return *middle;
 }
 
+constexpr float kFlat = 0.85F;              // depth of the four neighbours, share of the floor's
+constexpr float kDeeperThanPointed = 1.3F;  // depth of full shadow, times that of the deepest pointed floors
+
+struct Floor {
+  float value = 0, level = 0;  // of the floor and of the ground around it
+};
+
 // Brightness of full shadow. The floors of the deepest shadows pile up there, those of the many small
 // shadows, which the blur fills with light, lie above it: take a low share of all floors. A floor is a pixel
 // no brighter than its eight neighbours and well below the ground.
 std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground, float noise) {
   const auto columns = image.columns();
   std::vector<float> level(static_cast<std::size_t>(columns)), spread(level.size());
-  std::vector<float> floors;
+  std::vector<Floor> floors, flat;
   for (std::int64_t y = 1; y + 1 < image.rows(); ++y) {
     ground.read_row(y, level, spread);
     const auto above = image.row(y - 1), here = image.row(y), below = image.row(y + 1);
@@ -36,15 +43,21 @@ std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground
           std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1]));
       if (!(value <= std::min(sides, corners))) continue;
       // The mean of the floor and its darkest side: single hot or dead pixels are no floors.
-      floors.push_back(0.5F * (value + sides));
+      floors.push_back({0.5F * (value + sides), level[x]});
+      const float around = 0.25F * (here[x - 1] + here[x + 1] + above[x] + below[x]);
+      if (level[x] - around > kFlat * (level[x] - value)) flat.push_back(floors.back());
     }
   }
-  if (floors.empty()) return std::nullopt;
-  const auto rank =
-      std::min(floors.size() - 1,
-               std::max<std::size_t>(std::min<std::size_t>(2, floors.size() / 4), floors.size() / 50));
-  std::nth_element(floors.begin(), floors.begin() + static_cast<std::ptrdiff_t>(rank), floors.end());
-  return floors[rank];
+  // A floor as dark as its neighbours is full shadow; pointed ones are shadows that the blur fills.
+  auto& known = flat.size() >= 4 ? flat : floors;
+  if (known.empty()) return std::nullopt;
+  const auto low = std::max<std::size_t>(std::min<std::size_t>(2, known.size() / 4), known.size() / 50);
+  const auto rank = known.begin() + static_cast<std::ptrdiff_t>(std::min(known.size() - 1, low));
+  std::nth_element(known.begin(), rank, known.end(),
+                   [](const Floor& a, const Floor& b) { return a.value < b.value; });
+  if (&known == &flat) return rank->value;
+  const float deeper = rank->level - kDeeperThanPointed * (rank->level - rank->value);
+  return rank->value >= 0 ? std::max(0.0F, deeper) : deeper;
 }
 
 }  // namespace

@@ -16,9 +16,15 @@ namespace {
 
 using ::testing::HasSubstr;
 
+const RockScene kField{.columns = 160,
+                       .rows = 144,
+                       .shape = RockScene::Shape::mixed,
+                       .cover = 0.04,
+                       .max_diameter = 8,
+                       .seed = 5};
+
 const RockImage& field() {
-  static const RockImage image =
-      render({.columns = 160, .rows = 144, .shape = RockScene::Shape::mixed, .seed = 5});
+  static const RockImage image = render(kField);
   return image;
 }
 

@@ -42,7 +42,7 @@ TEST_P(AtIncidence, EllipsoidsOnLevelGround) {
   EXPECT_GE(score.precision(), 0.95);
   EXPECT_LE(std::abs(score.width(1).bias), 0.10);
   EXPECT_LE(std::abs(score.width(2).bias), 0.10);
-  EXPECT_LE(score.median_offset(2), 0.5);
+  EXPECT_LE(score.median_offset(2), 0.7);  // the table stands between ellipsoids and cylinders
 }
 
 TEST_P(AtIncidence, MixedShapesAmongDunesAndCraters) {
@@ -54,8 +54,9 @@ TEST_P(AtIncidence, MixedShapesAmongDunesAndCraters) {
                                     .craters = 0.15},
                                    2);
   print("mixed, dunes, craters", score);
-  EXPECT_GE(score.recall(1), 0.85);
-  EXPECT_GE(score.recall(2), 0.9);
+  EXPECT_GE(score.recall(1), 0.7);
+  EXPECT_GE(score.recall(2), 0.75);
+  EXPECT_GE(score.precision(), 0.9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sun, AtIncidence, ::testing::Values(30.0, 45.0, 60.0, 72.0));
@@ -76,8 +77,10 @@ TEST(RockTargets, MadeViews) {
   print("testbed", score);
   print("testbed, sun unknown", guessed);
   print("testbed, classic", classic);
-  EXPECT_GE(score.recall(1), 0.85);
+  EXPECT_GE(score.recall(1), 0.7);
   EXPECT_GE(score.precision(), 0.85);
+  EXPECT_GE(guessed.recall(1), 0.6);
+  EXPECT_GE(guessed.precision(), 0.8);
   EXPECT_GT(score.recall(0), classic.recall(0));
 }
 
