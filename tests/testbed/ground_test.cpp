@@ -180,8 +180,12 @@ TEST(Outcrops, StandAboveTheGroundAndAreBright) {
     ASSERT_GE(rise, 0);
     ASSERT_LE(rise, 3.01F);
     covered += rise > 0 ? 1 : 0;
-    if (rise > 0.1F) ASSERT_GT(rocky.albedo.cells()[i], bare.albedo.cells()[i]);
-    if (rise == 0) ASSERT_NEAR(rocky.albedo.cells()[i], bare.albedo.cells()[i], 1e-3);  // less than rounding
+    if (rise > 0.1F) {
+      ASSERT_GT(rocky.albedo.cells()[i], bare.albedo.cells()[i]);
+    }
+    if (rise == 0) {
+      ASSERT_NEAR(rocky.albedo.cells()[i], bare.albedo.cells()[i], 1e-3);  // less than rounding
+    }
   }
   EXPECT_NEAR(covered / double(bare.albedo.cells().size()), 0.2, 0.01);
 }
