@@ -54,7 +54,8 @@ BodyMotion ackermann_motion(const Ackermann& car, double wheel_speed, double ste
     throw std::invalid_argument("steering must be within +-80 degrees, in radians");
   const double slope = std::tan(steering);
   const double speed = wheel_speed / (1 - slope * car.encoder_offset / car.wheelbase);
-  return twist_motion(speed, 0, speed * slope / car.wheelbase, seconds, noise);
+  const double turn = speed * slope / car.wheelbase;
+  return twist_motion(speed - turn * car.left, turn * car.ahead, turn, seconds, noise);
 }
 
 BodyMotion step_motion(const Pose2& step, double seconds, const OdometryNoise& noise) {

@@ -28,9 +28,10 @@ BodyMotion twist_motion(double speed, double sideways, double turn, double secon
 struct Ackermann {
   double wheelbase = 2.83;       ///< m, > 0
   double encoder_offset = 0.76;  ///< from the middle of the rear axle to the wheel measured, left, m
+  double ahead = 0, left = 0;    ///< m from the middle of the rear axle to the point that is followed
 };
 
-/// Motion of the middle of the rear axle. wheel_speed m/s of the encoder's wheel, steering rad to the left;
+/// Motion of the point that is followed. wheel_speed m/s of the encoder's wheel, steering rad to the left;
 /// |steering| must be below 80 degrees. Throws std::invalid_argument.
 BodyMotion ackermann_motion(const Ackermann& car, double wheel_speed, double steering, double seconds,
                             const OdometryNoise& noise);

@@ -10,17 +10,19 @@
 namespace waymark {
 
 // Vehicle of Guivant & Nebot: wheelbase 2.83 m, encoder on the left rear wheel 0.76 m off the middle, laser
-// 3.78 m ahead of the rear axle and 0.5 m to the left. Beams run from -90 (right) to 90 degrees (left).
+// 3.78 m ahead of the rear axle and 0.5 m to the left: the point that is followed, since GPS fixes agree with
+// it (0.98 m against 2.5 m at the axle, first 200 s). GPS columns are latitude, longitude: north, east. Beams
+// run from -90 (right) to 90 degrees (left).
 RobotLog import_victoria_park(const std::filesystem::path& folder) {
   RobotLog log;
-  log.car = {2.83, 0.76};
+  log.car = {2.83, 0.76, 3.78, 0.5};
   const auto drive = number_table(folder / "DRS.txt", 3);
   for (std::size_t i = 0; i < drive.size(); i += 3)
     log.events.push_back({drive[i], CarReading{drive[i + 1], drive[i + 2]}});
   constexpr std::size_t kBeams = 361;
   const auto scans = number_table(folder / "LASER.txt", kBeams + 1);
   for (std::size_t i = 0; i < scans.size(); i += kBeams + 1) {
-    LaserScan scan{.robot_from_sensor = {3.78, 0.5, 0},
+    LaserScan scan{.robot_from_sensor = {},
                    .first_angle = -std::numbers::pi / 2,
                    .angle_step = std::numbers::pi / 360,
                    .ranges = std::vector<float>(kBeams),
@@ -33,9 +35,9 @@ RobotLog import_victoria_park(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder / "GPS.txt")) {
     const auto fixes = number_table(folder / "GPS.txt", 3);
     for (std::size_t i = 0; i < fixes.size(); i += 3) {
-      log.truth.push_back({fixes[i], {fixes[i + 1], fixes[i + 2], 0}});
+      log.truth.push_back({fixes[i], {fixes[i + 2], fixes[i + 1], 0}});
       GnssFix fix;
-      fix.at = {fixes[i + 1], fixes[i + 2]};
+      fix.at = {fixes[i + 2], fixes[i + 1]};
       fix.sd = 3;
       log.events.push_back({fixes[i], fix});
     }

@@ -102,7 +102,8 @@ TEST(Motion, CovarianceIsThatOfSamples) {
 }
 
 TEST(Motion, CarDrivesACircleAboutItsRearAxle) {
-  const Ackermann car{2.83, 0};
+  Ackermann car;
+  car.encoder_offset = 0;
   const double steering = std::atan(2.83 / 10);  // radius 10 m
   Pose2 pose;
   for (int i = 0; i < 100; ++i) pose = pose * ackermann_motion(car, 1, steering, 0.1, {}).step;
