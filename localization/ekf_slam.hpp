@@ -13,7 +13,7 @@ struct SlamOptions {
   double nearest = 2;      ///< m: no new landmark closer than this to another
   double most_range = 40;  ///< m; sightings farther away are not used
   double seen = 0.85;      ///< log odds a match adds to a landmark's existence
-  double unseen = -0.2;    ///< log odds that being expected and not seen adds
+  double unseen = -0.5;    ///< log odds that being expected and not seen adds
   double confirmed = 2;    ///< log odds from which a landmark moves the robot
   double dropped = -1;     ///< log odds below which it is forgotten
   double field_of_view = 1.4;  ///< rad to each side where sightings are expected

@@ -14,8 +14,8 @@ struct LaserStems {
   double most_diameter = 1.5;    ///< m
   double least_diameter = 0.02;  ///< m
   double most_range = 70;        ///< m; a stem farther away is hit by too few beams
-  double range_sd = 0.15;        ///< m
-  double bearing_sd = 0.012;     ///< rad
+  double range_sd = 0.3;         ///< m
+  double bearing_sd = 0.02;      ///< rad
 };
 
 struct Stem {
