@@ -75,12 +75,12 @@ Pixels square_cells(const HeightWindow& heights, double cell_width, double cell_
   return square;
 }
 
-// Logistic in correlation and the rim's weakest part; weights set by hand on a GLD100 highland piece
-// (docs/craters.md).
+// Logistic in correlation and the rim's weakest part; weights by hand, the offset by the western half of a
+// GLD100 piece (docs/craters.md).
 double probability(double correlation, const DemRim& rim, double cell) {
   const double d = std::sqrt(rim.major * rim.minor) * cell,
                weakest = std::clamp(rim.weakest / d, -0.02, 0.12);
-  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) - 0.3)));
+  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) - 0.77)));
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
   const double side = double(std::min(square.columns(), square.rows()));
   const double smallest = search.min_diameter * to_square,
                largest = search.max_diameter > 0 ? search.max_diameter * to_square : 0.6 * side;
-  auto candidates = suppress_overlaps(shape_candidates(whole.pixels, {.min_diameter = 0.7 * smallest,
+  auto candidates = suppress_overlaps(shape_candidates(whole.pixels, {.min_diameter = 0.8 * smallest,
                                                                       .max_diameter = largest,
                                                                       .min_correlation = kLeastCorrelation,
                                                                       .shapes = dish,
@@ -110,17 +110,14 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
     const auto rim = measure_dem_rim(whole.pixels, c);
     if (!rim) continue;
     const double diameter = std::sqrt(rim->major * rim->minor);
-    if (!(rim->depth > kShallowest * diameter * cell) || diameter < 0.75 * smallest || diameter > largest)
-      continue;
+    if (!(rim->depth > kShallowest * diameter * cell) || diameter < smallest || diameter > largest) continue;
     const double p = probability(c.score, *rim, cell);
     if (p < search.min_confidence) continue;
     circles.push_back({rim->x, rim->y, diameter, p});
     rims.push_back(*rim);
   }
   std::vector<DemCrater> result;
-  // Smaller ones than asked for have had their say in which circles stand for the same rim.
   for (const CraterCandidate& c : suppress_overlaps(circles)) {
-    if (c.diameter < smallest) continue;
     const auto at = static_cast<std::size_t>(std::find(circles.begin(), circles.end(), c) - circles.begin());
     const DemRim& rim = rims[at];
     DemCrater crater;

@@ -118,7 +118,7 @@ TEST(RealCraters, LunarHighlandHeights) {
     if (row[0] >= double(half)) truth.push_back({row[0], row[1], row[2], 1});
   const CircleScore score = score_circles(found, truth, 10.5, 80);
   std::cout << "GLD100 highland, eastern half: " << score.text() << '\n';
-  EXPECT_GE(score.f1, 0.72);
+  EXPECT_GE(score.f1, 0.71);
 }
 
 }  // namespace
