@@ -30,7 +30,7 @@ struct SlamLandmark {
 
 /// Robot and landmarks in one Gaussian (section 4.4; Smith, Self & Cheeseman 1990), for sightings that do not
 /// say who they are: one-to-one greedy pairing, a band of ambiguity against duplicates, existence by
-/// evidence. The covariance is kept whole: an update costs O(landmarks^2), 1 ms for 300.
+/// evidence. The covariance is kept whole: each matched sighting costs O(landmarks^2).
 class EkfSlam final : public Localizer {
  public:
   explicit EkfSlam(const PoseEstimate& start, SlamOptions options = {});
