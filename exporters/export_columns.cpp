@@ -49,6 +49,10 @@ void add_real(std::vector<ExportColumn>& columns, const char* name, const char* 
       {name, unit, summary, Kind::real, [value](const Landmark& l) { return or_null(value(l)); }});
 }
 
+std::optional<double> if_known(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
 std::optional<double> multiplicity(const Landmark& l) {
   return multiplicity_confidence(l.quality.seen, l.quality.visible);
 }
@@ -70,13 +74,13 @@ std::vector<ExportColumn> export_columns(const LandmarkType& type) {
   add_real(columns, "confidence", "", "Probability that it exists",
            [](const Landmark& l) { return Real(l.confidence); });
   add_real(columns, "var_x", "m2", "Variance eastwards",
-           [](const Landmark& l) { return Real(l.covariance(0, 0)); });
+           [](const Landmark& l) { return if_known(l.covariance(0, 0)); });
   add_real(columns, "var_y", "m2", "Variance northwards",
-           [](const Landmark& l) { return Real(l.covariance(1, 1)); });
+           [](const Landmark& l) { return if_known(l.covariance(1, 1)); });
   add_real(columns, "cov_xy", "m2", "Covariance east-north",
-           [](const Landmark& l) { return Real(l.covariance(0, 1)); });
+           [](const Landmark& l) { return if_known(l.covariance(0, 1)); });
   add_real(columns, "var_z", "m2", "Variance of the height",
-           [](const Landmark& l) { return Real(l.covariance(2, 2)); });
+           [](const Landmark& l) { return if_known(l.covariance(2, 2)); });
   add_count(columns, "observations", "Observations merged into it",
             [](const Landmark& l) { return l.observations; });
   for (std::size_t i = 0; i < type.attributes.size(); ++i) add_attribute(columns, type.attributes[i], i);

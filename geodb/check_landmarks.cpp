@@ -94,7 +94,9 @@ class RowCheck {
   void check_covariance(const sqlite::Statement& row) {
     const double xx = row.real(common_ + 5), yy = row.real(common_ + 6), xy = row.real(common_ + 7),
                  zz = row.real(common_ + 8);
-    if (!(xx >= 0 && yy >= 0 && zz >= 0 && xy * xy <= xx * yy * (1 + kRounding)))
+    const bool plane_unknown = std::isnan(xx) && std::isnan(yy) && std::isnan(xy);
+    const bool plane_sound = xx >= 0 && yy >= 0 && xy * xy <= xx * yy * (1 + kRounding);
+    if (!(plane_unknown || plane_sound) || !(std::isnan(zz) || zz >= 0))
       find("covariance.bad",
            fmt::format("var_x {}, var_y {}, cov_xy {}, var_z {} are no covariance", xx, yy, xy, zz));
   }

@@ -51,10 +51,10 @@ const std::vector<LandmarkColumn>& common_columns() {
       {"q_multiplicity", "DOUBLE", "q_#", "Multiplicity confidence seen / visible, 0 to 1"},
       {"quality", "DOUBLE", "quality", "Landmark quality with equal feature weights, 0 to 1"},
       {"confidence", "DOUBLE NOT NULL", "confidence", "Probability that the landmark exists, 0 to 1"},
-      {"var_x", "DOUBLE NOT NULL", "east variance (m2)", "Variance of the position to the east"},
-      {"var_y", "DOUBLE NOT NULL", "north variance (m2)", "Variance of the position to the north"},
-      {"cov_xy", "DOUBLE NOT NULL", "east-north covariance (m2)", "Covariance of east and north"},
-      {"var_z", "DOUBLE NOT NULL", "height variance (m2)", "Variance of the height"},
+      {"var_x", "DOUBLE", "east variance (m2)", "Variance of the position to the east; NULL: unknown"},
+      {"var_y", "DOUBLE", "north variance (m2)", "Variance of the position to the north; NULL: unknown"},
+      {"cov_xy", "DOUBLE", "east-north covariance (m2)", "Covariance of east and north"},
+      {"var_z", "DOUBLE", "height variance (m2)", "Variance of the height; NULL: the height is unknown"},
       {"observations", "INTEGER NOT NULL", "observations", "Observations merged into it"},
   };
   return columns;

@@ -171,10 +171,10 @@ CREATE TABLE observation (
   x DOUBLE NOT NULL,                -- map CRS
   y DOUBLE NOT NULL,
   z DOUBLE NOT NULL,                -- m
-  var_x DOUBLE NOT NULL,            -- m2, east and north
-  var_y DOUBLE NOT NULL,
-  cov_xy DOUBLE NOT NULL,
-  var_z DOUBLE NOT NULL,
+  var_x DOUBLE,                     -- m2, east and north; NULL: unknown
+  var_y DOUBLE,
+  cov_xy DOUBLE,
+  var_z DOUBLE,                     -- NULL: the height is unknown
   weight DOUBLE NOT NULL,           -- detection quality q(d), (0, 1]
   features TEXT NOT NULL,           -- JSON: {"radius": 1.2, "radius_sd": 0.1}
   rejected TEXT                     -- reason; NULL if kept

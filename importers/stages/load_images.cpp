@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "geo/dem_handle.hpp"
 #include "importers/camera_set.hpp"
 #include "importers/control_points.hpp"
 #include "importers/find_images.hpp"
@@ -42,9 +43,7 @@ struct LoadImages {
              {.help = "Format of the camera files", .choices = format_names()});
       option("interior", interior,
              {.help = "File with the interior orientation, for formats that keep it apart"});
-      option("crs", crs,
-             {.help =
-                  "CRS of the map, that of the DEM; empty: as the camera file or the first orthophoto says"});
+      option("crs", crs, {.help = "CRS of the map; empty: that of the DEM"});
       option("camera_crs", camera_crs,
              {.help = "CRS of camera places where their file does not say; empty: the map's"});
       option(
@@ -95,15 +94,17 @@ struct LoadImages {
     }
   };
 
+  static constexpr In<DemHandle> dem{"dem"};
   static constexpr Out<ImageSet> images{"image_set"};
   static constexpr Out<std::vector<ImageItem>> items{"images"};
 
   static StageSpec spec() {
     return {.name = "load_images",
             .summary = "Lists images and gives each one its camera or georeference, and the sun",
-            .version = 1,
+            .version = 2,
             .scope = Scope::map,
             .lists = Scope::image,
+            .inputs = {dem},
             .outputs = {images, items}};
   }
 
@@ -161,7 +162,9 @@ struct LoadImages {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    const ListedImages listed = list_images(listing_of(options, unit));
+    ImageListing listing = listing_of(options, unit);
+    if (listing.import.crs.empty()) listing.import.crs = unit.read(dem)->geometry().where.crs.wkt2();
+    const ListedImages listed = list_images(listing);
     for (const std::string& warning : listed.warnings) unit.warn(warning);
     std::vector<ImageItem> list;
     for (ImageInfo info : listed.images) {

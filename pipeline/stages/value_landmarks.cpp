@@ -11,13 +11,6 @@
 namespace waymark {
 namespace {
 
-// A row of a map must have a variance of height: one that nobody knows has a deviation of 1000 km.
-void tell_unknown_height(Eigen::Matrix3d& covariance) {
-  if (std::isfinite(covariance(2, 2))) return;
-  covariance.row(2).setZero(), covariance.col(2).setZero();
-  covariance(2, 2) = 1e12;
-}
-
 struct ValueLandmarks {
   struct Options {
     std::string covers = "sound";
@@ -69,8 +62,6 @@ struct ValueLandmarks {
     rules.covering.least_diameter = options.least_diameter;
     value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
                     rules);
-    for (Landmark& landmark : all) tell_unknown_height(landmark.covariance);
-    for (Observation& observation : seen) tell_unknown_height(observation.covariance);
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
     unit.write(evidence, std::move(seen));

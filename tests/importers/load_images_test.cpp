@@ -115,7 +115,7 @@ RunResult load(const std::string& options) {
   Registry registry;
   register_importer_stages(registry);
   Pipeline pipeline(registry);
-  pipeline.add("load_images", options);
+  pipeline.add("flat_ground", R"({"crs": "local"})").add("load_images", options);
   return run(pipeline, {.hash_file = hash_file});
 }
 
