@@ -6,8 +6,8 @@
 namespace waymark {
 
 /// Multiplicity-based confidence q_# (Rossmann et al., eq. 5): seen / visible, in [0, 1].
-/// `seen`: images that detected the landmark; `visible`: images at least as fine as the coarsest that covers
-/// it (eq. 4). Absent where no image could have shown it.
+/// `seen`: images that detected the landmark; `visible`: images that cover it and are at least as fine as the
+/// coarsest that detected it (eq. 4). Absent where no image could have shown it.
 std::optional<double> multiplicity_confidence(int seen, int visible);
 
 /// How the spread of a feature becomes a confidence.

@@ -134,7 +134,11 @@ class MapWriter {
 
   void create_uid_index(const std::string& table) {
     try {
+      // The sorter works in runs as large as the cache: small ones are sorted beside the scan by a second
+      // thread.
+      database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
       database_->execute(fill_in("CREATE UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
+      database_->execute("PRAGMA cache_size = -65536");
     } catch (const Error&) {
       sqlite::Statement twice =
           database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");

@@ -9,13 +9,16 @@ namespace waymark::testing {
 
 MadeView made_view(int number) {
   Random random(static_cast<std::uint64_t>(number), "made view of rocks");
-  constexpr double kGsd = 0.3;
+  constexpr std::int64_t kPixels = 448;
+  const double gsd = random.log_uniform(0.1, 0.5);  // the finer, the more of the ground's texture is seen
   Ground ground;
-  ground.width = ground.height = 200;
-  ground.cell = 0.5;
+  ground.width = ground.height = 1.5 * gsd * kPixels;
+  ground.cell = random.uniform(1.5, 4) * gsd;
   ground.rocks.k = random.log_uniform(0.006, 0.3);
-  ground.rocks.min_diameter = 0.35;
-  ground.rocks.max_diameter = random.uniform(3, 8);
+  ground.rocks.min_diameter = 1.2 * gsd;
+  ground.rocks.max_diameter = random.uniform(8, 25) * gsd;
+  ground.relief.roughness = random.log_uniform(0.3, 1.5);
+  if (random.chance(0.2)) ground.outcrops.cover = random.uniform(0, 0.03);
   ground.dunes.cover = random.uniform(0, 0.4);
   ground.dunes.wavelength = random.log_uniform(4, 20);
   ground.dunes.height = ground.dunes.wavelength * random.uniform(0.03, 0.09);
@@ -27,7 +30,7 @@ MadeView made_view(int number) {
   ground.relief.rms = random.log_uniform(0.3, 5);
   ground.relief.longest = 300;
   const Scene scene = make_scene(ground, static_cast<std::uint64_t>(number));
-  const View view = map_view(scene, kGsd, 448, 448);
+  const View view = map_view(scene, gsd, kPixels, kPixels);
   const double incidence = random.uniform(30, 75);
   Exposure exposure;
   exposure.sun = {Degrees{random.uniform(0, 360)}, Degrees{90 - incidence}, Degrees{0.5}};
@@ -35,6 +38,7 @@ MadeView made_view(int number) {
   exposure.haze = random.uniform(0, 0.2);
   exposure.skylight = random.uniform(0.02, 0.25);
   exposure.read_noise = random.log_uniform(0.001, 0.006);
+  exposure.contrast = random.uniform(0.8, 1.8);
   MadeView made;
   made.elevation = to_radians(exposure.sun.elevation);
   made.sun_angle = image_sun_angle(view, exposure.sun);
@@ -42,8 +46,8 @@ MadeView made_view(int number) {
   for (float& value : made.image.pixels.cells()) value = std::round(value * 255);
   for (const TrueRock& rock : scene.rocks)
     if (const auto outline = outline_in(view, rock))
-      made.image.rocks.push_back({outline->x, outline->y, rock.width / kGsd, rock.height / kGsd,
-                                  rock.height / kGsd / std::tan(made.elevation.value)});
+      made.image.rocks.push_back({outline->x, outline->y, rock.width / gsd, rock.height / gsd,
+                                  rock.height / gsd / std::tan(made.elevation.value)});
   return made;
 }
 
