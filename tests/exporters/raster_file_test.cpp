@@ -3,6 +3,7 @@
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -17,8 +18,9 @@ namespace fs = std::filesystem;
 
 class RasterFile : public ::testing::Test {
  protected:
-  RasterFile() : folder_(fs::path(::testing::TempDir()) / "waymark_raster_file") {
-    fs::remove_all(folder_);
+  RasterFile()
+      : folder_(fs::path(::testing::TempDir()) / ("waymark_raster_file_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);  // the tests run side by side, each in a process of its own
     fs::create_directories(folder_);
   }
   ~RasterFile() override { fs::remove_all(folder_); }
