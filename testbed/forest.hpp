@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+namespace waymark {
+
+/// A tree as it stands, metres, GridFrame. `species` indexes the forest's list of species
+/// (ForestLaw::species); 0 where there is only one.
+struct StandingTree {
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< middle of the stem on the ground
+  double height = 0;                               ///< foot to highest shoot
+  double dbh = 0;                                  ///< stem diameter at 1.3 m, over bark; 0: below 1.3 m
+  double crown_diameter = 0;                       ///< mean width
+  double crown_base = 0;                           ///< height above the foot where the living crown begins
+  int species = 0;
+
+  friend bool operator==(const StandingTree&, const StandingTree&) = default;
+};
+
+}  // namespace waymark
