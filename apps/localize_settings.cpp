@@ -92,14 +92,14 @@ void LocalizeSettings::describe(OptionVisitor& option) {
          {.help = "Radians by which the heading of the start may be off", .min = 1e-6, .max = 4});
 }
 
-void set(LocalizeSettings& settings, const std::string& setting) {
+void set_option(const DescribeOptions& describe, const std::string& setting) {
   const std::size_t equals = setting.find('=');
   if (equals == 0 || equals == std::string::npos)
     throw Error(ErrorCode::usage, "--set takes OPTION=VALUE, is '" + setting + "'", "",
                 "e.g. --set particles=1000");
   const std::string name = setting.substr(0, equals);
   Setter setter(name, setting.substr(equals + 1));
-  settings.describe(setter);
+  describe(setter);
   if (setter.done) return;
   const std::string near = nearest_name(name, setter.names);
   throw Error(ErrorCode::usage, "localize has no option '" + name + "'", "",
@@ -107,10 +107,9 @@ void set(LocalizeSettings& settings, const std::string& setting) {
                            : "did you mean '" + near + "'?");
 }
 
-std::string settings_as_text() {
-  LocalizeSettings settings;
+std::string options_as_text(const DescribeOptions& describe) {
   Lister lister;
-  settings.describe(lister);
+  describe(lister);
   return lister.text_of_all;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 #include "localization/hypotheses.hpp"
@@ -20,10 +21,13 @@ struct LocalizeSettings {
   void describe(OptionVisitor& option);
 };
 
-/// Sets OPTION=VALUE. Throws Error{usage}: no such option (with the nearest name), a value out of range.
-void set(LocalizeSettings& settings, const std::string& setting);
+/// What shows a visitor all options that --set may change: those above and the method's own.
+using DescribeOptions = std::function<void(OptionVisitor&)>;
 
-/// Each option with its default and what it does, a line each.
-std::string settings_as_text();
+/// Sets OPTION=VALUE. Throws Error{usage}: no such option (with the nearest name), a value out of range.
+void set_option(const DescribeOptions& describe, const std::string& setting);
+
+/// Each option with its value and what it does, a line each.
+std::string options_as_text(const DescribeOptions& describe);
 
 }  // namespace waymark

@@ -40,13 +40,13 @@ MapQuery::Box box_in_crs(const Eigen::AlignedBox2d& box, const LocalFrame& frame
 
 }  // namespace
 
-OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor) {
+OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty) {
   const auto store = std::make_shared<const MapStore>(MapStore::open(file));
   RobotMap map{.store = store,
                .frame = LocalFrame(store->crs(), origin_of(*store)),
                .landmarks = store->count(),
                .bounds = {}};
-  if (map.landmarks == 0)
+  if (map.landmarks == 0 && !may_be_empty)
     throw Error(ErrorCode::input, "the map has no landmarks: there is nothing to find the way by", file,
                 "use --method odometry, or another map");
   if (map.landmarks <= kAllAtOnce || map.crs().kind() == CrsKind::geographic) {

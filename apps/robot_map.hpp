@@ -25,7 +25,8 @@ struct OpenedMap {
 };
 
 /// Opens a map for a robot. Up to 200,000 landmarks are read at once; of larger maps the surroundings of the
-/// robot, where the CRS is projected or local. `sensor`: whose quality counts; null: the confidence.
-OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor);
+/// robot, where the CRS is projected or local. `sensor`: whose quality counts; null: the confidence. Throws
+/// Error{input} for a map without landmarks unless it `may_be_empty`.
+OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty = false);
 
 }  // namespace waymark

@@ -2,38 +2,35 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <filesystem>
 #include <optional>
 
 #include "apps/command.hpp"
-#include "apps/localize_settings.hpp"
+#include "apps/localize_method.hpp"
 #include "apps/log.hpp"
 #include "apps/parse.hpp"
 #include "apps/registries.hpp"
-#include "apps/robot_map.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
 #include "exporters/track_file.hpp"
 #include "importers/logs/import_log.hpp"
-#include "localization/detectors/laser_stems.hpp"
 
 namespace waymark {
 namespace {
 
 class Localize final : public Command {
  public:
+  Localize() { register_methods(methods_); }
+
   CommandSpec describe() override {
     return {
         .name = "localize",
         .group = Group::use,
         .summary = "Follow a robot through a map by its log",
         .about =
-            "Writes where the robot was after each event of the log, with covariances. Methods: odometry "
-            "alone; ekf and ukf, which need to know the start; pf, particles, which find it; global, pf "
-            "without "
-            "a start. With --ids unknown the landmarks are recognised by type, place and features; ekf then "
-            "keeps a sum of Gaussians, one for each way to recognise them that is still probable.\n\n"
+            "Writes where the robot was after each event of the log, with covariances. Methods: " +
+            methods_.summaries() +
+            ". With --ids unknown the landmarks are recognised by type, place and features.\n\n"
             "Metres are those of the map's east-north-up frame about the middle of its landmarks; of a local "
             "CRS, its own coordinates. --crs writes coordinates of the map's CRS.",
         .arguments =
@@ -44,7 +41,7 @@ class Localize final : public Command {
              Argument{"-o,--output", "TRACK", &output_, "Track to write, .csv or .gpkg"}.needed().offering(
                  Offer::file),
              Argument{"--method", "NAME", &method_, "How to localize"}
-                 .one_of({"odometry", "pf", "ekf", "ukf", "global"})
+                 .one_of(methods_.names())
                  .or_else("ekf"),
              Argument{"--sensor", "NAME", &sensor_,
                       "Sensor whose view of the landmarks' quality counts (eq. 8)"}
@@ -76,41 +73,46 @@ class Localize final : public Command {
     const std::filesystem::path out(output_);
     if (out.extension() != ".csv" && out.extension() != ".gpkg")
       throw Error(ErrorCode::usage, "a track is written as .csv or .gpkg", output_, "e.g. -o track.csv");
-    for (const std::string& setting : sets_) set(settings_, setting);
+    LocalizeMethod& method = methods_.find(method_);
+    const DescribeOptions options = [&](OptionVisitor& visitor) {
+      settings_.describe(visitor);
+      method.describe(visitor);
+    };
+    for (const std::string& setting : sets_) set_option(options, setting);
     settings_.identification.use_identities = ids_ == "known";
     settings_.particles.threads = session.threads;
     const SensorProfile* sensor = sensor_.empty() ? nullptr : &all_sensors().at(sensor_);
-    OpenedMap opened = open_robot_map(map_, sensor);
-    RobotLog log = import_log(log_, opened.map.types(), how_);
-    check_place(log, opened.map);
-    place_in(log, opened.map.frame);
+    OpenedMap opened = open_robot_map(map_, sensor, !method.needs_map());
+    const RobotMap map = opened.map;
+    RobotLog log = import_log(log_, map.types(), how_);
+    check_place(log, map);
+    place_in(log, map.frame);
     for (const std::string& remark : log.remarks) log_warning(remark + ": " + log_);
     if (log.events.empty())
       throw Error(ErrorCode::input, "the log has no readings", log_,
                   "docs/log_format.md says what a log holds");
 
-    const std::optional<PoseEstimate> start = start_of(log);
-    if (start) check_distance(*start, opened.map);
-    const auto localizer = make(start, std::move(opened.window), FeatureScales(opened.map.types()));
-    const LaserStems stems{.type = opened.map.types().find("tree")
-                                       ? std::optional<TypeId>(opened.map.types().id("tree"))
-                                       : std::nullopt};
-    const Track track = play(
-        log, *localizer, settings_.play,
-        [&](const LaserScan& scan) { return sightings_of_stems(scan, stems); },
-        [] {
-          return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-        });
+    const std::optional<PoseEstimate> start = start_of(log, method);
+    if (start) check_distance(*start, map);
+    LocalizeTask task{
+        .map_file = map_,
+        .log_file = log_,
+        .log = log,
+        .map = std::move(opened),
+        .start = start,
+        .settings = settings_,
+        .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt};
+    const Track track = method.run(task);
 
-    TrackOutput form{.frame = in_crs_ ? &opened.map.frame : nullptr, .crs = &opened.map.crs()};
+    TrackOutput form{.frame = in_crs_ ? &map.frame : nullptr, .crs = &map.crs()};
     if (out.extension() == ".gpkg") {
-      form.frame = &opened.map.frame;
+      form.frame = &map.frame;
       write_track_geopackage(out, track, form);
     } else {
       write_track_csv(out, track, form);
     }
     tell(track);
-    if (list_) say(settings_as_text());
+    if (list_) say(options_as_text(options));
     return 0;
   }
 
@@ -133,13 +135,14 @@ class Localize final : public Command {
           "is it the right map, and is the start in the map's frame (or the log's \"frame\" \"crs\")?");
   }
 
-  std::optional<PoseEstimate> start_of(const RobotLog& log) const {
+  std::optional<PoseEstimate> start_of(const RobotLog& log, const LocalizeMethod& method) const {
     PoseEstimate start;
     start.covariance.diagonal() << settings_.start_sd * settings_.start_sd,
         settings_.start_sd * settings_.start_sd, settings_.start_yaw_sd * settings_.start_yaw_sd;
-    const bool searches = method_ == "pf" || method_ == "global";
-    if (method_ == "global" || start_ == "none") {
-      if (!searches)
+    const StartNeed need = method.start();
+    if (need == StartNeed::ignored) return {};
+    if (start_ == "none") {
+      if (need == StartNeed::needed)
         throw Error(ErrorCode::usage, "--method " + method_ + " must know where the robot starts",
                     "--start none", "give --start X,Y,YAW, or use --method pf");
       return {};
@@ -159,7 +162,7 @@ class Localize final : public Command {
       start.pose = *log.start;
       return start;
     }
-    if (searches && start_.empty()) return {};
+    if (need != StartNeed::needed && start_.empty()) return {};
     throw Error(ErrorCode::input, "nothing says where the robot starts", log_,
                 "give --start X,Y,YAW (metres and radians), or use --method pf");
   }
@@ -176,23 +179,6 @@ class Localize final : public Command {
       throw Error(ErrorCode::usage, "--start takes X,Y,YAW, truth or none, is '" + text + "'", "",
                   "e.g. --start 12.5,-3,1.57");
     return all;
-  }
-
-  std::unique_ptr<Localizer> make(const std::optional<PoseEstimate>& start, LandmarkWindow window,
-                                  FeatureScales scales) const {
-    const IdentificationOptions& id = settings_.identification;
-    if (method_ == "odometry") return std::make_unique<DeadReckoning>(*start);
-    if (method_ == "ukf")
-      return std::make_unique<UnscentedKalman>(*start, std::move(window), std::move(scales), id,
-                                               settings_.kalman);
-    if (method_ == "pf" || method_ == "global")
-      return std::make_unique<ParticleFilter>(start, std::move(window), std::move(scales), id,
-                                              settings_.particles);
-    if (!id.use_identities && id.association == "joint")
-      return std::make_unique<HypothesesFilter>(*start, std::move(window), std::move(scales), id,
-                                                settings_.hypotheses);
-    return std::make_unique<ExtendedKalman>(*start, std::move(window), std::move(scales), id,
-                                            settings_.kalman);
   }
 
   void tell(const Track& track) const {
@@ -218,6 +204,7 @@ class Localize final : public Command {
   std::vector<std::string> sets_;
   bool in_crs_ = false, list_ = false;
   LocalizeSettings settings_;
+  MethodTable methods_;
 };
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/localize_method.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <chrono>
+
+#include "core/error.hpp"
+#include "localization/detectors/laser_stems.hpp"
+
+namespace waymark {
+
+Track play_task(const LocalizeTask& task, Localizer& localizer) {
+  const LaserStems stems{.type = task.stem_type};
+  return play(
+      task.log, localizer, task.settings.play,
+      [&](const LaserScan& scan) { return sightings_of_stems(scan, stems); },
+      [] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+      });
+}
+
+Track FilterMethod::run(LocalizeTask& task) {
+  const auto localizer = make(task);
+  return play_task(task, *localizer);
+}
+
+std::vector<std::string> MethodTable::names() const {
+  std::vector<std::string> all;
+  for (const auto& method : methods_) all.emplace_back(method->name());
+  return all;
+}
+
+std::string MethodTable::summaries() const {
+  std::vector<std::string> all;
+  for (const auto& method : methods_) all.push_back(fmt::format("{}: {}", method->name(), method->summary()));
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
+LocalizeMethod& MethodTable::find(std::string_view name) const {
+  for (const auto& method : methods_)
+    if (method->name() == name) return *method;
+  throw Error(ErrorCode::usage, fmt::format("localize has no method '{}'", name), "",
+              fmt::format("methods: {}", fmt::join(names(), ", ")));
+}
+
+}  // namespace waymark
