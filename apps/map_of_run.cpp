@@ -7,6 +7,7 @@
 #include <map>
 
 #include "apps/registries.hpp"
+#include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
 #include "pipeline/fusion/image_view.hpp"
 
@@ -77,7 +78,9 @@ std::vector<std::string> types_found(const Pipeline& pipeline) {
 }
 
 std::string summary_of_run(const RunResult& result, const MapContents& contents, const std::string& map) {
-  const auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
+  auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
+  for (const auto& surveys : result.artifacts<Canopies>("canopies"))
+    cells = static_cast<double>(common_grid(*surveys).cells());
   std::string text = fmt::format("{}: {}\n", map, count_by_type(contents));
   if (!contents.images.empty()) {
     const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);

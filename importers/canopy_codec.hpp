@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "geo/canopy_source.hpp"
+#include "pipeline/engine/codec.hpp"
+namespace waymark {
+
+/// Canopies on disk are their recipes: decoding opens the files again. Only what import_canopy or
+/// import_points opened can be encoded (std::logic_error).
+template <>
+struct Codec<Canopies> {
+  static std::string encode(const Canopies& canopies);
+  static Canopies decode(std::string_view bytes);
+};
+
+}  // namespace waymark

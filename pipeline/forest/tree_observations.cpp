@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forest/tree_observations.hpp"
+
+#include <cmath>
+
+namespace waymark {
+
+Observation observation_of(const FoundTree& tree, const CanopySource& canopy, const LandmarkType& type,
+                           TypeId id, std::span<const Allometry> table, std::string_view species,
+                           const TreeErrors& errors) {
+  const Georeference& where = canopy.geometry().where;
+  const auto column = static_cast<double>(tree.top.column), row = static_cast<double>(tree.top.row);
+  Observation seen;
+  seen.type = id;
+  seen.source = canopy.name();
+  seen.pixel = Eigen::Vector2d(column, row);
+  const double ground = canopy.ground(tree.top.column, tree.top.row);
+  seen.position.xyz << where.x(column), where.y(row), std::isnan(ground) ? 0 : ground;
+  const double unit = where.crs.metres_per_unit(), cell_x = where.dx * unit, cell_y = where.dy * unit;
+  const double lean = errors.place_base + errors.place_slope * tree.height;
+  seen.covariance(0, 0) = lean * lean + cell_x * cell_x / 12;
+  seen.covariance(1, 1) = lean * lean + cell_y * cell_y / 12;
+  seen.covariance(2, 2) = std::isnan(ground) ? std::nan("") : 0.25;
+  seen.confidence = 0.9;
+  seen.features.resize(type.features.size());
+  const auto set = [&](const char* name, double value, double sd) {
+    seen.features[feature_index(type, name)] = {value, sd * sd, 1};
+  };
+  set("height", tree.height, errors.height);
+  const double crown_sd = errors.crown_share * tree.crown_diameter;
+  if (tree.crown_diameter > 0) set("crown_diameter", tree.crown_diameter, crown_sd);
+  if (const Allometry* row_of = allometry_of(table, species))
+    if (const auto stem = stem_diameter(*row_of, tree.height, errors.height, tree.crown_diameter, crown_sd))
+      set("diameter", stem->metres, stem->sd);
+  return seen;
+}
+
+CrownShape crown_shape_of(const FoundTree& tree, const CanopySource& canopy, const Observation& observation) {
+  const Georeference& where = canopy.geometry().where;
+  CrownShape shape;
+  shape.source = observation.source;
+  shape.top = observation.position.xyz.head<2>();
+  shape.height = tree.height;
+  shape.area = tree.crown_area;
+  shape.diameter = tree.crown_diameter;
+  for (const CanopyCell& corner : tree.crown.ring)
+    shape.ring.emplace_back(where.x(static_cast<double>(corner.column) - 0.5),
+                            where.y(static_cast<double>(corner.row) - 0.5));
+  return shape;
+}
+
+}  // namespace waymark

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fstream>
+#include <sstream>
+
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/forest/tree_observations.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+
+namespace waymark {
+namespace {
+
+struct TreesFromCanopy {
+  struct Options {
+    std::string preset = "mixed", method = "peaks", allometry, species;
+    Meters min_height{3};
+    double isolation_base = -1, isolation_slope = -1, prominence = -1, smoothing = -1, max_crown_radius = -1;
+    bool crowns = true;
+
+    void describe(OptionVisitor& option) {
+      option("preset", preset,
+             {.help = "Type of forest the trees are told by; see docs/trees.md", .choices = forest_preset_names()});
+      option("method", method,
+             {.help = "peaks (smoothing, isolation, prominence) or lmf (variable-window local maxima, the reference)",
+              .choices = {"peaks", "lmf"}});
+      option("min_height", min_height, {.help = "Lowest tree kept", .min = 0.5, .max = 100});
+      option("isolation_base", isolation_base,
+             {.help = "No higher cell within isolation_base + isolation_slope x height, metres; -1: as the preset",
+              .min = -1,
+              .max = 100});
+      option("isolation_slope", isolation_slope, {.help = "See isolation_base; -1: as the preset", .min = -1, .max = 2});
+      option("prominence", prominence,
+             {.help = "Metres a top stands above the saddle to higher ground nearby; -1: as the preset",
+              .min = -1,
+              .max = 50});
+      option("smoothing", smoothing,
+             {.help = "Standard deviation of the smoothing, metres; -1: as the preset", .min = -1, .max = 20});
+      option("crowns", crowns, {.help = "Outline the crowns; without them trees have no crown diameter"});
+      option("max_crown_radius", max_crown_radius,
+             {.help = "A crown reaches no farther from its top, metres; -1: as the preset", .min = -1, .max = 40});
+      option("allometry", allometry,
+             {.help = "CSV table that gives stem diameters, as `waymark allometry fit` writes; empty: Jucker et "
+                      "al. 2017"});
+      option("species", species,
+             {.help = "Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), else all"});
+    }
+  };
+  static constexpr In<Canopies> canopies{"canopies"};
+  static constexpr Out<std::vector<Observation>> observations{"observations"};
+  static constexpr Out<std::vector<CrownShape>> seen_crowns{"seen_crowns"};
+
+  static StageSpec spec() {
+    return {.name = "trees_from_canopy",
+            .summary = "Finds treetops and crowns in canopy models; stem diameters by allometry",
+            .version = 1,
+            .scope = Scope::tile,
+            .inputs = {canopies},
+            .outputs = {observations, seen_crowns},
+            .finds = {"tree"}};
+  }
+
+  static std::vector<std::string> input_files(const Options& o) {
+    return o.allometry.empty() ? std::vector<std::string>{} : std::vector{o.allometry};
+  }
+
+  static TreetopRules with_options(TreetopRules rules, const Options& o) {
+    rules.min_height = o.min_height.value;
+    if (o.isolation_base >= 0) rules.isolation_base = o.isolation_base;
+    if (o.isolation_slope >= 0) rules.isolation_slope = o.isolation_slope;
+    if (o.prominence >= 0) rules.prominence = o.prominence;
+    return rules;
+  }
+
+  static ForestPreset chosen(const ForestPreset& preset, const Options& o) {
+    ForestPreset forest = o.method == "lmf" ? as_local_maxima(preset) : preset;
+    forest.tops = with_options(forest.tops, o);
+    if (o.smoothing >= 0) forest.smoothing = o.smoothing;
+    if (o.max_crown_radius > 0) forest.crowns.max_radius = o.max_crown_radius;
+    return forest;
+  }
+
+  static std::vector<Allometry> table_of(const Options& options, const StageContext& unit) {
+    if (options.allometry.empty()) return built_in_allometry();
+    const std::string path = unit.path(options.allometry);
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    if (!(text << file.rdbuf()))
+      throw Error(ErrorCode::input, "the allometry table cannot be read", path,
+                  "`waymark allometry fit TREES.csv -o TABLE.csv` writes one");
+    return parse_allometry(text.str(), path);
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    const TypeId id = types.id("tree");
+    const std::vector<Allometry> table = table_of(options, unit);
+    TreeSearch search{.forest = chosen(forest_preset(options.preset), options), .crowns = options.crowns};
+    for (const ForestType type : {ForestType::conifer, ForestType::broadleaf, ForestType::mixed})
+      search.by_type.push_back(chosen(forest_preset(type), options).tops);
+    const Canopies& surveys = unit.read(canopies);
+    const GridGeometry common = common_grid(surveys);
+    std::vector<Observation> seen;
+    std::vector<CrownShape> outlines;
+    for (const auto& canopy : surveys) {
+      const Window owned = part_of(canopy->geometry(), common, unit.tile().cells);
+      for (const FoundTree& tree : find_trees(*canopy, owned, search)) {
+        seen.push_back(observation_of(tree, *canopy, types[id], id, table, species_of(tree, *canopy, options)));
+        if (options.crowns) outlines.push_back(crown_shape_of(tree, *canopy, seen.back()));
+      }
+    }
+    unit.count_out(static_cast<std::int64_t>(seen.size()));
+    unit.write(observations, std::move(seen));
+    unit.write(seen_crowns, std::move(outlines));
+  }
+
+  static std::string species_of(const FoundTree& tree, const CanopySource& canopy, const Options& options) {
+    if (!options.species.empty()) return options.species;
+    const Grid<std::uint8_t> type = canopy.forest_types({tree.top.column, tree.top.row, 1, 1});
+    const auto known = type.columns() ? static_cast<ForestType>(type(0, 0)) : ForestType::unknown;
+    return known == ForestType::unknown ? options.preset : forest_preset(known).name;
+  }
+};
+
+}  // namespace
+
+void register_stage_trees_from_canopy(Registry& registry);
+void register_stage_trees_from_canopy(Registry& registry) {
+  registry.add<TreesFromCanopy>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/forest/crown_shape.hpp"
+#include "pipeline/forest/find_trees.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/landmark_codec.hpp"
+#include "pipeline/fusion/valuing.hpp"
+
+namespace waymark {
+namespace {
+
+// A canopy model is a survey: it could have shown a tree where it knows the canopy's height.
+struct ValueFlights {
+  struct Options {
+    void describe(OptionVisitor&) {}
+  };
+  static constexpr In<Canopies> canopies{"canopies"};
+  static constexpr In<std::vector<Landmark>> merged{"merged"};
+  static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
+  static constexpr In<std::vector<CrownShape>> seen_crowns{"seen_crowns"};
+  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
+  static constexpr Out<std::vector<Observation>> evidence{"evidence"};
+  static constexpr Out<std::vector<CrownShape>> crowns{"crowns"};
+
+  static StageSpec spec() {
+    return {.name = "value_flights",
+            .summary = "Values trees: how many canopy models show them of how many could have; names their crowns",
+            .version = 1,
+            .scope = Scope::map,
+            .inputs = {canopies, merged, merged_evidence, seen_crowns},
+            .outputs = {landmarks, evidence, crowns}};
+  }
+
+  static void run(const Options&, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    std::vector<Landmark> all = unit.read(merged);
+    const auto& seen = unit.read(merged_evidence);
+    value_landmarks(all, seen, {}, nullptr, types, 1);
+    const Canopies& surveys = unit.read(canopies);
+    if (surveys.size() > 1) {
+      for (Landmark& landmark : all) {
+        landmark.quality.visible = std::max(landmark.quality.seen, covering(surveys, landmark));
+        const int missed = landmark.quality.visible - landmark.quality.seen;
+        landmark.confidence *= std::pow(kDoubtWhenMissed, missed);
+      }
+    }
+    unit.write(crowns, named(unit.read_all(seen_crowns), seen, all));
+    unit.count_out(static_cast<std::int64_t>(all.size()));
+    unit.write(landmarks, std::move(all));
+    unit.write(evidence, seen);
+  }
+
+  // A survey that should show a tree and does not takes this share of its confidence.
+  static constexpr double kDoubtWhenMissed = 0.7;
+
+  static int covering(const Canopies& surveys, const Landmark& landmark) {
+    int count = 0;
+    for (const auto& canopy : surveys) {
+      const Georeference& where = canopy->geometry().where;
+      const Window cell{std::llround(where.column(landmark.position.xyz.x())),
+                        std::llround(where.row(landmark.position.xyz.y())), 1, 1};
+      count += canopy->read(cell)(0, 0) != kNoCanopy;
+    }
+    return count;
+  }
+
+  // One crown per tree: of the first survey by name that shows it.
+  static std::vector<CrownShape> named(const std::vector<std::shared_ptr<const std::vector<CrownShape>>>& parts,
+                                       const std::vector<Observation>& seen, const std::vector<Landmark>& all) {
+    using Key = std::tuple<std::string_view, double, double>;
+    std::map<Key, const CrownShape*> at;
+    for (const auto& part : parts)
+      for (const CrownShape& crown : *part) at[{crown.source, crown.top.x(), crown.top.y()}] = &crown;
+    std::map<std::string_view, const CrownShape*> of_tree;
+    for (const Observation& o : seen) {  // by source, then place: the first survey by name comes first
+      if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
+      const auto found = at.find({o.source, o.position.xyz.x(), o.position.xyz.y()});
+      if (found != at.end()) of_tree.try_emplace(o.landmark_uid, found->second);
+    }
+    std::vector<CrownShape> crowns;
+    for (const Landmark& tree : all)
+      if (const auto found = of_tree.find(tree.uid); found != of_tree.end()) {
+        crowns.push_back(*found->second);
+        crowns.back().uid = tree.uid;
+      }
+    return crowns;
+  }
+};
+
+}  // namespace
+
+void register_stage_value_flights(Registry& registry);
+void register_stage_value_flights(Registry& registry) {
+  registry.add<ValueFlights>();
+}
+
+}  // namespace waymark
