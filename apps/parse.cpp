@@ -183,7 +183,7 @@ std::string synopsis(const Argument& argument) {
   std::string text = argument.names.substr(0, argument.names.find(','));
   if (!argument.flag()) text += " " + argument.value;
   if (!argument.required) text = "[" + text + "]";
-  return repeatable(argument) ? text + "..." : text;
+  return repeatable(argument) && !argument.value.ends_with("...") ? text + "..." : text;
 }
 
 std::string display_name(const Argument& argument) {

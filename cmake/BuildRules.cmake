@@ -2,11 +2,11 @@
 add_library(waymark_build_rules INTERFACE)
 target_compile_options(waymark_build_rules INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wold-style-cast -Werror
-  -Wno-restrict         # false alarms of g++ 12 on std::string (bug 105651)
+  -Wno-restrict -Wno-stringop-overflow  # false alarms of g++ 12 on std::string (bug 105651)
   -ffp-contract=off)  # the same bits on a machine with and without fused multiply-add
 find_program(CCACHE ccache)
 if(CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 find_program(MOLD mold)
 if(MOLD)

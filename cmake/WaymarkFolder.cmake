@@ -21,6 +21,9 @@ function(waymark_folder)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME} VERIFY_INTERFACE_HEADER_SETS ON)
   target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE $<BUILD_INTERFACE:waymark_build_rules> ${arg_PRIVATE})
   target_compile_features(${target} PUBLIC cxx_std_20)
+  if(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
+    waymark_use_precompiled(${target} waymark_precompiled)
+  endif()
   install(TARGETS ${target} EXPORT WaymarkTargets ARCHIVE COMPONENT development
           FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development)
 endfunction()

@@ -8,9 +8,9 @@ function(waymark_tests)
   endif()
   set(target ${arg_NAME}_tests)
   add_executable(${target} ${sources})
-  target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules GTest::gmock
-                        GTest::gtest_main)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)  # tests compile longer than they run
+  target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules waymark_test_options
+                        GTest::gmock GTest::gtest_main)
+  waymark_use_precompiled(${target} waymark_tests_precompiled)
   gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60
                        PROPERTIES TIMEOUT 600 ENVIRONMENT RC_PARAMS=seed=2026 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
 endfunction()

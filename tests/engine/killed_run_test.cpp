@@ -42,11 +42,12 @@ TEST(KilledRunChild, Runs) {
 class Child {
  public:
   explicit Child(const fs::path& work) {
-    const std::string work_variable = std::string(kWork) + "=" + work.string();
     std::string program = fs::read_symlink("/proc/self/exe"), filter = "--gtest_filter=KilledRunChild.*",
                 brief = "--gtest_brief=1";
     char* arguments[] = {program.data(), filter.data(), brief.data(), nullptr};
-    std::string variable = work_variable;
+    std::string variable = kWork;
+    variable += '=';
+    variable += work.string();
     char* environment[] = {variable.data(), nullptr};
     if (posix_spawn(&process_, program.c_str(), nullptr, nullptr, arguments, environment) != 0)
       ADD_FAILURE() << "cannot start " << program;
