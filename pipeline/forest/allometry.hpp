@@ -26,7 +26,7 @@ struct Allometry {
   double rmse = kUnknown;      ///< cm, of the trees it was fitted to
   double held_out_rmse = kUnknown;  ///< cm, of trees (plots) it was not fitted to
   double held_out_bias = kUnknown;  ///< cm, predicted less measured, of the same
-  std::string source;          ///< where the coefficients come from
+  std::string source = {};     ///< where the coefficients come from
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };
