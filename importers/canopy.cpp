@@ -235,7 +235,8 @@ void check(const CanopyImport& import) {
     throw Error(ErrorCode::usage, "a canopy height model and a surface or terrain model are given", "",
                 "a canopy height model needs neither; or leave it out and give --dsm and --dtm");
   if (import.chm.empty() && import.dsm.empty())
-    throw Error(ErrorCode::usage, "no canopy is given", "", "name a raster: --chm CHM.tif, or --dsm and --dtm");
+    throw Error(ErrorCode::usage, "no canopy is given", "",
+                "name its files: --chm CHM.tif, --dsm and --dtm, or --las POINTS.las");
   if (import.chm.empty() && import.dtm.empty())
     throw Error(ErrorCode::usage, "heights of trees need the ground under the surface model", import.dsm[0],
                 "add --dtm DTM.tif; a raster of heights above ground is passed as --chm");
@@ -244,6 +245,7 @@ void check(const CanopyImport& import) {
 }  // namespace
 
 std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import) {
+  if (!import.las.empty()) return import_points(import);
   check(import);
   return std::make_shared<const RasterCanopy>(import);
 }

@@ -5,16 +5,18 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// Which rasters make the canopy model of one survey: heights above ground, or surface and terrain.
+/// Which files make the canopy model of one survey: heights above ground; surface and terrain; or laser
+/// points.
 struct CanopyImport {
-  std::vector<std::string> chm = {}, dsm = {}, dtm = {};
+  std::vector<std::string> chm = {}, dsm = {}, dtm = {}, las = {};
+  double resolution = 0;         ///< of a canopy from points, metres; 0: by their density
   std::string forest_type = {};  ///< raster of ForestType values on any grid; empty: none
   std::string crs = {};          ///< as DemImport::crs
   std::int64_t memory_bytes = std::int64_t{256} << 20;
   bool inspect = true;  ///< look at a sample of the heights; false: open the headers only
 };
 
-/// A canopy model on rasters that GDAL reads.
+/// A canopy model on files.
 class ImportedCanopy : public CanopySource {
  public:
   virtual const std::vector<std::string>& warnings() const = 0;
@@ -29,5 +31,12 @@ class ImportedCanopy : public CanopySource {
 /// different CRSs, elevations where heights should be, and a terrain above its surface; what else is odd is
 /// in warnings(). Files without a CRS are taken as metres on a plane, with a warning.
 std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import);
+
+/// The same from LAS files, which make one catalogue: the canopy model of pipeline/forest/canopy_model.hpp,
+/// made block by block when it is read, so that memory does not grow with the files. Noise (classes 7 and 18)
+/// and withheld points are left out. Feet, horizontal and vertical, by the units the CRS names. Throws
+/// Error{input} as read_las_header does, for a CRS in degrees, files of different CRSs, and where no point is
+/// classified as ground.
+std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import);
 
 }  // namespace waymark

@@ -17,6 +17,8 @@ std::string Codec<Canopies>::encode(const Canopies& canopies) {
     all.push_back({{"chm", import.chm},
                    {"dsm", import.dsm},
                    {"dtm", import.dtm},
+                   {"las", import.las},
+                   {"resolution", import.resolution},
                    {"forest_type", import.forest_type},
                    {"crs", import.crs},
                    {"memory_bytes", import.memory_bytes}});
@@ -30,6 +32,8 @@ Canopies Codec<Canopies>::decode(std::string_view bytes) {
     canopies.push_back(import_canopy({.chm = json.at("chm"),
                                       .dsm = json.at("dsm"),
                                       .dtm = json.at("dtm"),
+                                      .las = json.at("las"),
+                                      .resolution = json.at("resolution"),
                                       .forest_type = json.at("forest_type"),
                                       .crs = json.at("crs"),
                                       .memory_bytes = json.at("memory_bytes"),

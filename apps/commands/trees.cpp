@@ -19,14 +19,15 @@ class Trees final : public Command {
     std::vector<Argument> all{
         files("--chm", "CHM...", &chm_, "Canopy height models, heights above ground, that GDAL opens"),
         files("--dsm", "DSM...", &dsm_, "Surface models, with --dtm"),
-        files("--dtm", "DTM...", &dtm_, "Terrain models, on any grid")};
+        files("--dtm", "DTM...", &dtm_, "Terrain models, on any grid"),
+        files("--las", "FILE...", &las_, "LAS 1.0 to 1.4 files, one catalogue, ground classified")};
     for (auto& argument : map_arguments(request_)) all.push_back(argument);
     for (auto& argument : options_.arguments()) all.push_back(argument);
     all.push_back({"--print-job", "", &print_job_,
                    "Print the job instead of running it: the start of one of your own"});
     return {.name = "trees",
             .group = Group::make,
-            .summary = "Find the trees of a canopy height model, their crowns and stem diameters",
+            .summary = "Find the trees of a canopy, their crowns and stem diameters",
             .about =
                 "A treetop stands out by its height, its isolation and its prominence, like a mountain top; its "
                 "crown is the ground that drains towards it with the canopy upside down. Stem diameters come from "
@@ -37,6 +38,7 @@ class Trees final : public Command {
             .examples = {
                 {"waymark trees --chm chm.tif -o trees.gpkg --preset conifer", "A map of trees and crowns"},
                 {"waymark trees --dsm dsm.tif --dtm dtm.tif -o trees.gpkg", "Surface less terrain"},
+                {"waymark trees --las flight_*.las -o trees.gpkg", "From laser points: ground, canopy, trees"},
                 {"waymark trees --chm 2019.tif 2023.tif --flights -o trees.gpkg",
                  "Two surveys of one forest: trees are merged and valued"},
                 {"waymark trees --chm chm.tif -o trees.gpkg --allometry table.csv --species PIAB",
@@ -54,8 +56,12 @@ class Trees final : public Command {
  private:
   Job make_job() const {
     const bool surface = !dsm_.empty() || !dtm_.empty();
-    if (chm_.empty() && !surface)
-      throw Error(ErrorCode::usage, "no canopy is given", "", "pass --chm CHM.tif, or --dsm DSM.tif --dtm DTM.tif");
+    if (chm_.empty() && las_.empty() && !surface)
+      throw Error(ErrorCode::usage, "no canopy is given", "",
+                  "pass --chm CHM.tif, or --dsm DSM.tif --dtm DTM.tif, or --las POINTS.las");
+    if (!las_.empty() && (surface || !chm_.empty()))
+      throw Error(ErrorCode::usage, "--las is given together with rasters", "",
+                  "points make their own canopy model: leave out one or the other");
     if (!chm_.empty() && surface)
       throw Error(ErrorCode::usage, "--chm is given together with --dsm or --dtm", "",
                   "a canopy height model needs no terrain: leave out one or the other");
@@ -63,7 +69,7 @@ class Trees final : public Command {
       throw Error(ErrorCode::usage, dsm_.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
                   "heights of trees are the surface less the terrain: give both");
     Pipeline pipeline(all_stages());
-    pipeline.add("load_canopy", nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}}.dump());
+    pipeline.add("load_canopy", nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}}.dump());
     pipeline.add("trees_from_canopy");
     pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
     pipeline.add("value_flights");
@@ -71,13 +77,13 @@ class Trees final : public Command {
     return {"trees", std::move(pipeline)};
   }
 
-  std::vector<std::string> chm_, dsm_, dtm_;
+  std::vector<std::string> chm_, dsm_, dtm_, las_;
   MapRequest request_;
   StageOptions options_{{"trees_from_canopy.preset", "trees_from_canopy.method", "trees_from_canopy.min_height",
                          "trees_from_canopy.isolation_base", "trees_from_canopy.isolation_slope",
                          "trees_from_canopy.prominence", "trees_from_canopy.smoothing", "trees_from_canopy.crowns",
                          "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
-                         "trees_from_canopy.species", "load_canopy.flights", "load_canopy.forest_type",
+                         "trees_from_canopy.species", "load_canopy.flights", "load_canopy.resolution", "load_canopy.forest_type",
                          "load_canopy.crs", "load_canopy.tile_cells", "load_canopy.memory"}};
   bool print_job_ = false;
 };

@@ -13,7 +13,8 @@ constexpr std::int64_t kMegabyte = std::int64_t{1} << 20;
 
 struct LoadCanopy {
   struct Options {
-    std::vector<std::string> chm, dsm, dtm;
+    std::vector<std::string> chm, dsm, dtm, las;
+    Meters resolution{0};
     bool flights = false;
     std::string forest_type, crs;
     std::int64_t tile_cells = 1024;
@@ -23,8 +24,12 @@ struct LoadCanopy {
       option("chm", chm, {.help = "Canopy height models: heights above ground"});
       option("dsm", dsm, {.help = "Surface models, instead of chm; the ground is told by dtm"});
       option("dtm", dtm, {.help = "Terrain models under the surface models, on any grid"});
+      option("las", las,
+             {.help = "LAS files, instead of chm: one catalogue of laser points, ground classified (class 2)"});
+      option("resolution", resolution,
+             {.help = "Cell of the canopy made of laser points; 0: by their density", .min = 0, .max = 20});
       option("flights", flights,
-             {.help = "Each file of chm (or of dsm) is a survey of its own: trees that several saw are merged. "
+             {.help = "Each file of chm (of dsm, of las) is a survey of its own: trees that several saw are merged. "
                       "Otherwise the files make one canopy; where they overlap the first one counts"});
       option("forest_type", forest_type,
              {.help = "Raster that tells the type of forest, so that treetops are sought by the preset of each: "
@@ -58,7 +63,7 @@ struct LoadCanopy {
 
   static std::vector<std::string> input_files(const Options& o) {
     std::vector<std::string> all;
-    for (const auto* files : {&o.chm, &o.dsm, &o.dtm}) all.insert(all.end(), files->begin(), files->end());
+    for (const auto* files : {&o.chm, &o.dsm, &o.dtm, &o.las}) all.insert(all.end(), files->begin(), files->end());
     if (!o.forest_type.empty()) all.push_back(o.forest_type);
     return all;
   }
@@ -71,11 +76,13 @@ struct LoadCanopy {
     CanopyImport all{.chm = resolved(options.chm),
                      .dsm = resolved(options.dsm),
                      .dtm = resolved(options.dtm),
+                     .las = resolved(options.las),
+                     .resolution = options.resolution.value,
                      .forest_type = options.forest_type.empty() ? "" : unit.path(options.forest_type),
                      .crs = options.crs,
                      .memory_bytes = options.memory * kMegabyte};
-    std::vector<CanopyImport> surveys{all};
-    if (options.flights && all.chm.size() + all.dsm.size() > 1) surveys = one_each(all);
+    check(options);
+    const std::vector<CanopyImport> surveys = options.flights ? one_each(all) : std::vector{all};
     Canopies opened;
     DemHandle terrain;
     for (const CanopyImport& survey : surveys) {
@@ -96,17 +103,23 @@ struct LoadCanopy {
     unit.write(canopies, std::move(opened));
   }
 
+  static void check(const Options& o) {
+    if (!o.las.empty() && !(o.chm.empty() && o.dsm.empty() && o.dtm.empty()))
+      throw Error(ErrorCode::usage, "laser points and rasters are given", "load_canopy.las",
+                  "points make their own canopy model: leave out one or the other");
+  }
+
   // Surface models share the terrain models.
   static std::vector<CanopyImport> one_each(const CanopyImport& all) {
     std::vector<CanopyImport> surveys;
-    for (const bool heights : {true, false})
-      for (const std::string& file : heights ? all.chm : all.dsm) {
-        CanopyImport one = all;
-        (heights ? one.chm : one.dsm) = {file};
-        one.memory_bytes = all.memory_bytes / static_cast<std::int64_t>(all.chm.size() + all.dsm.size());
-        surveys.push_back(one);
+    const auto count = static_cast<std::int64_t>(all.chm.size() + all.dsm.size() + all.las.size());
+    for (auto member : {&CanopyImport::chm, &CanopyImport::dsm, &CanopyImport::las})
+      for (const std::string& file : all.*member) {
+        surveys.push_back(all);
+        surveys.back().*member = {file};
+        surveys.back().memory_bytes = all.memory_bytes / count;
       }
-    return surveys;
+    return surveys.empty() ? std::vector{all} : surveys;
   }
 };
 
