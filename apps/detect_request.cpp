@@ -13,7 +13,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeastCrater = 6, kLeastRock = 1;  // pixels
+constexpr double kLeastCrater = 6, kLeastRock = 1, kLeastTree = 0.1;  // pixels
 
 struct Kind {
   const char* word;
@@ -24,7 +24,8 @@ struct Kind {
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {{"craters", "crater", {"bowl", "edges"}, 8, 0, kLeastCrater},
-                                        {"rocks", "rock", {"shadow", "classic"}, 1.5, 100, kLeastRock}};
+                                        {"rocks", "rock", {"shadow", "classic"}, 1.5, 100, kLeastRock},
+                                        {"trees", "tree", {"imagery", "peaks", "lmf"}, 1, 0, kLeastTree}};
   return all;
 }
 
@@ -33,15 +34,12 @@ const std::vector<Kind>& kinds() {
 }
 
 const Kind& kind_called(std::string word) {
-  if (word == "trees")
-    refuse("trees are not found in images, but in height models",
-           "`waymark --help` lists what this version makes maps from");
-  if (word == "crater" || word == "rock") word += 's';
+  if (word == "crater" || word == "rock" || word == "tree") word += 's';
   for (const Kind& kind : kinds())
     if (kind.word == word) return kind;
-  const std::string nearest = nearest_name(word, std::vector<std::string>{"craters", "rocks"});
+  const std::string nearest = nearest_name(word, std::vector<std::string>{"craters", "rocks", "trees"});
   refuse(fmt::format("'{}' cannot be detected", word),
-         nearest.empty() ? "write `waymark detect craters IMAGE` or `waymark detect rocks IMAGE`"
+         nearest.empty() ? "write `waymark detect craters IMAGE`, `detect rocks IMAGE` or `detect trees IMAGE`"
                          : "did you mean '" + nearest + "'?");
 }
 
@@ -160,8 +158,8 @@ void place_scale(DetectPlan& plan, const DetectRequest& request) {
 
 std::vector<Argument> arguments(DetectRequest& request) {
   return {
-      Argument{"", "craters|rocks", &request.kind, "What to look for"}.needed().offering(
-          {"craters", "rocks"}),
+      Argument{"", "craters|rocks|trees", &request.kind, "What to look for"}.needed().offering(
+          {"craters", "rocks", "trees"}),
       file_word("IMAGE", &request.image, "Image that GDAL opens, /vsi paths too"),
       Argument{"-o,--output", "OUT", &request.output,
                "Table to write: .csv, .geojson or .gpkg; an older one is replaced"}
@@ -169,9 +167,9 @@ std::vector<Argument> arguments(DetectRequest& request) {
           .offering(Offer::file),
       Argument{"--method", "NAME", &request.method,
                "How to look: bowl or edges for craters, shadow or classic for "
-               "rocks"}
-          .offering({"bowl", "edges", "shadow", "classic"})
-          .or_else("bowl, shadow"),
+               "rocks; imagery (colour), peaks or lmf (heights above ground) for trees"}
+          .offering({"bowl", "edges", "shadow", "classic", "imagery", "peaks", "lmf"})
+          .or_else("bowl, shadow; of trees by the bands of the image"),
       Argument{"--image-sun-angle", "DEG", &request.image_sun_angle,
                "Direction towards the sun in the image, from x (right) towards y (down)"}
           .or_else("estimated from the image"),
@@ -199,6 +197,7 @@ DetectPlan plan_of(const DetectRequest& request) {
   plan.type = kind.type;
   plan.method = request.method.empty() ? kind.methods[0] : request.method;
   check_method(kind, plan.method);
+  if (plan.type == "tree") plan.method = request.method;  // by the image's bands where none is named
   plan.min_confidence = request.min_confidence;
   plan.search.min_diameter = given(request.min_diameter) ? request.min_diameter : kind.min_diameter;
   plan.search.max_diameter = given(request.max_diameter) ? request.max_diameter : kind.max_diameter;

@@ -13,7 +13,7 @@ namespace waymark {
 
 /// What `waymark detect` is asked for, as typed. Numbers not given are NaN.
 struct DetectRequest {
-  std::string kind;  ///< "craters" or "rocks"
+  std::string kind;  ///< "craters", "rocks" or "trees"
   std::string image, output, method, crs;
   double sun_azimuth = std::numeric_limits<double>::quiet_NaN();
   double sun_elevation = std::numeric_limits<double>::quiet_NaN();
@@ -28,8 +28,8 @@ std::vector<Argument> arguments(DetectRequest& request);
 
 /// The request, checked, with its image opened and the sun turned into the image.
 struct DetectPlan {
-  std::string type;    ///< landmark type: "crater", "rock"
-  std::string method;  ///< one the type has
+  std::string type;    ///< landmark type: "crater", "rock", "tree"
+  std::string method;  ///< one the type has; of trees empty: by the bands
   std::shared_ptr<const ImageSource> image;
   std::optional<Degrees> image_sun_angle;  ///< towards the sun, from x towards y; nothing: to be estimated
   std::optional<Degrees> sun_elevation, sun_azimuth;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/find_trees_in_image.hpp"
 #include "apps/registries.hpp"
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
@@ -126,6 +127,7 @@ std::optional<Radians> find_light(const DetectPlan& plan, FoundInImage& found) {
 }  // namespace
 
 FoundInImage find_in_image(const DetectPlan& plan, int threads) {
+  if (plan.type == "tree") return find_trees_in_image(plan, threads);
   const ImageInfo& info = plan.image->info();
   const TypeId type = all_types().id(plan.type);
   FoundInImage found;

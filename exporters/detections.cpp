@@ -101,7 +101,8 @@ Json value_or_null(double value, double steps) {
   return std::isfinite(value) ? Json(rounded(value, steps)) : Json();
 }
 
-Json properties(const ImageDetections& found, const Detection& one, const LandmarkType& type) {
+Json properties(const ImageDetections& found, std::size_t index, const LandmarkType& type) {
+  const Detection& one = found.detections[index];
   const PixelEllipse& o = one.outline;
   Json all{{"type", type.name},
            {"x", rounded(o.x, 1e4)},
@@ -112,9 +113,9 @@ Json properties(const ImageDetections& found, const Detection& one, const Landma
            {"angle", rounded(o.angle / kRadiansPerDegree, 1e3)},
            {"confidence", rounded(one.confidence, 1e6)}};
   if (!pixel_size(found)) return all;
-  const FeatureSet features = features_on_ground(found, one, type);
+  const FeatureSet features = features_of(found, index, type);
   for (std::size_t i = 0; i < features.size(); ++i)
-    all[type.features[i].name] = value_or_null(features[i].value, 1e4);
+    all[feature_column(type, type.features[i])] = value_or_null(features[i].value, 1e4);
   return all;
 }
 
@@ -147,19 +148,31 @@ FeatureSet features_on_ground(const ImageDetections& found, const Detection& one
   return features;
 }
 
+FeatureSet features_of(const ImageDetections& found, std::size_t index, const LandmarkType& type) {
+  if (found.features.empty()) return features_on_ground(found, found.detections[index], type);
+  return found.features[index];
+}
+
+std::string feature_column(const LandmarkType& type, const FeatureSpec& feature) {
+  for (const char* taken : {"x", "y", "diameter", "major", "minor", "angle", "confidence"})
+    if (feature.name == taken) return type.name + "_" + feature.name;
+  return feature.name;
+}
+
 std::string detections_as_csv(const ImageDetections& found, const LandmarkType& type) {
   const bool sized = pixel_size(found).has_value();
   std::string text = "x,y,diameter,major,minor,angle,confidence";
   if (sized)
-    for (const FeatureSpec& feature : type.features) text += "," + feature.name;
+    for (const FeatureSpec& feature : type.features) text += "," + feature_column(type, feature);
   if (found.place) text += ",map_x,map_y";
   text += '\n';
-  for (const Detection& one : found.detections) {
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    const Detection& one = found.detections[i];
     const PixelEllipse& o = one.outline;
     text += fmt::format("{},{},{},{},{},{:.3f},{:.6g}", pixel(o.x), pixel(o.y), pixel(o.diameter()),
                         pixel(o.major), pixel(o.minor), o.angle / kRadiansPerDegree, one.confidence);
     if (sized)
-      for (const FeatureValue& feature : features_on_ground(found, one, type))
+      for (const FeatureValue& feature : features_of(found, i, type))
         text += "," + (feature.known() ? cell(feature.value) : "");
     if (found.place) {
       const Eigen::Vector2d at = map_position(*found.place, o);
@@ -178,10 +191,11 @@ std::string detections_as_geojson(const ImageDetections& found, const LandmarkTy
   text.pop_back();
   text += ",\"features\":[";
   const char* before = "\n";
-  for (const Detection& one : found.detections) {
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    const Detection& one = found.detections[i];
     const Json feature{{"type", "Feature"},
                        {"geometry", {{"type", "Point"}, {"coordinates", places.coordinates(one.outline)}}},
-                       {"properties", properties(found, one, type)}};
+                       {"properties", properties(found, i, type)}};
     text += before + feature.dump();
     before = ",\n";
   }
@@ -198,14 +212,15 @@ MapContents detections_as_map(const ImageDetections& found, const TypeRegistry& 
   map.types = types;
   map.crs = place.crs;
   const LandmarkType& type = types[found.type];
-  for (const Detection& one : found.detections) {
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    const Detection& one = found.detections[i];
     Landmark landmark;
     landmark.type = found.type;
     landmark.position.xyz << map_position(place, one.outline), 0;
     const Eigen::Vector2d to_east_north(size.x(), -size.y());
     landmark.covariance.topLeftCorner<2, 2>() =
         to_east_north.asDiagonal() * one.covariance * to_east_north.asDiagonal();
-    landmark.features = features_on_ground(sized, one, type);
+    landmark.features = features_of(sized, i, type);
     landmark.attributes.resize(type.attributes.size());
     landmark.quality = {1, 1, std::vector<std::optional<double>>(type.features.size())};
     landmark.confidence = one.confidence;

@@ -21,6 +21,8 @@ struct ImageDetections {
   std::optional<Meters> gsd;             ///< of an image without place
   std::optional<Degrees> sun_elevation;  ///< needed for heights
   std::optional<Degrees> sun_azimuth;    ///< for the record, clockwise from map north
+  std::vector<FeatureSet> features = {};  ///< of each detection, where the detector measures them itself;
+                                          ///< empty: from the outlines, by features_on_ground
 };
 
 /// Features of the type on level ground, in the order of the type: radius, major_axis, minor_axis,
@@ -28,6 +30,13 @@ struct ImageDetections {
 /// shadow_reach x tan(sun elevation) along the shadow, each with the variance of its measurement. Unknown
 /// features, and all of them where the size of a pixel is not known, are absent.
 FeatureSet features_on_ground(const ImageDetections& found, const Detection& one, const LandmarkType& type);
+
+/// Features of detection number `index`: the detector's own, or features_on_ground.
+FeatureSet features_of(const ImageDetections& found, std::size_t index, const LandmarkType& type);
+
+/// The column of a feature: its name, or with the type before it where a column of pixels has that name
+/// (tree_diameter).
+std::string feature_column(const LandmarkType& type, const FeatureSpec& feature);
 
 /// CSV with the columns of docs/detect.md: pixels, then the type's features where the size of a pixel is
 /// known, then map_x, map_y in the image's CRS where it is placed. Numbers have six significant digits,

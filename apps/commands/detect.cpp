@@ -20,7 +20,7 @@ class Detect final : public Command {
   CommandSpec describe() override {
     return {.name = "detect",
             .group = Group::make,
-            .summary = "Find craters or rocks in one image",
+            .summary = "Find craters, rocks or trees in one image",
             .about =
                 "Works on any image GDAL reads, whatever its size, without a camera or a DEM. Results are "
                 "pixels: "
@@ -46,7 +46,8 @@ class Detect final : public Command {
                  "--gsd 0.05",
                  "Metres without a georeference"},
                 {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
-                 "Another method, the surer ones only"}}};
+                 "Another method, the surer ones only"},
+                {"waymark detect trees naip.tif -o trees.gpkg", "Crowns in an RGB or RGB + near infrared image"}}};
   }
 
   int run(const Session& session) override {

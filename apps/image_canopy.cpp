@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/image_canopy.hpp"
+
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "importers/gdal_session.hpp"
+#include "importers/image.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr float kHighest = 150;  // metres
+
+class ImageCanopy final : public CanopySource {
+ public:
+  ImageCanopy(const ImageInfo& image, CanopySign sign, double metres) : name_(image.name), sign_(sign) {
+    grid_.columns = image.columns, grid_.rows = image.rows;
+    grid_.where = {Crs::local(), 0, 0, metres, -metres};
+    const int bands = sign == CanopySign::height ? 1 : std::min(4, band_count(image.path));
+    for (int band = 1; band <= bands; ++band)
+      bands_.push_back(import_image(image.path, {.georeference = false, .band = band}));
+    full_ = image.saturated > 0 ? static_cast<float>(image.saturated) : 255.0F;
+  }
+
+  const GridGeometry& geometry() const override { return grid_; }
+  const std::string& name() const override { return name_; }
+  double ground(std::int64_t, std::int64_t) const override { return std::nan(""); }
+  Grid<std::uint8_t> forest_types(const Window&) const override { return {}; }
+
+  Grid<float> read(const Window& window) const override {
+    std::vector<Pixels> pixels;
+    for (const auto& band : bands_) pixels.push_back(band->read(window));
+    Grid<float> canopy(window.columns, window.rows, kNoCanopy);
+    for (std::size_t i = 0; i < canopy.cells().size(); ++i) {
+      const auto at = [&](std::size_t band) { return pixels[band].cells()[i]; };
+      const float sign = sign_ == CanopySign::height ? height(at(0))
+                         : bands_.size() == 4       ? greenness(at(0), at(1), at(2), at(3))
+                                                    : greenness(at(0), at(1), at(2));
+      if (!std::isnan(sign)) canopy.cells()[i] = sign;
+    }
+    return canopy;
+  }
+
+ private:
+  static float height(float h) { return h <= kHighest && h > -1000 ? std::max(h, 0.0F) : std::nanf(""); }
+  float darkness(float red, float green, float blue) const {
+    return std::clamp(1 - (red + green + blue) / (3 * full_), 0.0F, 1.0F);
+  }
+  float greenness(float red, float green, float blue, float infrared) const {
+    const float index = (infrared - red) / std::max(infrared + red, 1.0F);
+    return std::max(index, 0.0F) * darkness(red, green, blue);
+  }
+  // Twice the excess green, so that its numbers are about those with infrared.
+  float greenness(float red, float green, float blue) const {
+    const float index = 2 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
+    return std::clamp(index, 0.0F, 1.0F) * darkness(red, green, blue);
+  }
+
+  GridGeometry grid_;
+  std::string name_;
+  CanopySign sign_;
+  std::vector<std::shared_ptr<const ImportedImage>> bands_;
+  float full_ = 255;
+};
+
+}  // namespace
+
+std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopySign sign, double metres) {
+  return std::make_unique<ImageCanopy>(image, sign, metres);
+}
+
+int band_count(const std::string& path) {
+  return open_raster(path)->GetRasterCount();
+}
+
+}  // namespace waymark
