@@ -53,9 +53,9 @@ class ImageCanopy final : public CanopySource {
     const float index = (infrared - red) / std::max(infrared + red, 1.0F);
     return std::max(index, 0.0F) * darkness(red, green, blue);
   }
-  // Twice the excess green, so that its numbers are about those with infrared.
+  // Four times the excess green, so that its numbers are about those with infrared.
   float greenness(float red, float green, float blue) const {
-    const float index = 2 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
+    const float index = 4 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
     return std::clamp(index, 0.0F, 1.0F) * darkness(red, green, blue);
   }
 

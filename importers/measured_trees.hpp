@@ -8,8 +8,8 @@ namespace waymark {
 /// Which columns of a table hold what; empty: found by the names in use (height, h, ht, hmax; dbh, d,
 /// diameter, stemDiameter; crown_diameter, cd, maxCrownDiameter; species, taxonID, sp; plot, plotID).
 struct TreeColumns {
-  std::string height, diameter, crown, species, plot;
-  std::string diameter_unit;  ///< cm, m, mm; empty: by the size of the numbers
+  std::string height = {}, diameter = {}, crown = {}, species = {}, plot = {};
+  std::string diameter_unit = {};  ///< cm, m, mm; empty: by the size of the numbers
 };
 
 struct MeasuredTrees {

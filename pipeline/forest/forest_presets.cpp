@@ -12,16 +12,16 @@ namespace {
 const std::array<ForestPreset, 3>& presets() {
   static const std::array<ForestPreset, 3> all{{
       {.name = "conifer",
-       .smoothing = 0.3,
-       .tops = {.min_height = 3, .isolation_base = 0.8, .isolation_slope = 0.03, .prominence = 0.3},
+       .smoothing = 0.25,
+       .tops = {.min_height = 3, .isolation_base = 0.6, .isolation_slope = 0.03, .prominence = 0.2},
        .crowns = {.floor_share = 0.3, .radius_base = 2, .radius_slope = 0.2, .max_radius = 10}},
       {.name = "broadleaf",
-       .smoothing = 0.5,
-       .tops = {.min_height = 3, .isolation_base = 1.2, .isolation_slope = 0.06, .prominence = 0.4},
+       .smoothing = 0.35,
+       .tops = {.min_height = 3, .isolation_base = 0.8, .isolation_slope = 0.04, .prominence = 0.3},
        .crowns = {.floor_share = 0.3, .radius_base = 4, .radius_slope = 0.4, .max_radius = 14}},
       {.name = "mixed",
-       .smoothing = 0.4,
-       .tops = {.min_height = 3, .isolation_base = 1.0, .isolation_slope = 0.04, .prominence = 0.35},
+       .smoothing = 0.3,
+       .tops = {.min_height = 3, .isolation_base = 0.7, .isolation_slope = 0.035, .prominence = 0.25},
        .crowns = {.floor_share = 0.3, .radius_base = 3, .radius_slope = 0.3, .max_radius = 12}},
   }};
   return all;
