@@ -69,13 +69,14 @@ std::optional<Eigen::Vector3d> Terrain::normal(double x, double y) const {
   return Eigen::Vector3d(-slope_x, -slope_y, 1).normalized();
 }
 
-RayHit Terrain::cast(const Ray<GridFrame>& ray) const {
+RayHit Terrain::cast(const Ray<GridFrame>& ray, double most_range) const {
   const Pyramid& p = *pyramid_;
   const Eigen::Vector3d& origin = ray.origin.xyz;
   const Eigen::Vector3d& along = ray.along.unit;
   const GridRay line = p.in_cells(origin, along);
   auto range = p.inside(line);
-  if (!range) return {};
+  if (!range || !(range->from <= most_range)) return {};
+  range->to = std::min(range->to, most_range);
   const auto at = [&](RayEnd end, double t) { return RayHit{end, {origin + t * along}, t}; };
 
   const Eigen::Vector3d start = origin + range->from * along;

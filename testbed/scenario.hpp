@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "core/options.hpp"
+#include "testbed/drive_settings.hpp"
 #include "testbed/ground.hpp"
 #include "testbed/render.hpp"
 namespace waymark {
@@ -55,6 +56,7 @@ struct Scenario {
   std::vector<Flight> flights = {Flight{}};
   PoseErrors pose_errors;
   DemModel dem;
+  DriveSettings drive;  ///< `on` where the file has the section
 };
 
 /// Reads a scenario (docs/testbed.md). `source` names the file in messages. Throws Error{usage} with the JSON

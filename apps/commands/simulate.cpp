@@ -9,6 +9,7 @@
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "apps/session.hpp"
+#include "apps/write_drive.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "exporters/aside_folder.hpp"
@@ -56,15 +57,24 @@ class Simulate final : public Command {
                       Argument{"-o,--output", "DIR", &folder_, "Folder for the files; it may exist"}
                           .needed()
                           .offering(Offer::folder),
-                      {"--seed", "N", &seed_, "Another site of the same kind; default: the scenario's seed"}},
+                      {"--seed", "N", &seed_, "Another site of the same kind; default: the scenario's seed"},
+                      {"--drive-seed", "N", &drive_seed_, "Another drive on the same site"},
+                      {"--drive-only", "", &drive_only_,
+                       "Write the drive and its truth only, no DEM and no images"}},
         .examples = {
             {"waymark simulate scenario.json -o landing", "dem.tif, images, cameras.json, truth, job.json"},
-            {"waymark run landing/job.json -o landing.gpkg", "The map of it"}}};
+            {"waymark run landing/job.json -o landing.gpkg", "The map of it"},
+            {"waymark localize landing.gpkg landing/log.jsonl -o track.csv --ids unknown",
+             "Where the rover of the scenario's section drive was"}}};
   }
 
   int run(const Session&) override {
     Scenario scenario = read_scenario(whole_file(scenario_), scenario_);
     if (seed_ >= 0) scenario.seed = seed_;
+    if (drive_seed_ >= 0) scenario.drive.seed = drive_seed_;
+    if ((drive_only_ || drive_seed_ >= 0) && !scenario.drive.on)
+      throw Error(ErrorCode::usage, "the scenario has no section drive", scenario_,
+                  "docs/rover.md describes it; {} stands for a drive with all defaults");
     const Crs crs = scenario.crs == "local" ? Crs::local() : Crs::from_text(scenario.crs);
     if (crs.kind() == CrsKind::geographic)
       throw Error(ErrorCode::usage, fmt::format("crs {} is geographic: its units are degrees", scenario.crs),
@@ -76,6 +86,15 @@ class Simulate final : public Command {
     check_footprints(scene, shots);
 
     const fs::path folder = folder_;
+    if (drive_only_) {
+      std::error_code failed;
+      fs::create_directories(folder, failed);
+      if (failed) fail_output(folder, failed.message());
+      const std::string told = write_drive(folder, scenario, scene, {}, scenario_);
+      write_file(folder / "scenario.json", scenario_json(scenario));
+      say(fmt::format("{}: {}\n", folder_, told));
+      return 0;
+    }
     for (const char* part : {"images", "truth"}) {
       std::error_code failed;
       fs::create_directories(folder / part, failed);
@@ -100,6 +119,8 @@ class Simulate final : public Command {
     write_file(folder / "truth/landmarks.csv", truth.landmarks);
     write_file(folder / "truth/ignored.csv", truth.ignored);
     write_file(folder / "truth/detections.csv", truth.detections);
+    const std::string told = scenario.drive.on ? write_drive(folder, scenario, scene, {}, scenario_) : "";
+    if (!told.empty()) say(told + "\n");
     say(fmt::format("{}: {:.0f} x {:.0f} m, {} images, {} rocks, {} craters\n", folder_,
                     scenario.ground.width, scenario.ground.height, shots.size(), scene.rocks.size(),
                     scene.craters.size()));
@@ -108,7 +129,8 @@ class Simulate final : public Command {
 
  private:
   std::string scenario_, folder_;
-  std::int64_t seed_ = -1;
+  std::int64_t seed_ = -1, drive_seed_ = -1;
+  bool drive_only_ = false;
 };
 
 }  // namespace

@@ -169,7 +169,10 @@ class Reader {
                    .first_angle = line.angle("first_angle"),
                    .angle_step = line.angle("angle_step"),
                    .ranges = {},
-                   .most_range = line.positive("most_range", 80)};
+                   .most_range = line.positive("most_range", 80),
+                   .roll = line.angle("roll", 0),
+                   .pitch = line.angle("pitch", 0),
+                   .beam_width = std::max(0.0, line.angle("beam_width", 0))};
     if (!line.has("ranges") || !line.object()["ranges"].is_array()) line.fail("\"ranges\" must be a list");
     for (const json& range : line.object()["ranges"])
       scan.ranges.push_back(range.is_number() ? range.get<float>() : 0.0F);

@@ -3,40 +3,84 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "localization/detectors/level_scan.hpp"
 
 namespace waymark {
 namespace {
 
-/// Nothing hit is far away.
-double range_at(const LaserScan& scan, std::size_t i) {
-  const double r = static_cast<double>(scan.ranges[i]);
-  return std::isfinite(r) && r > 0 && r < scan.most_range ? r : scan.most_range * 10;
+// The cylinder of this angular width seen over some beams.
+Stem stem_of(std::span<const double> ranges, double first_bearing, double step, double width) {
+  Stem stem;
+  const auto n = ranges.size();
+  stem.beams = static_cast<int>(n);
+  stem.bearing = first_bearing + 0.5 * step * static_cast<double>(n - 1);
+  const double half_sine = std::sin(std::min(width, 2.0) / 2);
+  // The nearest of a few noisy ranges lies before the stem, the mean of all behind its front: the middle third
+  // is nearly flat.
+  double front = 0;
+  const std::size_t skip = n / 3;
+  for (std::size_t i = skip; i < n - skip; ++i) front += ranges[i];
+  front /= static_cast<double>(n - 2 * skip);
+  stem.diameter = 2 * front * half_sine / (1 - half_sine);
+
+  const double radius = stem.diameter / 2;
+  const auto middle_from = [&](std::size_t i) {
+    const double off = step * (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1));
+    const double across = ranges[i] * std::sin(off);
+    return ranges[i] * std::cos(off) + std::sqrt(std::max(0.0, radius * radius - across * across));
+  };
+  double sum = 0, squares = 0;
+  for (std::size_t i = skip; i < n - skip; ++i) sum += middle_from(i);
+  stem.range = sum / static_cast<double>(n - 2 * skip);
+  for (std::size_t i = 0; i < n; ++i) squares += std::pow(middle_from(i) - stem.range, 2);
+  stem.roughness = std::sqrt(squares / static_cast<double>(n));
+
+  // A width is a whole number of beams: the count errs by up to one, its variance is 1/6 beam squared.
+  const double beam = step * stem.range;
+  stem.diameter_sd = std::sqrt(beam * beam / 6 + 1e-4);
+  stem.range_sd = std::sqrt(0.25 * stem.diameter_sd * stem.diameter_sd + 0.02 * 0.02);
+  stem.bearing_sd = std::sqrt(step * step / 12 + 0.003 * 0.003);
+  return stem;
 }
 
 }  // namespace
 
+LaserStems forest_stems() {
+  return {.type = {},
+          .jump = 0.35,
+          .clear = 0.4,
+          .most_diameter = 1.5,
+          .least_diameter = 0.05,
+          .most_range = 25,
+          .roughness = 0.06,
+          .least_beams = 3,
+          .range_sd = 0,
+          .bearing_sd = 0};
+}
+
 std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options) {
   std::vector<Stem> stems;
-  const std::size_t n = scan.ranges.size();
+  const std::vector<double> ranges = bridged_ranges(scan, options.jump);
+  const std::size_t n = ranges.size();
   for (std::size_t first = 0; first < n;) {
     std::size_t last = first;
-    double sum = range_at(scan, first), nearest = sum;
-    while (last + 1 < n && std::abs(range_at(scan, last + 1) - range_at(scan, last)) < options.jump) {
-      ++last;
-      sum += range_at(scan, last);
-      nearest = std::min(nearest, range_at(scan, last));
-    }
+    double sum = ranges[first];
+    while (last + 1 < n && std::abs(ranges[last + 1] - ranges[last]) < options.jump) sum += ranges[++last];
     const int beams = static_cast<int>(last - first) + 1;
     const double mean = sum / beams;
     // At the ends of the scan nobody knows what stands beside.
-    const bool stands_out = first > 0 && last + 1 < n && range_at(scan, first - 1) > mean + options.clear &&
-                            range_at(scan, last + 1) > mean + options.clear;
-    const double width = beams * scan.angle_step * mean;
-    if (stands_out && mean < options.most_range && width >= options.least_diameter &&
-        width <= options.most_diameter) {
-      const double middle = static_cast<double>(first + last) / 2;
-      // The beams meet the near side: the middle lies half a diameter behind, less on average over the arc.
-      stems.push_back({nearest + width / 2, scan.first_angle + middle * scan.angle_step, width, beams});
+    const bool stands_out = first > 0 && last + 1 < n && ranges[first - 1] > mean + options.clear &&
+                            ranges[last + 1] > mean + options.clear;
+    if (stands_out && mean < options.most_range && beams >= options.least_beams) {
+      const double width = std::max(0.3 * scan.angle_step, beams * scan.angle_step - scan.beam_width);
+      const Stem stem = stem_of({ranges.data() + first, static_cast<std::size_t>(beams)},
+                                scan.first_angle + static_cast<double>(first) * scan.angle_step,
+                                scan.angle_step, width);
+      if (stem.diameter >= options.least_diameter && stem.diameter <= options.most_diameter &&
+          stem.roughness <= options.roughness)
+        stems.push_back(stem);
     }
     first = last + 1;
   }
@@ -48,15 +92,15 @@ SightingSet sightings_of_stems(const LaserScan& scan, const LaserStems& options)
   for (const Stem& stem : find_stems(scan, options)) {
     SeenLandmark s;
     s.type = options.type;
-    s.range = stem.range;
-    s.range_sd = options.range_sd;
-    s.bearing = wrapped(stem.bearing);
-    s.bearing_sd = options.bearing_sd;
+    const auto [range, bearing] = on_level_ground(scan, stem.range, stem.bearing);
+    s.range = range;
+    s.range_sd = options.range_sd > 0 ? options.range_sd : stem.range_sd;
+    s.bearing = wrapped(bearing);
+    s.bearing_sd = options.bearing_sd > 0 ? options.bearing_sd : stem.bearing_sd;
     if (options.type) {
       constexpr std::size_t kDiameter = 1;
-      const double beam = scan.angle_step * stem.range;  // a width is a whole number of beams
       s.features.value[kDiameter] = stem.diameter;
-      s.features.variance[kDiameter] = beam * beam / 6 + 1e-4;
+      s.features.variance[kDiameter] = stem.diameter_sd * stem.diameter_sd;
     }
     set.sightings.push_back(s);
   }

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/write_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core/error.hpp"
+#include "exporters/aside_folder.hpp"
+#include "geo/crs.hpp"
+
+namespace waymark {
+
+std::string write_drive(const std::filesystem::path& folder, const Scenario& scenario, const Scene& scene,
+                        std::vector<StandingTree> trees, const std::filesystem::path& scenario_file) {
+  const DriveSettings& drive = scenario.drive;
+  if (!drive.trees.empty()) {
+    const std::filesystem::path table = scenario_file.parent_path() / drive.trees;
+    std::ifstream file(table, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (text.empty())
+      throw Error(ErrorCode::input, "cannot read the table of trees", table, "see drive.trees of the scenario");
+    trees = trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north}, scene.terrain);
+  }
+  const DriveWorld world = make_drive(drive, scene, std::move(trees), scene.seed);
+  const LogPlace place{scenario.crs,
+                       scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
+  std::error_code failed;
+  std::filesystem::create_directories(folder / "truth", failed);
+  if (failed) fail_output(folder / "truth", failed.message());
+  write_file(folder / "log.jsonl", drive_log(world, place));
+  write_file(folder / "truth/track.csv", true_track(world, place));
+  if (!world.trees.empty()) {
+    write_file(folder / "truth/trees.csv", standing_table(world, place));
+    write_file(folder / "truth/felled.csv", felled_table(world, place));
+  }
+  return fmt::format("drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().way,
+                     world.steps.back().t,
+                     world.trees.empty()
+                         ? ""
+                         : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
+}
+
+}  // namespace waymark

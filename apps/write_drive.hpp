@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+#include "testbed/drive_log.hpp"
+#include "testbed/scenario.hpp"
+namespace waymark {
+
+/// Makes the drive of a scenario and writes log.jsonl, truth/track.csv and, in a forest, truth/trees.csv and
+/// truth/felled.csv. A table of real trees is looked for beside the scenario file. Returns a line for people.
+std::string write_drive(const std::filesystem::path& folder, const Scenario& scenario, const Scene& scene,
+                        std::vector<StandingTree> trees, const std::filesystem::path& scenario_file);
+
+}  // namespace waymark
