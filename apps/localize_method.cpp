@@ -7,15 +7,19 @@
 #include <chrono>
 
 #include "core/error.hpp"
-#include "localization/detectors/laser_stems.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
 
 namespace waymark {
 
 Track play_task(const LocalizeTask& task, Localizer& localizer) {
-  const LaserStems stems{.type = task.stem_type};
+  const TypeRegistry& types = task.map.map.types();
+  const auto type = [&](const char* name) {
+    return types.find(name) ? std::optional<TypeId>(types.id(name)) : std::nullopt;
+  };
+  const ScanTypes seen{type("tree"), type("rock")};
   return play(
       task.log, localizer, task.settings.play,
-      [&](const LaserScan& scan) { return sightings_of_stems(scan, stems); },
+      [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, task.settings.scans); },
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       });

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <vector>
+#include "localization/detectors/scan_landmarks.hpp"
 #include "localization/hypotheses.hpp"
 #include "localization/kalman.hpp"
 #include "localization/particle_filter.hpp"
@@ -16,6 +17,7 @@ struct LocalizeSettings {
   HypothesesOptions hypotheses;
   ParticleOptions particles;
   PlayOptions play;
+  ScanLandmarks scans;
   double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: how well --start is known
 
   void describe(OptionVisitor& option);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <vector>
 #include "localization/pose2.hpp"
 namespace waymark {
@@ -13,8 +14,8 @@ struct LaserScan {
   double most_range = 80;     ///< m
   double roll = 0, pitch = 0;  ///< rad, of the vehicle, if the scanner tilts with it: Rz(yaw) Ry(pitch) Rx(roll)
   /// rad: by how much a thing looks wider than it is, because a beam is no line and needs only a part of its
-  /// width to return. 0: not known.
-  double beam_width = 0;
+  /// width to return.
+  std::optional<double> beam_width = {};
 };
 
 }  // namespace waymark

@@ -39,14 +39,11 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
   Pose2 pose{way[0].x(), way[0].y(), std::atan2(first.y(), first.x())};
   std::vector<DriveStep> steps;
   double driven = 0, waver = 0;
-  std::size_t near = 0;
-  const auto limit = static_cast<std::size_t>(1e6);
+  std::size_t target = 0;
+  const auto limit = static_cast<std::size_t>(3e5);
   for (std::size_t k = 0; k < limit; ++k) {
     const StandingPose at = standing(terrain, pose, settings.wheels);
-    // The nearest point of the way may only move on, so that the way may cross itself.
-    while (near + 1 < way.size() && (way[near + 1] - pose.at()).norm() <= (way[near] - pose.at()).norm())
-      ++near;
-    std::size_t target = near;
+    // The point headed for only moves on, so that the way may cross itself and turn back.
     while (target + 1 < way.size() && (way[target] - pose.at()).norm() < ahead) ++target;
     const bool arrived = target + 1 == way.size() && (way[target] - pose.at()).norm() < ahead;
     steps.push_back({static_cast<double>(k) * dt, at, driven, 0, 0});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <numbers>
 
 #include "core/random.hpp"
 
@@ -27,6 +28,13 @@ class LogMaker {
   std::string log() {
     odometry();
     if (world_.settings.laser.on) lasers();
+    if (world_.settings.stereo.on)
+      at_times(world_.settings.stereo.every, [&](std::size_t i) { add(i, [this, i] { return depth(i); }); });
+    if (world_.settings.camera.on)
+      at_times(world_.settings.camera.every, [&](std::size_t i) { add(i, [this, i] { return camera(i); }); });
+    if (world_.settings.panorama.on)
+      at_times(world_.settings.panorama.every,
+               [&](std::size_t i) { add(i, [this, i] { return panorama(i); }); });
     if (world_.settings.gnss.on) gnss();
     crane();
     std::ranges::stable_sort(readings_, {}, &Reading::t);
@@ -125,6 +133,67 @@ class LogMaker {
         fmt::format_to(std::back_inserter(line), "{:.3f}", scan.ranges[k]);
       else
         line += "null";
+    }
+    return line + "]}\n";
+  }
+
+  void add(std::size_t step, std::function<std::string()> line) {
+    readings_.push_back({world_.steps[step].t, std::move(line)});
+  }
+
+  std::string depth(std::size_t i) const {
+    const DriveStep& step = world_.steps[i];
+    const StereoModel& model = world_.settings.stereo;
+    Random random(named_seed(world_.seed, "stereo") + i);
+    const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
+    const RayFan fan(world_.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.most_range, step.t);
+    const DepthImage image = depth_image(fan, body.linear(), model, random);
+    std::string line = fmt::format(
+        "{{\"kind\":\"depth\",\"t\":{:.3f},\"mount\":{{\"x\":0.5,\"y\":0}},\"height\":{:g},\"tilt\":{:.6f},"
+        "\"roll\":{:.5f},\"pitch\":{:.5f},\"columns\":{},\"rows\":{},\"focal\":{:.4f},\"depths\":[",
+        step.t, image.height, image.tilt, step.at.roll, step.at.pitch, image.columns, image.rows, image.focal);
+    for (std::size_t k = 0; k < image.depths.size(); ++k) {
+      if (k > 0) line += ',';
+      if (image.depths[k] > 0)
+        fmt::format_to(std::back_inserter(line), "{:.2f}", image.depths[k]);
+      else
+        line += "null";
+    }
+    return line + "]}\n";
+  }
+
+  std::string camera(std::size_t i) const {
+    const DriveStep& step = world_.steps[i];
+    const BearingModel& model = world_.settings.camera;
+    Random random(named_seed(world_.seed, "camera") + i);
+    const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
+    const RayFan fan(world_.targets, body * Eigen::Vector3d(0, 0, model.height), model.most_range, step.t);
+    const double sd = std::max(1e-4, to_radians(model.bearing_sd).value);
+    std::string line = fmt::format("{{\"kind\":\"sightings\",\"t\":{:.3f},\"items\":[", step.t);
+    bool first = true;
+    for (const SeenBearing& seen : bearings(world_.targets, fan, step.at.plane.yaw, model, step.t, random)) {
+      line += fmt::format("{}{{\"bearing\":{:.5f},\"bearing_sd\":{:.5f},\"type\":\"{}\"}}", first ? "" : ",",
+                          seen.bearing, sd, seen.kind == TargetKind::stem ? "tree" : "rock");
+      first = false;
+    }
+    return line + "]}\n";
+  }
+
+  std::string panorama(std::size_t i) const {
+    const DriveStep& step = world_.steps[i];
+    const PanoramaModel& model = world_.settings.panorama;
+    Random random(named_seed(world_.seed, "panorama") + i);
+    const Eigen::Vector3d eye(step.at.plane.x, step.at.plane.y, step.at.z + model.height);
+    std::string line = fmt::format(
+        "{{\"kind\":\"panorama\",\"t\":{:.3f},\"height\":{:g},\"first_angle\":{:.7f},\"angle_step\":{:.9f},"
+        "\"elevation_sd\":{:.6f},\"elevations\":[",
+        step.t, model.height, -std::numbers::pi, to_radians(model.step).value,
+        std::max(1e-5, to_radians(model.elevation_sd).value));
+    bool first = true;
+    for (const double e : horizon(world_.targets.terrain(), eye, step.at.plane.yaw, model, random)) {
+      line += first ? "" : ",";
+      line += std::isfinite(e) ? fmt::format("{:.5f}", e) : "null";
+      first = false;
     }
     return line + "]}\n";
   }

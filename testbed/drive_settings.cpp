@@ -53,6 +53,16 @@ void describe_drive_laser(DriveSettings& d, OptionVisitor& field) {
         {.help = "Metres above the ground; 0: 0.35 of a rover, 2 of a harvester", .min = 0, .max = 50});
 }
 
+void describe_drive_stereo(DriveSettings& d, OptionVisitor& field) {
+  describe_stereo(d.stereo, field);
+}
+void describe_drive_camera(DriveSettings& d, OptionVisitor& field) {
+  describe_bearing(d.camera, field);
+}
+void describe_drive_panorama(DriveSettings& d, OptionVisitor& field) {
+  describe_panorama(d.panorama, field);
+}
+
 void describe_gnss(DriveSettings& d, OptionVisitor& field) {
   GnssModel& g = d.gnss;
   field("on", g.on, {.help = "Whether there are satellite positions"});
@@ -84,6 +94,9 @@ const std::vector<DrivePart>& drive_parts() {
       {"", "A vehicle that drives over the site and measures", describe_drive},
       {"odometry", "What wheels and gyro get wrong", describe_odometry},
       {"laser", "Line scanner: one of a rover, two of a harvester", describe_drive_laser},
+      {"stereo", "Depth camera: a stereo pair or time of flight", describe_drive_stereo},
+      {"camera", "Camera that measures directions to landmarks", describe_drive_camera},
+      {"panorama", "Horizon all round", describe_drive_panorama},
       {"gnss", "Satellite positions", describe_gnss},
       {"crane", "What a harvester fells", describe_crane},
   };

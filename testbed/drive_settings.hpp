@@ -8,7 +8,9 @@
 #include "core/units.hpp"
 #include "testbed/laser_scanner.hpp"
 #include "testbed/laser_targets.hpp"
+#include "testbed/panorama.hpp"
 #include "testbed/rover_body.hpp"
+#include "testbed/stereo_camera.hpp"
 namespace waymark {
 
 /// What goes wrong between the wheels and the ground, and in what odometry tells of it.
@@ -66,6 +68,9 @@ struct DriveSettings {
   OdometryModel odometry;
   LaserModel laser;
   double laser_height = 0;        ///< metres above the ground; 0: rover 0.35, harvester 2
+  StereoModel stereo;
+  BearingModel camera;
+  PanoramaModel panorama;
   GnssModel gnss;
   ForestClutter clutter;
   CraneModel crane;

@@ -6,11 +6,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/number_table.hpp"
+#include "localization/detectors/depth_rocks.hpp"
+#include "localization/detectors/horizon_summits.hpp"
 
 namespace waymark {
 namespace {
@@ -82,6 +85,10 @@ class Reader {
       add(t, sightings(line));
     else if (kind == "laser")
       add(t, scan(line));
+    else if (kind == "depth")
+      add(t, sightings_of_rocks(depth(line), {.type = type("rock")}));
+    else if (kind == "panorama")
+      add(t, panorama(line));
     else if (kind == "gnss")
       add(t, fix(line));
     else if (kind == "truth")
@@ -172,11 +179,47 @@ class Reader {
                    .most_range = line.positive("most_range", 80),
                    .roll = line.angle("roll", 0),
                    .pitch = line.angle("pitch", 0),
-                   .beam_width = std::max(0.0, line.angle("beam_width", 0))};
+                   .beam_width = {}};
+    if (line.has("beam_width")) scan.beam_width = std::max(0.0, line.angle("beam_width"));
     if (!line.has("ranges") || !line.object()["ranges"].is_array()) line.fail("\"ranges\" must be a list");
     for (const json& range : line.object()["ranges"])
       scan.ranges.push_back(range.is_number() ? range.get<float>() : 0.0F);
     return scan;
+  }
+
+  std::optional<TypeId> type(const char* name) const {
+    return types_.find(name) ? std::optional<TypeId>(types_.id(name)) : std::nullopt;
+  }
+
+  static std::vector<float> numbers(const Line& line, const char* key) {
+    if (!line.has(key) || !line.object()[key].is_array()) line.fail(fmt::format("\"{}\" must be a list", key));
+    std::vector<float> all;
+    for (const json& value : line.object()[key])
+      all.push_back(value.is_number() ? value.get<float>() : std::numeric_limits<float>::quiet_NaN());
+    return all;
+  }
+
+  static DepthImage depth(const Line& line) {
+    DepthImage image{.robot_from_sensor = line.mount(),
+                     .height = line.positive("height", 1.5),
+                     .tilt = line.angle("tilt", 0),
+                     .roll = line.angle("roll", 0),
+                     .pitch = line.angle("pitch", 0),
+                     .columns = static_cast<std::int64_t>(line.positive("columns", 1)),
+                     .rows = static_cast<std::int64_t>(line.positive("rows", 1)),
+                     .focal = line.positive("focal", 1),
+                     .depths = numbers(line, "depths")};
+    if (static_cast<std::int64_t>(image.depths.size()) != image.columns * image.rows)
+      line.fail(fmt::format("has {} depths for {} x {} pixels", image.depths.size(), image.columns, image.rows));
+    return image;
+  }
+
+  SightingSet panorama(const Line& line) const {
+    const HorizonProfile profile{.first_angle = line.angle("first_angle"),
+                                 .angle_step = line.angle("angle_step"),
+                                 .elevation_sd = line.positive("elevation_sd", 0.001),
+                                 .elevations = numbers(line, "elevations")};
+    return sightings_of_summits(profile, {.type = type("mountain_top")});
   }
 
   static GnssFix fix(const Line& line) {

@@ -55,7 +55,7 @@ std::vector<SeenRock> find_rocks(const LaserScan& scan, const LaserRocks& option
       continue;
     const Arc arc = fit_arc({ranges.data() + begin, beams});
     const double wide = std::max(0.3 * scan.angle_step,
-                                 static_cast<double>(beams) * scan.angle_step - scan.beam_width);
+                                 static_cast<double>(beams) * scan.angle_step - scan.beam_width.value_or(0));
     const double half_sine = std::sin(std::min(wide, 2.0) / 2);
     const double radius = arc.front * half_sine / (1 - half_sine);
     const double width = 2 * radius;

@@ -74,7 +74,7 @@ std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options) {
     const bool stands_out = first > 0 && last + 1 < n && ranges[first - 1] > mean + options.clear &&
                             ranges[last + 1] > mean + options.clear;
     if (stands_out && mean < options.most_range && beams >= options.least_beams) {
-      const double width = std::max(0.3 * scan.angle_step, beams * scan.angle_step - scan.beam_width);
+      const double width = std::max(0.3 * scan.angle_step, beams * scan.angle_step - scan.beam_width.value_or(0));
       const Stem stem = stem_of({ranges.data() + first, static_cast<std::size_t>(beams)},
                                 scan.first_angle + static_cast<double>(first) * scan.angle_step,
                                 scan.angle_step, width);

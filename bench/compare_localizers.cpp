@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares localizers x sensors x map qualities on drives of the testbed and writes a Markdown and an HTML page.
+// usage: bench_compare_localizers RUNS METRES OUT.md OUT.html NAME SCENARIO.json MAP.gpkg [NAME SCENARIO MAP]...
+// One thread; scripts/compare-localizers makes the maps and calls it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <memory>
+
+#include "geodb/map_store.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
+#include "localization/ekf_slam.hpp"
+#include "localization/hypotheses.hpp"
+#include "localization/kalman.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/play_log.hpp"
+#include "localization/track_score.hpp"
+#include "testbed/drive_log.hpp"
+#include "testbed/flight.hpp"
+#include "testbed/scenario.hpp"
+
+namespace waymark {
+namespace {
+
+std::string whole(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct Site {
+  std::string name;
+  Scenario scenario;
+  Scene scene;
+  MapStore store;
+  std::vector<MapLandmark> landmarks;
+};
+
+Site open_site(const std::string& name, const std::string& scenario_file, const std::string& map_file) {
+  Scenario scenario = read_scenario(whole(scenario_file), scenario_file);
+  scenario.ground = sized_for(scenario, plan_shots(scenario));
+  Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
+  Site site{name, scenario, std::move(scene), MapStore::open(map_file), {}};
+  const LocalFrame frame(site.store.crs(), Point<MapCrs>{});
+  SensorRegistry sensors;
+  register_sensor_profiles(sensors);
+  for (const Landmark& l : site.store.query({.types = {"rock"}}))
+    site.landmarks.push_back(map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
+  return site;
+}
+
+struct Variant {
+  std::string method, sensor = "laser";
+  bool quality = true, features = true;
+};
+
+enum class SensorKind { laser, stereo, camera };
+SensorKind kind_of(const LogEvent& e) {
+  if (std::holds_alternative<LaserScan>(e.what)) return SensorKind::laser;
+  const auto& set = std::get<SightingSet>(e.what);
+  const bool ranges = set.robot_from_sensor.x != 0;  // the depth camera is mounted 0.5 m ahead
+  return ranges ? SensorKind::stereo : SensorKind::camera;
+}
+
+RobotLog only(const RobotLog& log, const std::string& sensor, bool features, const ScanTypes& types) {
+  RobotLog some = log;
+  std::erase_if(some.events, [&](const LogEvent& e) {
+    if (!std::holds_alternative<LaserScan>(e.what) && !std::holds_alternative<SightingSet>(e.what)) return false;
+    const SensorKind kind = kind_of(e);
+    return !(sensor == "laser + stereo" ? kind != SensorKind::camera
+             : sensor == "laser"        ? kind == SensorKind::laser
+             : sensor == "stereo"       ? kind == SensorKind::stereo
+                                        : kind == SensorKind::camera);
+  });
+  // Scans are searched once, so that all methods see the same and only the update is timed.
+  for (LogEvent& e : some.events) {
+    if (const auto* scan = std::get_if<LaserScan>(&e.what)) {
+      SightingSet set = sightings_of_scan(*scan, types, {});
+      e.what = std::move(set);
+    }
+    if (auto* set = std::get_if<SightingSet>(&e.what); set && !features)
+      for (SeenLandmark& s : set->sightings) s.features = {};
+  }
+  return some;
+}
+
+// Counts pairings that the true pose contradicts: the landmark must be within a metre (or its radius) of
+// where the sighting truly is.
+class Judged final : public Localizer {
+ public:
+  Judged(Localizer& inner, const RobotLog& log, const LandmarkGrid& map) : inner_(inner), map_(map) {
+    for (const LogEvent& e : log.events)
+      if (std::holds_alternative<SightingSet>(e.what)) truth_.push_back(pose_at(log.truth, e.t));
+  }
+  void move(const BodyMotion& motion) override { inner_.move(motion); }
+  PoseEstimate estimate() const override { return inner_.estimate(); }
+  Trust trust() const override { return inner_.trust(); }
+  std::vector<Match> see(const SightingSet& seen) override {
+    const double before = seconds();
+    std::vector<Match> matches = inner_.see(seen);
+    spent += seconds() - before;
+    ++updates;
+    const auto truth = truth_[next_++];
+    if (!truth) return matches;
+    const Pose2 sensor = *truth * seen.robot_from_sensor;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      const SeenLandmark& s = seen.sightings[i];
+      bool possible = false, right = false;
+      const auto fits = [&](const MapLandmark& l) {
+        const double wide = std::max(1.0, 1.2 * (l.features.known(0) ? l.features.value[0] : 0));
+        if (s.range) {
+          const double a = sensor.yaw + s.bearing;
+          return (sensor.at() + *s.range * Eigen::Vector2d(std::cos(a), std::sin(a)) - l.at).norm() < wide;
+        }
+        const Eigen::Vector2d to = l.at - sensor.at();
+        return to.norm() < 25 && std::abs(wrapped(std::atan2(to.y(), to.x()) - sensor.yaw - s.bearing)) <
+                                     std::max(0.02, wide / to.norm() / 2);
+      };
+      map_.near(sensor.at(), 27, [&](std::uint32_t l) {
+        if (!fits(map_[l])) return;
+        possible = true;
+        right = right || (matches[i].verdict == Verdict::matched && map_[l].key == matches[i].key);
+      });
+      matched += matches[i].verdict == Verdict::matched;
+      correct += right;
+      findable += possible;
+    }
+    return matches;
+  }
+  double spent = 0;
+  std::int64_t updates = 0, matched = 0, correct = 0, findable = 0;
+
+ private:
+  Localizer& inner_;
+  const LandmarkGrid& map_;
+  std::vector<std::optional<Pose2>> truth_;
+  std::size_t next_ = 0;
+};
+
+struct Sum {
+  std::vector<double> rmse, median, rpe, heading, anees;
+  double spent = 0;
+  std::int64_t updates = 0, matched = 0, correct = 0, findable = 0;
+};
+
+double middle(std::vector<double> all) {
+  if (all.empty()) return std::nan("");
+  const auto at = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+  std::ranges::nth_element(all, at);
+  return *at;
+}
+double mean(const std::vector<double>& all) {
+  double sum = 0;
+  for (const double v : all) sum += v / static_cast<double>(all.size());
+  return sum;
+}
+
+std::unique_ptr<Localizer> make(const Variant& v, const PoseEstimate& start, const LandmarkGrid& map,
+                                const TypeRegistry& types) {
+  IdentificationOptions id;
+  if (!v.quality) id.quality_floor = 1;
+  const FeatureScales scales(types);
+  if (v.method == "odometry") return std::make_unique<DeadReckoning>(start);
+  if (v.method == "slam") return std::make_unique<EkfSlam>(start);
+  if (v.method == "pf")
+    return std::make_unique<ParticleFilter>(start, LandmarkWindow(map), scales, id,
+                                            ParticleOptions{.particles = 300, .threads = 1, .weight = {}});
+  if (v.method == "ukf") return std::make_unique<UnscentedKalman>(start, LandmarkWindow(map), scales, id);
+  if (v.method == "ekf, one Gaussian") return std::make_unique<ExtendedKalman>(start, LandmarkWindow(map), scales, id);
+  return std::make_unique<HypothesesFilter>(start, LandmarkWindow(map), scales, id);
+}
+
+void run(const Variant& v, const RobotLog& log, const Site& site, const LandmarkGrid& map, Sum& sum) {
+  PoseEstimate start{*log.start, {}};
+  start.covariance.diagonal() << 0.02, 0.02, 0.0008;
+  const auto localizer = make(v, start, map, site.store.types());
+  Judged judged(*localizer, log, map);
+  const Track track = play(log, judged, {});
+  const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
+  sum.rmse.push_back(s.ate_rmse);
+  sum.median.push_back(s.ate_median);
+  sum.rpe.push_back(s.rpe);
+  sum.heading.push_back(s.heading_rmse_deg.value_or(0));
+  sum.anees.push_back(s.anees.value_or(0));
+  sum.spent += judged.spent;
+  sum.updates += judged.updates;
+  sum.matched += judged.matched;
+  sum.correct += judged.correct;
+  sum.findable += judged.findable;
+}
+
+}  // namespace
+}  // namespace waymark
+
+int main(int argc, char** argv) {
+  using namespace waymark;
+  if (argc < 8 || (argc - 5) % 3 != 0) {
+    fmt::print(stderr, "usage: {} RUNS METRES OUT.md OUT.html NAME SCENARIO.json MAP.gpkg ...\n", argv[0]);
+    return 2;
+  }
+  const int runs = std::stoi(argv[1]);
+  const double metres = std::stod(argv[2]);
+  std::vector<Variant> variants;
+  for (const char* method : {"odometry", "ekf", "ekf, one Gaussian", "ukf", "pf", "slam"}) variants.push_back({method});
+  for (const char* sensor : {"stereo", "camera", "laser + stereo"})
+    for (const char* method : {"ekf", "ukf", "pf"}) variants.push_back({method, sensor});
+  for (const char* method : {"ekf", "ukf", "pf"}) {
+    variants.push_back({method, "laser", false, true});
+    variants.push_back({method, "laser", true, false});
+    variants.push_back({method, "laser", false, false});
+  }
+  std::string md, html;
+  for (int s = 5; s < argc; s += 3) {
+    const Site site = open_site(argv[s], argv[s + 1], argv[s + 2]);
+    std::vector<MapLandmark> flat = site.landmarks;
+    double quality = 0;
+    for (MapLandmark& l : flat) quality += l.quality / static_cast<double>(flat.size()), l.quality = 1;
+    const LandmarkGrid with(site.landmarks), without(flat);
+    const ScanTypes types{{}, site.store.types().id("rock")};
+    std::vector<Sum> sums(variants.size());
+    for (int r = 0; r < runs; ++r) {
+      DriveSettings drive = site.scenario.drive;
+      drive.seed = 1000 + r;
+      drive.length = metres;
+      drive.stereo.on = drive.camera.on = true;
+      const DriveWorld world = make_drive(drive, site.scene, {}, site.scene.seed);
+      const auto file = std::filesystem::temp_directory_path() / fmt::format("waymark_compare_{}_{}.jsonl", s, r);
+      std::ofstream(file) << drive_log(world, {});
+      const RobotLog log = import_waymark_log(file, site.store.types());
+      std::filesystem::remove(file);
+      std::map<std::pair<std::string, bool>, RobotLog> logs;
+      for (std::size_t i = 0; i < variants.size(); ++i) {
+        const Variant& v = variants[i];
+        const auto [at, made] = logs.try_emplace({v.sensor, v.features});
+        if (made) at->second = only(log, v.sensor, v.features, types);
+        run(v, at->second, site, v.quality ? with : without, sums[i]);
+      }
+      fmt::print(stderr, "{} {}/{}\n", site.name, r + 1, runs);
+    }
+    md += fmt::format("\n## {}: {} rocks on the map, mean quality {:.2f}; {} drives of {:g} m\n\n", site.name,
+                      site.landmarks.size(), quality, runs, metres);
+    md += "| method | sensor | quality | features | ATE RMSE, median of runs | worst run | median error | RPE 1 s | "
+          "heading deg | NEES / 3 | precision | recall | us per update |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    html += fmt::format("<h2>{}: {} rocks on the map, mean quality {:.2f}; {} drives of {:g} m</h2>\n<table><tr>",
+                        site.name, site.landmarks.size(), quality, runs, metres);
+    for (const char* head : {"method", "sensor", "quality", "features", "ATE RMSE, median of runs", "worst run",
+                             "median error", "RPE 1 s", "heading deg", "NEES / 3", "precision", "recall", "us per update"})
+      html += fmt::format("<th>{}</th>", head);
+    html += "</tr>\n";
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      const Variant& v = variants[i];
+      const Sum& sum = sums[i];
+      const bool pairs = v.method != "odometry" && v.method != "slam";
+      const auto ratio = [&](std::int64_t part, std::int64_t all) {
+        return pairs && all > 0 ? fmt::format("{:.3f}", double(part) / double(all)) : std::string();
+      };
+      const std::vector<std::string> cells{
+          v.method, v.method == "odometry" ? "" : v.sensor, v.method == "odometry" ? "" : v.quality ? "yes" : "no",
+          v.method == "odometry" ? "" : v.features ? "yes" : "no", fmt::format("{:.3f}", middle(sum.rmse)),
+          fmt::format("{:.3f}", *std::ranges::max_element(sum.rmse)), fmt::format("{:.3f}", middle(sum.median)),
+          fmt::format("{:.3f}", mean(sum.rpe)), fmt::format("{:.2f}", mean(sum.heading)),
+          fmt::format("{:.2f}", middle(sum.anees)), ratio(sum.correct, sum.matched), ratio(sum.correct, sum.findable),
+          fmt::format("{:.0f}", 1e6 * sum.spent / double(std::max<std::int64_t>(1, sum.updates)))};
+      md += fmt::format("|");
+      html += "<tr>";
+      for (const std::string& cell : cells) {
+        md += fmt::format(" {} |", cell);
+        html += fmt::format("<td>{}</td>", cell);
+      }
+      md += "\n";
+      html += "</tr>\n";
+    }
+    html += "</table>\n";
+  }
+  std::ofstream(argv[3]) << md;
+  std::ofstream(argv[4]) << "<!doctype html><meta charset=\"utf-8\"><title>Localizers compared</title><style>body{font-family:"
+                            "sans-serif}td,th{padding:2px 8px;text-align:right}td:first-child{text-align:left}tr:nth-child("
+                            "even){background:#f3f3f3}</style>\n<h1>Localizers compared</h1>\n"
+                         << html;
+  return 0;
+}
