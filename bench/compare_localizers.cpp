@@ -181,7 +181,7 @@ std::unique_ptr<Localizer> make(const Variant& v, const PoseEstimate& start, con
 }
 
 void run(const Variant& v, const RobotLog& log, const Site& site, const LandmarkGrid& map, Sum& sum) {
-  PoseEstimate start{*log.start, {}};
+  PoseEstimate start{*log.start, Eigen::Matrix3d::Zero()};
   start.covariance.diagonal() << 0.02, 0.02, 0.0008;
   const auto localizer = make(v, start, map, site.store.types());
   Judged judged(*localizer, log, map);
@@ -244,6 +244,10 @@ int main(int argc, char** argv) {
         const auto [at, made] = logs.try_emplace({v.sensor, v.features});
         if (made) at->second = only(log, v.sensor, v.features, types);
         run(v, at->second, site, v.quality ? with : without, sums[i]);
+        if (r == 0)
+          fmt::print(stderr, "{} {} {} {}: RMSE {:.3f} median {:.3f}, {} of {} right of {} findable, {:.1f} s in {} updates\n",
+                     v.method, v.sensor, v.quality, v.features, sums[i].rmse[0], sums[i].median[0], sums[i].correct,
+                     sums[i].matched, sums[i].findable, sums[i].spent, sums[i].updates);
       }
       fmt::print(stderr, "{} {}/{}\n", site.name, r + 1, runs);
     }

@@ -34,16 +34,19 @@ std::vector<Eigen::Vector2d> planned_way(const DriveSettings& s, const Scene& sc
                   "or set drive.route to loop, lanes or wander");
   } else {
     Random random(seed, "route");
-    corners = automatic_route(s.route, middle, half, s.length, s.lane_spacing, random);
+    // Longer than needed: places that cannot be reached are left out.
+    corners = automatic_route(s.route, middle, half, 3 * s.length + 4 * half.norm(), s.lane_spacing, random);
   }
   const std::vector<Obstacle> obstacles = obstacles_of(scene.solids, kObstacle);
   const double edge = std::max(2.0, s.wheels.base);
   const FreeGround ground(scene.terrain, obstacles, s.clearance, edge, s.steepest);
   std::vector<Eigen::Vector2d> way;
   double driven = 0;
+  Eigen::Vector2d reached = corners.front();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-    const auto leg = ground.way(corners[i], corners[i + 1]);
+    const auto leg = ground.way(reached, corners[i + 1]);
     if (leg.empty()) {
+      if (way.empty()) reached = corners[i + 1];  // begin elsewhere
       if (s.route != "waypoints") continue;
       throw Error(ErrorCode::usage,
                   fmt::format("no way leads from waypoint {} ({:.1f}, {:.1f}) to the next ({:.1f}, {:.1f})", i,
@@ -51,6 +54,7 @@ std::vector<Eigen::Vector2d> planned_way(const DriveSettings& s, const Scene& sc
                               s.waypoints[i + 1].y()),
                   "drive", "move it, or change drive.clearance or drive.steepest");
     }
+    reached = leg.back();
     for (const Eigen::Vector2d& at : leg) {
       const double step = way.empty() ? 0 : (at - way.back()).norm();
       if (!way.empty() && step < 1e-6) continue;
