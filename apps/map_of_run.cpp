@@ -79,10 +79,10 @@ std::vector<std::string> types_found(const Pipeline& pipeline) {
 
 std::string summary_of_run(const RunResult& result, const MapContents& contents, const std::string& map) {
   auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
-  for (const auto& surveys : result.artifacts<Canopies>("canopies"))
-    cells = static_cast<double>(common_grid(*surveys).cells());
+  const auto canopies = result.artifacts<Canopies>("canopies");
+  for (const auto& surveys : canopies) cells = static_cast<double>(common_grid(*surveys).cells());
   std::string text = fmt::format("{}: {}\n", map, count_by_type(contents));
-  if (!contents.images.empty()) {
+  if (canopies.empty() && !contents.images.empty()) {
     const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);
     text += fmt::format("{} images, {} observations, {} of them used, {:.2f} s\n", contents.images.size(),
                         contents.observations.size(), used, result.report.seconds);

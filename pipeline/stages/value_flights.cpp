@@ -8,6 +8,7 @@
 #include "pipeline/forest/crown_shape.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/image_view_codec.hpp"
 #include "pipeline/fusion/landmark_codec.hpp"
 #include "pipeline/fusion/valuing.hpp"
 
@@ -26,14 +27,15 @@ struct ValueFlights {
   static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
   static constexpr Out<std::vector<Observation>> evidence{"evidence"};
   static constexpr Out<std::vector<CrownShape>> crowns{"crowns"};
+  static constexpr Out<std::vector<ImageView>> image_views{"image_views"};
 
   static StageSpec spec() {
     return {.name = "value_flights",
             .summary = "Values trees: how many canopy models show them of how many could have; names their crowns",
-            .version = 1,
+            .version = 2,
             .scope = Scope::map,
             .inputs = {canopies, merged, merged_evidence, seen_crowns},
-            .outputs = {landmarks, evidence, crowns}};
+            .outputs = {landmarks, evidence, crowns, image_views}};
   }
 
   static void run(const Options&, StageContext& unit) {
@@ -50,6 +52,9 @@ struct ValueFlights {
         landmark.confidence *= std::pow(kDoubtWhenMissed, missed);
       }
     }
+    std::vector<ImageView> views;
+    for (const auto& canopy : surveys) views.push_back(view_of(*canopy));
+    unit.write(image_views, std::move(views));
     unit.write(crowns, named(unit.read_all(seen_crowns), seen, all));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
@@ -68,6 +73,24 @@ struct ValueFlights {
       count += canopy->read(cell)(0, 0) != kNoCanopy;
     }
     return count;
+  }
+
+  // A canopy model is an orthophoto of heights: evidence names its pixels.
+  static ImageView view_of(const CanopySource& canopy) {
+    const GridGeometry& grid = canopy.geometry();
+    const Georeference& where = grid.where;
+    const double unit = where.crs.metres_per_unit();
+    ImageView view;
+    view.name = canopy.name();
+    view.columns = grid.columns, view.rows = grid.rows;
+    view.ortho = OrthoGrid{where.x0 * unit, where.y0 * unit, where.dx * unit, where.dy * unit};
+    const double west = where.x(-0.5), east = where.x(static_cast<double>(grid.columns) - 0.5);
+    const double north = where.y(-0.5), south = where.y(static_cast<double>(grid.rows) - 0.5);
+    view.footprint = {{{west, south}, {east, south}, {east, north}, {west, north}, {west, south}}};
+    const double cell = std::abs(where.dx * where.dy) * unit * unit;
+    view.area = cell * static_cast<double>(grid.cells());
+    view.gsd = std::sqrt(cell);
+    return view;
   }
 
   // One crown per tree: of the first survey by name that shows it.
