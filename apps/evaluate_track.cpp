@@ -14,6 +14,7 @@
 #include "exporters/track_file.hpp"
 #include "exporters/track_picture.hpp"
 #include "importers/logs/import_log.hpp"
+#include "localization/harvested.hpp"
 #include "localization/track_score.hpp"
 
 namespace waymark {
@@ -21,6 +22,7 @@ namespace {
 
 struct Truth {
   std::vector<StampedPose> poses;
+  std::vector<FelledReading> felled;
   bool headings = true;
 };
 
@@ -32,7 +34,7 @@ Truth truth_of(const std::string& file, const TrackEvaluation& how, const LocalF
   }
   RobotLog log = import_log(file, all_types(), {.format = how.log_format, .robot = how.robot});
   if (frame) place_in(log, *frame);
-  Truth truth{log.truth, false};
+  Truth truth{log.truth, log.felled, false};
   for (const StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
   return truth;
 }
@@ -66,6 +68,8 @@ void draw(const std::string& track_file, const Track& track, const Truth& truth,
     picture.tracks.push_back({more.substr(0, equals), read_track_csv(more.substr(equals + 1))});
   }
   picture.tracks.push_back({std::filesystem::path(track_file).stem(), track});
+  for (const HarvestedTree& tree : harvested_trees(truth.felled, track))
+    picture.harvested.push_back({tree.at, tree.diameter / 2, "#b22222"});
   write_file(how.picture, track_picture(picture));
 }
 

@@ -40,6 +40,7 @@ void tidy(RobotLog& log, double longest_gap) {
   remark(backwards, "times run backwards; the log is sorted by time");
   std::ranges::stable_sort(log.events, {}, &LogEvent::t);
   std::ranges::stable_sort(log.truth, {}, &StampedPose::t);
+  std::ranges::stable_sort(log.felled, {}, &FelledReading::t);
   const LogEvent* last = nullptr;
   double widest = 0;
   for (const LogEvent& e : log.events) {

@@ -39,10 +39,19 @@ struct StampedPose {
   Pose2 pose;
 };
 
+/// A tree that a harvester's crane took hold of, seen from the machine.
+struct FelledReading {
+  double t = 0;
+  double range = 0, bearing = 0;            ///< m, rad
+  double range_sd = 0.1, bearing_sd = 0.01;
+  double diameter = 0, height = 0;          ///< m, measured by the head; 0: not
+};
+
 /// What a robot measured on one drive, in the order of time.
 struct RobotLog {
   std::vector<LogEvent> events;
   std::vector<StampedPose> truth;  ///< where it really was, as far as that is known; ascending
+  std::vector<FelledReading> felled;  ///< ascending
   std::optional<Pose2> start;
   Ackermann car;
   /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.

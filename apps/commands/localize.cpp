@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "apps/command.hpp"
+#include "apps/drive_layers.hpp"
 #include "apps/localize_method.hpp"
 #include "apps/log.hpp"
 #include "apps/parse.hpp"
@@ -60,7 +61,10 @@ class Localize final : public Command {
                  .or_else("truth, or the log's start, or none for pf"),
              Argument{"--set", "OPTION=VALUE", &sets_, "Change a setting of the method; may be repeated"},
              Argument{"--settings", "", &list_, "Write the track, and list all settings with their defaults"},
-             Argument{"--crs", "", &in_crs_, "Write positions in the map's CRS"}},
+             Argument{"--crs", "", &in_crs_, "Write positions in the map's CRS"},
+             Argument{"--layers", "MAP.gpkg", &layers_,
+                      "Map file that gets the layers track and, of a harvester, harvested"}
+                 .offering(Offer::file)},
         .examples = {
             {"waymark localize site.gpkg drive.jsonl -o track.csv --method pf --start none",
              "Find the robot and follow it"},
@@ -111,6 +115,7 @@ class Localize final : public Command {
     } else {
       write_track_csv(out, track, form);
     }
+    if (!layers_.empty()) write_drive_layers(layers_, log, track, map.frame);
     tell(track);
     if (list_) say(options_as_text(options));
     return 0;
@@ -199,7 +204,7 @@ class Localize final : public Command {
     }
   }
 
-  std::string map_, log_, output_, method_ = "ekf", sensor_, ids_ = "known", start_;
+  std::string map_, log_, output_, layers_, method_ = "ekf", sensor_, ids_ = "known", start_;
   LogImport how_;
   std::vector<std::string> sets_;
   bool in_crs_ = false, list_ = false;

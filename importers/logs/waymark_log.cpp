@@ -89,6 +89,8 @@ class Reader {
       add(t, sightings_of_rocks(depth(line), {.type = type("rock")}));
     else if (kind == "panorama")
       add(t, panorama(line));
+    else if (kind == "felled")
+      log_.felled.push_back(felled(line, t));
     else if (kind == "gnss")
       add(t, fix(line));
     else if (kind == "truth")
@@ -220,6 +222,20 @@ class Reader {
                                  .elevation_sd = line.positive("elevation_sd", 0.001),
                                  .elevations = numbers(line, "elevations")};
     return sightings_of_summits(profile, {.type = type("mountain_top")});
+  }
+
+  static FelledReading felled(const Line& line, double t) {
+    FelledReading f{.t = t,
+                    .range = line.positive("range", 1),
+                    .bearing = line.angle("bearing"),
+                    .range_sd = line.positive("range_sd", 0.1),
+                    .bearing_sd = line.positive("bearing_sd", 0.01)};
+    if (line.has("features")) {
+      const Line features = line.part(line.object()["features"]);
+      f.diameter = features.has("diameter") ? features.positive("diameter", 1) : 0;
+      f.height = features.has("height") ? features.positive("height", 1) : 0;
+    }
+    return f;
   }
 
   static GnssFix fix(const Line& line) {

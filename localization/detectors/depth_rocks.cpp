@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/detectors/depth_rocks.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -15,17 +16,33 @@ struct Square {
   int points = 0, segment = -1;
 };
 
-// The ground about a square: the lower quartile of the lowest points of the squares around it.
+// Height of the ground at a square: a plane through the lowest points around, from which what stands out is left
+// out twice.
 double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64_t row, std::int64_t reach) {
-  std::vector<float> low;
-  for (std::int64_t r = std::max<std::int64_t>(0, row - reach); r <= std::min(squares.rows() - 1, row + reach); ++r)
-    for (std::int64_t c = std::max<std::int64_t>(0, column - reach);
-         c <= std::min(squares.columns() - 1, column + reach); ++c)
-      if (squares(c, r).points > 0) low.push_back(squares(c, r).lowest);
-  if (low.size() < 4) return std::nan("");
-  const auto quarter = low.begin() + static_cast<std::ptrdiff_t>(low.size() / 4);
-  std::nth_element(low.begin(), quarter, low.end());
-  return static_cast<double>(*quarter);
+  Eigen::Vector3d plane(0, 0, 0);
+  double above = 1e9;
+  for (const double keep : {1e9, 0.15, 0.08}) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    int used = 0;
+    for (std::int64_t r = std::max<std::int64_t>(0, row - reach); r <= std::min(squares.rows() - 1, row + reach); ++r)
+      for (std::int64_t c = std::max<std::int64_t>(0, column - reach);
+           c <= std::min(squares.columns() - 1, column + reach); ++c) {
+        const Square& square = squares(c, r);
+        if (square.points == 0) continue;
+        const Eigen::Vector3d at(1, double(c - column), double(r - row));
+        const double z = double(square.lowest);
+        if (above < 1e9 && z - at.dot(plane) > keep) continue;
+        normal += at * at.transpose();
+        right += at * z;
+        ++used;
+      }
+    if (used < 8) return std::nan("");
+    plane = (normal + 1e-6 * Eigen::Matrix3d::Identity()).ldlt().solve(right);
+    above = keep;
+    if (keep == 1e9) above = 0.15;
+  }
+  return plane(0);
 }
 
 }  // namespace

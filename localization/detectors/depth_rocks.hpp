@@ -24,9 +24,9 @@ struct DepthRock {
   double range_sd = 0.1, bearing_sd = 0.01;
 };
 
-/// Points are levelled by the robot's roll and pitch and sorted into squares. The ground at each is the lowest
-/// plane-like level of its surroundings (a low quantile of the lowest points); squares that stand out are joined
-/// to segments. 1 ms for 120 x 60 pixels.
+/// Points are levelled by the robot's roll and pitch and sorted into squares. The ground at each is a plane
+/// through the lowest points around it without what stands out; squares that stand above it are joined to
+/// segments. 1 ms for 120 x 60 pixels.
 std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& options);
 
 SightingSet sightings_of_rocks(const DepthImage& image, const DepthRocks& options);

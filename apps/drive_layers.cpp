@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/drive_layers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geodb/shape_layer.hpp"
+#include "localization/harvested.hpp"
+
+namespace waymark {
+namespace {
+
+Eigen::Vector2d in_crs(const LocalFrame& frame, const Eigen::Vector2d& at) {
+  return frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.head<2>();
+}
+
+AttributeValue or_null(double value) {
+  return value > 0 ? AttributeValue(value) : AttributeValue();
+}
+
+}  // namespace
+
+void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, const Track& track,
+                        const LocalFrame& frame) {
+  std::vector<ShapeLayer> layers;
+  ShapeLayer line{.name = "track",
+                  .summary = "Where the machine drove",
+                  .kind = ShapeKind::line,
+                  .columns = {{"from_t", "s"},
+                              {"to_t", "s"},
+                              {"largest_sd", "m"}},
+                  .style = {.colour = "#d95f02", .width = 0.8}};
+  // Corners closer than a decimetre say nothing.
+  std::vector<Eigen::Vector2d> corners;
+  double largest = 0;
+  for (const TrackRow& row : track.rows) {
+    largest = std::max(largest, std::sqrt(std::max(row.at.covariance(0, 0), row.at.covariance(1, 1))));
+    if (corners.empty() || (row.at.pose.at() - corners.back()).norm() > 0.1) corners.push_back(row.at.pose.at());
+  }
+  if (corners.size() > 1) {
+    for (Eigen::Vector2d& at : corners) at = in_crs(frame, at);
+    line.rows.push_back({{{corners, {}}}, {track.rows.front().t, track.rows.back().t, largest}});
+  }
+  layers.push_back(std::move(line));
+  if (!log.felled.empty()) {
+    ShapeLayer trees{.name = "harvested",
+                     .summary = "Trees felled by the machine",
+                     .kind = ShapeKind::point,
+                     .columns = {{"t", "s"},
+                                 {"diameter", "m"},
+                                 {"height", "m"},
+                                 {"sd", "m"}},
+                     .style = {.colour = "#b22222"}};
+    for (const HarvestedTree& tree : harvested_trees(log.felled, track))
+      trees.rows.push_back({{{{in_crs(frame, tree.at)}, {}}},
+                            {tree.t, or_null(tree.diameter), or_null(tree.height),
+                             std::sqrt(tree.covariance.trace() / 2)}});
+    layers.push_back(std::move(trees));
+  }
+  write_layers(map, layers);
+}
+
+}  // namespace waymark

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// Detectors of rovers and harvesters on scans whose truth is known.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "localization/detectors/depth_rocks.hpp"
+#include "localization/detectors/horizon_summits.hpp"
+#include "localization/detectors/laser_rocks.hpp"
+#include "localization/detectors/laser_stems.hpp"
+#include "localization/harvested.hpp"
+#include "testbed/laser_scanner.hpp"
+#include "testbed/scene.hpp"
+#include "testbed/stereo_camera.hpp"
+
+namespace waymark {
+namespace {
+
+Terrain flat(double side = 120) {
+  Grid<float> heights(61, 61, 0.0F);
+  return {std::move(heights), -side / 2, side / 2, side / 60, side / 60};
+}
+
+// 500 stems per hectare, none within 1.5 m of another.
+std::vector<StandingTree> stand(double side, double per_hectare, std::uint64_t seed) {
+  Random random(seed, "stand");
+  std::vector<StandingTree> trees;
+  const auto wanted = static_cast<std::size_t>(per_hectare * side * side / 1e4);
+  for (int tries = 0; trees.size() < wanted && tries < 100000; ++tries) {
+    const Eigen::Vector2d at(random.uniform(-side / 2, side / 2), random.uniform(-side / 2, side / 2));
+    bool free = at.norm() > 3;
+    for (const StandingTree& t : trees) free = free && (t.foot.head<2>() - at).norm() > 1.5;
+    if (free)
+      trees.push_back({.foot = {at.x(), at.y(), 0}, .height = 20, .dbh = random.uniform(0.12, 0.45),
+                       .crown_diameter = 4, .crown_base = 9});
+  }
+  return trees;
+}
+
+struct StemScore {
+  double squares = 0, bias = 0, position = 0;
+  int stems = 0, found = 0, visible = 0, is_false = 0;
+};
+
+// Stems that nothing hides: all rays across the stem's middle nine tenths meet it.
+bool plainly_visible(const RayFan& fan, const StemSolid& stem, std::uint32_t index, double step) {
+  const Eigen::Vector2d to = stem.foot.head<2>() - fan.origin().head<2>();
+  const double middle = std::atan2(to.y(), to.x()), half = std::asin(0.45 * stem.dbh / to.norm());
+  if (2 * half < 3.3 * step) return false;  // fewer than four beams
+  for (int k = -5; k <= 5; ++k) {
+    const double a = middle + half * k / 5;
+    const auto hit = fan.cast({std::cos(a), std::sin(a), 0});
+    if (!hit || hit->kind != TargetKind::stem || hit->index != index) return false;
+  }
+  return true;
+}
+
+StemScore score_stems(double from, double to, const ForestClutter& clutter, std::uint64_t seed) {
+  StemScore score;
+  LaserModel laser{.field = Degrees{360}, .step = Degrees{0.25}};
+  const LaserStems options = forest_stems();
+  for (std::uint64_t k = 0; k < 12; ++k) {
+    const auto trees = stand(70, 500, seed + k);
+    const Terrain ground = flat();
+    ForestSolids solids = forest_solids(trees, clutter, ground, seed + k);
+    for (StemSolid& s : solids.stems) s.lean.setZero();  // the scanner looks at 1.3 m
+    const LaserTargets targets(ground, {}, solids.stems, solids.thickets);
+    const RayFan fan(targets, {0, 0, 1.3}, 30);
+    Random random(seed + k, "scan");
+    LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
+    scan.beam_width = to_radians(laser.divergence).value * (1 - 2 * laser.sensitivity);
+    const auto found = find_stems(scan, options);
+    std::vector<bool> used(found.size());
+    for (std::uint32_t i = 0; i < trees.size(); ++i) {
+      const Eigen::Vector2d at = trees[i].foot.head<2>();
+      if (at.norm() < from || at.norm() > to) continue;
+      const bool visible = plainly_visible(fan, solids.stems[i], i, scan.angle_step);
+      score.visible += visible;
+      for (std::size_t f = 0; f < found.size(); ++f) {
+        const Eigen::Vector2d there =
+            found[f].range * Eigen::Vector2d(std::cos(found[f].bearing), std::sin(found[f].bearing));
+        if ((there - at).norm() > 0.4) continue;
+        used[f] = true;
+        if (!visible) continue;
+        ++score.found;
+        score.squares += std::pow(found[f].diameter - trees[i].dbh, 2);
+        score.bias += found[f].diameter - trees[i].dbh;
+        score.position += (there - at).squaredNorm();
+      }
+    }
+    for (std::size_t f = 0; f < found.size(); ++f)
+      if (found[f].range >= from && found[f].range <= to) ++score.stems, score.is_false += !used[f];
+  }
+  return score;
+}
+
+TEST(LaserStems, AreFoundAndMeasuredWithinTwelveMetres) {
+  for (const double to : {4.0, 8.0, 12.0, 18.0}) {
+    const StemScore s = score_stems(to - 4, to, {}, 100);
+    std::printf("%4.0f m: D RMSE %.1f cm, bias %.1f cm, place %.1f cm, %d of %d visible found, %d of %d false\n", to,
+                100 * std::sqrt(s.squares / s.found), 100 * s.bias / s.found,
+                100 * std::sqrt(s.position / s.found), s.found, s.visible, s.is_false, s.stems);
+  }
+  const StemScore at_twelve = score_stems(11, 13, {}, 200);
+  EXPECT_LE(std::sqrt(at_twelve.squares / at_twelve.found), 0.025);
+  const StemScore all = score_stems(2, 12, {}, 300);
+  EXPECT_GE(all.found, 0.9 * all.visible);
+  EXPECT_LE(all.is_false, 0.05 * all.stems);
+  EXPECT_GT(all.visible, 100);
+}
+
+TEST(LaserStems, AScanOfMissesHasNone) {
+  LaserScan scan{.robot_from_sensor = {}, .first_angle = -1, .angle_step = 0.01, .ranges = std::vector<float>(200, 0.0F)};
+  EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
+  scan.ranges.clear();
+  EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
+  EXPECT_TRUE(find_rocks(scan, {}).empty());
+  scan.ranges.assign(200, std::nanf(""));
+  EXPECT_TRUE(find_rocks(scan, {}).empty());
+}
+
+Scene rocky() {
+  Ground ground;
+  ground.width = ground.height = 100;
+  ground.cell = 0.4;
+  ground.relief = {.rms = 0.4, .longest = 60, .roughness = 0.5};
+  ground.craters.density = 0;
+  ground.craters.clusters = 0;
+  ground.rocks = {.k = 0.14, .min_diameter = 0.5, .max_diameter = 3};
+  ground.dunes.cover = 0;
+  return make_scene(ground, 8);
+}
+
+TEST(LaserRocks, MostOfWhatIsFoundIsThere) {
+  const Scene scene = rocky();
+  const LaserTargets targets(scene.terrain, scene.solids);
+  Random random(3);
+  int found = 0, right = 0;
+  double squares = 0;
+  for (int k = 0; k < 25; ++k) {
+    const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
+    const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 0.35);
+    const RayFan fan(targets, eye, 25);
+    const LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), {.field = Degrees{359}}, random);
+    for (const SeenRock& rock : find_rocks(scan, {})) {
+      const Eigen::Vector2d at = eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
+      double nearest = 1e9;
+      for (const TrueRock& r : scene.rocks)
+        nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
+      ++found;
+      if (nearest < 0.4) ++right, squares += std::pow(std::max(0.0, nearest), 2);
+    }
+  }
+  std::printf("%d of %d rocks in scans are there\n", right, found);
+  EXPECT_GT(found, 60);
+  EXPECT_GE(right, 0.85 * found);
+}
+
+TEST(DepthRocks, MostOfWhatIsFoundIsThere) {
+  const Scene scene = rocky();
+  const LaserTargets targets(scene.terrain, scene.solids);
+  Random random(4);
+  int found = 0, right = 0;
+  for (int k = 0; k < 12; ++k) {
+    const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
+    const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 1.5);
+    const RayFan fan(targets, eye, 18);
+    const DepthImage image = depth_image(fan, Eigen::Matrix3d::Identity(), {}, random);
+    for (const DepthRock& rock : find_rocks(image, {})) {
+      const Eigen::Vector2d at = eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
+      double nearest = 1e9;
+      for (const TrueRock& r : scene.rocks)
+        nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
+      ++found;
+      right += nearest < 0.5;
+    }
+  }
+  std::printf("%d of %d rocks in depth images are there\n", right, found);
+  EXPECT_GT(found, 12);
+  EXPECT_GE(right, 0.8 * found);
+}
+
+TEST(HorizonSummits, StandOutOfBothSides) {
+  HorizonProfile horizon{.first_angle = -std::numbers::pi, .angle_step = 2 * std::numbers::pi / 360,
+                         .elevations = std::vector<float>(360, 0.01F)};
+  for (int k = -20; k <= 20; ++k) horizon.elevations[static_cast<std::size_t>(200 + k)] += 0.002F * float(20 - std::abs(k));
+  horizon.elevations[300] += 0.004F;  // too low to count
+  for (int k = -3; k <= 3; ++k)       // across the seam
+    horizon.elevations[static_cast<std::size_t>((360 + k) % 360)] += 0.01F * float(4 - std::abs(k));
+  const auto summits = find_summits(horizon, {});
+  ASSERT_EQ(summits.size(), 2u);
+  EXPECT_NEAR(summits[0].bearing, 200 * horizon.angle_step - std::numbers::pi, 1e-3);
+  EXPECT_NEAR(std::abs(summits[1].bearing), std::numbers::pi, 1e-3);
+  EXPECT_NEAR(summits[1].prominence, 0.04, 1e-6);
+}
+
+TEST(HarvestedTrees, StandWhereTheCraneReaches) {
+  Track track;
+  for (int i = 0; i < 3; ++i) {
+    TrackRow row;
+    row.t = i;
+    row.at.pose = {double(i), 0, std::numbers::pi / 2};
+    row.at.covariance.diagonal() << 0.04, 0.01, 0;
+    track.rows.push_back(row);
+  }
+  const std::vector<FelledReading> felled{{.t = -1, .range = 5, .bearing = 0},
+                                          {.t = 1.5, .range = 5, .bearing = 0, .range_sd = 0.1, .diameter = 0.3}};
+  const auto trees = harvested_trees(felled, track);
+  ASSERT_EQ(trees.size(), 1u) << "nobody knows where the machine stood before the first row";
+  EXPECT_NEAR((trees[0].at - Eigen::Vector2d(1, 5)).norm(), 0, 1e-12);
+  EXPECT_NEAR(trees[0].covariance(1, 1), 0.01 + 0.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace waymark
