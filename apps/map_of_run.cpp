@@ -9,6 +9,7 @@
 #include "apps/registries.hpp"
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
+#include "pipeline/forest/crown_shape.hpp"
 #include "pipeline/fusion/image_view.hpp"
 
 namespace waymark {
@@ -42,6 +43,42 @@ std::string cell_count(double cells) {
   return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
 }
 
+ShapeLayer crown_layer() {
+  using Kind = AttributeSpec::Kind;
+  return {.name = "crown",
+          .summary = "Crowns of the trees, seen from above",
+          .kind = ShapeKind::polygon,
+          .columns = {{"uid", "", Kind::text, "The tree in layer tree; empty where it was not kept"},
+                      {"source", "", Kind::text, "Canopy model it was drawn on"},
+                      {"height", "m", Kind::real, "Height of the tree"},
+                      {"area", "m2", Kind::real, "Area"},
+                      {"diameter", "m", Kind::real, "Diameter of the circle of that area"}},
+          .style = {.colour = "#1b5e20", .fill = "#66bb6a", .fill_opacity = 0.3, .width = 0.2}};
+}
+
+Shape shape_of(const CrownShape& crown) {
+  return {.parts = {{.outer = crown.ring}},
+          .values = {crown.uid.empty() ? AttributeValue() : AttributeValue(crown.uid), crown.source,
+                     crown.height, crown.area, crown.diameter}};
+}
+
+/// The place of an apex as observations and crowns share it.
+std::pair<double, double> place_of(const Eigen::Vector2d& top) {
+  return {top.x(), top.y()};
+}
+
+/// Crowns know their tree by the place of its top: the observation made there tells the landmark.
+void name_crowns(std::vector<CrownShape>& crowns, const std::vector<Observation>& evidence) {
+  std::map<std::pair<std::string, std::pair<double, double>>, const Observation*> at;
+  for (const Observation& seen : evidence)
+    at.emplace(std::pair(seen.source, place_of(seen.position.xyz.head<2>())), &seen);
+  for (CrownShape& crown : crowns) {
+    if (!crown.uid.empty()) continue;
+    const auto found = at.find({crown.source, place_of(crown.top)});
+    if (found != at.end()) crown.uid = found->second->landmark_uid;
+  }
+}
+
 }  // namespace
 
 bool makes_map(const Pipeline& pipeline, const RunResult& result) {
@@ -63,6 +100,16 @@ MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem) {
     contents.landmarks.insert(contents.landmarks.end(), made->begin(), made->end());
   for (const auto& made : result.artifacts<std::vector<Observation>>("evidence"))
     contents.observations.insert(contents.observations.end(), made->begin(), made->end());
+  ShapeLayer crowns = crown_layer();
+  bool drawn = false;
+  for (const auto& made : result.artifacts<std::vector<CrownShape>>("crowns")) {
+    drawn = true;
+    std::vector<CrownShape> named = *made;
+    name_crowns(named, contents.observations);
+    for (const CrownShape& crown : named)
+      if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(crown));
+  }
+  if (drawn) contents.layers.push_back(std::move(crowns));
   for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
     for (const ImageView& image : *made) contents.images.push_back(record_of(image));
   return contents;

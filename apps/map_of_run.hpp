@@ -10,7 +10,7 @@ namespace waymark {
 bool makes_map(const Pipeline& pipeline, const RunResult& result);
 
 /// All that the stages of a run made for a map: `landmarks`, and where there are images, `evidence` and
-/// `image_views`. Stage by stage.
+/// `image_views`; `crowns` become the layer crown. Stage by stage.
 MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem);
 
 /// Landmark types the stages find, whether any is there or not.

@@ -31,6 +31,8 @@ void check_runs(const sqlite::Database& database, FindingList& findings) {
   }
 }
 
+}  // namespace
+
 void check_layer(const sqlite::Database& database, const std::string& table, FindingList& findings) {
   const auto missing = [&](std::string_view where) {
     sqlite::Statement row = database.prepare(fmt::format("SELECT 1 FROM {} = ?", where));
@@ -44,8 +46,6 @@ void check_layer(const sqlite::Database& database, const std::string& table, Fin
   if (missing("layer_styles WHERE useAsDefault AND f_table_name"))
     findings.add("style.missing", table, std::nullopt, "the layer has no default style");
 }
-
-}  // namespace
 
 void find_rows(const sqlite::Database& database, FindingList& findings, const std::string& code,
                const std::string& table, const std::string& sql) {

@@ -11,7 +11,7 @@ constexpr const char* kTriggers[] = {"insert", "update1", "update2", "update3", 
 
 // A box is float32 and rounded outwards: it may be off by a 2^-22 of the coordinate.
 constexpr const char* kMissing =
-    R"(SELECT t.id, 'the landmark is not in the spatial index' FROM "{t}" t LEFT JOIN "rtree_{t}_geom" r ON r.id = t.id
+    R"(SELECT t.id, 'the row is not in the spatial index' FROM "{t}" t LEFT JOIN "rtree_{t}_geom" r ON r.id = t.id
        WHERE r.id IS NULL AND t.geom NOT NULL AND NOT ST_IsEmpty(t.geom))";
 constexpr const char* kOrphan =
     R"(SELECT r.id, 'the spatial index has a box for a row that is not there' FROM "rtree_{t}_geom" r
@@ -22,7 +22,7 @@ constexpr const char* kWrong =
           OR r.maxx - r.minx > ST_MaxX(t.geom) - ST_MinX(t.geom) + 1e-6 * abs(r.maxx)
           OR r.maxy - r.miny > ST_MaxY(t.geom) - ST_MinY(t.geom) + 1e-6 * abs(r.maxy))";
 constexpr const char* kOutside =
-    R"(SELECT t.id, 'the landmark lies outside the extent of its layer' FROM "{t}" t, gpkg_contents c
+    R"(SELECT t.id, 'the row lies outside the extent of its layer' FROM "{t}" t, gpkg_contents c
        WHERE c.table_name = '{t}' AND (c.min_x IS NULL OR ST_MinX(t.geom) < c.min_x OR ST_MaxX(t.geom) > c.max_x
           OR ST_MinY(t.geom) < c.min_y OR ST_MaxY(t.geom) > c.max_y))";
 

@@ -6,14 +6,16 @@
 #include <cmath>
 #include <cstring>
 
+#include "geodb/wkb_reader.hpp"
+
 namespace waymark {
 namespace {
 
+using namespace wkb;
+
 static_assert(std::endian::native == std::endian::little, "blobs are written as they lie in memory");
 
-constexpr std::uint32_t kPoint = 1, kPolygon = 3, kMultiPolygon = 6, kCollection = 7;
 constexpr std::uint32_t kWithZ = 1000;
-constexpr std::size_t kEnvelopeSize[] = {0, 32, 48, 48, 64};  // by the envelope code of the flags
 
 template <class T>
 std::byte* put(std::byte* at, T value) {
@@ -39,102 +41,7 @@ void append_wkb_start(std::vector<std::byte>& bytes, std::uint32_t type, std::si
   append(bytes, static_cast<std::uint32_t>(count));
 }
 
-/// Reads on from the front; every read past the end clears ok().
-class Cursor {
- public:
-  explicit Cursor(std::span<const std::byte> bytes) : rest_(bytes) {}
-  bool ok() const { return ok_; }
-  void fail() { ok_ = false; }
-  std::size_t left() const { return rest_.size(); }
-  void set_byte_order(bool little) { swap_ = !little; }
-  void skip(std::size_t count) {
-    if (count > rest_.size()) return fail();
-    rest_ = rest_.subspan(count);
-  }
-  template <class T>
-  T next() {
-    std::array<std::byte, sizeof(T)> raw{};
-    if (rest_.size() < raw.size()) {
-      fail();
-      return T{};
-    }
-    std::copy_n(rest_.begin(), raw.size(), raw.begin());
-    rest_ = rest_.subspan(raw.size());
-    if (swap_) std::ranges::reverse(raw);
-    return std::bit_cast<T>(raw);
-  }
-
- private:
-  std::span<const std::byte> rest_;
-  bool ok_ = true, swap_ = false;
-};
-
-struct Header {
-  std::int32_t srs_id = 0;
-  std::size_t size = 0;
-};
-
-std::optional<Header> header_of(std::span<const std::byte> blob) {
-  Cursor cursor(blob);
-  const bool magic = cursor.next<char>() == 'G' && cursor.next<char>() == 'P';
-  cursor.skip(1);
-  const auto flags = cursor.next<std::uint8_t>();
-  const unsigned code = flags >> 1 & 7;
-  cursor.set_byte_order(flags & 1);
-  const auto srs_id = cursor.next<std::int32_t>();
-  if (!cursor.ok() || !magic || code >= std::size(kEnvelopeSize)) return std::nullopt;
-  cursor.skip(kEnvelopeSize[code]);
-  if (!cursor.ok()) return std::nullopt;
-  return Header{srs_id, 8 + kEnvelopeSize[code]};
-}
-
-struct WkbType {
-  std::uint32_t kind = 0;  ///< 1 point .. 7 collection
-  std::size_t axes = 2;
-  bool z = false;
-};
-
-WkbType next_type(Cursor& wkb) {
-  wkb.set_byte_order(wkb.next<std::uint8_t>() == 1);
-  const auto code = wkb.next<std::uint32_t>();
-  const std::uint32_t dimension = code / 1000;
-  if (code % 1000 < kPoint || code % 1000 > kCollection || dimension > 3) wkb.fail();
-  return {code % 1000, dimension == 0 ? 2u : dimension == 3 ? 4u : 3u, dimension == 1 || dimension == 3};
-}
-
-/// Calls `visit(x, y, z)` for every vertex, `start_ring` before each ring of a polygon.
-void walk(Cursor& wkb, const auto& visit, const auto& start_ring, int depth = 0) {
-  const WkbType type = next_type(wkb);
-  if (depth > 8) wkb.fail();
-  const auto vertices = [&](std::uint32_t count) {
-    if (count > wkb.left() / (8 * type.axes)) wkb.fail();
-    for (std::uint32_t i = 0; i < count && wkb.ok(); ++i) {
-      std::array<double, 4> v{};
-      for (std::size_t axis = 0; axis < type.axes; ++axis) v[axis] = wkb.next<double>();
-      visit(v[0], v[1], type.z ? v[2] : 0.0);
-    }
-  };
-  if (!wkb.ok()) return;
-  if (type.kind == kPoint) return vertices(1);
-  const auto count = wkb.next<std::uint32_t>();
-  if (type.kind < kPolygon) return vertices(count);
-  for (std::uint32_t i = 0; i < count && wkb.ok(); ++i) {
-    if (type.kind == kPolygon) {
-      start_ring(i);
-      vertices(wkb.next<std::uint32_t>());
-    } else {
-      walk(wkb, visit, start_ring, depth + 1);
-    }
-  }
-}
-
-std::optional<std::span<const std::byte>> wkb_of(std::span<const std::byte> blob) {
-  const auto header = header_of(blob);
-  if (!header) return std::nullopt;
-  return blob.subspan(header->size);
-}
-
-constexpr auto kNoRings = [](std::uint32_t) {};
+constexpr auto kNoRings = [](std::uint32_t, std::uint32_t) {};
 
 }  // namespace
 
@@ -234,8 +141,8 @@ std::vector<std::vector<Eigen::Vector2d>> polygons_of(std::span<const std::byte>
       [&](double x, double y, double) {
         if (keep) outer.back().emplace_back(x, y);
       },
-      [&](std::uint32_t ring) {
-        keep = ring == 0;
+      [&](std::uint32_t kind, std::uint32_t ring) {
+        keep = kind == kPolygon && ring == 0;
         if (keep) outer.emplace_back();
       });
   return outer;

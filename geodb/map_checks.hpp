@@ -24,6 +24,12 @@ void check_spatial_index(const sqlite::Database& database, const std::string& ta
 /// Observations, their landmarks and images, and the links between them.
 void check_evidence(const sqlite::Database& database, const TypeRegistry& types, FindingList& findings);
 
+/// Layers beside the landmarks: registered, readable, in the map's CRS, indexed.
+void check_shapes(const sqlite::Database& database, std::int32_t srs_id, FindingList& findings);
+
+/// A table with geometries is registered and has a style.
+void check_layer(const sqlite::Database& database, const std::string& table, FindingList& findings);
+
 /// One finding for every row of `sql`, which selects a row id and a text.
 void find_rows(const sqlite::Database& database, FindingList& findings, const std::string& code,
                const std::string& table, const std::string& sql);

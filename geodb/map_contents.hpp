@@ -10,6 +10,7 @@
 #include "core/units.hpp"
 #include "geo/crs.hpp"
 #include "geo/dem_handle.hpp"
+#include "geodb/shape_layer.hpp"
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
@@ -47,6 +48,7 @@ struct MapContents {
   std::vector<Landmark> landmarks;
   std::vector<Observation> observations;
   std::vector<ImageRecord> images;
+  std::vector<ShapeLayer> layers;  ///< beside the landmarks: crowns, stands, tracks
   RunRecord run;
   DemHandle dem_coverage;  ///< stored in the map as elevation tiles; null: none
 };

@@ -98,7 +98,21 @@ class Packer {
   std::int64_t next_node_ = kRoot + 1;
 };
 
+void pack_all(const sqlite::Database& database, std::string_view table, std::vector<Cell> level) {
+  Packer packer(database, "rtree_" + std::string(table) + "_geom");
+  for (int depth = 0; !level.empty(); ++depth) level = packer.pack(level, depth);
+}
+
 }  // namespace
+
+void fill_rtree(const sqlite::Database& database, std::string_view table, std::span<const IndexedBox> boxes) {
+  if (boxes.empty()) return;
+  std::vector<Cell> level;
+  level.reserve(boxes.size());
+  for (const auto& [id, min_x, max_x, min_y, max_y] : boxes)
+    level.push_back({id, {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}});
+  pack_all(database, table, std::move(level));
+}
 
 void fill_rtree(const sqlite::Database& database, std::string_view table,
                 std::span<const IndexedPoint> points) {
@@ -107,8 +121,7 @@ void fill_rtree(const sqlite::Database& database, std::string_view table,
   level.reserve(points.size());
   for (const auto& [id, x, y] : points)
     level.push_back({id, {rounded_down(x), rounded_up(x), rounded_down(y), rounded_up(y)}});
-  Packer packer(database, "rtree_" + std::string(table) + "_geom");
-  for (int depth = 0; !level.empty(); ++depth) level = packer.pack(level, depth);
+  pack_all(database, table, std::move(level));
 }
 
 }  // namespace waymark

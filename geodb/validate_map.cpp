@@ -33,6 +33,7 @@ std::vector<Finding> validate_map(const std::filesystem::path& path) {
     check_landmarks(database, layout, srs_id, findings);
     check_spatial_index(database, types[id].name, findings);
   }
+  check_shapes(database, srs_id, findings);
   if (whole) check_evidence(database, types, findings);
   return findings.take();
 }

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/shape_layer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "core/error.hpp"
+#include "geodb/hilbert.hpp"
+#include "geodb/layer_registration.hpp"
+#include "geodb/open_map.hpp"
+#include "geodb/packed_rtree.hpp"
+#include "geodb/provenance.hpp"
+#include "geodb/shape_blob.hpp"
+#include "geodb/shape_table.hpp"
+#include "geodb/sql_text.hpp"
+
+namespace waymark {
+namespace {
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& where, const char* hint) {
+  throw Error(ErrorCode::input, problem, where, hint);
+}
+
+bool is_name(std::string_view name) {
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && letter(name[0]) &&
+         std::ranges::all_of(name, [&](char c) { return letter(c) || c == '_' || (c >= '0' && c <= '9'); });
+}
+
+const char* sql_type(AttributeSpec::Kind kind) {
+  return kind == AttributeSpec::Kind::real   ? "DOUBLE"
+         : kind == AttributeSpec::Kind::text ? "TEXT"
+                                             : "INTEGER";
+}
+
+void check_names(const ShapeLayer& layer) {
+  if (!is_name(layer.name))
+    refuse("'" + layer.name + "' is no name for a layer", "", "use a-z, 0-9 and _, a letter first");
+  std::set<std::string> names{"id", "geom"};
+  for (const AttributeSpec& column : layer.columns)
+    if (!is_name(column.name) || !names.insert(column.name).second)
+      refuse("layer " + layer.name + " cannot have a column '" + column.name + "'", "",
+             "names are a-z, 0-9 and _, each once; id and geom are made");
+}
+
+void check_row(const ShapeLayer& layer, std::size_t row) {
+  const Shape& shape = layer.rows[row];
+  const std::string where = fmt::format("layer {}, row {}", layer.name, row + 1);
+  const char* hint = "this comes from what made the shapes";
+  if (shape.values.size() != layer.columns.size())
+    refuse(fmt::format("a shape has {} values for {} columns", shape.values.size(), layer.columns.size()),
+           where, hint);
+  const std::size_t least = layer.kind == ShapeKind::point ? 1 : layer.kind == ShapeKind::line ? 2 : 3;
+  const auto check_ring = [&](const std::vector<Eigen::Vector2d>& ring) {
+    if (ring.size() < least || (layer.kind == ShapeKind::point && ring.size() > 1))
+      refuse(fmt::format("a part of a shape has {} corners", ring.size()), where, hint);
+    for (const auto& corner : ring)
+      if (!corner.allFinite()) refuse("a corner of a shape is not finite", where, hint);
+  };
+  if (layer.kind == ShapeKind::point && shape.parts.size() > 1)
+    refuse("a point has several parts", where, hint);
+  for (const ShapePart& part : shape.parts) {
+    check_ring(part.outer);
+    for (const auto& hole : part.holes) check_ring(hole);
+  }
+}
+
+void remove_layer(const sqlite::Database& database, const std::string& name) {
+  if (database.has_table(name))
+    database.execute(fill_in(
+        R"(DROP TABLE IF EXISTS "rtree_{t}_geom"; DROP TABLE "{t}";
+           DELETE FROM gpkg_extensions WHERE table_name = '{t}'; DELETE FROM gpkg_data_columns WHERE table_name = '{t}';
+           DELETE FROM gpkg_geometry_columns WHERE table_name = '{t}'; DELETE FROM layer_styles WHERE f_table_name = '{t}';
+           DELETE FROM gpkg_contents WHERE table_name = '{t}'; DELETE FROM waymark_layer WHERE name = '{t}';)",
+        {{"t", name}}));
+}
+
+// Made with the first layer, so that maps without any stay as they were.
+void create_catalogue(const sqlite::Database& database) {
+  if (database.has_table("waymark_layer")) return;
+  database.execute(
+      "CREATE TABLE waymark_layer (\n"
+      "  name TEXT NOT NULL PRIMARY KEY,   -- of the table\n"
+      "  kind TEXT NOT NULL,               -- point, line, polygon\n"
+      "  summary TEXT NOT NULL\n);\n"
+      "INSERT INTO gpkg_extensions VALUES ('waymark_layer', NULL, 'waymark_map', 'docs/map.md of Waymark', "
+      "'read-write')");
+}
+
+void make_room(const sqlite::Database& database, const ShapeLayer& layer) {
+  create_catalogue(database);
+  sqlite::Statement ours = database.prepare("SELECT 1 FROM waymark_layer WHERE name = ?");
+  ours.bind(1, layer.name);
+  const bool known = ours.step();
+  ours.reset();
+  bool reserved = false;
+  for (const char* prefix : {"gpkg", "rtree_", "sqlite_", "waymark_"})
+    reserved = reserved || layer.name.starts_with(prefix);
+  if (known) return remove_layer(database, layer.name);
+  if (reserved || database.has_table(layer.name))
+    refuse("a map cannot have a layer '" + layer.name + "': that name is taken", "", "choose another name");
+}
+
+void create_table(const sqlite::Database& database, const ShapeLayer& layer) {
+  std::string columns;
+  for (const AttributeSpec& column : layer.columns)
+    columns += fmt::format(",\n  {} {}", sql_name(column.name), sql_type(column.kind));
+  database.execute(fmt::format("CREATE TABLE {} (\n  id INTEGER PRIMARY KEY,\n  geom {}{}\n)",
+                               sql_name(layer.name), geometry_name(layer.kind), columns));
+}
+
+void bind_value(sqlite::Statement& statement, int parameter, const AttributeValue& value) {
+  std::visit(
+      [&](const auto& v) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
+          statement.bind(parameter, nullptr);
+        else
+          statement.bind(parameter, v);
+      },
+      value);
+}
+
+// Boxes that lie near each other share a node of the index.
+void sort_boxes(std::vector<IndexedBox>& boxes, const Envelope& extent) {
+  const double width = std::max({extent.max_x - extent.min_x, extent.max_y - extent.min_y, 1e-9});
+  const auto cell = [&](double value, double low) {
+    return static_cast<std::uint16_t>(std::clamp((value - low) / width, 0.0, 1.0) * 65535);
+  };
+  std::vector<std::pair<std::uint32_t, std::size_t>> order;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    order.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
+                                     cell((boxes[i].min_y + boxes[i].max_y) / 2, extent.min_y)),
+                       i);
+  std::ranges::sort(order);
+  std::vector<IndexedBox> sorted;
+  for (const auto& [key, i] : order) sorted.push_back(boxes[i]);
+  boxes = std::move(sorted);
+}
+
+Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, std::int32_t srs_id) {
+  std::string places = "?, ?";
+  for (std::size_t i = 0; i < layer.columns.size(); ++i) places += ", ?";
+  sqlite::Statement insert =
+      database.prepare(fmt::format("INSERT INTO {} VALUES ({})", sql_name(layer.name), places));
+  Envelope extent;
+  std::vector<IndexedBox> boxes;
+  for (std::size_t i = 0; i < layer.rows.size(); ++i) {
+    check_row(layer, i);
+    const Shape& shape = layer.rows[i];
+    const auto row = static_cast<std::int64_t>(i + 1);
+    const std::vector<std::byte> blob = shape_blob(layer.kind, shape.parts, srs_id);
+    insert.bind(1, row);
+    insert.bind(2, nullptr);
+    if (!shape.parts.empty()) insert.bind(2, std::span<const std::byte>(blob));
+    for (std::size_t c = 0; c < layer.columns.size(); ++c)
+      bind_value(insert, 3 + static_cast<int>(c), shape.values[c]);
+    insert.run();
+    if (shape.parts.empty()) continue;
+    const Envelope box = envelope_of(shape.parts);
+    extent.add(box);
+    boxes.push_back({row, box.min_x, box.max_x, box.min_y, box.max_y});
+  }
+  create_spatial_index(database, layer.name);
+  sort_boxes(boxes, extent);
+  fill_rtree(database, layer.name, boxes);
+  return extent;
+}
+
+void describe(const sqlite::Database& database, const ShapeLayer& layer, std::string_view changed) {
+  sqlite::Statement column =
+      database.prepare("INSERT INTO gpkg_data_columns VALUES (?, ?, ?, ?, ?, NULL, NULL)");
+  for (const AttributeSpec& c : layer.columns) {
+    column.bind_all(layer.name, c.name, c.name, c.unit.empty() ? c.name : c.name + " (" + c.unit + ")",
+                    c.summary);
+    column.run();
+  }
+  const std::string qml = qml_shape_style(layer), sld = sld_shape_style(layer);
+  sqlite::Statement style = database.prepare(
+      "INSERT INTO layer_styles (f_table_name, f_geometry_column, styleName, styleQML, styleSLD, "
+      "useAsDefault,"
+      "  description, update_time) VALUES (?1, 'geom', ?1, ?2, ?3, 1, ?4, ?5)");
+  style.bind_all(layer.name, qml, sld, layer.summary, changed);
+  style.run();
+  sqlite::Statement declare = database.prepare("INSERT INTO waymark_layer VALUES (?, ?, ?)");
+  const char* kinds[] = {"point", "line", "polygon"};
+  declare.bind_all(layer.name, std::string_view(kinds[static_cast<int>(layer.kind)]), layer.summary);
+  declare.run();
+}
+
+}  // namespace
+
+const char* geometry_name(ShapeKind kind) {
+  return kind == ShapeKind::point ? "POINT" : kind == ShapeKind::line ? "MULTILINESTRING" : "MULTIPOLYGON";
+}
+
+void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> layers,
+                  std::string_view changed) {
+  const auto srs_id = static_cast<std::int32_t>(
+      database.integer("SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = 'image'"));
+  for (const ShapeLayer& layer : layers) {
+    check_names(layer);
+    make_room(database, layer);
+    create_table(database, layer);
+    const Envelope extent = insert_rows(database, layer, srs_id);
+    register_layer(database, {.table = layer.name,
+                              .description = layer.summary,
+                              .geometry_type = geometry_name(layer.kind),
+                              .extent = extent,
+                              .srs_id = srs_id,
+                              .changed = std::string(changed)});
+    describe(database, layer, changed);
+  }
+}
+
+void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers) {
+  const OpenMap open = open_for_changing(map);
+  sqlite::Transaction all(open.database);
+  write_layers(open.database, layers, time_stamp_now());
+  all.commit();
+}
+
+}  // namespace waymark

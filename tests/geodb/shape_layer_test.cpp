@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/shape_layer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "geodb/map_store.hpp"
+#include "geodb/shape_blob.hpp"
+#include "geodb/validate_map.hpp"
+#include "geodb/write_map.hpp"
+#include "tests/geodb/map_scenes.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Kind = AttributeSpec::Kind;
+
+ShapeLayer squares(int count) {
+  ShapeLayer layer{.name = "crown",
+                   .summary = "Crowns",
+                   .columns = {{"uid", "", Kind::text, "of the tree"},
+                               {"area", "m2", Kind::real, ""},
+                               {"cells", "", Kind::integer, ""}},
+                   .style = {.colour = "#2e7d32", .fill = "#66bb6a", .label = "uid"}};
+  for (int i = 0; i < count; ++i) {
+    const double x = 450'000 + 37.0 * (i % 101), y = 5'050'000 + 91.0 * (i / 101);
+    ShapePart part{.outer = {{x, y}, {x + 10, y}, {x + 10, y + 10}, {x, y + 10}, {x, y}}};
+    if (i % 2 == 0) part.holes = {{{x + 2, y + 2}, {x + 2, y + 4}, {x + 4, y + 4}, {x + 2, y + 2}}};
+    layer.rows.push_back({{part}, {"t" + std::to_string(i), 100.0 + i, std::int64_t{i}}});
+  }
+  return layer;
+}
+
+ShapeLayer track() {
+  return {
+      .name = "track",
+      .summary = "Where it drove",
+      .kind = ShapeKind::line,
+      .columns = {{"t", "s", Kind::real, ""}},
+      .rows = {{{{.outer = {{450'000, 5'050'000}, {450'001, 5'050'002}}}}, {1.5}}, {{}, {AttributeValue{}}}}};
+}
+
+ShapeLayer harvested() {
+  return {.name = "harvested",
+          .summary = "",
+          .kind = ShapeKind::point,
+          .columns = {},
+          .rows = {{{{.outer = {{450'003, 5'050'004}}}}, {}}}};
+}
+
+void expect_equal(const ShapeLayer& a, const ShapeLayer& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.summary, b.summary);
+  EXPECT_EQ(a.kind, b.kind);
+  ASSERT_EQ(a.columns.size(), b.columns.size());
+  for (std::size_t i = 0; i < a.columns.size(); ++i) {
+    EXPECT_EQ(a.columns[i].name, b.columns[i].name);
+    EXPECT_EQ(a.columns[i].unit, b.columns[i].unit);
+    EXPECT_EQ(a.columns[i].kind, b.columns[i].kind);
+  }
+  ASSERT_EQ(a.rows.size(), b.rows.size());
+  for (std::size_t i = 0; i < a.rows.size(); ++i) {
+    EXPECT_EQ(a.rows[i].parts, b.rows[i].parts) << i;
+    EXPECT_EQ(a.rows[i].values, b.rows[i].values) << i;
+  }
+}
+
+TEST(ShapeLayer, ReadsBackAsWrittenWithTheMap) {
+  const TemporaryFolder folder;
+  for (const char* crs : {"EPSG:32632", ""}) {
+    MapContents contents = scattered({.crs = crs});
+    contents.layers = {squares(300), track(), harvested()};
+    write_map(folder / "map.gpkg", contents);
+    EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
+    EXPECT_THAT(shape_layers(folder / "map.gpkg"), ElementsAre("crown", "harvested", "track"));
+    for (const ShapeLayer& layer : contents.layers)
+      expect_equal(read_shape_layer(folder / "map.gpkg", layer.name), layer);
+    EXPECT_EQ(MapStore::open(folder / "map.gpkg").count(), 1000);
+  }
+}
+
+TEST(ShapeLayer, IsAddedToAMapAndReplaced) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  EXPECT_THAT(shape_layers(folder / "map.gpkg"), IsEmpty());
+  for (const int count : {20, 7, 0}) {
+    const std::vector layers{squares(count), track()};
+    write_layers(folder / "map.gpkg", layers);
+    EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
+    expect_equal(read_shape_layer(folder / "map.gpkg", "crown"), squares(count));
+  }
+}
+
+TEST(ShapeLayer, IsFoundByGdalWithItsHoles) {
+  const TemporaryFolder folder;
+  MapContents contents = scattered({});
+  contents.layers = {squares(2)};
+  write_map(folder / "map.gpkg", contents);
+  const std::string info =
+      run_program("ogrinfo -al -ro " + (folder / "map.gpkg").string() + " crown 2>&1").output;
+  EXPECT_THAT(info, HasSubstr("Geometry: Multi Polygon"));
+  EXPECT_THAT(info, HasSubstr("Feature Count: 2"));
+  EXPECT_THAT(info, HasSubstr("(450002 5050002,"));  // the hole
+}
+
+TEST(ShapeLayer, FaultsAreFoundByValidate) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"geometry.bad", "UPDATE crown SET geom = x'4750' WHERE id = 3"},
+      {"geometry.crs", "UPDATE crown SET geom = x'47500003' || x'00000000' || substr(geom, 9) WHERE id = 3"},
+      {"rtree.row", "DELETE FROM rtree_crown_geom WHERE id = 3"},
+      {"style.missing", "DELETE FROM layer_styles WHERE f_table_name = 'crown'"},
+      {"layer.extent", "UPDATE gpkg_contents SET max_x = 0 WHERE table_name = 'crown'"},
+  };
+  for (const auto& [code, sql] : faults) {
+    const TemporaryFolder folder;
+    MapContents contents = scattered({.landmarks = 3, .with_evidence = 0});
+    contents.layers = {squares(5)};
+    write_map(folder / "map.gpkg", contents);
+    execute_sql(folder / "map.gpkg", sql);
+    std::vector<std::string> codes;
+    for (const Finding& finding : validate_map(folder / "map.gpkg")) codes.push_back(finding.code);
+    EXPECT_THAT(codes, ::testing::Contains(code)) << sql;
+  }
+}
+
+TEST(ShapeLayer, RefusesWhatAMapCannotHold) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  const std::string before = file_bytes(folder / "map.gpkg");
+  const auto refused = [&](const ShapeLayer& layer) -> std::string {
+    try {
+      write_layers(folder / "map.gpkg", std::span(&layer, 1));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ShapeLayer layer = squares(2);
+  layer.name = "lamp_post";
+  EXPECT_THAT(refused(layer), HasSubstr("that name is taken"));
+  layer.name = "Crown 1";
+  EXPECT_THAT(refused(layer), HasSubstr("no name for a layer"));
+  layer = squares(2);
+  layer.columns[0].name = "geom";
+  EXPECT_THAT(refused(layer), HasSubstr("cannot have a column 'geom'"));
+  layer = squares(2);
+  layer.rows[1].values.pop_back();
+  EXPECT_THAT(refused(layer), HasSubstr("2 values for 3 columns"));
+  layer = squares(2);
+  layer.rows[1].parts[0].outer[2].x() = std::nan("");
+  EXPECT_THAT(refused(layer), HasSubstr("layer crown, row 2"));
+  layer.rows[1].parts[0].outer.resize(2);
+  EXPECT_THAT(refused(layer), HasSubstr("has 2 corners"));
+  EXPECT_EQ(file_bytes(folder / "map.gpkg"), before) << "nothing half-written";
+}
+
+}  // namespace
+}  // namespace waymark
