@@ -76,6 +76,7 @@ Scenario read_scenario(std::string_view json, const std::string& source) {
   if (scenario.bits != 8 && scenario.bits != 16)
     throw Error(ErrorCode::usage, fmt::format("picture.bits must be 8 or 16, is {}", scenario.bits), source);
   if (file.contains("drive")) read_drive(scenario.drive, file["drive"].dump(), source);
+  scenario.forest.on = file.contains("forest");
   read_flights(scenario, file, source);
   return scenario;
 }
@@ -84,6 +85,7 @@ std::string scenario_json(const Scenario& scenario) {
   Scenario copy = scenario;
   Json file{{"waymark_scenario", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
+    if (section.name == "forest" && !scenario.forest.on) continue;
     const Json fields = Json::parse(written_fields([&](OptionVisitor& v) { section.describe(copy, v); }));
     if (section.name.empty())
       file.update(fields);

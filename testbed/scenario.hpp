@@ -6,6 +6,7 @@
 #include <vector>
 #include "core/options.hpp"
 #include "testbed/drive_settings.hpp"
+#include "testbed/forest_law.hpp"
 #include "testbed/ground.hpp"
 #include "testbed/render.hpp"
 namespace waymark {
@@ -57,6 +58,7 @@ struct Scenario {
   PoseErrors pose_errors;
   DemModel dem;
   DriveSettings drive;  ///< `on` where the file has the section
+  ForestLaw forest;  ///< `on` where the file has the section
 };
 
 /// Reads a scenario (docs/testbed.md). `source` names the file in messages. Throws Error{usage} with the JSON

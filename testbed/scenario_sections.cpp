@@ -163,6 +163,7 @@ const std::vector<ScenarioSection>& scenario_sections() {
       {"picture", "Light, air and sensor", describe_picture},
       {"camera", "The lens of every flight", describe_camera},
       {"pose_errors", "What the camera file gets wrong", describe_poses},
+      {"forest", "A forest instead of a landing site", describe_forest},
       {"dem", "The elevation model given to the map maker", describe_dem},
   };
   return sections;

@@ -15,6 +15,7 @@ struct ScenarioSection {
 
 /// In the order of the file; flights are apart.
 const std::vector<ScenarioSection>& scenario_sections();
+void describe_forest(Scenario& scenario, OptionVisitor& field);
 void describe_flight(Flight& flight, OptionVisitor& field);
 
 }  // namespace waymark

@@ -10,6 +10,7 @@
 #include "apps/log.hpp"
 #include "apps/session.hpp"
 #include "apps/write_drive.hpp"
+#include "apps/write_forest.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "exporters/aside_folder.hpp"
@@ -46,13 +47,16 @@ class Simulate final : public Command {
     return {
         .name = "simulate",
         .group = Group::make,
-        .summary = "Make a landing site whose every rock and crater is known, with images of it",
+        .summary = "Make a landing site or a forest whose every rock, crater or tree is known",
         .about =
             "Writes into a folder: the DEM, the images, the camera file with the sun, a job that makes a map "
             "of "
             "them, and the truth to judge the map by. The same scenario and seed give the same bytes, "
             "whatever the "
-            "number of threads.\n\nThe scenario is JSON; every field has a default: docs/testbed.md.",
+            "number of threads.\n\nWith a section `forest` it makes a forest instead, as a laser scanner "
+            "sees it from "
+            "the air: dtm.tif, dsm.tif, chm.tif, points.las, stands.geojson, the job and the truth "
+            "(docs/forest_testbed.md).\n\nThe scenario is JSON; every field has a default: docs/testbed.md.",
         .arguments = {file_word("SCENARIO.json", &scenario_, "What to make"),
                       Argument{"-o,--output", "DIR", &folder_, "Folder for the files; it may exist"}
                           .needed()
@@ -79,6 +83,7 @@ class Simulate final : public Command {
     if (crs.kind() == CrsKind::geographic)
       throw Error(ErrorCode::usage, fmt::format("crs {} is geographic: its units are degrees", scenario.crs),
                   scenario_, "use a projected CRS or \"local\"");
+    if (scenario.forest.on) return make_forest(scenario, crs);
     const std::vector<Shot> shots = plan_shots(scenario);
     scenario.ground = sized_for(scenario, shots);
     const auto seed = static_cast<std::uint64_t>(scenario.seed);
@@ -128,6 +133,19 @@ class Simulate final : public Command {
   }
 
  private:
+  int make_forest(const Scenario& scenario, const Crs& crs) {
+    const fs::path folder = folder_;
+    std::error_code failed;
+    fs::create_directories(folder / "truth", failed);
+    if (failed) fail_output(folder / "truth", failed.message());
+    const Scene scene = forest_ground(scenario);
+    const WrittenForest forest = write_forest(folder, scenario, scene, crs);
+    write_file(folder / "scenario.json", scenario_json(scenario));
+    if (scenario.drive.on) say(write_drive(folder, scenario, scene, forest.trees, scenario_) + "\n");
+    say(fmt::format("{}: {}\n", folder_, forest.told));
+    return 0;
+  }
+
   std::string scenario_, folder_;
   std::int64_t seed_ = -1, drive_seed_ = -1;
   bool drive_only_ = false;

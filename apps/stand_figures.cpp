@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/stand_figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/error.hpp"
+
+namespace waymark {
+namespace {
+
+double known(const Landmark& landmark, std::size_t feature) {
+  const FeatureValue& value = landmark.features[feature];
+  return value.known() ? value.value : StandTree::kUnknown;
+}
+
+double deviation(const Landmark& landmark, std::size_t feature) {
+  const FeatureValue& value = landmark.features[feature];
+  return value.known() && value.variance > 0 ? std::sqrt(value.variance) : 0;
+}
+
+double place_deviation(const Landmark& landmark) {
+  const double variance = (landmark.covariance(0, 0) + landmark.covariance(1, 1)) / 2;
+  return variance > 0 ? std::sqrt(variance) : 0;
+}
+
+double metres_per_unit(const MapStore& map) {
+  if (map.crs().kind() == CrsKind::geographic)
+    throw Error(
+        ErrorCode::input,
+        fmt::format("the map is in degrees ({}): stands have no area in them", map.crs().id()),
+        map.path().string(),
+        "make it in a projected CRS: waymark export MAP.gpkg trees.csv --crs EPSG:..., then waymark import");
+  return map.crs().kind() == CrsKind::local ? 1 : map.crs().metres_per_unit();
+}
+
+/// Outlines of layer `crown` by the uid of their tree; the first where several surveys drew one.
+std::unordered_map<std::string, const Shape*> outlines_by_tree(const ShapeLayer& layer) {
+  std::unordered_map<std::string, const Shape*> of;
+  std::size_t uid = layer.columns.size();
+  for (std::size_t i = 0; i < layer.columns.size(); ++i)
+    if (layer.columns[i].name == "uid") uid = i;
+  for (const Shape& row : layer.rows)
+    if (uid < row.values.size() && !row.parts.empty())
+      if (const auto* name = std::get_if<std::string>(&row.values[uid])) of.emplace(*name, &row);
+  return of;
+}
+
+const Allometry& diameters_for(const StandTables& tables, const std::string& species) {
+  const auto& table = tables.diameters.empty() ? built_in_allometry() : tables.diameters;
+  if (const Allometry* row = allometry_of(table, species)) return *row;
+  throw Error(ErrorCode::input,
+              fmt::format("the allometry has no row for species '{}' and none for all", species),
+              tables.diameters_file, "add a row with species all");
+}
+
+const VolumeRow& volumes_for(const StandTables& tables, const std::string& species) {
+  if (const VolumeRow* row = volume_of(tables.volumes, species)) return *row;
+  throw Error(ErrorCode::input,
+              fmt::format("the volume table has no row for species '{}' and none for all", species),
+              tables.volumes_file, "add a row with species all");
+}
+
+}  // namespace
+
+MapTrees trees_of(const MapStore& map) {
+  MapTrees all;
+  all.unit = metres_per_unit(map);
+  const LandmarkType* type = map.types().find("tree");
+  if (type == nullptr)
+    throw Error(
+        ErrorCode::input, "the map has no trees", map.path().string(),
+        "`waymark trees` makes a map of trees from a canopy model, `waymark import --type tree` one of a "
+        "list");
+  const std::size_t height = feature_index(*type, "height"), diameter = feature_index(*type, "diameter"),
+                    crown = feature_index(*type, "crown_diameter");
+  ShapeLayer crowns;
+  for (const std::string& name : shape_layers(map.path()))
+    if (name == "crown") crowns = read_shape_layer(map.path(), name);
+  const auto outlines = outlines_by_tree(crowns);
+  for (const Landmark& landmark : map.query({.types = {"tree"}})) {
+    StandTree tree;
+    tree.place = landmark.position.xyz.head<2>() * all.unit;
+    tree.place_sd = place_deviation(landmark);
+    tree.height = known(landmark, height);
+    tree.height_sd = deviation(landmark, height);
+    tree.diameter = known(landmark, diameter);
+    tree.diameter_sd = deviation(landmark, diameter);
+    tree.confidence = landmark.confidence;
+    StandCrown shade{.place = tree.place,
+                     .diameter = landmark.features[crown].known() ? known(landmark, crown) : 0,
+                     .diameter_sd = deviation(landmark, crown),
+                     .ring = {},
+                     .confidence = landmark.confidence};
+    if (const auto found = outlines.find(landmark.uid); found != outlines.end())
+      for (const auto& corner : found->second->parts[0].outer) shade.ring.push_back(corner * all.unit);
+    all.uids.push_back(landmark.uid);
+    all.trees.push_back(tree);
+    all.crowns.push_back(std::move(shade));
+  }
+  return all;
+}
+
+StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables& tables,
+                       const InventoryOptions& options) {
+  StandResult result;
+  result.stand = std::move(stand);
+  const Allometry& diameters = diameters_for(tables, result.stand.species);
+  const VolumeRow& volumes = volumes_for(tables, result.stand.species);
+  const Eigen::AlignedBox2d box = bounds(result.stand.ground);
+  std::vector<StandCrown> crowns;
+  for (std::size_t i = 0; i < map.trees.size(); ++i) {
+    // As far as a place may err, or a crown that is no circle may reach.
+    const double reach = std::max({5 * map.trees[i].place_sd, 2 * map.crowns[i].diameter, 5.0});
+    if (box.squaredExteriorDistance(map.trees[i].place) > reach * reach) continue;
+    StandTree tree = map.trees[i];
+    if (!tables.diameters.empty() || std::isnan(tree.diameter)) {
+      const auto stem = stem_diameter(diameters, tree.height, tree.height_sd, map.crowns[i].diameter,
+                                      map.crowns[i].diameter_sd);
+      tree.diameter = stem ? stem->metres : StandTree::kUnknown;
+      tree.diameter_sd = stem ? stem->sd : 0;
+      const double bias = diameters.held_out_bias / 100;
+      tree.diameter_bias = stem && !std::isnan(bias) ? std::abs(bias) : 0;
+    }
+    tree.volume = stem_volume(volumes, tree.diameter, tree.height);
+    tree.mass = tree.volume * volumes.mass_per_volume;
+    result.near.push_back(i);
+    result.trees.push_back(tree);
+    crowns.push_back(map.crowns[i]);
+  }
+  InventoryOptions all = options;
+  all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
+  result.figures = inventory(result.trees, result.stand.ground, all);
+  result.members = trees_in(result.trees, result.stand.ground);
+  result.cover = cover(crowns, result.stand.ground);
+  return result;
+}
+
+}  // namespace waymark

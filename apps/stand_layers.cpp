@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/stand_figures.hpp"
+
+namespace waymark {
+namespace {
+
+using Kind = AttributeSpec::Kind;
+
+AttributeValue number(double value) {
+  return std::isfinite(value) ? AttributeValue(value) : AttributeValue();
+}
+
+/// A figure and how it is told: value times `factor` in `unit`.
+struct FigureColumn {
+  const char *name, *unit, *summary;
+  double factor;
+  Estimate (*of)(const StandResult&);
+};
+
+constexpr FigureColumn kFigures[] = {
+    {"stems_per_ha", "1/ha", "Trees per hectare", 1, [](const StandResult& r) { return r.figures.stems; }},
+    {"basal_area_m2_per_ha", "m2/ha", "Stem cross-sections at 1.3 m per hectare", 1,
+     [](const StandResult& r) { return r.figures.basal_area; }},
+    {"volume_m3_per_ha", "m3/ha", "Stem volume per hectare", 1,
+     [](const StandResult& r) { return r.figures.volume; }},
+    {"biomass_t_per_ha", "t/ha", "Dry mass per hectare; NULL without a table that tells it", 1,
+     [](const StandResult& r) { return r.figures.mass; }},
+    {"lorey_height_m", "m", "Mean height weighted by basal area", 1,
+     [](const StandResult& r) { return r.figures.lorey_height; }},
+    {"dominant_height_m", "m", "Mean height of the 100 thickest per hectare", 1,
+     [](const StandResult& r) { return r.figures.dominant_height; }},
+    {"mean_height_m", "m", "Mean height", 1, [](const StandResult& r) { return r.figures.mean_height; }},
+    {"quadratic_mean_diameter_cm", "cm", "Diameter of the tree of mean basal area", 100,
+     [](const StandResult& r) { return r.figures.quadratic_mean_diameter; }},
+    {"mean_diameter_cm", "cm", "Mean diameter", 100,
+     [](const StandResult& r) { return r.figures.mean_diameter; }},
+    {"cover", "", "Share of the ground under crowns, 0 to 1", 1,
+     [](const StandResult& r) { return r.cover; }},
+};
+
+std::string class_name(const DiameterClass& c) {
+  return fmt::format("stems_per_ha_d{:03.0f}", 100 * c.from);
+}
+
+std::vector<DiameterClass> all_classes(const std::vector<StandResult>& results) {
+  std::vector<DiameterClass> all;
+  for (const StandResult& result : results)
+    if (result.figures.classes.size() > all.size()) all = result.figures.classes;
+  return all;
+}
+
+void push(Shape& row, const Estimate& estimate, double factor) {
+  row.values.push_back(number(estimate.value * factor));
+  row.values.push_back(number(estimate.se * factor));
+}
+
+}  // namespace
+
+ShapeLayer stand_layer(const std::vector<StandResult>& results) {
+  ShapeLayer layer{
+      .name = "stand",
+      .summary = "Stands with the figures of their trees",
+      .kind = ShapeKind::polygon,
+      .columns = {{"stand", "", Kind::text, "Name"},
+                  {"species", "", Kind::text, "As the stands tell it"},
+                  {"area_ha", "ha", Kind::real, "Area"},
+                  {"trees", "", Kind::integer, "Trees counted in it"},
+                  {"trees_without_diameter", "", Kind::integer, "Of these: in stems and heights only"}},
+      .style = {.colour = "#5d4037", .fill = "#a5d6a7", .width = 0.5, .label = "stand"}};
+  for (const FigureColumn& figure : kFigures) {
+    layer.columns.push_back({figure.name, figure.unit, Kind::real, figure.summary});
+    layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
+                             "Standard error of " + std::string(figure.name)});
+  }
+  const std::vector<DiameterClass> classes = all_classes(results);
+  for (const DiameterClass& c : classes) {
+    layer.columns.push_back(
+        {class_name(c), "1/ha", Kind::real,
+         fmt::format("Trees per hectare of {:.0f} to {:.0f} cm", 100 * c.from, 100 * c.to)});
+    layer.columns.push_back(
+        {class_name(c) + "_se", "1/ha", Kind::real, "Standard error of " + class_name(c)});
+  }
+  for (const StandResult& r : results) {
+    Shape row{.parts = r.stand.outline, .values = {}};
+    row.values = {r.stand.name, r.stand.species.empty() ? AttributeValue() : AttributeValue(r.stand.species),
+                  number(r.figures.hectares), std::int64_t{r.figures.trees},
+                  std::int64_t{r.figures.without_diameter}};
+    for (const FigureColumn& figure : kFigures) push(row, figure.of(r), figure.factor);
+    for (std::size_t i = 0; i < classes.size(); ++i)
+      push(row, i < r.figures.classes.size() ? r.figures.classes[i].stems : Estimate{0, 0}, 1);
+    layer.rows.push_back(std::move(row));
+  }
+  return layer;
+}
+
+ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& results) {
+  ShapeLayer layer{
+      .name = "stand_tree",
+      .summary = "Trees of the stands: a row for each stand a tree is counted in",
+      .kind = ShapeKind::point,
+      .columns = {{"stand", "", Kind::text, "Name of the stand"},
+                  {"uid", "", Kind::text, "The tree in layer tree"},
+                  {"height_m", "m", Kind::real, "Height"},
+                  {"diameter_cm", "cm", Kind::real, "Stem diameter at 1.3 m"},
+                  {"diameter_cm_se", "cm", Kind::real, "Its standard error"},
+                  {"crown_diameter_m", "m", Kind::real, "Mean width of the crown"},
+                  {"basal_area_m2", "m2", Kind::real, "Cross-section at 1.3 m"},
+                  {"volume_m3", "m3", Kind::real, "Stem volume"},
+                  {"biomass_kg", "kg", Kind::real, "Dry mass; NULL without a table that tells it"},
+                  {"confidence", "", Kind::real, "Probability that it is a tree"}},
+      .style = {.colour = "#2e7d32"}};
+  for (const StandResult& r : results)
+    for (const std::size_t i : r.members) {
+      const StandTree& t = r.trees[i];
+      const double crown = map.crowns[r.near[i]].diameter;
+      layer.rows.push_back({{{.outer = {t.place / map.unit}}},
+                            {r.stand.name, map.uids[r.near[i]], number(t.height), number(100 * t.diameter),
+                             std::isnan(t.diameter) ? AttributeValue() : number(100 * t.diameter_sd),
+                             crown > 0 ? number(crown) : AttributeValue(),
+                             number(std::acos(-1.0) / 4 * t.diameter * t.diameter), number(t.volume),
+                             number(t.mass), t.confidence}});
+    }
+  return layer;
+}
+
+}  // namespace waymark

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forest/stand_polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+using Place = Eigen::Vector2d;
+using Ring = std::vector<Place>;
+
+double cross(const Place& a, const Place& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Signed, about the first corner: coordinates of a million metres lose no digits.
+double ring_area(const Ring& ring) {
+  double doubled = 0;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i)
+    doubled += cross(ring[i] - ring[0], ring[i + 1] - ring[0]);
+  return doubled / 2;
+}
+
+bool surrounds(const Ring& ring, const Place& place) {
+  bool odd = false;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    // The lower corner first, so that an edge gives the same answer to the polygons on both its sides.
+    const Place *low = &ring[i], *high = &ring[(i + 1) % ring.size()];
+    if (low->y() > high->y()) std::swap(low, high);
+    if (!(low->y() <= place.y() && place.y() < high->y())) continue;
+    const double x = low->x() + (high->x() - low->x()) * (place.y() - low->y()) / (high->y() - low->y());
+    if (place.x() < x) odd = !odd;
+  }
+  return odd;
+}
+
+/// How deep a ring lies in the others: holes at odd depth take away.
+int depth_of(const StandPolygon& stand, std::size_t index) {
+  int depth = 0;
+  const Ring& ring = stand.rings[index];
+  // The middle of an edge: rings may touch in corners.
+  const Place middle = ring.size() < 2 ? ring.at(0) : Place((ring[0] + ring[1]) / 2);
+  for (std::size_t i = 0; i < stand.rings.size(); ++i)
+    if (i != index && surrounds(stand.rings[i], middle)) ++depth;
+  return depth;
+}
+
+double distance_to_segment(const Place& a, const Place& b, const Place& place) {
+  const Place along = b - a;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((place - a).dot(along) / length2, 0.0, 1.0) : 0;
+  return (a + t * along - place).norm();
+}
+
+/// Andrew's monotone chain, counter-clockwise, without corners on edges.
+Ring convex_hull(Ring places) {
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  Ring hull;
+  const auto extend = [&](const Place& place, std::size_t least) {
+    while (hull.size() >= least && !(cross(hull.back() - hull[hull.size() - 2], place - hull.back()) > 0))
+      hull.pop_back();
+    hull.push_back(place);
+  };
+  for (const Place& place : places) extend(place, 2);
+  const std::size_t lower = hull.size();
+  for (auto at = places.rbegin() + 1; at < places.rend(); ++at) extend(*at, lower + 1);
+  if (!hull.empty()) hull.pop_back();
+  return hull;
+}
+
+}  // namespace
+
+double area(const StandPolygon& stand) {
+  double sum = 0;
+  for (std::size_t i = 0; i < stand.rings.size(); ++i) {
+    const double part = std::abs(ring_area(stand.rings[i]));
+    sum += depth_of(stand, i) % 2 == 0 ? part : -part;
+  }
+  return sum;
+}
+
+Eigen::AlignedBox2d bounds(const StandPolygon& stand) {
+  Eigen::AlignedBox2d box;
+  for (const Ring& ring : stand.rings)
+    for (const Place& corner : ring) box.extend(corner);
+  return box;
+}
+
+bool inside(const StandPolygon& stand, const Place& place) {
+  bool odd = false;
+  for (const Ring& ring : stand.rings) odd = odd != surrounds(ring, place);
+  return odd;
+}
+
+double distance_to_edge(const StandPolygon& stand, const Place& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Ring& ring : stand.rings)
+    for (std::size_t i = 0; i < ring.size(); ++i)
+      least = std::min(least, distance_to_segment(ring[i], ring[(i + 1) % ring.size()], place));
+  return least;
+}
+
+StandPolygon ground_of(const std::vector<Place>& trees) {
+  Ring hull = trees.size() < 4 ? Ring{} : convex_hull(trees);
+  if (hull.size() < 3 || !(ring_area(hull) > 0)) return {};
+  const double n = static_cast<double>(trees.size()), m = static_cast<double>(hull.size());
+  Place centroid = Place::Zero();
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Place a = hull[i] - hull[0], b = hull[(i + 1) % hull.size()] - hull[0];
+    centroid += (a + b) * cross(a, b) / 6;
+  }
+  centroid = hull[0] + centroid / ring_area(hull);
+  const double factor = 1 / std::sqrt(std::max(1 - m / n, 0.25));
+  for (Place& corner : hull) corner = centroid + factor * (corner - centroid);
+  return {{hull}};
+}
+
+}  // namespace waymark

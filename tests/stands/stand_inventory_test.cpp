@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forest/stand_inventory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "pipeline/forest/stand_cover.hpp"
+
+namespace waymark {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+constexpr double kPi = std::numbers::pi;
+
+StandPolygon square(double x, double y, double side) {
+  return {{{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}}}};
+}
+
+StandTree tree(double x, double y, double height, double dbh) {
+  StandTree t{.place = {x, y}, .height = height, .diameter = dbh};
+  t.volume = stem_volume(built_in_volume()[0], dbh, height);
+  return t;
+}
+
+// Half a hectare with trees of 20, 30 and 40 cm and 15, 25 and 30 m; a fourth stands outside.
+std::vector<StandTree> three_trees() {
+  return {tree(10, 10, 15, 0.2), tree(20, 30, 25, 0.3), tree(50, 60, 30, 0.4), tree(200, 10, 40, 0.9)};
+}
+StandPolygon half_hectare() {
+  return {{{{0, 0}, {100, 0}, {100, 50}, {60, 50}, {60, 100}, {40, 100}, {40, 50}, {0, 50}}}};
+}
+
+TEST(StandInventory, IsWhatAHandComputes) {
+  const StandPolygon stand = half_hectare();
+  ASSERT_DOUBLE_EQ(area(stand), 6000);
+  const StandFigures f = inventory(three_trees(), stand, {});
+  EXPECT_EQ(f.trees, 3);
+  EXPECT_NEAR(f.hectares, 0.6, 1e-12);
+  EXPECT_NEAR(f.stems.value, 5.0, 1e-12);  // 3 / 0.6
+  // pi / 4 (0.04 + 0.09 + 0.16) / 0.6
+  EXPECT_NEAR(f.basal_area.value, 0.2277655 / 0.6, 1e-6);
+  EXPECT_NEAR(f.lorey_height.value, (0.04 * 15 + 0.09 * 25 + 0.16 * 30) / 0.29, 1e-12);  // 26.379
+  EXPECT_NEAR(f.quadratic_mean_diameter.value, std::sqrt(0.29 / 3), 1e-12);              // 31.09 cm
+  EXPECT_NEAR(f.mean_diameter.value, 0.3, 1e-12);
+  EXPECT_NEAR(f.mean_height.value, 70.0 / 3, 1e-12);
+  EXPECT_NEAR(f.volume.value, 0.47 * kPi / 4 * (0.04 * 15 + 0.09 * 25 + 0.16 * 30) / 0.6, 1e-12);
+  EXPECT_NEAR(f.dominant_height.value, 70.0 / 3, 1e-12);  // 60 wanted, three there
+  EXPECT_TRUE(std::isnan(f.mass.value));
+  std::vector<double> stems;
+  for (const DiameterClass& c : f.classes) stems.push_back(c.stems.value * 0.6);
+  // [0,5) ... [40,45): lower edges belong to the class
+  EXPECT_THAT(stems, ElementsAre(0, 0, 0, 0, ::testing::DoubleEq(1), 0, ::testing::DoubleEq(1), 0,
+                                 ::testing::DoubleEq(1)));
+  for (const Estimate* e : {&f.stems, &f.basal_area, &f.lorey_height, &f.volume, &f.dominant_height})
+    EXPECT_EQ(e->se, 0) << "nothing errs";
+}
+
+TEST(StandInventory, DominantHeightTakesAFractionOfTheLastTree) {
+  // 0.016 ha: the 1.6 thickest. 30 m whole, 20 m for 0.6.
+  StandPolygon stand{{{{0, 0}, {16, 0}, {16, 10}, {0, 10}}}};
+  const std::vector<StandTree> trees{tree(1, 1, 20, 0.3), tree(2, 2, 30, 0.4), tree(3, 3, 35, 0.1)};
+  EXPECT_NEAR(inventory(trees, stand).dominant_height.value, (30 + 0.6 * 20) / 1.6, 1e-12);
+}
+
+TEST(StandInventory, ErrorsOfTreesBecomeErrorsOfFigures) {
+  std::vector<StandTree> trees = three_trees();
+  for (StandTree& t : trees) t.diameter_sd = 0.03, t.height_sd = 1;
+  const StandFigures f = inventory(trees, half_hectare(), {.form_factor_error = 0.1});
+  // d(sum g) = pi / 2 d dd
+  EXPECT_NEAR(f.basal_area.se, kPi / 2 * 0.03 * std::sqrt(0.29) / 0.6, 1e-9);
+  EXPECT_NEAR(f.mean_height.se, 1 / std::sqrt(3), 1e-12);
+  EXPECT_NEAR(f.mean_diameter.se, 0.03 / std::sqrt(3), 1e-12);
+  EXPECT_NEAR(f.dominant_height.se, 1 / std::sqrt(3), 1e-12);
+  EXPECT_GT(f.volume.se, 0.1 * f.volume.value) << "the form factor errs for all trees alike";
+  for (StandTree& t : trees) t.diameter_sd = 0, t.diameter_bias = 0.03;
+  EXPECT_NEAR(inventory(trees, half_hectare()).mean_diameter.se, 0.03, 1e-12)
+      << "a shared error does not average";
+}
+
+TEST(StandInventory, DoubtfulTreesAndEdgesWidenTheErrors) {
+  std::vector<StandTree> trees = three_trees();
+  for (StandTree& t : trees) t.confidence = 0.8;
+  const StandFigures f = inventory(trees, half_hectare());
+  EXPECT_NEAR(f.stems.value, 5, 1e-12) << "what is counted is what was found";
+  EXPECT_NEAR(f.stems.se, std::sqrt(3 * 0.16) / 0.6, 1e-12);
+  // A tree on the edge itself is inside with probability one half, wherever it is counted.
+  std::vector<StandTree> edge{tree(0, 25, 20, 0.3)};
+  edge[0].place_sd = 0.5;
+  EXPECT_NEAR(inventory(edge, half_hectare()).stems.se, 0.5 / 0.6, 1e-9);
+  edge[0].place.x() = -0.5;  // one deviation outside: 0.1587 inside
+  const StandFigures out = inventory(edge, half_hectare());
+  EXPECT_EQ(out.trees, 0);
+  EXPECT_NEAR(out.stems.se, std::sqrt(0.158655 * 0.841345) / 0.6, 1e-6);
+}
+
+TEST(StandInventory, RecallCountsTheTreesNobodyFound) {
+  const std::vector<RecallRow> recall{{0, 0.5, 0.1}, {20, 0.8, 0}};
+  const StandFigures f = inventory(three_trees(), half_hectare(), {.recall = recall});
+  EXPECT_NEAR(f.stems.value, (1 / 0.5 + 2 / 0.8) / 0.6, 1e-12);
+  EXPECT_NEAR(f.mean_height.value, (15 * 2 + 25 * 1.25 + 30 * 1.25) / 4.5, 1e-12);
+  const double binomial = 0.5 / 0.25 + 2 * 0.2 / 0.64, shared = std::pow(2 * 0.1 / 0.5, 2);
+  EXPECT_NEAR(f.stems.se, std::sqrt(binomial + shared) / 0.6, 1e-12);
+}
+
+TEST(StandInventory, AnEmptyStandHasNoTreesAndNoHeights) {
+  const StandFigures f = inventory({}, half_hectare());
+  EXPECT_EQ(f.stems.value, 0);
+  EXPECT_EQ(f.basal_area.value, 0);
+  EXPECT_TRUE(std::isnan(f.lorey_height.value));
+  EXPECT_TRUE(std::isnan(f.dominant_height.value));
+  const StandFigures nothing = inventory(three_trees(), {});
+  EXPECT_TRUE(std::isnan(nothing.stems.value)) << "no area, no density";
+}
+
+TEST(StandInventory, TreesWithoutDiameterCountAsStemsOnly) {
+  std::vector<StandTree> trees = three_trees();
+  trees[2].diameter = trees[2].volume = StandTree::kUnknown;
+  const StandFigures f = inventory(trees, half_hectare());
+  EXPECT_EQ(f.without_diameter, 1);
+  EXPECT_NEAR(f.stems.value, 5, 1e-12);
+  EXPECT_NEAR(f.basal_area.value, kPi / 4 * 0.13 / 0.6, 1e-12);
+  EXPECT_NEAR(f.lorey_height.value, (0.04 * 15 + 0.09 * 25) / 0.13, 1e-12);
+  for (StandTree& t : trees) t.diameter = t.volume = StandTree::kUnknown;
+  EXPECT_TRUE(std::isnan(inventory(trees, half_hectare()).basal_area.value)) << "unknown, not none";
+}
+
+TEST(StandPolygon, HolesTakeAwayAndIslandsInThemAdd) {
+  StandPolygon stand = square(0, 0, 100);
+  stand.rings.push_back(square(20, 20, 40).rings[0]);
+  stand.rings.push_back(square(30, 30, 10).rings[0]);
+  std::ranges::reverse(stand.rings[1]);  // the sense says nothing
+  EXPECT_DOUBLE_EQ(area(stand), 10000 - 1600 + 100);
+  EXPECT_TRUE(inside(stand, {10, 10}));
+  EXPECT_FALSE(inside(stand, {25, 25}));
+  EXPECT_TRUE(inside(stand, {35, 35}));
+  EXPECT_DOUBLE_EQ(distance_to_edge(stand, {25, 40}), 5);
+}
+
+TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
+  Random random(3);
+  // Triangles that fan out from a corner, over trees on a lattice that lie on their edges too.
+  std::vector<Eigen::Vector2d> rim;
+  for (int i = 0; i <= 12; ++i) rim.emplace_back(60 * std::cos(i * kPi / 24), 60 * std::sin(i * kPi / 24));
+  std::vector<StandPolygon> stands;
+  for (std::size_t i = 0; i + 1 < rim.size(); ++i) stands.push_back({{{{0, 0}, rim[i], rim[i + 1]}}});
+  StandPolygon whole{{{{0, 0}}}};
+  whole.rings[0].insert(whole.rings[0].end(), rim.begin(), rim.end());
+  for (int k = 0; k < 3000; ++k) {
+    const Eigen::Vector2d at(std::floor(random.uniform(0, 60)), std::floor(random.uniform(0, 60)));
+    const auto in = std::ranges::count_if(stands, [&](const auto& stand) { return inside(stand, at); });
+    EXPECT_EQ(in, inside(whole, at) ? 1 : 0) << at.transpose();
+  }
+}
+
+TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
+  double sum = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    Random random(seed);
+    std::vector<Eigen::Vector2d> trees;
+    for (int i = 0; i < 200; ++i) trees.emplace_back(random.uniform(0, 100), random.uniform(0, 100));
+    sum += area(ground_of(trees)) / 40;
+  }
+  EXPECT_NEAR(sum, 10000, 250) << "Ripley and Rasson's estimate is nearly unbiased";
+  EXPECT_TRUE(ground_of({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).rings.empty());
+  EXPECT_TRUE(ground_of({{0, 0}, {1, 0}, {0, 1}}).rings.empty());
+}
+
+// The slow, obvious twin: every tree against every stand, sums written out.
+StandFigures by_definition(const std::vector<StandTree>& trees, const StandPolygon& stand) {
+  StandFigures f;
+  f.hectares = area(stand) / 1e4;
+  double n = 0, g = 0, gh = 0, v = 0;
+  std::vector<std::pair<double, double>> thick;
+  for (const StandTree& t : trees) {
+    if (!inside(stand, t.place)) continue;
+    ++f.trees, n += 1;
+    g += kPi / 4 * t.diameter * t.diameter;
+    gh += kPi / 4 * t.diameter * t.diameter * t.height;
+    v += t.volume;
+    thick.emplace_back(-t.diameter, t.height);
+  }
+  std::ranges::sort(thick);
+  double left = 100 * f.hectares, weight = 0, heights = 0;
+  for (const auto& [d, h] : thick) {
+    const double share = std::clamp(left, 0.0, 1.0);
+    left -= share, weight += share, heights += share * h;
+  }
+  f.stems.value = n / f.hectares;
+  f.basal_area.value = g / f.hectares;
+  f.volume.value = v / f.hectares;
+  f.lorey_height.value = gh / g;
+  f.dominant_height.value = heights / weight;
+  return f;
+}
+
+TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
+  Random random(11);
+  std::vector<StandTree> trees;
+  for (int i = 0; i < 400; ++i) {
+    trees.push_back(tree(random.uniform(-20, 120), random.uniform(-20, 120), random.uniform(8, 35),
+                         random.uniform(0.1, 0.5)));
+    trees.back().height_sd = 0.8, trees.back().diameter_sd = 0.04, trees.back().place_sd = 0.7;
+    trees.back().confidence = 0.9;
+  }
+  StandPolygon stand = square(0, 0, 100);
+  stand.rings.push_back(square(30, 30, 20).rings[0]);
+  const StandFigures told = inventory(trees, stand), twin = by_definition(trees, stand);
+  EXPECT_EQ(told.trees, twin.trees);
+  EXPECT_NEAR(told.stems.value, twin.stems.value, 1e-9);
+  EXPECT_NEAR(told.basal_area.value, twin.basal_area.value, 1e-9);
+  EXPECT_NEAR(told.volume.value, twin.volume.value, 1e-9);
+  EXPECT_NEAR(told.lorey_height.value, twin.lorey_height.value, 1e-9);
+  EXPECT_NEAR(told.dominant_height.value, twin.dominant_height.value, 1e-9);
+
+  // Draw the trees again and again within their errors: the spread is what the standard errors say.
+  const int kDraws = 600;
+  double sum[4] = {}, squares[4] = {};
+  for (int k = 0; k < kDraws; ++k) {
+    std::vector<StandTree> drawn;
+    for (StandTree t : trees) {
+      if (!random.chance(t.confidence)) continue;
+      t.place += Eigen::Vector2d(random.normal(0, t.place_sd), random.normal(0, t.place_sd));
+      const double height = random.normal(t.height, t.height_sd),
+                   diameter = random.normal(t.diameter, t.diameter_sd);
+      t.volume *= height / t.height * std::pow(diameter / t.diameter, 2);
+      t.height = height, t.diameter = diameter;
+      drawn.push_back(t);
+    }
+    const StandFigures f = by_definition(drawn, stand);
+    const double values[] = {f.stems.value, f.basal_area.value, f.volume.value, f.lorey_height.value};
+    for (int i = 0; i < 4; ++i) sum[i] += values[i] / kDraws, squares[i] += values[i] * values[i] / kDraws;
+  }
+  const Estimate estimates[] = {told.stems, told.basal_area, told.volume, told.lorey_height};
+  for (int i = 0; i < 4; ++i) {
+    const double spread = std::sqrt(squares[i] - sum[i] * sum[i]);
+    EXPECT_NEAR(estimates[i].se / spread, 1, 0.12) << i;  // 600 draws tell a spread to 3 %
+  }
+}
+
+TEST(StandCover, CirclesAndOutlinesShadeTheGround) {
+  const StandPolygon stand = square(0, 0, 100);
+  const StandCrown circle{.place = {50, 50}, .diameter = 20};
+  EXPECT_NEAR(cover(std::span(&circle, 1), stand).value, kPi * 100 / 1e4, 2e-4);
+  EXPECT_EQ(cover({}, stand).value, 0);
+  const StandCrown halves[] = {{.place = {0, 50}, .diameter = 20}, {.place = {0, 50}, .diameter = 20}};
+  EXPECT_NEAR(cover(halves, stand).value, kPi * 50 / 1e4, 5e-4) << "half outside; twice is once";
+  const StandCrown outline{
+      .place = {50, 50}, .diameter = 5, .ring = {{40, 40}, {60, 40}, {60, 60}, {40, 60}}};
+  EXPECT_NEAR(cover(std::span(&outline, 1), stand).value, 0.04, 1e-9);
+  StandCrown doubtful = outline;
+  doubtful.confidence = 0.5;
+  EXPECT_NEAR(cover(std::span(&doubtful, 1), stand).se, 0.02, 1e-9);
+  EXPECT_TRUE(std::isnan(cover({}, {}).value));
+}
+
+TEST(StandCover, MatchesCountingPlaces) {
+  Random random(5);
+  for (int round = 0; round < 20; ++round) {
+    StandPolygon stand{{{}}};
+    for (int i = 0; i < 9; ++i) {
+      const double r = random.uniform(10, 30), a = 2 * kPi * i / 9;
+      stand.rings[0].emplace_back(r * std::cos(a), r * std::sin(a));
+    }
+    std::vector<StandCrown> crowns;
+    for (int i = 0; i < 15; ++i)
+      crowns.push_back(
+          {.place = {random.uniform(-35, 35), random.uniform(-35, 35)}, .diameter = random.uniform(1, 15)});
+    int all = 0, covered = 0;
+    for (int i = -70; i < 70; ++i)
+      for (int j = -70; j < 70; ++j) {
+        const Eigen::Vector2d at(0.5 * i, 0.5 * j);
+        if (!inside(stand, at)) continue;
+        ++all;
+        covered += std::ranges::any_of(crowns,
+                                       [&](const auto& c) { return (c.place - at).norm() < c.diameter / 2; });
+      }
+    EXPECT_NEAR(cover(crowns, stand).value, static_cast<double>(covered) / all, 1e-12);
+  }
+}
+
+TEST(StandTables, SayWhatIsWrong) {
+  const auto refused = [](const char* csv) -> std::string {
+    try {
+      parse_volume(csv, "v.csv");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto rows = parse_volume(
+      "species,form_factor,form_factor_sd,mass_per_volume\nSpruce,0.45,0.03,600\nall,0.5,,\n", "v");
+  EXPECT_EQ(volume_of(rows, "spruce")->form_factor, 0.45);
+  EXPECT_EQ(volume_of(rows, "oak")->form_factor, 0.5);
+  EXPECT_TRUE(std::isnan(rows[1].mass_per_volume));
+  EXPECT_EQ(volume_of(std::span(rows).first(1), "oak"), nullptr);
+  EXPECT_THAT(refused("species,form_factr\nall,0.5\n"), HasSubstr("did you mean 'form_factor'?"));
+  EXPECT_THAT(refused("species,form_factor\nall,5\n"), HasSubstr("form_factor = 5 is outside [0.05, 1]"));
+  EXPECT_THAT(refused("species,form_factor\nall,x\n"), HasSubstr("v.csv, line 2"));
+  EXPECT_THAT(refused("species,form_factor\n"), HasSubstr("no rows"));
+  EXPECT_EQ(parse_recall("height_from,recall\n0,0.5\n10,0.9\n", "r").size(), 2u);
+  EXPECT_THROW(parse_recall("height_from,recall\n10,0.5\n0,0.9\n", "r"), Error);
+  EXPECT_THROW(parse_recall("height_from,recall\n0,1.5\n", "r"), Error);
+}
+
+}  // namespace
+}  // namespace waymark
