@@ -35,15 +35,15 @@ struct ForestLaw {
   double cluster_size = 6;           ///< mean trees per cluster
   double row_jitter = 0.3;           ///< metres a planted tree stands off its place, sd
   double conifers = 0.7;             ///< share of the stems
-  double mean_dbh = 0.26;            ///< metres, of the Weibull law
-  double dbh_shape = 2.3;            ///< 1 uneven-aged, 4 a plantation
-  double understory = 100;           ///< trees per hectare below 7 cm dbh
-  double cell = 0.5;                 ///< metres, of the rasters
-  double pulses = 8;                 ///< per square metre
-  double range_sd = 0.03;            ///< metres, of a return's height
-  double place_sd = 0.10;            ///< metres, of a return's place
-  double dtm_sd = 0.10;              ///< metres, smooth error of the terrain model
-  bool points = true;                ///< write the point cloud
+  double mean_dbh = 0.26;   ///< metres, of the Weibull law of the first stand; Reineke's rule for the others
+  double dbh_shape = 2.3;   ///< 1 uneven-aged, 4 a plantation
+  double understory = 100;  ///< trees per hectare below 7 cm dbh
+  double cell = 0.5;        ///< metres, of the rasters
+  double pulses = 8;        ///< per square metre
+  double range_sd = 0.03;   ///< metres, of a return's height
+  double place_sd = 0.10;   ///< metres, of a return's place
+  double dtm_sd = 0.10;     ///< metres, smooth error of the terrain model
+  bool points = true;       ///< write the point cloud
 
   /// Two species, a conifer and a broadleaf.
   const std::vector<SpeciesLaw>& species() const;

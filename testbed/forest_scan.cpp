@@ -76,12 +76,12 @@ class CrownIndex {
     columns_ = bucket(high.x() - low_.x()) + 1;
     rows_ = bucket(high.y() - low_.y()) + 1;
     buckets_.resize(static_cast<std::size_t>(columns_ * rows_));
+    const auto from = [](double distance) { return std::max<std::int64_t>(0, bucket(distance)); };
     for (std::size_t i = 0; i < crowns_.size(); ++i) {
       const Eigen::Vector2d at = crowns_[i].middle - low_;
       const double reach = crowns_[i].reach();
-      for (std::int64_t r = bucket(at.y() - reach); r <= std::min(rows_ - 1, bucket(at.y() + reach)); ++r)
-        for (std::int64_t c = bucket(at.x() - reach); c <= std::min(columns_ - 1, bucket(at.x() + reach));
-             ++c)
+      for (std::int64_t r = from(at.y() - reach); r <= std::min(rows_ - 1, bucket(at.y() + reach)); ++r)
+        for (std::int64_t c = from(at.x() - reach); c <= std::min(columns_ - 1, bucket(at.x() + reach)); ++c)
           buckets_[static_cast<std::size_t>(r * columns_ + c)].push_back(static_cast<std::uint32_t>(i));
     }
   }
@@ -208,6 +208,7 @@ ForestRasters scan_forest(const ForestLaw& law, const MadeForest& forest, const 
       }
     }
     for (const LaserReturn& hit : returns) {
+      if (hit.number > 1) continue;
       const auto i = static_cast<std::int64_t>(std::floor((hit.x - out.x0) / law.cell + 0.5)),
                  r = static_cast<std::int64_t>(std::floor((out.y0 - hit.y) / law.cell + 0.5));
       if (!out.dsm.contains(i, r)) continue;

@@ -20,7 +20,7 @@ struct LaserReturn {
 /// The rasters of a flight over the forest; row 0 in the north. No return: NaN.
 struct ForestRasters {
   double x0 = 0, y0 = 0, cell = 0.5;  ///< middle of the first cell, GridFrame
-  Grid<float> dsm;                    ///< highest return
+  Grid<float> dsm;                    ///< highest first return
   Grid<float> dtm;                    ///< the terrain with smooth errors
   Grid<float> chm;                    ///< dsm - dtm, not below 0
 };
@@ -28,7 +28,7 @@ struct ForestRasters {
 /// Flies over the forest: pulses straight down, Poisson in every cell of the raster, up to five returns each.
 /// A pulse that meets a crown goes in by an exponential depth and returns there, unless it comes out below;
 /// what is left of it goes on with probability 0.55, the next return at least 1 m lower, down to the ground.
-/// Cells without a return take the mean of their neighbours that have one (a second time round where none
+/// Cells without a first return take the mean of their neighbours that have one (a second time round where none
 /// has), as gridding tools fill single pits. `take` gets the returns row of cells by row of cells, so that
 /// they need not be kept; null: nobody wants them. Same returns for the same forest and seed. About 1 us per
 /// pulse.

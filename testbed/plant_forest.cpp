@@ -168,8 +168,6 @@ MadeForest plant_forest(const ForestLaw& law, const Terrain& terrain, double eas
   MadeForest forest{.stands = lay_out(law, east, north, seed), .trees = {}};
   Random places(seed, "stems"), sizes(seed, "tree sizes");
   Clearings clearings(law.clearance);
-  // A Weibull law from kLeastDbh whose mean is mean_dbh.
-  const double scale = std::max(law.mean_dbh - kLeastDbh, 0.01) / std::tgamma(1 + 1 / law.dbh_shape);
   const auto plant = [&](const Place& place, double dbh) {
     const int species = sizes.chance(law.conifers) ? 0 : 1;
     StandingTree tree = grown(law.species()[static_cast<std::size_t>(species)], species, dbh, sizes);
@@ -177,10 +175,16 @@ MadeForest plant_forest(const ForestLaw& law, const Terrain& terrain, double eas
     tree.foot = {place.x(), place.y(), ground.value_or(0)};
     if (ground) forest.trees.push_back(tree);
   };
-  for (const MadeStand& stand : forest.stands)
+  for (const MadeStand& stand : forest.stands) {
+    // Stems of fully stocked stands are the thinner the more there are: N D^1.605 is the same (Reineke 1933).
+    const double crowding = stand.density > 0 ? std::pow(law.density / stand.density, 1 / 1.605) : 1;
+    // A Weibull law from kLeastDbh with that mean.
+    const double scale =
+        std::max(law.mean_dbh * crowding - kLeastDbh, 0.01) / std::tgamma(1 + 1 / law.dbh_shape);
     for (const Place& place : stems_of(law, stand, area_of(stand.outline) / 1e4, places, clearings))
       plant(place,
             std::min(kLeastDbh + scale * std::pow(-std::log(1 - sizes.uniform()), 1 / law.dbh_shape), 1.5));
+  }
   Random young(seed, "understory");
   const auto count = young.poisson(law.understory * law.width * law.height / 1e4);
   for (std::uint64_t i = 0; i < count; ++i) {

@@ -19,7 +19,10 @@ void describe_forest(Scenario& s, OptionVisitor& field) {
   field("row_jitter", f.row_jitter,
         {.help = "Standard deviation of a planted tree from its place, metres", .min = 0, .max = 10});
   field("conifers", f.conifers, {.help = "Share of conifers", .min = 0, .max = 1});
-  field("mean_dbh", f.mean_dbh, {.help = "Mean stem diameter, metres", .min = 0.08, .max = 1});
+  field("mean_dbh", f.mean_dbh,
+        {.help = "Mean stem diameter of the first stand, metres; denser stands have thinner stems",
+         .min = 0.08,
+         .max = 1});
   field("dbh_shape", f.dbh_shape,
         {.help = "Weibull shape of the diameters: 1 uneven-aged, 4 a plantation", .min = 0.8, .max = 20});
   field("understory", f.understory, {.help = "Trees per hectare below 7 cm dbh", .min = 0, .max = 1e5});
