@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "apps/registries.hpp"
 #include "geo/canopy_source.hpp"
@@ -62,6 +63,36 @@ Shape shape_of(const CrownShape& crown) {
                      crown.height, crown.area, crown.diameter}};
 }
 
+/// Share of the cells of a canopy model that are known, from every 64th of its rows.
+double known_share(const CanopySource& canopy) {
+  const GridGeometry& grid = canopy.geometry();
+  const std::int64_t step = std::max<std::int64_t>(1, grid.rows / 64);
+  std::int64_t all = 0, known = 0;
+  for (std::int64_t row = 0; row < grid.rows; row += step) {
+    const Grid<float> heights = canopy.read({0, row, grid.columns, 1});
+    all += grid.columns;
+    known += std::ranges::count_if(heights.cells(), [](float h) { return h > kNoCanopy; });
+  }
+  return all > 0 ? static_cast<double>(known) / static_cast<double>(all) : 0;
+}
+
+/// The ground that was searched for trees, where it is a whole rectangle: an inventory of the map needs it.
+std::optional<ShapeLayer> survey_layer(const Canopies& canopies) {
+  constexpr double kWhole = 0.995;
+  ShapeLayer layer{.name = "survey",
+                   .summary = "Ground that was searched for trees",
+                   .kind = ShapeKind::polygon,
+                   .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy model"}},
+                   .style = {.colour = "#546e7a", .width = 0.4}};
+  if (canopies.size() != 1 || known_share(*canopies[0]) < kWhole) return {};
+  const GridGeometry& grid = canopies[0]->geometry();
+  const double left = grid.where.x(-0.5), right = grid.where.x(static_cast<double>(grid.columns) - 0.5),
+               top = grid.where.y(-0.5), bottom = grid.where.y(static_cast<double>(grid.rows) - 0.5);
+  layer.rows.push_back({.parts = {{.outer = {{left, bottom}, {right, bottom}, {right, top}, {left, top}}}},
+                        .values = {canopies[0]->name()}});
+  return layer;
+}
+
 /// The place of an apex as observations and crowns share it.
 std::pair<double, double> place_of(const Eigen::Vector2d& top) {
   return {top.x(), top.y()};
@@ -109,6 +140,8 @@ MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem) {
     for (const CrownShape& crown : named)
       if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(crown));
   }
+  for (const auto& surveys : result.artifacts<Canopies>("canopies"))
+    if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
   if (drawn) contents.layers.push_back(std::move(crowns));
   for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
     for (const ImageView& image : *made) contents.images.push_back(record_of(image));
