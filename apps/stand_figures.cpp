@@ -22,6 +22,30 @@ double deviation(const Landmark& landmark, std::size_t feature) {
   return value.known() && value.variance > 0 ? std::sqrt(value.variance) : 0;
 }
 
+/// What the observations of a tree say about their errors; the map itself keeps the spread among them only.
+struct ObservedErrors {
+  double height = 0, diameter = 0, crown = 0;  ///< sums of variances
+  int count = 0;
+};
+
+std::unordered_map<std::string, ObservedErrors> observed_errors(const MapStore& map, std::size_t height,
+                                                                std::size_t diameter, std::size_t crown) {
+  std::unordered_map<std::string, ObservedErrors> of;
+  for (const Observation& seen : map.observations()) {
+    if (!seen.rejected.empty() || map.types()[seen.type].name != "tree") continue;
+    const auto variance = [&](std::size_t feature) {
+      const double v = seen.features[feature].variance;
+      return v > 0 ? v : 0;
+    };
+    ObservedErrors& errors = of[seen.landmark_uid];
+    errors.height += variance(height);
+    errors.diameter += variance(diameter);
+    errors.crown += variance(crown);
+    ++errors.count;
+  }
+  return of;
+}
+
 double place_deviation(const Landmark& landmark) {
   const double variance = (landmark.covariance(0, 0) + landmark.covariance(1, 1)) / 2;
   return variance > 0 ? std::sqrt(variance) : 0;
@@ -81,6 +105,7 @@ MapTrees trees_of(const MapStore& map) {
   for (const std::string& name : shape_layers(map.path()))
     if (name == "crown") crowns = read_shape_layer(map.path(), name);
   const auto outlines = outlines_by_tree(crowns);
+  const auto evidence = observed_errors(map, height, diameter, crown);
   for (const Landmark& landmark : map.query({.types = {"tree"}})) {
     StandTree tree;
     tree.place = landmark.position.xyz.head<2>() * all.unit;
@@ -90,9 +115,18 @@ MapTrees trees_of(const MapStore& map) {
     tree.diameter = known(landmark, diameter);
     tree.diameter_sd = deviation(landmark, diameter);
     tree.confidence = landmark.confidence;
+    double crown_sd = deviation(landmark, crown);
+    if (const auto found = evidence.find(landmark.uid); found != evidence.end()) {
+      // Heights of several flights average. A tree that is thicker than its height tells stays so in each.
+      const ObservedErrors& errors = found->second;
+      tree.height_sd =
+          std::max(tree.height_sd / std::sqrt(errors.count), std::sqrt(errors.height) / errors.count);
+      tree.diameter_sd = std::max(tree.diameter_sd, std::sqrt(errors.diameter / errors.count));
+      crown_sd = std::max(crown_sd, std::sqrt(errors.crown / errors.count));
+    }
     StandCrown shade{.place = tree.place,
                      .diameter = landmark.features[crown].known() ? known(landmark, crown) : 0,
-                     .diameter_sd = deviation(landmark, crown),
+                     .diameter_sd = crown_sd,
                      .ring = {},
                      .confidence = landmark.confidence};
     if (const auto found = outlines.find(landmark.uid); found != outlines.end())

@@ -23,7 +23,7 @@ constexpr const char* kStyle = R"css(
 .stem { fill: #1b5e20; fill-opacity: .8; }
 .stands { overflow-x: auto; }
 .stands table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; }
-.stands th, .stands td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--line); white-space: nowrap; }
+.stands th, .stands td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--line); vertical-align: bottom; }
 .stands th:first-child, .stands td:first-child { text-align: left; }
 .stands td small { display: block; }
 .bars rect { fill: #558b2f; } .bars line { stroke: var(--ink); } .bars text { fill: var(--soft); font-size: 11px; }
@@ -147,7 +147,7 @@ constexpr TableColumn kTable[] = {{"stems_per_ha", "stems / ha", 0},
                                   {"volume_m3_per_ha", "volume m³/ha", 0},
                                   {"lorey_height_m", "Lorey height m", 1},
                                   {"dominant_height_m", "dominant height m", 1},
-                                  {"quadratic_mean_diameter_cm", "mean diameter (quadratic) cm", 1},
+                                  {"quadratic_mean_diameter_cm", "quadratic mean diameter cm", 1},
                                   {"cover", "cover", 2},
                                   {"biomass_t_per_ha", "dry mass t/ha", 0}};
 
