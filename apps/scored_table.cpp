@@ -29,7 +29,14 @@ bool is_book_keeping(const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+// Trees of a map: their diameter is a feature, that of the stem; they are as wide as their crowns.
+bool has_crown(const std::map<std::string, double>& values) {
+  const auto crown = values.find("crown_diameter");
+  return crown != values.end() && crown->second > 0 && !values.contains("major");
+}
+
 double diameter_of(const std::map<std::string, double>& values) {
+  if (has_crown(values)) return values.at("crown_diameter");
   const auto value = [&](std::initializer_list<const char*> names) {
     for (const char* name : names)
       if (const auto found = values.find(name); found != values.end()) return found->second;
@@ -52,7 +59,7 @@ ScoredThing thing_of(const std::map<std::string, double>& values, double min_pix
     if (const auto v = value(y)) thing.at.y() = *v;
   thing.diameter = diameter_of(values);
   for (const auto& [name, number] : values)
-    if (!is_book_keeping(name)) thing.features[name] = number;
+    if (!is_book_keeping(name) || (name == "diameter" && has_crown(values))) thing.features[name] = number;
   thing.confidence = value("confidence"), thing.quality = value("quality");
   if (const auto xx = value("var_x"), yy = value("var_y"), xy = value("cov_xy"); xx && yy && xy)
     thing.covariance = (Eigen::Matrix2d() << *xx, *xy, *xy, *yy).finished();

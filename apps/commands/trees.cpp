@@ -23,6 +23,9 @@ class Trees final : public Command {
         files("--las", "FILE...", &las_, "LAS 1.0 to 1.4 files, one catalogue, ground classified")};
     for (auto& argument : map_arguments(request_)) all.push_back(argument);
     for (auto& argument : options_.arguments()) all.push_back(argument);
+    all.push_back({"--flights", "", &flights_,
+                   "Each file is a survey of its own: trees that several saw are merged and valued"});
+    all.push_back({"--no-crowns", "", &no_crowns_, "Treetops alone: no crowns, no crown diameters"});
     all.push_back({"--print-job", "", &print_job_,
                    "Print the job instead of running it: the start of one of your own"});
     return {.name = "trees",
@@ -69,8 +72,8 @@ class Trees final : public Command {
       throw Error(ErrorCode::usage, dsm_.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
                   "heights of trees are the surface less the terrain: give both");
     Pipeline pipeline(all_stages());
-    pipeline.add("load_canopy", nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}}.dump());
-    pipeline.add("trees_from_canopy");
+    pipeline.add("load_canopy", nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}, {"flights", flights_}}.dump());
+    pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", !no_crowns_}}.dump());
     pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
     pipeline.add("value_flights");
     options_.apply(pipeline);
@@ -81,11 +84,11 @@ class Trees final : public Command {
   MapRequest request_;
   StageOptions options_{{"trees_from_canopy.preset", "trees_from_canopy.method", "trees_from_canopy.min_height",
                          "trees_from_canopy.isolation_base", "trees_from_canopy.isolation_slope",
-                         "trees_from_canopy.prominence", "trees_from_canopy.smoothing", "trees_from_canopy.crowns",
+                         "trees_from_canopy.prominence", "trees_from_canopy.smoothing",
                          "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
-                         "trees_from_canopy.species", "load_canopy.flights", "load_canopy.resolution", "load_canopy.forest_type",
+                         "trees_from_canopy.species", "load_canopy.resolution", "load_canopy.forest_type",
                          "load_canopy.crs", "load_canopy.tile_cells", "load_canopy.memory"}};
-  bool print_job_ = false;
+  bool flights_ = false, no_crowns_ = false, print_job_ = false;
 };
 
 }  // namespace
