@@ -19,13 +19,13 @@ namespace waymark {
 namespace {
 
 constexpr double kUsualPixel = 0.6;  // metres: of public orthophotos
-constexpr double kLeastGreen = 0.15;
+constexpr double kLeastGreen = 0.2;
 
 // Chosen on every second of the NAIP crops of Eureka (docs/trees.md).
 TreeSearch imagery_search() {
   TreeSearch search;
   search.forest.name = "imagery";
-  search.forest.smoothing = 1.2;
+  search.forest.smoothing = 0.9;
   search.forest.tops = {.min_height = kLeastGreen, .isolation_base = 3, .isolation_slope = 0, .prominence = 0};
   search.forest.crowns = {.floor = 0.6 * kLeastGreen, .floor_share = 0.5, .radius_base = 6, .radius_slope = 0, .max_radius = 6};
   return search;

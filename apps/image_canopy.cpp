@@ -46,8 +46,10 @@ class ImageCanopy final : public CanopySource {
 
  private:
   static float height(float h) { return h <= kHighest && h > -1000 ? std::max(h, 0.0F) : std::nanf(""); }
+  // Squared: lawns are as green as crowns, but brighter.
   float darkness(float red, float green, float blue) const {
-    return std::clamp(1 - (red + green + blue) / (3 * full_), 0.0F, 1.0F);
+    const float dark = std::clamp(1 - (red + green + blue) / (3 * full_), 0.0F, 1.0F);
+    return dark * dark;
   }
   float greenness(float red, float green, float blue, float infrared) const {
     const float index = (infrared - red) / std::max(infrared + red, 1.0F);

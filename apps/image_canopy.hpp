@@ -8,6 +8,7 @@ namespace waymark {
 enum class CanopySign {
   height,     ///< the first band holds heights above ground, metres
   greenness,  ///< (near infrared - red) / their sum, or excess green where there is no infrared; times darkness
+             ///< squared
 };
 
 /// An image whose pixels are taken for a canopy, so that trees are sought in it as in a height model. With
