@@ -55,10 +55,10 @@ class ImageCanopy final : public CanopySource {
     const float index = (infrared - red) / std::max(infrared + red, 1.0F);
     return std::max(index, 0.0F) * darkness(red, green, blue);
   }
-  // Four times the excess green, so that its numbers are about those with infrared.
+  // Twelve times the excess green, so that crowns have about the numbers they have with infrared.
   float greenness(float red, float green, float blue) const {
-    const float index = 4 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
-    return std::clamp(index, 0.0F, 1.0F) * darkness(red, green, blue);
+    const float index = 12 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
+    return std::max(index, 0.0F) * darkness(red, green, blue);
   }
 
   GridGeometry grid_;

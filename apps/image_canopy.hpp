@@ -12,7 +12,7 @@ enum class CanopySign {
 };
 
 /// An image whose pixels are taken for a canopy, so that trees are sought in it as in a height model. With
-/// `greenness` the heights are numbers in [0, 1]: dark vegetation, as crowns are, has 0.2 and more. `metres`:
+/// `greenness` the heights are numbers of 0 and more: dark vegetation, as crowns are, has 0.2 to 1. `metres`:
 /// size of a pixel. Throws Error{input} where the bands cannot be read.
 std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopySign sign, double metres);
 

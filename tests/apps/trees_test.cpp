@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "made_dem.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// Cones every 8 m, 10 to 19 m high, cells of 0.5 m.
+MadeDem cones(double east = 0) {
+  MadeDem chm{.columns = 300, .rows = 200, .geotransform = {500000, 0.5, 0, 5200000, 0, -0.5}};
+  chm.height = [east](int column, int row) {
+    const double x = 0.5 * column - east, y = 0.5 * row;
+    const double i = std::floor(x / 8), j = std::floor(y / 8);
+    const double top = 10 + std::fmod(3 * i + 5 * j + 1000, 10);
+    return std::max(0.0, top - 4 * std::hypot(x - 8 * i - 4, y - 8 * j - 4));
+  };
+  return chm;
+}
+
+class Trees : public testing::Test {
+ protected:
+  Outcome trees(std::vector<std::string> words, const std::string& map = "trees.gpkg") {
+    words.insert(words.begin(), {"trees", "-o", folder_ / map});
+    return waymark(words);
+  }
+  std::string csv(const std::string& map = "trees.gpkg") {
+    return waymark({"query", folder_ / map, "--format", "csv"}).out;
+  }
+  std::string chm() { return make_dem(folder_ / "chm.tif", cones()); }
+
+  TempFolder folder_;
+};
+
+TEST_F(Trees, ConesEndToEnd) {
+  const Outcome made = trees({"--chm", chm(), "--preset", "conifer"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
+  EXPECT_NEAR(static_cast<double>(found.size()), 18 * 12, 18 + 12);  // those cut by the edge stand aside
+  for (const json& tree : found) {
+    EXPECT_GT(tree["height"], 9.0);
+    EXPECT_GT(tree["crown_diameter"], 2.0);
+    EXPECT_GT(tree["diameter"], 0.02);
+  }
+  EXPECT_EQ(waymark({"validate", folder_ / "trees.gpkg"}).code, 0);
+}
+
+TEST_F(Trees, DoNotDependOnTilesAndThreads) {
+  const std::string file = chm();
+  trees({"--chm", file});
+  const std::string once = csv();
+  trees({"--chm", file, "--tile-cells", "64", "--threads", "1"});
+  EXPECT_EQ(csv(), once);
+}
+
+TEST_F(Trees, FlightsAreMerged) {
+  const std::string first = chm(), second = make_dem(folder_ / "later.tif", cones(0.3));
+  ASSERT_EQ(trees({"--chm", first, second, "--flights"}).code, 0);
+  const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
+  int both = 0;
+  for (const json& tree : found) both += tree["seen"] == 2;
+  EXPECT_GT(both, 190);
+}
+
+TEST_F(Trees, WrongUseIsExplained) {
+  EXPECT_THAT(trees({}).err, HasSubstr("no canopy is given"));
+  EXPECT_EQ(trees({}).code, 2);
+  EXPECT_THAT(trees({"--dsm", chm()}).err, HasSubstr("--dsm is given without --dtm"));
+  EXPECT_THAT(trees({"--chm", chm(), "--preset", "conifre"}).err, HasSubstr("did you mean 'conifer'"));
+  EXPECT_THAT(trees({"--chm", chm(), "--las", "a.las"}).err, HasSubstr("leave out one or the other"));
+  const Outcome missing = trees({"--chm", folder_ / "none.tif"});
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "trees.gpkg"));
+  MadeDem degrees = cones();
+  degrees.crs = "EPSG:4326", degrees.geotransform = {10, 1e-5, 0, 45, 0, -1e-5};
+  const Outcome refused = trees({"--chm", make_dem(folder_ / "degrees.tif", degrees)});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("is in degrees"));
+}
+
+TEST_F(Trees, AreDetectedInAnImageOfHeights) {
+  const Outcome made = waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(text_of(folder_ / "trees.csv"),
+              StartsWith("x,y,diameter,major,minor,angle,confidence,height,tree_diameter,crown_diameter,map_x,map_y\n"));
+  EXPECT_EQ(waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv", "--method", "imagery"}).code, 2);
+}
+
+TEST_F(Trees, TakeDiametersFromAFittedTable) {
+  std::string plots = "plot,height,dbh\n";
+  for (int i = 0; i < 60; ++i) {
+    const double height = 8 + 0.2 * i;
+    plots += std::to_string(i / 6) + "," + std::to_string(height) + "," + std::to_string(1.5 * (height - 1.3)) + "\n";
+  }
+  write_text(folder_ / "plots.csv", plots);
+  const Outcome fit = waymark({"allometry", "fit", folder_ / "plots.csv", "-o", folder_ / "table.csv"});
+  ASSERT_EQ(fit.code, 0) << fit.err;
+  EXPECT_THAT(text_of(folder_ / "table.csv"), AllOf(HasSubstr("held_out_rmse_cm"), HasSubstr("all,height,1.5,1,")));
+  ASSERT_EQ(trees({"--chm", chm(), "--allometry", folder_ / "table.csv"}).code, 0);
+  const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
+  for (const json& tree : found)
+    EXPECT_NEAR(tree["diameter"], 0.015 * (tree["height"].get<double>() - 1.3), 1e-3);
+}
+
+}  // namespace
+}  // namespace waymark::test
