@@ -13,6 +13,7 @@ Observation observation_of(const FoundTree& tree, const CanopySource& canopy, co
   Observation seen;
   seen.type = id;
   seen.source = canopy.name();
+  seen.pixel = Eigen::Vector2d(column, row);
   const double ground = canopy.ground(tree.top.column, tree.top.row);
   seen.position.xyz << where.x(column), where.y(row), std::isnan(ground) ? 0 : ground;
   const double unit = where.crs.metres_per_unit(), cell_x = where.dx * unit, cell_y = where.dy * unit;
