@@ -91,7 +91,7 @@ class RasterCanopy final : public ImportedCanopy {
     if (!heights) open_terrain();
     if (!import.forest_type.empty()) open_types();
     const std::string& first = heights ? import.chm[0] : import.dsm[0];
-    name_ = std::filesystem::path(first).filename().string();
+    name_ = import.name.empty() ? std::filesystem::path(first).filename().string() : import.name;
     if (import.inspect)
       for (std::string& warning : inspect_canopy(*this, heights ? "" : import.dtm[0], first, raw_reader()))
         warnings_.push_back(std::move(warning));

@@ -12,6 +12,7 @@ struct CanopyImport {
   double resolution = 0;         ///< of a canopy from points, metres; 0: by their density
   std::string forest_type = {};  ///< raster of ForestType values on any grid; empty: none
   std::string crs = {};          ///< as DemImport::crs
+  std::string name = {};         ///< CanopySource::name; empty: the first file's, without folders
   std::int64_t memory_bytes = std::int64_t{256} << 20;
   bool inspect = true;  ///< look at a sample of the heights; false: open the headers only
 };

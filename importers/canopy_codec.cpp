@@ -21,6 +21,7 @@ std::string Codec<Canopies>::encode(const Canopies& canopies) {
                    {"resolution", import.resolution},
                    {"forest_type", import.forest_type},
                    {"crs", import.crs},
+                   {"name", import.name},
                    {"memory_bytes", import.memory_bytes}});
   }
   return all.dump();
@@ -36,6 +37,7 @@ Canopies Codec<Canopies>::decode(std::string_view bytes) {
                                       .resolution = json.at("resolution"),
                                       .forest_type = json.at("forest_type"),
                                       .crs = json.at("crs"),
+                                      .name = json.at("name"),
                                       .memory_bytes = json.at("memory_bytes"),
                                       .inspect = false}));
   return canopies;

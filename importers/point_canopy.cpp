@@ -44,7 +44,7 @@ class PointCanopy final : public ImportedCanopy {
  public:
   explicit PointCanopy(const CanopyImport& import)
       : import_(import), catalogue_(import.las, import.memory_bytes / 2) {
-    name_ = std::filesystem::path(import.las[0]).filename().string();
+    name_ = import.name.empty() ? std::filesystem::path(import.las[0]).filename().string() : import.name;
     check_points();
     grid_.where.crs = crs_of(catalogue_.headers(), import.crs, catalogue_.box(), warnings_);
     const Crs& crs = grid_.where.crs;

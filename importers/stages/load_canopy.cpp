@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <filesystem>
+
 #include "geo/plane_dem.hpp"
 #include "importers/canopy.hpp"
 #include "importers/canopy_codec.hpp"
@@ -109,6 +112,13 @@ struct LoadCanopy {
                   "points make their own canopy model: leave out one or the other");
   }
 
+  // With its folder where another file has the same name: surveys are told apart by their names.
+  static std::string name_among(const std::string& file, const std::vector<std::string>& files) {
+    const auto plain = [](const std::string& f) { return std::filesystem::path(f).filename(); };
+    const auto alike = std::ranges::count_if(files, [&](const std::string& f) { return plain(f) == plain(file); });
+    return alike > 1 ? file : plain(file).string();
+  }
+
   // Surface models share the terrain models.
   static std::vector<CanopyImport> one_each(const CanopyImport& all) {
     std::vector<CanopyImport> surveys;
@@ -117,6 +127,7 @@ struct LoadCanopy {
       for (const std::string& file : all.*member) {
         surveys.push_back(all);
         surveys.back().*member = {file};
+        surveys.back().name = name_among(file, all.*member);
         surveys.back().memory_bytes = all.memory_bytes / count;
       }
     return surveys.empty() ? std::vector{all} : surveys;

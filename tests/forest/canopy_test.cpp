@@ -121,6 +121,12 @@ TEST(Canopy, AreKeptAsRecipes) {
   EXPECT_EQ(again[0]->read({0, 0, 40, 40}), canopies[0]->read({0, 0, 40, 40}));
 }
 
+TEST(Canopy, KeepsTheNameItIsGiven) {
+  const auto chm = write_raster(raster("chm4", [](double x, double) { return x / 4; }));
+  const Canopies canopies{import_canopy({.chm = {chm}, .name = "2019/chm.tif"})};
+  EXPECT_EQ(Codec<Canopies>::decode(Codec<Canopies>::encode(canopies))[0]->name(), "2019/chm.tif");
+}
+
 TEST(CommonGrid, PartsOfTilesCoverEverySurveyOnce) {
   RasterFile second = raster("second", [](double, double) { return 10; }, 31, 0.7);
   second.transform = GeoTransform{499990.3, 0.7, 0, 5000004.1, 0, -0.7};
