@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kEllipseScale = 10;
 constexpr double kWidth = 900, kChart = 220, kBorder = 46;  // pixels
+constexpr double kLargestEllipse = 90;                    // pixels; larger ones are drawn as they are
 constexpr double kSmallestError = 0.01;                     // metres, foot of the chart
 constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "#1b9e77",
                                               "#c51b7d", "#8c6d31", "#444444"};
@@ -84,7 +85,8 @@ class Drawing {
 
   void map() {
     svg_ += fmt::format(
-        "<svg><rect x=\"{}\" y=\"30\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"#f6f3ee\" stroke=\"#999\"/>\n", kBorder,
+        "<clipPath id=\"map\"><rect x=\"{0}\" y=\"30\" width=\"{1:.1f}\" height=\"{2:.1f}\"/></clipPath>"
+        "<g clip-path=\"url(#map)\"><rect x=\"{0}\" y=\"30\" width=\"{1:.1f}\" height=\"{2:.1f}\" fill=\"#f6f3ee\" stroke=\"#999\"/>\n", kBorder,
         scale_ * box_.sizes().x(), height_);
     for (const PictureDot& dot : picture_.map) {
       if (!box_.contains(dot.at)) continue;
@@ -105,7 +107,7 @@ class Drawing {
     const double bar = round_length(box_.sizes().x() / 4);
     svg_ += fmt::format(
         "<path d=\"M {0:.1f} {1:.1f} h {2:.1f}\" stroke=\"#000\" stroke-width=\"3\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\">{4:g} "
-        "m</text></svg>\n",
+        "m</text></g>\n",
         kBorder + 10, 30 + height_ - 12, scale_ * bar, 30 + height_ - 18, bar);
     legend();
   }
@@ -114,22 +116,25 @@ class Drawing {
     const std::size_t step = std::max<std::size_t>(1, rows.size() / 14);
     for (std::size_t i = step; i < rows.size(); i += step) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(rows[i].at.covariance.topLeftCorner<2, 2>());
-      const Eigen::Vector2d sd = axes.eigenvalues().cwiseMax(0).cwiseSqrt() * 3 * kEllipseScale * scale_;
-      if (!(sd.maxCoeff() < 2 * kWidth)) continue;
+      Eigen::Vector2d sd = axes.eigenvalues().cwiseMax(0).cwiseSqrt() * 3 * kEllipseScale * scale_;
+      const bool as_it_is = !(sd.maxCoeff() < kLargestEllipse);
+      if (as_it_is) sd /= kEllipseScale;
+      if (!(sd.maxCoeff() < 10 * kWidth)) continue;
       const double turn = -std::atan2(axes.eigenvectors()(1, 1), axes.eigenvectors()(0, 1)) * 180 / std::numbers::pi;
       const Eigen::Vector2d at = rows[i].at.pose.at();
       svg_ += fmt::format(
           "<ellipse rx=\"{:.1f}\" ry=\"{:.1f}\" transform=\"translate({:.1f} {:.1f}) rotate({:.1f})\" fill=\"{}\" "
-          "fill-opacity=\"0.1\" stroke=\"{}\" stroke-width=\"0.8\"/>\n",
-          sd.y(), sd.x(), x(at.x()), y(at.y()), turn, paint, paint);
+          "fill-opacity=\"{}\" stroke=\"{}\" stroke-width=\"0.8\"{}/>\n",
+          sd.y(), sd.x(), x(at.x()), y(at.y()), turn, paint, as_it_is ? 0.03 : 0.1, paint,
+          as_it_is ? " stroke-dasharray=\"4 3\"" : "");
     }
   }
 
   void legend() {
-    const double left = kWidth - kBorder - 178;
+    const double left = kWidth - kBorder - 226;
     const auto rows = static_cast<double>(picture_.tracks.size() + 2);
     svg_ += fmt::format(
-        "<rect x=\"{}\" y=\"36\" width=\"172\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"#bbb\"/>\n",
+        "<rect x=\"{}\" y=\"36\" width=\"220\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"#bbb\"/>\n",
         left, rows * 17 + 6);
     double at = 52;
     const auto entry = [&](const std::string& name, const char* paint, double width) {
@@ -141,7 +146,7 @@ class Drawing {
     entry("truth", "#000000", 3.5);
     for (std::size_t k = 0; k < picture_.tracks.size(); ++k)
       entry(fmt::format("{}{}", picture_.tracks[k].name, median_text(picture_.tracks[k].track)), colour(k), 2);
-    svg_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"10\">ellipses: 3 sigma, {:g} times as large</text>\n",
+    svg_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"10\">3 sigma: {:g} times as large; dashed: true size</text>\n",
                         left + 6, at, kEllipseScale);
   }
 

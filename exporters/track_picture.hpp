@@ -28,7 +28,7 @@ struct TrackPicture {
 };
 
 /// An SVG page that needs nothing else: the map, the true way, each track with 3-sigma ellipses of its position
-/// (drawn `kEllipseScale` times as large, which the legend says), and below it the position error of each track
+/// (ten times as large, or dashed in true size where that would cover the map), and below it the position error of each track
 /// over time on a logarithmic scale. Long tracks are thinned to about 1500 points.
 std::string track_picture(const TrackPicture& picture);
 

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays of the line scanners: a rover among rocks, a harvester among stems. One thread; items are rays.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "testbed/laser_scanner.hpp"
+#include "testbed/scene.hpp"
+
+namespace waymark {
+namespace {
+
+Scene site(double rocks) {
+  Ground ground;
+  ground.width = ground.height = 150;
+  ground.cell = 0.3;
+  ground.relief = {.rms = 2, .longest = 250, .roughness = 0.5};
+  ground.craters.density = 0.3;
+  ground.rocks = {.k = rocks, .min_diameter = 0.5, .max_diameter = 4};
+  return make_scene(ground, 11);
+}
+
+void scan_from_everywhere(benchmark::State& state, const LaserTargets& targets, double height) {
+  const LaserModel laser{.field = Degrees{240}};
+  Random random(1);
+  for (auto _ : state) {
+    const double x = random.uniform(-50, 50), y = random.uniform(-50, 50);
+    const RayFan fan(targets, {x, y, *targets.terrain().height(x, y) + height}, laser.most_range);
+    benchmark::DoNotOptimize(sweep(fan, Eigen::Matrix3d::Identity(), laser, random));
+  }
+  state.SetItemsProcessed(state.iterations() * laser.beams() * laser.rays);
+}
+
+void rover_scan(benchmark::State& state) {
+  const Scene scene = site(0.16);
+  scan_from_everywhere(state, LaserTargets(scene.terrain, scene.solids), 0.3);
+}
+BENCHMARK(rover_scan)->Unit(benchmark::kMillisecond);
+
+void harvester_scan(benchmark::State& state) {
+  const Scene scene = site(0);
+  Random random(2);
+  std::vector<StandingTree> trees;
+  for (int i = 0; i < 1125; ++i) {  // 500 per hectare
+    const double x = random.uniform(-74, 74), y = random.uniform(-74, 74);
+    trees.push_back({.foot = {x, y, *scene.terrain.height(x, y)}, .height = 20, .dbh = random.uniform(0.1, 0.45),
+                     .crown_diameter = 4, .crown_base = 9});
+  }
+  ForestSolids solids = forest_solids(trees, {}, scene.terrain, 3);
+  scan_from_everywhere(state, LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
+}
+BENCHMARK(harvester_scan)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace waymark
+
+BENCHMARK_MAIN();
