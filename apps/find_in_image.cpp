@@ -90,7 +90,6 @@ FindThings finder(const DetectPlan& plan, TypeId type, std::optional<Radians> su
     search.type = type;
     search.sun_angle = sun;
     if (plan.sun_elevation) search.sun_elevation = to_radians(*plan.sun_elevation);
-    search.saturated = plan.image->info().saturated;
     search.min_diameter = min;
     search.max_diameter = max;
     search.min_confidence = plan.min_confidence;

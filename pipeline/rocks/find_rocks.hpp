@@ -24,7 +24,6 @@ struct RockSearch {
   /// their standard deviations allow for that. Heights need the true one.
   std::optional<Radians> sun_elevation = {};
   double blur = 0;              ///< standard deviation of the point spread, pixels; 0: unknown (0.6)
-  double saturated = 0;         ///< pixels at or above are blown out; 0: unknown
   double min_diameter = 1.5;    ///< pixels; smaller rocks are left out
   double max_diameter = 100;    ///< pixels
   double min_confidence = 0.5;  ///< weaker candidates are left out; 0 keeps all

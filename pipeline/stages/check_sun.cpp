@@ -7,8 +7,8 @@
 
 #include "geo/image_source.hpp"
 #include "pipeline/craters/find_craters.hpp"
-#include "pipeline/craters/image_light.hpp"
 #include "pipeline/engine/stage.hpp"
+#include "pipeline/vision/image_light.hpp"
 #include "pipeline/vision/sun_angle.hpp"
 
 namespace waymark {

@@ -2,9 +2,10 @@
 #include "geo/image_source.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/craters/find_craters.hpp"
-#include "pipeline/craters/image_light.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/vision/image_faults.hpp"
+#include "pipeline/vision/image_light.hpp"
 
 namespace waymark {
 namespace {
@@ -31,7 +32,7 @@ struct CratersFromBowls {
   static StageSpec spec() {
     return {.name = "craters_from_bowls",
             .summary = "Finds craters in an image by shaded bowls, refined rims and a trained model",
-            .version = 1,
+            .version = 2,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};
@@ -42,6 +43,7 @@ struct CratersFromBowls {
     TypeRegistry types;
     register_landmark_types(types);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
+    if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
     auto found = find_craters(pixels, {.method = CraterMethod::bowl,
                                        .type = types.id("crater"),
                                        .sun_angle = image_light(image.info()),

@@ -30,7 +30,7 @@ struct CratersFromDem {
   static StageSpec spec() {
     return {.name = "craters_from_dem",
             .summary = "Finds craters in a DEM: dishes with rims, their depth and rim height",
-            .version = 1,
+            .version = 2,
             .scope = Scope::tile,
             .halo = kDemCore + kDemMargin,
             .inputs = {dem},

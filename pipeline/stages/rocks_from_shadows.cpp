@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geo/image_source.hpp"
 #include "landmarks/landmark_type.hpp"
-#include "pipeline/craters/image_light.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
+#include "pipeline/vision/image_faults.hpp"
+#include "pipeline/vision/image_light.hpp"
 
 namespace waymark {
 namespace {
@@ -39,7 +40,7 @@ struct RocksFromShadows {
   static StageSpec spec() {
     return {.name = "rocks_from_shadows",
             .summary = "Finds rocks in an image by their shadows, with widths, heights and confidence",
-            .version = 1,
+            .version = 2,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};
@@ -53,12 +54,12 @@ struct RocksFromShadows {
                       .type = types.id("rock"),
                       .sun_angle = image_light(image.info()),
                       .blur = options.blur,
-                      .saturated = image.info().saturated,
                       .min_diameter = options.min_diameter,
                       .max_diameter = options.max_diameter,
                       .min_confidence = options.min_confidence};
     if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
+    if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
     auto found = find_rocks(pixels, search);
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.write(detections, std::move(found));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/craters/image_light.hpp"
+#include "pipeline/vision/image_light.hpp"
 
 #include <cmath>
 
