@@ -21,7 +21,7 @@ std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& li
 
 /// The same at every scale of the image, each half as fine as the one before, until `max_diameter` or the
 /// size of the image; larger rocks are seen against a wider background. Positions are still those of each
-/// scale.
+/// scale. Confidences are moved towards the image's own share of rocks (share_shift).
 std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
 /// Direction towards the sun, given what estimate_sun_angle pooled, if anything: that, where under it at

@@ -38,7 +38,8 @@ class Around {
 
 }  // namespace
 
-RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light) {
+RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light,
+                             const SpotContext& context) {
   const Around around(map, rock, light);
   const double r = rock.size.radius, reach = rock.size.reach, tip = std::hypot(r, reach);
   const double root = r * r / tip;  // where the shadow begins on the rock, from its middle
@@ -68,7 +69,10 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
           std::max(near_left, near_right),
           std::min(far_left, far_right),
           std::max(far_left, far_right),
-          std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells)))};
+          std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))),
+          std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.usual)), -2.0, 3.0),
+          std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.deep)), -2.0, 3.0),
+          std::log(0.2 + context.crowded)};
 }
 
 }  // namespace waymark

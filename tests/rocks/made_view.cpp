@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/rocks/made_view.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/random.hpp"
@@ -29,6 +30,15 @@ MadeView made_view(int number) {
   ground.relief.slope_azimuth = {random.uniform(0, 360)};
   ground.relief.rms = random.log_uniform(0.3, 5);
   ground.relief.longest = 300;
+  // Every third view: ground whose texture is strong and whose small rocks are few, as landings meet.
+  Random other(static_cast<std::uint64_t>(number), "rough views without gravel");
+  const bool bare = number % 3 == 2;
+  if (bare) {
+    ground.rocks.min_diameter = gsd * other.log_uniform(1.5, 6);
+    ground.rocks.max_diameter = std::max(ground.rocks.max_diameter, 4 * ground.rocks.min_diameter);
+    ground.rocks.k = other.log_uniform(0.02, 0.3);
+    ground.relief.roughness = other.log_uniform(0.6, 2);
+  }
   const Scene scene = make_scene(ground, static_cast<std::uint64_t>(number));
   const View view = map_view(scene, gsd, kPixels, kPixels);
   const double incidence = random.uniform(30, 75);
@@ -39,6 +49,7 @@ MadeView made_view(int number) {
   exposure.skylight = random.uniform(0.02, 0.25);
   exposure.read_noise = random.log_uniform(0.001, 0.006);
   exposure.contrast = random.uniform(0.8, 1.8);
+  if (bare) exposure.contrast = other.uniform(1, 2);
   MadeView made;
   made.elevation = to_radians(exposure.sun.elevation);
   made.sun_angle = image_sun_angle(view, exposure.sun);

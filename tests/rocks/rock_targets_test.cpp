@@ -88,7 +88,7 @@ TEST(RockTargets, MadeViews) {
 TEST(RockConfidence, DISABLED_Fit) {
   std::vector<ConfidenceSample> samples;
   for (const bool made : {true, false})
-    for (int k = 0; k < (made ? 150 : 45); ++k)
+    for (int k = 0; k < (made ? 240 : 45); ++k)
       for (const auto& sample : confidence_samples(k, made)) samples.push_back(sample);
   std::FILE* file = std::fopen("rock_confidence_weights.hpp", "w");
   ASSERT_NE(file, nullptr);
