@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "apps/command.hpp"
+#include "apps/crater_lessons.hpp"
 #include "apps/log.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
@@ -38,8 +39,10 @@ class Train final : public Command {
         .group = Group::make,
         .summary = "Train the model that verifies craters",
         .about =
-            "Makes scenes with known craters, finds bowls in them and learns which are craters and where "
-            "their rims are. The scenes are made up: no image that anyone else owns goes in. The same "
+            "Makes scenes with known craters, half of them with the testbed of `waymark simulate`, finds "
+            "bowls "
+            "in them and learns which are craters and where their rims are. No image that anyone else owns "
+            "goes in. The same "
             "scenes and seed give the same model. A name that ends in .cpp gives the source file that "
             "is compiled into waymark.",
         .arguments = {Argument{"", "WHAT", &what_, "What to train"}.needed().one_of({"craters"}),
@@ -60,8 +63,10 @@ class Train final : public Command {
     const bool source = output_.ends_with(".cpp");
     std::vector<CraterExample> examples;
     for (std::int64_t i = 0; i < scenes_; ++i) {
-      const auto index = static_cast<std::uint64_t>(i);
-      const auto more = examples_of(shaded_scene(index, kSide), index);
+      // By turns plain shading of relief no testbed makes, and what the testbed renders.
+      const auto index = static_cast<std::uint64_t>(i / 2);
+      const auto more =
+          examples_of(i % 2 == 0 ? shaded_scene(index, kSide) : testbed_lesson(index, kSide), index);
       examples.insert(examples.end(), more.begin(), more.end());
       if ((i + 1) % 20 == 0 && !session.quiet)
         say(fmt::format("{} of {} scenes, {} examples\n", i + 1, scenes_, examples.size()));
@@ -70,8 +75,9 @@ class Train final : public Command {
     CraterModel model = train_crater_model(examples, training, [&](int round, double loss) {
       if (!session.quiet) say(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
     });
-    model.trained_on = fmt::format("made-up scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
-                                   scenes_ - 1, kSide, examples.size(), rounds_, seed_);
+    model.trained_on =
+        fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes_ - 1,
+                    kSide, examples.size(), rounds_, seed_);
     std::ofstream file(output_, std::ios::binary);
     file << (source ? as_source(as_text(model)) : as_text(model));
     file.close();
@@ -84,7 +90,7 @@ class Train final : public Command {
  private:
   static constexpr int kSide = 640;  // pixels
   std::string what_, output_;
-  std::int64_t scenes_ = 230, rounds_ = CraterTraining{}.rounds, seed_ = 1;
+  std::int64_t scenes_ = 120, rounds_ = CraterTraining{}.rounds, seed_ = 1;
 };
 
 }  // namespace

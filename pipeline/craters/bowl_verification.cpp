@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "pipeline/craters/rim_refinement.hpp"
+#include "pipeline/vision/class_share.hpp"
 
 namespace waymark {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr double kTemperature = 0.5;  // of all evidence: its parts are not independent
 constexpr double kPerCorrelation = 20;
 constexpr double kEven = 0.59;            // correlation that tells nothing
-constexpr double kModelSize = 0.2;        // weight of the model's diameter against the edges'
+constexpr double kModelSize = 0.4;        // weight of the model's diameter against the edges'
 constexpr double kEvenUntrained = 0.645;  // without a model, which then decides alone
 constexpr double kPriorTrust = 0.45;      // how far towards the image's own share of craters
 
@@ -61,18 +62,6 @@ VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun
   return bowl;
 }
 
-// Log odds of the share of craters, by expectation and maximisation from even odds.
-double image_odds(const std::vector<double>& evidence) {
-  double share = 0.5;
-  for (int round = 0; round < 100; ++round) {
-    const double odds = std::log(share / (1 - share));
-    double craters = 2;  // two of each, imagined: a few candidates prove little
-    for (const double e : evidence) craters += logistic(e + odds);
-    share = std::clamp(craters / (double(evidence.size()) + 4), 0.02, 0.98);
-  }
-  return std::log(share / (1 - share));
-}
-
 }  // namespace
 
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,
@@ -90,7 +79,7 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
     evidence[i] = model ? kTemperature * (opinions[i].log_odds + kPerCorrelation * (correlation - kEven))
                         : kPerCorrelation * (correlation - kEvenUntrained);
   });
-  const double odds = model ? kPriorTrust * image_odds(evidence) : 0;
+  const double odds = model ? kPriorTrust * share_shift(evidence, 0.5) : 0;
   std::vector<CraterCandidate> likely;
   std::vector<double> sizes;
   for (std::size_t i = 0; i < candidates.size(); ++i)
