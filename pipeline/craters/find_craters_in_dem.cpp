@@ -19,6 +19,7 @@ namespace {
 constexpr double kShallowest = 0.02;     // depth / diameter
 constexpr double kLeastKnown = 2.0 / 3;  // share of a crater's square that must have heights
 constexpr double kLeastCorrelation = 0.45;
+constexpr double kMostOverlap = 0.15;  // of two craters
 
 void check(const DemCraterSearch& search) {
   const auto refuse = [](std::string problem, std::string hint) {
@@ -75,12 +76,14 @@ Pixels square_cells(const HeightWindow& heights, double cell_width, double cell_
   return square;
 }
 
-// Logistic in correlation and the rim's weakest part; weights by hand, the offset by the western half of a
-// GLD100 piece (docs/craters.md).
+// Logistic in correlation, the rim's weakest part and size (what lies on a large crater lowers its
+// correlation); weights by hand, the offset and the weight of size by the western half of a GLD100 piece
+// (docs/craters.md).
 double probability(double correlation, const DemRim& rim, double cell) {
-  const double d = std::sqrt(rim.major * rim.minor) * cell,
-               weakest = std::clamp(rim.weakest / d, -0.02, 0.12);
-  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) - 0.77)));
+  const double cells = std::sqrt(rim.major * rim.minor),
+               weakest = std::clamp(rim.weakest / (cells * cell), -0.02, 0.12);
+  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) +
+                             0.3 * std::log2(cells / 16) - 0.77)));
 }
 
 }  // namespace
@@ -117,7 +120,7 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
     rims.push_back(*rim);
   }
   std::vector<DemCrater> result;
-  for (const CraterCandidate& c : suppress_overlaps(circles)) {
+  for (const CraterCandidate& c : suppress_overlaps(circles, kMostOverlap)) {
     const auto at = static_cast<std::size_t>(std::find(circles.begin(), circles.end(), c) - circles.begin());
     const DemRim& rim = rims[at];
     DemCrater crater;
