@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 
 #include "pipeline/fusion/alignment.hpp"
 #include "tests/fusion/made_landing.hpp"
@@ -101,6 +102,54 @@ TEST(Landing, MergingDoesNotDependOnTheOrder) {
   }
   for (std::size_t i = 0; i < first.evidence.size(); ++i)
     EXPECT_EQ(first.evidence[i].landmark_uid, second.evidence[i].landmark_uid);
+}
+
+// Detectors deliver by image, tile and thread: however the ground is cut and in whatever order the pieces
+// come, the map is the same, bit for bit.
+TEST(Landing, MergingDoesNotDependOnTiles) {
+  const MadeLanding made = made_landing(landing(18, 0.3, 0.04, 0.05));
+  const auto whole = merge_observations(made.observations, made.types, Crs::local());
+  Random random(5, "tiles");
+  for (const double side : {7.0, 31.0, 250.0}) {
+    const double shift = random.uniform(0, side);
+    std::map<std::uint64_t, std::vector<Observation>> tiles;
+    std::map<std::pair<long, long>, std::uint64_t> rank;
+    for (const Observation& o : made.observations) {
+      const std::pair<long, long> tile{std::lround(std::floor((o.position.xyz.x() + shift) / side)),
+                                       std::lround(std::floor((o.position.xyz.y() + shift) / side))};
+      if (!rank.contains(tile)) rank[tile] = random.bits();
+      tiles[rank[tile]].push_back(o);
+    }
+    std::vector<Observation> joined;
+    for (const auto& [place, part] : tiles) joined.insert(joined.end(), part.rbegin(), part.rend());
+    ASSERT_EQ(joined.size(), made.observations.size());
+    const auto again = merge_observations(joined, made.types, Crs::local());
+    ASSERT_EQ(again.landmarks.size(), whole.landmarks.size()) << "tiles of " << side << " m";
+    for (std::size_t i = 0; i < whole.landmarks.size(); ++i) {
+      ASSERT_EQ(again.landmarks[i].uid, whole.landmarks[i].uid);
+      ASSERT_EQ(again.landmarks[i].position, whole.landmarks[i].position);
+      ASSERT_EQ(again.landmarks[i].covariance, whole.landmarks[i].covariance);
+    }
+  }
+}
+
+// What lies out of reach has no say: a copy of the landing a kilometre away changes nothing here.
+TEST(Landing, MergingIsLocal) {
+  const MadeLanding made = made_landing(landing(19, 0.3, 0.04, 0.05));
+  const auto alone = merge_observations(made.observations, made.types, Crs::local());
+  auto both = made.observations;
+  for (Observation o : made.observations) {
+    o.position.xyz.x() += 1024;
+    both.push_back(o);
+  }
+  const auto merged = merge_observations(both, made.types, Crs::local());
+  ASSERT_EQ(merged.landmarks.size(), 2 * alone.landmarks.size());
+  std::map<std::string, Eigen::Vector3d> here;
+  for (const Landmark& l : merged.landmarks) here[l.uid] = l.position.xyz;
+  for (const Landmark& l : alone.landmarks) {
+    ASSERT_TRUE(here.contains(l.uid));
+    EXPECT_EQ(here[l.uid], l.position.xyz);
+  }
 }
 
 TEST(Landing, RockHeightsAndCraterDepthsAreRight) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "importers/control_points.hpp"
 #include "importers/hash.hpp"
 #include "importers/image_set.hpp"
 #include "importers/list_images.hpp"
@@ -94,6 +95,42 @@ TEST(ListImages, FoldersTellImagesOfOneNameApart) {
   ASSERT_EQ(listed.images.size(), 2u);
   EXPECT_EQ(listed.images[0].name, "left/1.pgm");
   EXPECT_EQ(listed.images[1].name, "right/1.pgm");
+}
+
+// Written by hand from Bundler's manual: R, t take the world into the camera, which looks along -z with y up.
+// Camera a stands at (10, 20, 30) and looks straight down, its up is the world's y; b looks along the world's
+// x, its up the world's z; c was not oriented. The frame is arbitrary: twice as large on the map.
+TEST(ListImages, BundlerLooksAlongMinusZAndNeedsASimilarity) {
+  const fs::path folder = folder_of("bundler", {"a.pgm", "b.pgm", "c.pgm"});
+  std::ofstream(folder / "list.txt") << "a.pgm\nb.pgm 0 5\nc.pgm\n";
+  std::ofstream(folder / "bundle.out") << "# Bundle file v0.3\n3 1\n"
+                                          "5 0.1 0.02\n1 0 0\n0 1 0\n0 0 1\n-10 -20 -30\n"
+                                          "5 0 0\n0 -1 0\n0 0 1\n-1 0 0\n0 0 0\n"
+                                          "0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n"
+                                          "10 20 0\n255 255 255\n1 0 0 0 0\n";
+  ImageListing listing{.files = {folder.string()}, .cameras = (folder / "bundle.out").string()};
+  listing.import.crs = "local";
+  EXPECT_THAT(message_of([&] { list_images(listing); }), HasSubstr("control points"));
+  listing.import.map_from_frame = similarity_from_text("2,1,0,0,0,0,0,0");
+  const ListedImages listed = list_images(listing);
+  ASSERT_EQ(listed.images.size(), 3u);
+  const PosedCamera& a = listed.images[0].view.value();
+  EXPECT_LT((a.centre().xyz - Eigen::Vector3d(20, 40, 60)).norm(), 1e-9);
+  EXPECT_EQ(a.camera.fx, 5);
+  EXPECT_EQ(a.camera.cx, 1.5);  // the middle of 4 pixels, the first pixel's centre being 0
+  EXPECT_EQ(a.camera.distortion[0], 0.1);
+  EXPECT_EQ(a.camera.distortion[1], 0.02);
+  const auto down = ray(a, {1.5, 1.5}), right = ray(a, {2.5, 1.5}), up = ray(a, {1.5, 0.5});
+  EXPECT_LT((down->along.unit - Eigen::Vector3d(0, 0, -1)).norm(), 1e-9);
+  EXPECT_GT(right->along.unit.x(), 0.1);
+  EXPECT_GT(up->along.unit.y(), 0.1);
+  const PosedCamera& b = listed.images[1].view.value();
+  EXPECT_LT((ray(b, {1.5, 1.5})->along.unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-9);
+  EXPECT_GT(ray(b, {1.5, 0.5})->along.unit.z(), 0.1);
+  EXPECT_LT(ray(b, {2.5, 1.5})->along.unit.y(), -0.1);
+  EXPECT_FALSE(listed.images[2].view);
+  std::ofstream(folder / "list.txt") << "a.pgm\n";
+  EXPECT_THAT(message_of([&] { list_images(listing); }), HasSubstr("there are 3 cameras, but 1 image names"));
 }
 
 TEST(ListImages, TheSunGivenHoldsForAll) {
