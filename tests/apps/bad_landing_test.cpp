@@ -65,7 +65,8 @@ class BadLanding : public testing::Test {
     write_text(folder_ / "job.json", R"({"name": "bad", "stages": [
       {"stage": "load_dem", "files": ["dem.asc"], "crs": "local"},
       {"stage": "load_images", "cameras": "cameras.json"}, {"stage": "rocks_from_shadows"},
-      {"stage": "project_to_ground"}, {"stage": "reject_implausible"}, {"stage": "align_images"},
+      {"stage": "project_to_ground"}, {"stage": "reject_implausible"},
+      {"stage": "reject_terrain_shadows"}, {"stage": "reject_rim_shadows"}, {"stage": "align_images"},
       {"stage": "merge_observations"}, {"stage": "value_landmarks"}]})");
     return waymark({"run", folder_ / "job.json", "-o", map_});
   }
