@@ -190,7 +190,7 @@ class Inventory final : public Command {
     return whole;
   }
 
-  /// Whole cells whose middle is on the ground.
+  /// Cells at whole multiples of their side, cut off where the ground ends.
   std::vector<NamedStand> cells_of(const NamedStand& whole, double unit) const {
     const Eigen::AlignedBox2d box = bounds(whole.ground);
     const auto first = [&](double low) { return static_cast<std::int64_t>(std::floor(low / grid_)); };
@@ -204,13 +204,19 @@ class Inventory final : public Command {
       for (std::int64_t i = 0; i < columns; ++i) {
         const double x = static_cast<double>(first(box.min().x()) + i) * grid_,
                      y = static_cast<double>(first(box.min().y()) + j) * grid_;
-        if (!inside(whole.ground, {x + grid_ / 2, y + grid_ / 2})) continue;
-        ShapePart part;
-        for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
-          part.outer.emplace_back((x + dx * grid_) / unit, (y + dy * grid_) / unit);
+        const StandPolygon part =
+            clipped(whole.ground, {Eigen::Vector2d(x, y), Eigen::Vector2d(x + grid_, y + grid_)});
+        if (!(area(part) > 1)) continue;
         NamedStand cell{
-            .name = fmt::format("{:.0f}_{:.0f}", x, y), .species = {}, .ground = {}, .outline = {part}};
-        cell.ground = in_metres(cell.outline, unit);
+            .name = fmt::format("{:.0f}_{:.0f}", x, y), .species = {}, .ground = part, .outline = {}};
+        for (const auto& ring : part.rings) {
+          std::vector<Eigen::Vector2d> corners;
+          for (const auto& corner : ring) corners.push_back(corner / unit);
+          if (cell.outline.empty())
+            cell.outline.push_back({.outer = std::move(corners)});
+          else
+            cell.outline[0].holes.push_back(std::move(corners));
+        }
         cells.push_back(std::move(cell));
       }
     return cells;

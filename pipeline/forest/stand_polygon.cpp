@@ -11,6 +11,8 @@ namespace {
 using Place = Eigen::Vector2d;
 using Ring = std::vector<Place>;
 
+constexpr double kNoArea = 1e-6;  // m2, and metres: what rounding leaves
+
 double cross(const Place& a, const Place& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
@@ -40,8 +42,15 @@ bool surrounds(const Ring& ring, const Place& place) {
 int depth_of(const StandPolygon& stand, std::size_t index) {
   int depth = 0;
   const Ring& ring = stand.rings[index];
-  // The middle of an edge: rings may touch in corners.
-  const Place middle = ring.size() < 2 ? ring.at(0) : Place((ring[0] + ring[1]) / 2);
+  if (ring.size() < 3) return 0;
+  // Just inside the longest edge: rings may share corners and edges.
+  std::size_t longest = 0;
+  const auto edge = [&](std::size_t k) { return Place(ring[(k + 1) % ring.size()] - ring[k]); };
+  for (std::size_t k = 1; k < ring.size(); ++k)
+    if (edge(k).squaredNorm() > edge(longest).squaredNorm()) longest = k;
+  const Place along = edge(longest);
+  const Place inwards = (ring_area(ring) > 0 ? 1 : -1) * Place(-along.y(), along.x());
+  const Place middle = ring[longest] + along / 2 + 1e-6 * inwards;
   for (std::size_t i = 0; i < stand.rings.size(); ++i)
     if (i != index && surrounds(stand.rings[i], middle)) ++depth;
   return depth;
@@ -101,6 +110,37 @@ double distance_to_edge(const StandPolygon& stand, const Place& place) {
     for (std::size_t i = 0; i < ring.size(); ++i)
       least = std::min(least, distance_to_segment(ring[i], ring[(i + 1) % ring.size()], place));
   return least;
+}
+
+StandPolygon clipped(const StandPolygon& stand, const Eigen::AlignedBox2d& box) {
+  StandPolygon part;
+  for (Ring ring : stand.rings) {
+    for (int axis = 0; axis < 2; ++axis)
+      for (const double side : {1.0, -1.0}) {
+        const double limit = side > 0 ? box.max()[axis] : box.min()[axis];
+        const auto beyond = [&](const Place& at) { return side * (at[axis] - limit); };
+        Ring kept;
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+          const Place &a = ring[i], &b = ring[(i + 1) % ring.size()];
+          if (beyond(a) <= 0) kept.push_back(a);
+          if ((beyond(a) < 0 && beyond(b) > 0) || (beyond(a) > 0 && beyond(b) < 0))
+            kept.push_back(a + (b - a) * (beyond(a) / (beyond(a) - beyond(b))));
+        }
+        ring = std::move(kept);
+      }
+    if (!(ring.size() >= 3 && std::abs(ring_area(ring)) > kNoArea)) continue;
+    // A hole that takes the whole of what is around it: neither is left.
+    const auto around = std::ranges::find_if(part.rings, [&](const Ring& other) {
+      return std::abs(std::abs(ring_area(other)) - std::abs(ring_area(ring))) < kNoArea &&
+             std::ranges::all_of(ring,
+                                 [&](const Place& at) { return distance_to_edge({{other}}, at) < kNoArea; });
+    });
+    if (around != part.rings.end())
+      part.rings.erase(around);
+    else
+      part.rings.push_back(std::move(ring));
+  }
+  return part;
 }
 
 StandPolygon ground_of(const std::vector<Place>& trees) {

@@ -25,6 +25,9 @@ bool inside(const StandPolygon& stand, const Eigen::Vector2d& place);
 /// Metres to the nearest edge, inside and outside alike; infinity without rings. O(corners).
 double distance_to_edge(const StandPolygon& stand, const Eigen::Vector2d& place);
 
+/// The part of a stand in a box (Sutherland & Hodgman 1974, ring by ring); without rings where there is none.
+StandPolygon clipped(const StandPolygon& stand, const Eigen::AlignedBox2d& box);
+
 /// The ground `trees` were drawn from, where nothing else tells it: their convex hull, enlarged about its
 /// centroid by 1 / sqrt(1 - m / n) for m of n trees on the hull (Ripley & Rasson 1977). Empty for fewer than
 /// four trees or trees on a line.

@@ -159,6 +159,18 @@ TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
   }
 }
 
+TEST(StandPolygon, CellsCutOffAtTheEdgeMakeUpTheWhole) {
+  StandPolygon stand{{{{3, 2}, {97, 11}, {60, 50}, {88, 93}, {9, 71}}}};
+  stand.rings.push_back(square(30, 30, 17).rings[0]);
+  double sum = 0;
+  for (int i = 0; i < 7; ++i)
+    for (int j = 0; j < 7; ++j)
+      sum += area(clipped(
+          stand, {Eigen::Vector2d(15.0 * i, 15.0 * j), Eigen::Vector2d(15.0 * i + 15, 15.0 * j + 15)}));
+  EXPECT_NEAR(sum, area(stand), 1e-9);
+  EXPECT_TRUE(clipped(stand, {Eigen::Vector2d(200, 200), Eigen::Vector2d(300, 300)}).rings.empty());
+}
+
 TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
   double sum = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
