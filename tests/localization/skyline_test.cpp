@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <numbers>
+#include <sstream>
+
+#include "core/random.hpp"
+#include "importers/dem.hpp"
+#include "localization/skyline_index.hpp"
+namespace waymark::testing {
+namespace {
+
+/// A DEM laid on a plane, metres east and north of its south-west corner.
+struct Ground {
+  Grid<double> heights;
+  double dx = 1, dy = 1;
+
+  std::optional<double> operator()(const Eigen::Vector2d& p) const {
+    const double c = p.x() / dx, r = static_cast<double>(heights.rows() - 1) - p.y() / dy;
+    const auto c0 = static_cast<std::int64_t>(std::floor(c)), r0 = static_cast<std::int64_t>(std::floor(r));
+    if (c0 < 0 || r0 < 0 || c0 + 1 >= heights.columns() || r0 + 1 >= heights.rows()) return {};
+    const double u = c - static_cast<double>(c0), v = r - static_cast<double>(r0);
+    const double h = (1 - v) * ((1 - u) * heights(c0, r0) + u * heights(c0 + 1, r0)) +
+                     v * ((1 - u) * heights(c0, r0 + 1) + u * heights(c0 + 1, r0 + 1));
+    if (!std::isfinite(h)) return {};
+    return h;
+  }
+  double width() const { return dx * static_cast<double>(heights.columns() - 1); }
+  double depth() const { return dy * static_cast<double>(heights.rows() - 1); }
+};
+
+/// Tops of the horizon by marching rays, without knowing any summit: local maxima of the skyline that stand
+/// at least `stand_out` radians above the skyline on both sides.
+std::vector<HorizonTop> horizon(const Ground& ground, const Pose2& robot, const SkylineOptions& o,
+                                Random& random, double stand_out = 0.003) {
+  constexpr int kRays = 3600;
+  const double eye = *ground(robot.at()) + o.eye;
+  std::vector<double> sky(kRays, -2);
+  for (int i = 0; i < kRays; ++i) {
+    const double a = 2 * std::numbers::pi * i / kRays;
+    const Eigen::Vector2d along(std::cos(a), std::sin(a));
+    for (double t = 100; t < o.reach; t += 40 + 0.001 * t)
+      if (const auto h = ground(robot.at() + t * along))
+        sky[static_cast<std::size_t>(i)] =
+            std::max(sky[static_cast<std::size_t>(i)],
+                     (*h - curvature_drop(t, o.body_radius, o.refraction) - eye) / t);
+  }
+  std::vector<HorizonTop> tops;
+  const auto at = [&](int i) { return sky[static_cast<std::size_t>(((i % kRays) + kRays) % kRays)]; };
+  for (int i = 0; i < kRays; ++i) {
+    if (at(i) < -1 || !(at(i) > at(i - 1) && at(i) >= at(i + 1))) continue;
+    bool stands = true;
+    for (const int way : {-1, 1}) {
+      int k = 1;
+      while (k < kRays / 6 && at(i + way * k) <= at(i) && at(i + way * k) > at(i) - stand_out) ++k;
+      stands = stands && at(i + way * k) <= at(i) - stand_out;
+    }
+    if (!stands) continue;
+    HorizonTop top{.bearing = 0, .bearing_sd = 0.002, .elevation = {}, .elevation_sd = 0.001};
+    top.bearing = wrapped(2 * std::numbers::pi * i / kRays - robot.yaw + top.bearing_sd * random.normal());
+    top.elevation = std::atan(at(i)) + top.elevation_sd * random.normal();
+    tops.push_back(top);
+  }
+  return tops;
+}
+
+std::filesystem::path dems() {
+  return std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/dem";
+}
+
+struct Country {
+  Ground ground;
+  std::vector<Summit> summits;
+};
+
+Country country(const std::string& dem_file, const std::string& summit_file, double least_prominence,
+                double west, double south) {
+  const auto dem = import_dem({.files = {(dems() / dem_file).string()}, .nodata = NodataPolicy::unknown});
+  const GridGeometry& g = dem->geometry();
+  Country c{{Grid<double>(g.columns, g.rows), 0, 0}, {}};
+  const auto all = dem->read({0, 0, g.columns, g.rows});
+  for (std::int64_t r = 0; r < g.rows; ++r)
+    for (std::int64_t k = 0; k < g.columns; ++k) c.ground.heights(k, r) = all(k, r);
+  const double metre = std::numbers::pi / 180 * 6371000;
+  c.ground.dy = metre * std::abs(g.where.dy);
+  c.ground.dx = metre * g.where.dx * std::cos((south + 0.5) * std::numbers::pi / 180);
+  std::ifstream file(dems() / summit_file);
+  for (std::string line; std::getline(file, line);) {
+    std::ranges::replace(line, ',', ' ');
+    std::istringstream words(line);
+    double lat = 0, lon = 0, height = 0, a = 0, b = 0, prominence = 0;
+    if (!(words >> lat >> lon >> height >> a >> b >> prominence) || prominence < least_prominence) continue;
+    const Eigen::Vector2d at((lon - west) / g.where.dx * c.ground.dx,
+                             (lat - south) / std::abs(g.where.dy) * c.ground.dy);
+    c.summits.push_back({at, height, prominence, 0});
+  }
+  return c;
+}
+
+/// Robots on places drawn at random, their horizons by rays; how many are found within 200 m.
+void survey(const char* name, const Country& c, const SkylineIndex& index, const SkylineOptions& o, int tries,
+            bool compass, double expected) {
+  Random random(5, name);
+  int right = 0, wrong = 0, unknown = 0;
+  double seconds = 0, tops = 0, matched = 0;
+  std::vector<double> errors;
+  for (int i = 0; i < tries;) {
+    const Pose2 robot{random.uniform(0.2, 0.8) * c.ground.width(),
+                      random.uniform(0.2, 0.8) * c.ground.depth(), random.uniform(-3.1, 3.1)};
+    if (!c.ground(robot.at()) || *c.ground(robot.at()) < 1) continue;
+    const auto seen = horizon(c.ground, robot, o, random);
+    ++i;
+    tops += static_cast<double>(seen.size());
+    std::optional<double> heading;
+    if (compass) heading = wrapped(robot.yaw + o.heading_sd * random.normal());
+    const auto begun = std::chrono::steady_clock::now();
+    const auto answer = index.find(seen, heading);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    if (!answer.fix) {
+      ++unknown;
+      continue;
+    }
+    const double off = (answer.fix->at.pose.at() - robot.at()).norm();
+    errors.push_back(off);
+    matched += answer.fix->matched;
+    ++(off < 300 ? right : wrong);
+  }
+  std::ranges::sort(errors);
+  std::cout << name << (compass ? " with compass" : "") << ": " << c.summits.size() << " summits, "
+            << tops / tries << " tops on a horizon; of " << tries << " places " << right << " right, "
+            << wrong << " wrong, " << unknown << " unknown; median error "
+            << (errors.empty() ? 0 : errors[errors.size() / 2]) << " m, matched "
+            << matched / std::max(1, right + wrong) << "; " << seconds / tries << " s each\n";
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GE(right, expected * tries);
+}
+
+TEST(Skyline, PlacesInThePyrenees) {
+  if (!std::filesystem::exists(dems())) GTEST_SKIP() << dems() << " is not on this machine";
+  const Country c = country("earth/N42E001.tif", "expected/prominence20_N42E001.txt", 40, 1, 42);
+  SkylineOptions o{.body_radius = 6371000, .refraction = 0.13, .eye = 2};
+  o.step = 1000;
+  const SkylineIndex index(c.summits, std::ref(c.ground), o);
+  std::cout << index.places() << " places of the grid\n";
+  survey("Pyrenees", c, index, o, 8, false, 0.1);
+  survey("Pyrenees", c, index, o, 4, true, 0);
+}
+
+/// Cones on a plain: everything is known.
+struct Cones {
+  std::vector<Summit> summits;
+  std::optional<double> operator()(const Eigen::Vector2d& p) const {
+    double height = 0;
+    for (const Summit& s : summits) height = std::max(height, s.height - 0.4 * (p - s.at).norm());
+    return height;
+  }
+};
+
+Cones cones() {
+  Random random(3);
+  Cones c;
+  for (int i = 0; i < 40; ++i) {
+    const double height = random.uniform(200, 900);
+    c.summits.push_back({{random.uniform(0, 30000), random.uniform(0, 30000)}, height, height, 5000});
+  }
+  return c;
+}
+
+std::vector<HorizonTop> tops_of(const Cones& c, const Pose2& robot, const SkylineOptions& o, bool elevations,
+                                std::size_t most) {
+  std::vector<HorizonTop> tops;
+  const GroundHeight ground = c;
+  const Eigen::Vector3d eye(robot.x, robot.y, *c(robot.at()) + o.eye);
+  for (const Summit& s : c.summits) {
+    const Eigen::Vector2d d = s.at - robot.at();
+    const double drop = curvature_drop(d.norm(), o.body_radius, o.refraction);
+    if (tops.size() == most || d.norm() > o.reach ||
+        !clears_ground(eye, {s.at.x(), s.at.y(), s.height}, ground, o, 50, 50))
+      continue;
+    tops.push_back({.bearing = wrapped(std::atan2(d.y(), d.x()) - robot.yaw), .elevation = {}});
+    if (elevations) tops.back().elevation = std::atan2(s.height - drop - eye.z(), d.norm());
+  }
+  return tops;
+}
+
+TEST(Skyline, ThreeBearingsAreAResection) {
+  const Cones c = cones();
+  const Pose2 robot{14000, 16000, 0.7};
+  SkylineOptions o{.body_radius = 1737400};
+  o.place_sd = o.height_sd = 1;
+  const auto tops = tops_of(c, robot, o, false, 3);
+  ASSERT_EQ(tops.size(), 3u);
+  std::vector<std::optional<std::uint32_t>> matches;
+  for (const HorizonTop& t : tops)
+    for (std::uint32_t j = 0; j < c.summits.size(); ++j) {
+      const Eigen::Vector2d d = c.summits[j].at - robot.at();
+      if (std::abs(wrapped(t.bearing + robot.yaw - std::atan2(d.y(), d.x()))) < 1e-9) matches.emplace_back(j);
+    }
+  ASSERT_EQ(matches.size(), 3u);
+  const PoseEstimate near{{robot.x + 700, robot.y - 500, robot.yaw + 0.1}, Eigen::Matrix3d::Identity()};
+  const auto found = resection(tops, c.summits, matches, near, c, o);
+  ASSERT_TRUE(found);
+  EXPECT_LT((found->pose.at() - robot.at()).norm(), 1);
+  // Two bearings need a compass.
+  matches[2].reset();
+  EXPECT_FALSE(resection(tops, c.summits, matches, near, c, o));
+  o.heading = robot.yaw;
+  const auto with_compass = resection(tops, c.summits, matches, near, c, o);
+  ASSERT_TRUE(with_compass);
+  EXPECT_LT((with_compass->pose.at() - robot.at()).norm(), 1);
+}
+
+TEST(Skyline, FindsThePlaceByBearingsAndElevations) {
+  const Cones c = cones();
+  SkylineOptions o{.body_radius = 1737400};
+  o.place_sd = o.height_sd = 5;
+  Random random(9);
+  for (int i = 0; i < 4; ++i) {
+    const Pose2 robot{random.uniform(8000, 22000), random.uniform(8000, 22000), random.uniform(-3, 3)};
+    const auto tops = tops_of(c, robot, o, true, 12);
+    const auto answer = find_by_skyline(tops, c.summits, c, o);
+    ASSERT_TRUE(answer.fix) << answer.reason << " with " << tops.size() << " tops";
+    EXPECT_LT((answer.fix->at.pose.at() - robot.at()).norm(), 30);
+  }
+}
+
+TEST(Skyline, ForeignHorizonsAreUnknown) {
+  const Cones c = cones();
+  SkylineOptions o{.body_radius = 1737400};
+  Random random(4);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<HorizonTop> tops;
+    for (int k = 0; k < 8; ++k)
+      tops.push_back({.bearing = random.uniform(-3.1, 3.1), .elevation = random.uniform(0.005, 0.08)});
+    EXPECT_FALSE(find_by_skyline(tops, c.summits, c, o).fix);
+  }
+  EXPECT_EQ(find_by_skyline({}, c.summits, c, o).reason, "too few tops on the horizon");
+  EXPECT_EQ(find_by_skyline(std::vector<HorizonTop>(4), {}, c, o).reason, "the map has too few summits");
+}
+
+TEST(Ground, StandsAsTheSurfaceLies) {
+  const GroundHeight plane = [](const Eigen::Vector2d& p) { return 5 + 0.1 * p.x() + 0.2 * p.y(); };
+  const auto east = stand(plane, {3, 4, 0});
+  ASSERT_TRUE(east);
+  EXPECT_NEAR(east->z, 6.1, 1e-12);
+  EXPECT_NEAR(east->pitch, -std::atan(0.1), 1e-12);  // uphill: nose up
+  EXPECT_NEAR(east->roll, std::atan(0.2), 1e-12);    // the left side is higher
+  const auto north = stand(plane, {3, 4, std::numbers::pi / 2});
+  EXPECT_NEAR(north->pitch, -std::atan(0.2), 1e-12);
+  EXPECT_NEAR(north->roll, -std::atan(0.1), 1e-12);
+  EXPECT_NEAR(on_map({2, 0, 0.3}, *north).x, 2 / std::hypot(1, 0.2), 1e-12);
+  const GroundHeight hole = [](const Eigen::Vector2d& p) {
+    return p.x() > 0 ? std::optional<double>(1) : std::nullopt;
+  };
+  EXPECT_FALSE(stand(hole, {0, 0, 0}));
+  EXPECT_NEAR(curvature_drop(10000, 6371000, 0), 7.85, 0.01);
+  EXPECT_EQ(curvature_drop(10000, 0, 0), 0);
+}
+
+}  // namespace
+}  // namespace waymark::testing
