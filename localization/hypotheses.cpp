@@ -187,13 +187,41 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
   for (Part& part : parts_) part.choice.clear();
   prune();
   missed_ = fits ? 0 : missed_ + 1;
-  if (missed_ >= options_.lost_after)
-    for (Part& part : parts_) {
-      const Eigen::Vector3d sd = part.at.covariance.diagonal().cwiseSqrt() * options_.search_growth;
-      part.at.covariance = widest(sd).cwiseAbs2().asDiagonal();
-    }
+  if (missed_ >= options_.lost_after) widen();
   return matches;
 }
+
+void HypothesesFilter::widen() {
+  for (Part& part : parts_) {
+    const Eigen::Vector3d sd = part.at.covariance.diagonal().cwiseSqrt() * options_.search_growth;
+    part.at.covariance = widest(sd).cwiseAbs2().asDiagonal();
+  }
+}
+
+template <class Fix>
+bool HypothesesFilter::take(const Fix& measured, int rows) {
+  FixGate& gate = rows == 2 ? gnss_ : heading_;
+  const auto least = [&] {
+    double squares = 1e300;
+    for (const Part& part : parts_) squares = std::min(squares, updated(part.at, measured).squares);
+    return squares;
+  };
+  if (!gate.pass(least(), rows)) return false;
+  if (gate.overruled())
+    for (int i = 0; i < 40 && least() > 4; ++i) widen();
+  std::vector<double> logs;
+  for (Part& part : parts_) {
+    const FixUpdate update = updated(part.at, measured);
+    part.at = update.estimate;
+    logs.push_back(std::log(part.weight) + update.log_density);
+  }
+  const double best = std::ranges::max(logs);
+  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].weight = std::exp(logs[i] - best);
+  prune();
+  return true;
+}
+template bool HypothesesFilter::take(const GnssFix&, int);
+template bool HypothesesFilter::take(const HeadingFix&, int);
 
 PoseEstimate HypothesesFilter::estimate() const {
   const auto best = std::ranges::max_element(parts_, {}, &Part::weight);

@@ -25,6 +25,8 @@ class HypothesesFilter final : public Localizer {
                    IdentificationOptions identification = {}, HypothesesOptions options = {});
   void move(const BodyMotion& motion) override;
   std::vector<Match> see(const SightingSet& seen) override;
+  bool fix(const GnssFix& gnss) override { return take(gnss, 2); }
+  bool fix(const HeadingFix& heading) override { return take(heading, 1); }
   /// Mean and covariance of the Gaussians that agree with the best one within a metre; of all where these
   /// have less than half the weight.
   PoseEstimate estimate() const override;
@@ -38,6 +40,9 @@ class HypothesesFilter final : public Localizer {
     double weight = 1;        // they sum to 1
     std::vector<int> choice;  // landmark of each sighting of the set at hand, or -1
   };
+  template <class Fix>
+  bool take(const Fix& measured, int rows);
+  void widen();
   void split();
   void prune();
   void see_some(const SightingSet& some, const LandmarkGrid& map);
@@ -48,6 +53,7 @@ class HypothesesFilter final : public Localizer {
   HypothesesOptions options_;
   std::vector<Part> parts_;
   std::int64_t missed_ = 0;
+  FixGate gnss_, heading_;
 };
 
 }  // namespace waymark

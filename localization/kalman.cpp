@@ -69,6 +69,24 @@ std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
   return matches;
 }
 
+// A position and a heading are parts of the state: the update is linear, the same for both filters.
+template <class Fix>
+bool KalmanLocalizer::take(const Fix& measured, int rows) {
+  FixGate& gate = rows == 2 ? gnss_ : heading_;
+  FixUpdate update = updated(estimate(), measured);
+  if (!gate.pass(update.squares, rows)) return false;
+  if (gate.overruled()) {
+    for (int i = 0; i < 40 && update.squares > 4; ++i) {
+      widen(2);
+      update = updated(estimate(), measured);
+    }
+  }
+  replace(update.estimate);
+  return true;
+}
+template bool KalmanLocalizer::take(const GnssFix&, int);
+template bool KalmanLocalizer::take(const HeadingFix&, int);
+
 ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
                                IdentificationOptions identification, KalmanOptions options)
     : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),

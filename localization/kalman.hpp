@@ -19,6 +19,8 @@ class KalmanLocalizer : public Localizer {
   KalmanLocalizer(LandmarkWindow map, FeatureScales scales, IdentificationOptions identification,
                   KalmanOptions options);
   std::vector<Match> see(const SightingSet& seen) final;
+  bool fix(const GnssFix& gnss) final { return take(gnss, 2); }
+  bool fix(const HeadingFix& heading) final { return take(heading, 1); }
   Trust trust() const final { return missed_ >= options_.lost_after ? Trust::lost : Trust::sure; }
 
  protected:
@@ -32,11 +34,15 @@ class KalmanLocalizer : public Localizer {
   virtual void widen(double factor) = 0;
 
  private:
+  template <class Fix>
+  bool take(const Fix& measured, int rows);
+
   LandmarkWindow map_;
   FeatureScales scales_;
   IdentificationOptions identification_;
   KalmanOptions options_;
   std::int64_t missed_ = 0;
+  FixGate gnss_, heading_;
 };
 
 /// Extended Kalman filter (eqs. 15-16). Departures: x and P on the right are the predicted ones, as they must

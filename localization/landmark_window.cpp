@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/landmark_window.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace waymark {
@@ -17,7 +18,7 @@ const LandmarkGrid& LandmarkWindow::around(const Eigen::Vector2d& at, double rea
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(reach);
   const Eigen::AlignedBox2d asked(at - half, at + half);
   if (loaded_.isEmpty() || !loaded_.contains(asked)) {
-    const Eigen::Vector2d more = Eigen::Vector2d::Constant(margin_);
+    const Eigen::Vector2d more = Eigen::Vector2d::Constant(std::max(margin_, reach / 4));
     loaded_ = Eigen::AlignedBox2d(asked.min() - more, asked.max() + more);
     grid_ = LandmarkGrid(source_(loaded_));
   }

@@ -13,7 +13,7 @@ class LandmarkWindow {
  public:
   /// The whole map in memory.
   explicit LandmarkWindow(LandmarkGrid whole);
-  /// `margin` metres are read beyond what is asked for, > 0.
+  /// `margin` metres are read beyond what is asked for, > 0; a quarter of the reach where that is more.
   LandmarkWindow(LandmarkSource source, double margin);
 
   /// All landmarks within `reach` of the place, and more. Valid until the next call.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
+#include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
 #include "localization/identification.hpp"
 namespace waymark {
@@ -19,6 +20,10 @@ class Localizer {
   virtual void move(const BodyMotion& motion) = 0;
   /// Uses what one sensor saw at this moment; says what became of each sighting.
   virtual std::vector<Match> see(const SightingSet& seen) = 0;
+  /// Uses a position or heading measured from outside; false: not used, since the method cannot or since it
+  /// contradicts all the robot knows.
+  virtual bool fix(const GnssFix&) { return false; }
+  virtual bool fix(const HeadingFix&) { return false; }
   /// Always finite.
   virtual PoseEstimate estimate() const = 0;
   virtual Trust trust() const { return Trust::sure; }

@@ -56,11 +56,13 @@ void ParticleOptions::describe(OptionVisitor& option) {
 }
 
 ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
-                               IdentificationOptions identification, ParticleOptions options)
+                               IdentificationOptions identification, ParticleOptions options,
+                               PoseFinder finder)
     : map_(std::move(map)),
       scales_(std::move(scales)),
       identification_(std::move(identification)),
-      options_(std::move(options)) {
+      options_(std::move(options)),
+      finder_(std::move(finder)) {
   // What both say is said once, for the identification.
   options_.weight.clutter = identification_.clutter;
   options_.weight.quality_floor = identification_.quality_floor;
@@ -94,6 +96,7 @@ Trust ParticleFilter::trust() const {
 
 void ParticleFilter::move(const BodyMotion& motion) {
   pending_ = then(pending_, motion);
+  if (finder_) memory_.move(motion);
   if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) spread();
 }
 
@@ -111,6 +114,7 @@ void ParticleFilter::spread() {
 
 std::optional<Pose2> ParticleFilter::pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                                         Random& random) const {
+  if (!hints_.empty() && random.chance(0.5)) return hints_[random.below(hints_.size())];
   const SeenLandmark& s = seen.sightings[random.below(seen.sightings.size())];
   if (!s.sound() || map.empty()) return {};
   const auto known = identification_.use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
@@ -122,6 +126,25 @@ std::optional<Pose2> ParticleFilter::pose_that_explains(const SightingSet& seen,
   const double yaw = wrapped(from + std::numbers::pi - s.bearing + s.bearing_sd * random.normal());
   const Pose2 sensor{map[l].at.x() + range * std::cos(from), map[l].at.y() + range * std::sin(from), yaw};
   return sensor * inverse(seen.robot_from_sensor);
+}
+
+// At most every fifth set: the finder looks at the whole map.
+void ParticleFilter::ask_finder(const SightingSet& seen) {
+  if (asked_ != 0 && sets_ < asked_ + 5) return;
+  asked_ = sets_;
+  hints_.clear();
+  FoundPoses found = finder_(with_bearings(memory_.recall(), seen));
+  if (found.sure) found.possible = {*found.sure};
+  Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "hints");
+  for (const PoseEstimate& e : found.possible) {
+    const Eigen::Matrix3d root = square_root(e.covariance);
+    for (int i = 0; i < 50; ++i) hints_.push_back(sample(e, root, random));
+  }
+  // It is somewhere else than all particles: begin again.
+  if (found.sure && searching_) {
+    poses_.clear();
+    found_sd_ = std::sqrt(found.sure->covariance(0, 0) + found.sure->covariance(1, 1));
+  }
 }
 
 void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count) {
@@ -175,6 +198,53 @@ void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map
   weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
 }
 
+template <class Fit>
+bool ParticleFilter::weigh_by(Fit&& fit) {
+  for (std::size_t i = 0; i < poses_.size(); ++i) weights_[i] = std::log(weights_[i]) + fit(poses_[i]);
+  weights_ = normalised(weights_);
+  summary_ = summary(poses_, weights_, kCluster);
+  if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
+    Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw by fix");
+    std::vector<Pose2> next;
+    for (const std::uint32_t i : resample(weights_, poses_.size(), random.uniform()))
+      next.push_back(poses_[i]);
+    poses_ = std::move(next);
+    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+  }
+  return true;
+}
+
+bool ParticleFilter::fix(const GnssFix& gnss) {
+  spread();
+  const double squares = updated(summary_, gnss).squares;
+  const bool scattered = searching_ && !poses_.empty();
+  if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
+  double nearest = 1e300;
+  for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
+  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there: all anew, any heading
+    Random random(static_cast<std::uint64_t>(options_.seed) + ++step_, "fix");
+    poses_.clear();
+    for (std::int64_t i = 0; i < options_.search_particles; ++i)
+      poses_.push_back({gnss.at.x() + gnss.sd * random.normal(), gnss.at.y() + gnss.sd * random.normal(),
+                        random.uniform(-std::numbers::pi, std::numbers::pi)});
+    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+    summary_ = summary(poses_, weights_, kCluster);
+    return true;
+  }
+  return weigh_by(
+      [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
+}
+
+bool ParticleFilter::fix(const HeadingFix& heading) {
+  spread();
+  if (poses_.empty()) return false;
+  // A floor for wild readings: they cannot kill the particles that are right.
+  return weigh_by([&](const Pose2& p) {
+    const double v = wrapped(heading.yaw - p.yaw) / heading.sd;
+    return std::log(std::exp(-v * v / 2) + 1e-4);
+  });
+}
+
 std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   spread();
   double farthest = 0;
@@ -183,6 +253,14 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
       farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
   const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
   const LandmarkGrid& map = map_.around(summary_.pose.at(), farthest + 6 * width);
+  ++sets_;
+  if (finder_) {
+    memory_.add(seen);
+    if (searching_ || (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
+      ask_finder(seen);
+    else
+      hints_.clear();
+  }
   if (poses_.empty() && !seen.sightings.empty())
     search(seen, map, static_cast<std::size_t>(options_.search_particles));
   if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
@@ -190,7 +268,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   weigh(seen, map);
   summary_ = summary(poses_, weights_, kCluster);
   const double sd = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  searching_ = searching_ ? sd > 0.5 : sd > 3 * kCluster;
+  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kCluster, 3 * found_sd_));
   if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
     draw_again(seen, map);
 

@@ -5,6 +5,8 @@
 #include "localization/landmark_window.hpp"
 #include "localization/localizer.hpp"
 #include "localization/particle_weights.hpp"
+#include "localization/pose_finder.hpp"
+#include "localization/sighting_memory.hpp"
 namespace waymark {
 
 struct ParticleOptions {
@@ -25,15 +27,19 @@ struct ParticleOptions {
 
 /// Particle filter (section 4.2; Monte Carlo localization, Thrun et al. 2005, with augmented recovery and KLD
 /// sampling). The same seed gives the same track for any number of threads. Poses for the search are drawn
-/// where a landmark of the right type explains one of the sightings.
+/// where a landmark of the right type explains one of the sightings, and half of them from a PoseFinder, if
+/// there is one, which is asked about all that was seen lately.
 class ParticleFilter final : public Localizer {
  public:
   /// Without a start the first sightings say where the robot may be.
   ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
-                 IdentificationOptions identification = {}, ParticleOptions options = {});
+                 IdentificationOptions identification = {}, ParticleOptions options = {},
+                 PoseFinder finder = {});
   void move(const BodyMotion& motion) override;
   /// The verdicts are those of `identify` at the estimate after the update.
   std::vector<Match> see(const SightingSet& seen) override;
+  bool fix(const GnssFix& gnss) override;
+  bool fix(const HeadingFix& heading) override;
   PoseEstimate estimate() const override { return moved(summary_, pending_); }
   Trust trust() const override;
 
@@ -45,6 +51,9 @@ class ParticleFilter final : public Localizer {
   void draw_again(const SightingSet& seen, const LandmarkGrid& map);
   std::optional<Pose2> pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                           Random& random) const;
+  void ask_finder(const SightingSet& seen);
+  template <class Fit>
+  bool weigh_by(Fit&& fit);
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
   std::size_t wanted() const;
 
@@ -59,6 +68,13 @@ class ParticleFilter final : public Localizer {
   std::uint64_t step_ = 0;
   double slow_ = 0, fast_ = 0;
   bool searching_ = false;
+  PoseFinder finder_;
+  SightingMemory memory_;
+  std::vector<Pose2> hints_;  // poses the finder gave, drawn with their covariances
+  std::uint64_t asked_ = 0;   // set at which it was asked last
+  std::uint64_t sets_ = 0;
+  double found_sd_ = 0;  // m, of the last pose the finder was sure of: no search gets nearer by itself
+  FixGate gnss_;
 };
 
 }  // namespace waymark

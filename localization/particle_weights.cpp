@@ -34,6 +34,14 @@ void WeightOptions::describe(OptionVisitor& option) {
          {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
   option("unmatched_cost", unmatched_cost,
          {.help = "paper: what a sighting without landmark costs; negative: the gate"});
+  option("expect_unseen", expect_unseen,
+         {.help = "likelihood: landmarks in view that were not seen speak against a place"});
+  option("detection", detection,
+         {.help = "Probability that a landmark in view is seen", .min = 0.01, .max = 0.999});
+  option("view_range", view_range,
+         {.help = "expect_unseen: how far the sensor sees, metres", .min = 0.1, .max = 1e5});
+  option("view_angle", view_angle,
+         {.help = "expect_unseen: the sensor's whole field of view, radians", .min = 0.01, .max = 6.2831854});
 }
 
 SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
@@ -64,8 +72,27 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
       p.landmark = map.find(*s.identity);
       p.absent = !p.landmark;
     }
+    if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
     prepared_.push_back(p);
   }
+}
+
+double SightingScore::log_unseen(std::uint32_t landmark) const {
+  return std::log1p(-options_.detection * std::max((*map_)[landmark].quality, options_.quality_floor));
+}
+
+double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
+                             std::span<const std::uint32_t> matched) const {
+  double sum = 0;
+  const double least = std::cos(options_.view_angle / 2);
+  map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
+    const MapLandmark& l = (*map_)[i];
+    if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
+    const Eigen::Vector2d d = l.at - sensor;
+    if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < least * d.norm()) return;
+    if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
+  });
+  return sum;
 }
 
 double SightingScore::pair(const Prepared& p, std::uint32_t landmark, const Eigen::Vector2d& sensor,
@@ -107,14 +134,16 @@ double SightingScore::pair(const Prepared& p, std::uint32_t landmark, const Eige
   return squares + log_det + features.squares - features.used - 2 * std::log(quality * p.seen.confidence);
 }
 
-double SightingScore::best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine,
-                           double sine) const {
+SightingScore::Best SightingScore::best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine,
+                                        double sine) const {
   const Eigen::Vector2d along(cosine * p.cosine - sine * p.sine, sine * p.cosine + cosine * p.sine);
-  if (p.absent) return kNone;
-  if (p.landmark) return pair(p, *p.landmark, sensor, along);
-  double least = kNone;
+  if (p.absent) return {kNone, 0};
+  if (p.landmark) return {pair(p, *p.landmark, sensor, along), *p.landmark};
+  Best least{kNone, 0};
   const Eigen::Vector2d centre = p.seen.range ? Eigen::Vector2d(sensor + *p.seen.range * along) : sensor;
-  map_->near(centre, p.radius, [&](std::uint32_t i) { least = std::min(least, pair(p, i, sensor, along)); });
+  map_->near(centre, p.radius, [&](std::uint32_t i) {
+    if (const double cost = pair(p, i, sensor, along); cost < least.cost) least = {cost, i};
+  });
   return least;
 }
 
@@ -125,17 +154,23 @@ double SightingScore::operator()(const Pose2& robot) const {
                                robot.y + sine * mount.x + cosine * mount.y);
   if (mount.yaw != 0) cosine = std::cos(robot.yaw + mount.yaw), sine = std::sin(robot.yaw + mount.yaw);
   double sum = 0;
+  const bool expects = options_.expect_unseen && !paper_;
+  const double seen = expects ? std::log(options_.detection) : 0;
+  std::vector<std::uint32_t> matched;
   for (const Prepared& p : prepared_) {
-    const double cost = best(p, sensor, cosine, sine);
+    const auto [cost, landmark] = best(p, sensor, cosine, sine);
+    if (expects && cost < kNone) matched.push_back(landmark);
     if (paper_) {
       sum += cost < kNone ? cost : options_.unmatched_cost < 0 ? p.gate : options_.unmatched_cost;
     } else if (cost < kNone) {
-      const double fit = -cost / 2, high = std::max(fit, p.log_clutter), low = std::min(fit, p.log_clutter);
+      const double fit = seen - cost / 2, high = std::max(fit, p.log_clutter),
+                   low = std::min(fit, p.log_clutter);
       sum += options_.temper * (high + std::log1p(std::exp(low - high)));
     } else {
       sum += options_.temper * p.log_clutter;
     }
   }
+  if (expects) sum += options_.temper * unseen(sensor, cosine, sine, matched);
   return sum;
 }
 

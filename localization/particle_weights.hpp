@@ -15,7 +15,12 @@ struct WeightOptions {
   /// independent of the last ones.
   double temper = 0.5;
   double quality_floor = 0.1;  ///< qualities below count as this; 1: quality is not used
-  double gate = 0.9999;        ///< beyond it a landmark cannot be the one seen
+  /// `likelihood`: landmarks in view that were not seen speak against a pose, by log(1 - q detection).
+  bool expect_unseen = false;
+  double detection = 0.7;                 ///< probability that a landmark of quality 1 in view is seen
+  double view_range = 20;                 ///< m: how far the sensor sees landmarks
+  double view_angle = 6.283185307179586;  ///< rad: its whole field of view about its x axis
+  double gate = 0.9999;                   ///< beyond it a landmark cannot be the one seen
   /// `paper`: what a sighting without a landmark adds to eq. 12; negative: the gate. 0 is the paper's letter,
   /// with which a particle that matches nothing is the best of all.
   double unmatched_cost = -1;
@@ -34,7 +39,9 @@ class SightingScore {
   SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
                 const WeightOptions& options, bool use_identities);
 
-  /// `likelihood`: sum over sightings of the log of (clutter + best landmark's density times quality).
+  /// `likelihood`: sum over sightings of the log of (clutter + best landmark's density times quality), and
+  /// with `expect_unseen` the sum of log(1 - q detection) over landmarks in view that no sighting is nearest
+  /// to. What stands between is not known: in dense forest choose `view_range` so that most is seen.
   /// `paper`: e of eq. 12, the sum of match distances times qualities.
   double operator()(const Pose2& robot) const;
   std::size_t sightings() const { return prepared_.size(); }
@@ -50,7 +57,14 @@ class SightingScore {
     std::optional<std::uint32_t> landmark;  ///< of a known identity
     bool absent = false;                    ///< a known identity the map does not have
   };
-  double best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine, double sine) const;
+  struct Best {
+    double cost;
+    std::uint32_t landmark;
+  };
+  Best best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine, double sine) const;
+  double log_unseen(std::uint32_t landmark) const;
+  double unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
+                std::span<const std::uint32_t> matched) const;
   double pair(const Prepared& p, std::uint32_t landmark, const Eigen::Vector2d& sensor,
               const Eigen::Vector2d& along) const;
 
@@ -60,6 +74,7 @@ class SightingScore {
   Pose2 robot_from_sensor_;
   std::vector<Prepared> prepared_;
   bool paper_;
+  std::vector<TypeId> types_;  // that the sensor sees, as far as this set tells
 };
 
 /// Weights of eqs. 13-14 from errors: (e_max - e) / e_max. Degenerate cases: all errors equal (also all 0, or

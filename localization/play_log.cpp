@@ -10,8 +10,13 @@ namespace {
 class Player {
  public:
   Player(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,
-         const Clock& clock)
-      : log_(log), localizer_(localizer), options_(options), detect_(detect), clock_(clock) {}
+         const Clock& clock, const GroundHeight& ground)
+      : log_(log),
+        localizer_(localizer),
+        options_(options),
+        detect_(detect),
+        clock_(clock),
+        ground_(ground) {}
 
   Track play() {
     if (!log_.events.empty()) now_ = log_.events.front().t;
@@ -23,6 +28,8 @@ class Player {
       row.t = event.t;
       row.at = localizer_.estimate();
       row.lost = localizer_.trust() != Trust::sure;
+      look_down(row.at.pose);
+      row.z = stance_.z, row.roll = stance_.roll, row.pitch = stance_.pitch;
       if (!row.at.pose.finite() || !row.at.covariance.allFinite())
         throw std::logic_error("a localizer has an estimate that is not finite");
       track_.rows.push_back(row);
@@ -37,21 +44,41 @@ class Player {
     const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.longest_hold);
     now_ = std::max(now_, t);
     if (const auto* twist = std::get_if<TwistReading>(&held_))
-      localizer_.move(twist_motion(twist->speed, twist->sideways, twist->turn, driven, options_.odometry));
+      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, options_.odometry));
     else if (const auto* car = std::get_if<CarReading>(&held_))
-      localizer_.move(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, options_.odometry));
+      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, options_.odometry));
     if (seconds > driven) localizer_.move(step_motion({}, seconds - driven, options_.odometry));
+  }
+
+  void drive(BodyMotion motion) {
+    motion.step = on_map(motion.step, stance_);
+    localizer_.move(motion);
+  }
+
+  void look_down(const Pose2& pose) {
+    if (!ground_) return;
+    const auto stance = stand(ground_, pose, options_.wheelbase, options_.track_width);
+    stance_ = stance ? *stance : Stance{stance_.z, 0, 0};
   }
 
   bool take(const TwistReading& reading, TrackRow&) { return held_ = reading, false; }
   bool take(const CarReading& reading, TrackRow&) { return held_ = reading, false; }
   bool take(const StepReading& reading, TrackRow&) {
-    localizer_.move(step_motion(reading.step, std::max(0.0, now_ - last_step_), options_.odometry));
+    drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), options_.odometry));
     last_step_ = now_;
     return false;
   }
-  bool take(const GnssFix&, TrackRow&) { return false; }  // kept for comparison, not used
+  bool take(const GnssFix& fix, TrackRow&) { return take_fix(fix); }
+  bool take(const HeadingFix& fix, TrackRow&) { return take_fix(fix); }
   bool take(const LaserScan& scan, TrackRow& row) { return detect_ && take(detect_(scan), row); }
+
+  template <class Fix>
+  bool take_fix(const Fix& fix) {
+    if (!options_.use_fixes) return false;
+    ++track_.fixes;
+    track_.fixes_rejected += !localizer_.fix(fix);
+    return false;
+  }
 
   bool take(SightingSet seen, TrackRow& row) {
     for (SeenLandmark& s : seen.sightings) {
@@ -82,6 +109,8 @@ class Player {
   const PlayOptions& options_;
   const ScanDetector& detect_;
   const Clock& clock_;
+  const GroundHeight& ground_;
+  Stance stance_;
   Track track_;
   std::variant<std::monostate, TwistReading, CarReading> held_;
   double now_ = 0, last_step_ = 0;
@@ -93,6 +122,11 @@ void PlayOptions::describe(OptionVisitor& option) {
   odometry.describe(option);
   option("longest_hold", longest_hold,
          {.help = "Seconds a speed holds without a new reading; then the robot is taken to stand", .min = 0});
+  option("use_fixes", use_fixes, {.help = "Use the GNSS and compass readings of the log"});
+  option("wheelbase", wheelbase,
+         {.help = "Metres between front and rear wheels on the DEM", .min = 0.01, .max = 100});
+  option("track_width", track_width,
+         {.help = "Metres between left and right wheels on the DEM", .min = 0.01, .max = 100});
   option("sensor_noise", sensor_noise,
          {.help = "Factor on the standard deviations of ranges and bearings that the log states",
           .min = 0.01,
@@ -100,8 +134,8 @@ void PlayOptions::describe(OptionVisitor& option) {
 }
 
 Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,
-           const Clock& clock) {
-  return Player(log, localizer, options, detect, clock).play();
+           const Clock& clock, const GroundHeight& ground) {
+  return Player(log, localizer, options, detect, clock, ground).play();
 }
 
 }  // namespace waymark

@@ -21,6 +21,7 @@ bool usable(const LogEvent& e) {
     return std::isfinite(car->wheel_speed) && std::abs(car->steering) < 1.4;
   if (const auto* step = std::get_if<StepReading>(&e.what)) return step->step.finite();
   if (const auto* fix = std::get_if<GnssFix>(&e.what)) return fix->at.allFinite() && fix->sd > 0;
+  if (const auto* fix = std::get_if<HeadingFix>(&e.what)) return std::isfinite(fix->yaw) && fix->sd > 0;
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 #include "geo/local_frame.hpp"
+#include "localization/absolute_fix.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/sighting.hpp"
@@ -23,11 +24,8 @@ struct CarReading {
 struct StepReading {
   Pose2 step;
 };
-struct GnssFix {
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  double sd = 1;  ///< m, of each coordinate
-};
-using LogReading = std::variant<TwistReading, CarReading, StepReading, SightingSet, LaserScan, GnssFix>;
+using LogReading =
+    std::variant<TwistReading, CarReading, StepReading, SightingSet, LaserScan, GnssFix, HeadingFix>;
 
 struct LogEvent {
   double t = 0;  ///< s

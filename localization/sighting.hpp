@@ -18,6 +18,9 @@ struct SeenLandmark {
   double bearing = 0, bearing_sd = 0.02;
   std::optional<double> range;
   double range_sd = 0.1;  ///< m; of no meaning without a range
+  /// rad above the horizontal, of a summit on the horizon; absent where only directions are measured.
+  std::optional<double> elevation = {};
+  double elevation_sd = 0.002;
   KnownFeatures features;
   std::optional<LandmarkKey> identity;  ///< where the landmark says who it is
   double confidence = 1;                ///< probability that it is one, (0, 1]
@@ -33,6 +36,7 @@ struct SightingSet {
 };
 
 inline bool SeenLandmark::sound() const {
+  if (elevation && !(std::abs(*elevation) < 1.6 && elevation_sd > 0)) return false;
   return std::isfinite(bearing) && std::isfinite(bearing_sd) && bearing_sd > 0 && confidence > 0 &&
          confidence <= 1 &&
          (!range || (std::isfinite(*range) && *range > 0 && std::isfinite(range_sd) && range_sd > 0));

@@ -22,6 +22,7 @@ struct Track {
   std::int64_t named = 0;                          ///< matched sightings of which the log knows the landmark
   std::int64_t wrong = 0;                          ///< of these, matched with another
   std::int64_t updates = 0;                        ///< sets of sightings
+  std::int64_t fixes = 0, fixes_rejected = 0;      ///< GNSS and compass readings
   double seconds = 0;                              ///< in updates, if it was measured
 };
 

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "localization/constellation.hpp"
+#include "localization/hypotheses.hpp"
+#include "localization/kalman.hpp"
+#include "localization/particle_filter.hpp"
+#include "localization/sighting_memory.hpp"
+#include "made_world.hpp"
+
+namespace waymark::testing {
+namespace {
+
+std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, const LandmarkWindow& map) {
+  std::vector<std::unique_ptr<Localizer>> all;
+  all.push_back(std::make_unique<ExtendedKalman>(start, map, FeatureScales{}));
+  all.push_back(std::make_unique<UnscentedKalman>(start, map, FeatureScales{}));
+  all.push_back(std::make_unique<HypothesesFilter>(start, map, FeatureScales{}));
+  ParticleOptions options;
+  options.particles = 2000;
+  all.push_back(
+      std::make_unique<ParticleFilter>(start, map, FeatureScales{}, IdentificationOptions{}, options));
+  return all;
+}
+
+TEST(Fixes, PositionAndHeadingAreTheProductOfGaussians) {
+  // 1 m known to 1 m, measured 3 m with 1 m: in the middle, with half the variance.
+  const PoseEstimate start{{1, 0, 0}, Eigen::Vector3d(1, 1, 0.04).asDiagonal()};
+  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+    EXPECT_TRUE(filter->fix(GnssFix{{3, 0}, 1}));
+    EXPECT_NEAR(filter->estimate().pose.x, 2, 0.1);
+    EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.5, 0.08);
+    EXPECT_TRUE(filter->fix(HeadingFix{0.2, 0.2}));
+    EXPECT_NEAR(filter->estimate().pose.yaw, 0.1, 0.03);
+    EXPECT_NEAR(filter->estimate().covariance(2, 2), 0.02, 0.005);
+  }
+}
+
+TEST(Fixes, HeadingsWrap) {
+  const PoseEstimate start{{0, 0, 3.1}, Eigen::Vector3d(1, 1, 0.01).asDiagonal()};
+  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+    EXPECT_TRUE(filter->fix(HeadingFix{-3.1, 0.1}));
+    EXPECT_NEAR(std::abs(filter->estimate().pose.yaw), std::numbers::pi, 0.03);
+  }
+}
+
+TEST(Fixes, OneWildFixIsLeftOutAndManyInTurnAreBelieved) {
+  const PoseEstimate start{{0, 0, 0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
+  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+    EXPECT_FALSE(filter->fix(GnssFix{{500, 0}, 1}));
+    EXPECT_NEAR(filter->estimate().pose.x, 0, 0.1);
+    for (int i = 0; i < 12; ++i) filter->fix(GnssFix{{500, 0}, 1});
+    EXPECT_NEAR(filter->estimate().pose.x, 500, 3);
+    EXPECT_TRUE(filter->estimate().covariance.allFinite());
+  }
+}
+
+TEST(ParticleFilter, BearingsAloneHoldTheRobot) {
+  for (const bool particles : {false, true}) {
+    MadeDrive drive(21);
+    const LandmarkWindow map{LandmarkGrid(drive.map())};
+    std::unique_ptr<Localizer> filter;
+    if (particles)
+      filter = std::make_unique<ParticleFilter>(drive.start(), map, FeatureScales{});
+    else
+      filter = std::make_unique<UnscentedKalman>(drive.start(), map, FeatureScales{});
+    double drift = 0;
+    DeadReckoning blind(drive.start());
+    for (int i = 0; i < 80; ++i) {
+      const BodyMotion motion = drive.drive();
+      filter->move(motion);
+      blind.move(motion);
+      SightingSet seen = drive.look();
+      for (SeenLandmark& s : seen.sightings) s.range.reset();
+      filter->see(seen);
+      drift = std::max(drift, (blind.estimate().pose.at() - drive.truth().at()).norm());
+    }
+    EXPECT_LT((filter->estimate().pose.at() - drive.truth().at()).norm(), 0.35) << particles;
+    EXPECT_GT(drift, 0.5);
+  }
+}
+
+// The slow twin: log of the probability of what was not seen, landmark by landmark.
+TEST(SightingScore, UnseenLandmarksSpeakAgainstAPose) {
+  auto landmarks = strewn(200, 60, 3);
+  Random random(1);
+  for (MapLandmark& l : landmarks) l.quality = random.uniform(0.2, 1);
+  const LandmarkGrid map(landmarks);
+  const FeatureScales scales;
+  WeightOptions options;
+  options.temper = 1;
+  SightingSet seen;
+  SeenLandmark s;
+  s.type = TypeId{0};
+  s.range = 5;
+  s.bearing = 0.3;
+  seen.sightings.push_back(s);
+  for (const double angle : {6.283185307179586, 2.0}) {
+    options.view_range = 12;
+    options.view_angle = angle;
+    for (int i = 0; i < 50; ++i) {
+      const Pose2 pose{random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-3, 3)};
+      options.expect_unseen = false;
+      const double plain = SightingScore(seen, map, scales, options, false)(pose);
+      options.expect_unseen = true;
+      const double full = SightingScore(seen, map, scales, options, false)(pose);
+      double unseen = 0, matched = 0;
+      const Eigen::Vector2d at = (pose * Pose2{5 * std::cos(0.3), 5 * std::sin(0.3), 0}).at();
+      double nearest = 1e300;
+      for (const MapLandmark& l : landmarks) {
+        const Eigen::Vector2d d = l.at - pose.at();
+        const bool in_view =
+            d.norm() <= 12 && std::abs(wrapped(std::atan2(d.y(), d.x()) - pose.yaw)) <= angle / 2;
+        if (in_view) unseen += std::log(1 - options.detection * l.quality);
+        if ((l.at - at).norm() < nearest)
+          nearest = (l.at - at).norm(), matched = std::log(1 - options.detection * l.quality);
+      }
+      // Where the sighting surely has no landmark nothing else changes; where it has, that one is not unseen.
+      if (nearest > 3)
+        EXPECT_NEAR(full, plain + unseen, 1e-9);
+      else
+        EXPECT_LE(full, plain + unseen - matched + 1e-9) << nearest;
+    }
+  }
+}
+
+TEST(SightingMemory, CarriesWhatWasSeenAlong) {
+  MadeDrive drive(31);
+  drive.noise = {1e-9, 1e-9, 1e-9, 1e-9, 1e-12, 1e-12};
+  SightingMemory memory;
+  for (int i = 0; i < 30; ++i) {
+    memory.move(drive.drive());
+    memory.add(drive.look());
+  }
+  const SightingSet all = memory.recall(200);
+  EXPECT_GT(all.sightings.size(), drive.look().sightings.size());
+  for (const SeenLandmark& s : all.sightings) {
+    ASSERT_TRUE(s.sound());
+    const Pose2 at = drive.truth() * Pose2{*s.range * std::cos(s.bearing), *s.range * std::sin(s.bearing), 0};
+    EXPECT_LT((at.at() - drive.map()[*s.identity - 1].at).norm(), 0.6);
+  }
+}
+
+TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
+  // 4000 particles drawn at 20,000 landmarks would miss it.
+  auto landmarks = strewn(20000, 1000, 41);
+  Random random(2, "drive in a large map");
+  for (MapLandmark& l : landmarks) l.features.value[0] = random.log_uniform(0.2, 1);
+  const auto index = std::make_shared<ConstellationIndex>(landmarks, FeatureScales{});
+  ParticleOptions options;
+  options.threads = 1;
+  IdentificationOptions id;
+  id.use_identities = false;
+  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(landmarks)}, {}, id, options,
+                        [&](const SightingSet& seen) {
+                          FoundPoses found;
+                          const auto answer = index->find(seen);
+                          if (answer.fix) found.sure = answer.fix->pose();
+                          for (const auto& fix : answer.candidates) found.possible.push_back(fix.pose());
+                          return found;
+                        });
+  Pose2 truth{211, -130, 1};
+  for (int i = 0; i < 12; ++i) {
+    const BodyMotion motion = twist_motion(1, 0, 0.1, 0.5, {});
+    truth = truth * motion.step;
+    filter.move(motion);
+    SightingSet seen;
+    for (const MapLandmark& l : landmarks) {
+      const Eigen::Vector2d d = l.at - truth.at();
+      if (d.norm() > 10) continue;
+      SeenLandmark s;
+      s.type = TypeId{0};
+      s.range = d.norm() + 0.05 * random.normal();
+      s.range_sd = 0.05;
+      s.bearing = wrapped(std::atan2(d.y(), d.x()) - truth.yaw + 0.01 * random.normal());
+      s.bearing_sd = 0.01;
+      s.features.value[0] = l.features.value[0] * (1 + 0.05 * random.normal());
+      seen.sightings.push_back(s);
+    }
+    filter.see(seen);
+    ASSERT_TRUE(filter.estimate().pose.finite());
+  }
+  EXPECT_LT((filter.estimate().pose.at() - truth.at()).norm(), 0.3);
+  EXPECT_EQ(filter.trust(), Trust::sure);
+}
+
+}  // namespace
+}  // namespace waymark::testing
