@@ -22,7 +22,8 @@ Track play_task(const LocalizeTask& task, Localizer& localizer) {
       [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, task.settings.scans); },
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-      });
+      },
+      task.ground);
 }
 
 Track FilterMethod::run(LocalizeTask& task) {

@@ -7,23 +7,28 @@
 #include <vector>
 #include "apps/localize_settings.hpp"
 #include "apps/robot_map.hpp"
+#include "localization/constellation.hpp"
+#include "localization/pose_finder.hpp"
+#include "localization/skyline.hpp"
 #include "localization/track.hpp"
 namespace waymark {
 
 /// Whether a method must be told where the robot starts.
 enum class StartNeed {
-  needed,    ///< it cannot begin without
-  found,     ///< it uses a start where one is given and finds the robot otherwise
-  ignored    ///< it never uses one
+  needed,  ///< it cannot begin without
+  found,   ///< it uses a start where one is given and finds the robot otherwise
+  ignored  ///< it never uses one
 };
 
 /// What `waymark localize` gives a method.
 struct LocalizeTask {
   std::string map_file, log_file;
-  RobotLog& log;                 ///< in the map's frame
+  RobotLog& log;  ///< in the map's frame
   OpenedMap map;
   std::optional<PoseEstimate> start;
   const LocalizeSettings& settings;
+  const SensorProfile* sensor;      ///< null: the map's confidence counts
+  GroundHeight ground;              ///< empty where no DEM is known
   std::optional<TypeId> stem_type;  ///< type of the stems found in laser scans, if the map has one
 };
 
@@ -49,6 +54,24 @@ class FilterMethod : public LocalizeMethod {
  protected:
   virtual std::unique_ptr<Localizer> make(LocalizeTask& task) const = 0;
 };
+
+/// How a lost robot searches the map.
+struct SearchOptions {
+  ConstellationOptions constellations;
+  SkylineOptions skyline;
+  void describe(OptionVisitor& option) {
+    constellations.describe(option);
+    skyline.describe(option);
+  }
+};
+
+/// Where the robot may be by constellations of the whole map, and with a DEM by skylines. The map is read
+/// when it is asked first.
+PoseFinder finder_for(const LocalizeTask& task, const SearchOptions& search);
+
+/// A particle filter with that finder. Without a start it searches from the beginning.
+std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::optional<PoseEstimate>& start,
+                                               const SearchOptions& search);
 
 /// Plays a log with stems found in its scans, and measures the time of updates.
 Track play_task(const LocalizeTask& task, Localizer& localizer);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/robot_map.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "core/error.hpp"
+#include "importers/dem.hpp"
 
 namespace waymark {
 namespace {
 
 constexpr std::int64_t kAllAtOnce = 200000;
-constexpr double kMargin = 100;  // m
+constexpr double kMargin = 25;  // m: a window of some hundred landmarks is read in well under 1 ms
 
 Point<MapCrs> origin_of(const MapStore& store) {
   if (store.crs().kind() == CrsKind::local) return {};
@@ -38,19 +42,95 @@ MapQuery::Box box_in_crs(const Eigen::AlignedBox2d& box, const LocalFrame& frame
   return all;
 }
 
+bool sound(const Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix2d c = covariance.topLeftCorner<2, 2>();
+  return c.allFinite() && c(0, 0) >= 0 && c(1, 1) >= 0 && c(0, 0) * c(1, 1) >= c(0, 1) * c(0, 1);
+}
+
+/// Tiles of a DEM, read as the robot comes to them.
+class DemTiles {
+ public:
+  DemTiles(std::shared_ptr<const DemSource> dem, const LocalFrame& frame, const Crs& map_crs)
+      : dem_(std::move(dem)), frame_(frame) {
+    if (!dem_->geometry().where.crs.same_as(map_crs))
+      to_dem_ = std::make_shared<CrsTransform>(map_crs, dem_->geometry().where.crs);
+  }
+
+  std::optional<double> operator()(const Eigen::Vector2d& place) {
+    const auto at = frame_.crs_from_map_frame({{place.x(), place.y(), 0}}).xyz;
+    CrsTransform::XY in_dem{at.x(), at.y()};
+    if (to_dem_) in_dem = (*to_dem_)(at.x(), at.y());
+    const GridGeometry& g = dem_->geometry();
+    const double c = g.where.column(in_dem.x), r = g.where.row(in_dem.y);
+    if (!(c >= 0 && r >= 0 && c < static_cast<double>(g.columns) && r < static_cast<double>(g.rows)))
+      return {};
+    const double c0 = std::floor(c), r0 = std::floor(r), u = c - c0, v = r - r0;
+    const auto column = static_cast<std::int64_t>(c0), row = static_cast<std::int64_t>(r0);
+    const double h = (1 - v) * ((1 - u) * cell(column, row) + u * cell(column + 1, row)) +
+                     v * ((1 - u) * cell(column, row + 1) + u * cell(column + 1, row + 1));
+    if (!std::isfinite(h)) return {};
+    return h;
+  }
+
+ private:
+  static constexpr std::int64_t kTile = 512;
+
+  double cell(std::int64_t column, std::int64_t row) {
+    const std::int64_t tile_column = column / kTile, tile_row = row / kTile;
+    const auto key = std::pair(tile_column, tile_row);
+    if (key != last_ || !tile_) {
+      auto [found, fresh] = tiles_.try_emplace(key);
+      if (fresh) found->second = dem_->read({tile_column * kTile, tile_row * kTile, kTile, kTile});
+      last_ = key;
+      tile_ = &found->second;
+    }
+    return (*tile_)(column - tile_column * kTile, row - tile_row * kTile);
+  }
+
+  std::shared_ptr<const DemSource> dem_;
+  LocalFrame frame_;
+  std::shared_ptr<CrsTransform> to_dem_;
+  std::map<std::pair<std::int64_t, std::int64_t>, HeightWindow> tiles_;
+  std::pair<std::int64_t, std::int64_t> last_;
+  const HeightWindow* tile_ = nullptr;
+};
+
 }  // namespace
+
+GroundHeight open_ground(const RobotMap& map, const std::vector<std::string>& dem_files) {
+  std::vector<std::string> files = dem_files;
+  if (files.empty()) {
+    if (!map.store->has_dem_coverage()) return {};
+    files = {"GPKG:" + map.store->path().string() + ":dem"};
+  }
+  const auto dem = import_dem({.files = files,
+                               .nodata = NodataPolicy::unknown,
+                               .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                               .inspect = false});
+  const auto tiles = std::make_shared<DemTiles>(dem, map.frame, map.crs());
+  return [tiles](const Eigen::Vector2d& place) { return (*tiles)(place); };
+}
+
+std::vector<MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor, std::int64_t most) {
+  if (map.landmarks > most) return {};
+  return for_robot(map.store->query({}), map.types(), map.frame, sensor);
+}
 
 OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty) {
   const auto store = std::make_shared<const MapStore>(MapStore::open(file));
   RobotMap map{.store = store,
                .frame = LocalFrame(store->crs(), origin_of(*store)),
                .landmarks = store->count(),
+               .unsound_covariances = 0,
                .bounds = {}};
   if (map.landmarks == 0 && !may_be_empty)
     throw Error(ErrorCode::input, "the map has no landmarks: there is nothing to find the way by", file,
                 "use --method odometry, or another map");
   if (map.landmarks <= kAllAtOnce || map.crs().kind() == CrsKind::geographic) {
-    LandmarkGrid grid(for_robot(store->query({}), store->types(), map.frame, sensor));
+    const std::vector<Landmark> all = store->query({});
+    map.unsound_covariances =
+        std::ranges::count_if(all, [](const Landmark& l) { return !sound(l.covariance); });
+    LandmarkGrid grid(for_robot(all, store->types(), map.frame, sensor));
     map.bounds = grid.bounds();
     return {map, LandmarkWindow(std::move(grid))};
   }

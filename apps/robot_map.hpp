@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include "geodb/map_store.hpp"
+#include "localization/ground.hpp"
 #include "localization/landmark_window.hpp"
 namespace waymark {
 
@@ -12,6 +13,7 @@ struct RobotMap {
   LocalFrame
       frame;  ///< about the middle of the map; of a local CRS about its origin, so that both are the same
   std::int64_t landmarks = 0;
+  std::int64_t unsound_covariances = 0;  ///< of the landmarks read: not positive definite, mended
   Eigen::AlignedBox2d
       bounds;  ///< of the landmarks read, map frame; empty where they are read window by window
 
@@ -19,10 +21,18 @@ struct RobotMap {
   const Crs& crs() const { return store->crs(); }
 };
 
+/// All landmarks, for a search of the whole map. `most`: above, none, as they would not fit into memory.
+std::vector<MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor,
+                                       std::int64_t most = 3000000);
+
 struct OpenedMap {
   RobotMap map;
   LandmarkWindow window;
 };
+
+/// The DEM under the map: of files, or, with none, the map's own coverage if it has one. Empty without.
+/// Heights are those of the DEM, bilinear between cells. Throws Error where the DEM is of another body.
+GroundHeight open_ground(const RobotMap& map, const std::vector<std::string>& dem_files);
 
 /// Opens a map for a robot. Up to 200,000 landmarks are read at once; of larger maps the surroundings of the
 /// robot, where the CRS is projected or local. `sensor`: whose quality counts; null: the confidence. Throws

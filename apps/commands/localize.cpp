@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -61,6 +62,11 @@ class Localize final : public Command {
                  .or_else("truth, or the log's start, or none for pf"),
              Argument{"--set", "OPTION=VALUE", &sets_, "Change a setting of the method; may be repeated"},
              Argument{"--settings", "", &list_, "Write the track, and list all settings with their defaults"},
+             Argument{
+                 "--dem", "DEM...", &dem_,
+                 "Ground of the map: gives the track its height, roll and pitch, and the search skylines"}
+                 .offering(Offer::file)
+                 .or_else("the map's own, if it has one"),
              Argument{"--crs", "", &in_crs_, "Write positions in the map's CRS"},
              Argument{"--layers", "MAP.gpkg", &layers_,
                       "Map file that gets the layers track and, of a harvester, harvested"}
@@ -91,6 +97,10 @@ class Localize final : public Command {
     RobotLog log = import_log(log_, map.types(), how_);
     check_place(log, map);
     place_in(log, map.frame);
+    if (map.unsound_covariances)
+      log_warning(
+          fmt::format("{} landmarks have a covariance that is not positive definite; it is mended: {}",
+                      map.unsound_covariances, map_));
     for (const std::string& remark : log.remarks) log_warning(remark + ": " + log_);
     if (log.events.empty())
       throw Error(ErrorCode::input, "the log has no readings", log_,
@@ -105,6 +115,8 @@ class Localize final : public Command {
         .map = std::move(opened),
         .start = start,
         .settings = settings_,
+        .sensor = sensor,
+        .ground = open_ground(map, dem_),
         .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt};
     const Track track = method.run(task);
 
@@ -123,11 +135,20 @@ class Localize final : public Command {
 
  private:
   void check_place(const RobotLog& log, const RobotMap& map) const {
-    if (log.in_crs && !log.crs.empty() && !Crs::from_text(log.crs).same_as(map.crs()))
+    if (log.crs.empty()) return;
+    const Crs of_log = Crs::from_text(log.crs);
+    if (of_log.body().name != map.crs().body().name)
       throw Error(ErrorCode::input,
-                  fmt::format("the log's positions are in {}, the map is in {}", Crs::from_text(log.crs).id(),
-                              map.crs().id()),
+                  fmt::format("the log is of {}, the map of {}", body_of(of_log), body_of(map.crs())), log_,
+                  "use a map of the same body");
+    if (log.in_crs && !of_log.same_as(map.crs()))
+      throw Error(ErrorCode::input,
+                  fmt::format("the log's positions are in {}, the map is in {}", of_log.id(), map.crs().id()),
                   log_, "use a map in that CRS: waymark export MAP OUT --crs ...");
+  }
+
+  static std::string body_of(const Crs& crs) {
+    return crs.body().name.empty() ? "no body (a local frame)" : crs.body().name;
   }
 
   void check_distance(const PoseEstimate& start, const RobotMap& map) const {
@@ -155,6 +176,9 @@ class Localize final : public Command {
     const bool from_truth = start_.empty() || start_ == "truth";
     if (!from_truth) {
       const auto words = numbers(start_);
+      if (!(std::abs(words[2]) <= 12.6))
+        throw Error(ErrorCode::usage, fmt::format("the yaw of --start is {}: angles are radians", words[2]),
+                    "--start " + start_, "e.g. 1.57 for north");
       start.pose = {words[0], words[1], wrapped(words[2])};
       return start;
     }
@@ -193,6 +217,9 @@ class Localize final : public Command {
         parts.push_back(fmt::format("{} {}", count, wording(static_cast<Verdict>(v))));
     say(fmt::format("{}: {} rows\n", output_, track.rows.size()));
     if (!parts.empty()) say(fmt::format("sightings: {}\n", fmt::join(parts, ", ")));
+    if (track.fixes)
+      say(fmt::format("GNSS and compass readings: {}, of which {} were not used\n", track.fixes,
+                      track.fixes_rejected));
     if (track.named && ids_ == "unknown")
       say(fmt::format("wrong matches, by the identities in the log: {} of {}\n", track.wrong, track.named));
     if (track.updates)
@@ -206,7 +233,7 @@ class Localize final : public Command {
 
   std::string map_, log_, output_, layers_, method_ = "ekf", sensor_, ids_ = "known", start_;
   LogImport how_;
-  std::vector<std::string> sets_;
+  std::vector<std::string> sets_, dem_;
   bool in_crs_ = false, list_ = false;
   LocalizeSettings settings_;
   MethodTable methods_;

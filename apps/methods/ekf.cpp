@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/localize_method.hpp"
+#include "localization/restarting.hpp"
 
 namespace waymark {
 namespace {
@@ -12,16 +13,22 @@ class Ekf final : public FilterMethod {
            "the landmarks that is still probable";
   }
 
+  void describe(OptionVisitor& option) override { search_.describe(option); }
+
  protected:
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    const IdentificationOptions& id = task.settings.identification;
-    FeatureScales scales(task.map.map.types());
-    if (!id.use_identities && id.association == "joint")
-      return std::make_unique<HypothesesFilter>(*task.start, std::move(task.map.window), std::move(scales),
-                                                id, task.settings.hypotheses);
-    return std::make_unique<ExtendedKalman>(*task.start, std::move(task.map.window), std::move(scales), id,
-                                            task.settings.kalman);
+    const auto begin = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
+                        &settings = task.settings](const PoseEstimate& start) -> std::unique_ptr<Localizer> {
+      const IdentificationOptions& id = settings.identification;
+      if (!id.use_identities && id.association == "joint")
+        return std::make_unique<HypothesesFilter>(start, window, scales, id, settings.hypotheses);
+      return std::make_unique<ExtendedKalman>(start, window, scales, id, settings.kalman);
+    };
+    return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search_));
   }
+
+ private:
+  SearchOptions search_;
 };
 
 }  // namespace

@@ -7,15 +7,20 @@ namespace {
 class Global final : public FilterMethod {
  public:
   std::string_view name() const override { return "global"; }
-  std::string_view summary() const override { return "pf that is told no start"; }
+  std::string_view summary() const override {
+    return "particles that are told no start: constellations of landmarks, and with --dem the skyline, say "
+           "where they may be";
+  }
   StartNeed start() const override { return StartNeed::ignored; }
+  void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    return std::make_unique<ParticleFilter>(std::nullopt, std::move(task.map.window),
-                                            FeatureScales(task.map.map.types()), task.settings.identification,
-                                            task.settings.particles);
+    return searching_particles(task, std::nullopt, search_);
   }
+
+ private:
+  SearchOptions search_;
 };
 
 }  // namespace

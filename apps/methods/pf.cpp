@@ -9,13 +9,15 @@ class Pf final : public FilterMethod {
   std::string_view name() const override { return "pf"; }
   std::string_view summary() const override { return "particles, which find the start where none is given"; }
   StartNeed start() const override { return StartNeed::found; }
+  void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    return std::make_unique<ParticleFilter>(task.start, std::move(task.map.window),
-                                            FeatureScales(task.map.map.types()), task.settings.identification,
-                                            task.settings.particles);
+    return searching_particles(task, task.start, search_);
   }
+
+ private:
+  SearchOptions search_;
 };
 
 }  // namespace

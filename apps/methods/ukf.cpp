@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/localize_method.hpp"
+#include "localization/restarting.hpp"
 
 namespace waymark {
 namespace {
@@ -9,12 +10,20 @@ class Ukf final : public FilterMethod {
   std::string_view name() const override { return "ukf"; }
   std::string_view summary() const override { return "unscented Kalman filter, square root form"; }
 
+  void describe(OptionVisitor& option) override { search_.describe(option); }
+
  protected:
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    return std::make_unique<UnscentedKalman>(*task.start, std::move(task.map.window),
-                                             FeatureScales(task.map.map.types()),
-                                             task.settings.identification, task.settings.kalman);
+    const auto begin = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
+                        &settings = task.settings](const PoseEstimate& start) -> std::unique_ptr<Localizer> {
+      return std::make_unique<UnscentedKalman>(start, window, scales, settings.identification,
+                                               settings.kalman);
+    };
+    return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search_));
   }
+
+ private:
+  SearchOptions search_;
 };
 
 }  // namespace

@@ -49,6 +49,13 @@ class Line {
       fail(fmt::format("\"{}\" is {}: angles are radians", key, value));
     return value;
   }
+  /// rad/s; two turns in a second were meant in degrees.
+  double turn(const char* key) const {
+    const double value = number(key);
+    if (!(std::abs(value) <= 4 * std::numbers::pi))
+      fail(fmt::format("\"{}\" is {}: turns are radians per second", key, value));
+    return value;
+  }
   std::string text(const char* key) const {
     if (!has(key) || !object_[key].is_string()) fail(fmt::format("\"{}\" must be a text", key));
     return object_[key];
@@ -76,7 +83,7 @@ class Reader {
     if (kind == "header") return header(line);
     const double t = line.number("t");
     if (kind == "odometry")
-      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.number("omega")});
+      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.turn("omega")});
     else if (kind == "car")
       add(t, CarReading{line.number("v"), line.angle("steering")});
     else if (kind == "step")
@@ -93,6 +100,8 @@ class Reader {
       log_.felled.push_back(felled(line, t));
     else if (kind == "gnss")
       add(t, fix(line));
+    else if (kind == "compass")
+      add(t, heading(line));
     else if (kind == "truth")
       log_.truth.push_back({t, line.pose()});
     else
@@ -136,11 +145,20 @@ class Reader {
   SeenLandmark sighting(const Line& line) {
     SeenLandmark s;
     s.bearing = line.angle("bearing");
+    if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
+      line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", s.bearing));
     s.bearing_sd = line.positive("bearing_sd", 0.02);
     if (line.has("range")) s.range = line.number("range");
     s.range_sd = line.positive("range_sd", s.range ? 0.05 + 0.02 * std::abs(*s.range) : 0.1);
     s.confidence = line.number("confidence", 1);
     if (!(s.confidence > 0 && s.confidence <= 1)) line.fail("\"confidence\" must be within (0, 1]");
+    if (line.has("elevation")) {
+      s.elevation = line.angle("elevation");
+      if (!(std::abs(*s.elevation) <= std::numbers::pi / 2))
+        line.fail(fmt::format("\"elevation\" is {}: angles are radians, within a quarter turn of the horizon",
+                              *s.elevation));
+    }
+    s.elevation_sd = line.positive("elevation_sd", 0.002);
     if (line.has("landmark")) s.identity = landmark_key(line.text("landmark"));
     if (!line.has("type")) return s;
     const std::string name = line.text("type");
@@ -237,6 +255,8 @@ class Reader {
     }
     return f;
   }
+
+  static HeadingFix heading(const Line& line) { return {line.angle("yaw"), line.positive("sd", 0.1)}; }
 
   static GnssFix fix(const Line& line) {
     GnssFix fix;
