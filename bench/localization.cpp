@@ -3,9 +3,18 @@
 // Kalman updates. One thread.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "geodb/map_store.hpp"
+#include "geodb/write_map.hpp"
+#include "localization/constellation.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/kalman.hpp"
+#include "localization/landmark_window.hpp"
 #include "localization/particle_filter.hpp"
+#include "tests/localization/made_look.hpp"
 #include "tests/localization/made_world.hpp"
 
 namespace waymark::testing {
@@ -59,6 +68,7 @@ BENCHMARK(weigh)
     ->Args({1000, 1000, 8})
     ->Args({100000, 1000, 8})
     ->Args({1000000, 1000, 8})
+    ->Args({10000000, 1000, 8})
     ->Args({50000, 1000, 3})
     ->Unit(benchmark::kMicrosecond);
 
@@ -79,6 +89,89 @@ void weigh_in_window(benchmark::State& state) {
   benchmark::DoNotOptimize(sum);
 }
 BENCHMARK(weigh_in_window)->Unit(benchmark::kMicrosecond);
+
+/// A map file of rocks at the density above, made once; removed at the end.
+struct MapFile {
+  explicit MapFile(std::int64_t count)
+      : path(std::filesystem::temp_directory_path() / ("waymark_windows_" + std::to_string(count) + ".gpkg")),
+        side(std::sqrt(static_cast<double>(count) / kDensity)) {
+    MapContents map;
+    LandmarkType type;
+    type.name = "rock";
+    type.features = {{"radius", "m", Scale::ratio, 0.01, 100, ""},
+                     {"height", "m", Scale::ratio, 0.01, 100, ""}};
+    map.types.add(type);
+    Random random(1, "map file");
+    map.landmarks.resize(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
+      Landmark& l = map.landmarks[i];
+      l.uid = "r" + std::to_string(i);
+      l.position.xyz = {random.uniform(0, side), random.uniform(0, side), 0};
+      l.covariance = Eigen::Matrix3d::Identity() * 0.01;
+      l.features = {{random.uniform(0.2, 1), 0.01, 3}, {random.uniform(0.2, 1), 0.01, 3}};
+      l.quality = {.seen = 3, .visible = 4, .of_feature = {0.9, 0.9}};
+      l.observations = 3;
+    }
+    write_map(path, map);
+  }
+  ~MapFile() { std::filesystem::remove(path); }
+  std::filesystem::path path;
+  double side;
+};
+
+/// A robot set down anywhere: 70 m x 70 m of the map from the file into a grid, nothing cached by us. The
+/// median and the 99th percentile of the times are counters, microseconds.
+void cold_window(benchmark::State& state) {
+  const MapFile file(state.range(0));
+  const MapStore store = MapStore::open(file.path);
+  const LocalFrame frame(store.crs(), {});
+  Random random(1, "places");
+  std::vector<double> times;
+  std::size_t landmarks = 0;
+  for (auto _ : state) {
+    const double x = random.uniform(0, file.side - 70), y = random.uniform(0, file.side - 70);
+    const auto begun = std::chrono::steady_clock::now();
+    std::vector<MapLandmark> all;
+    for (const Landmark& l : store.query({.box = MapQuery::Box{x, y, x + 70, y + 70}}))
+      all.push_back(map_landmark(l, store.types()[l.type], frame));
+    const LandmarkGrid grid(std::move(all));
+    landmarks += grid.size();
+    times.push_back(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begun).count());
+  }
+  std::ranges::sort(times);
+  state.counters["median_us"] = times[times.size() / 2];
+  state.counters["p99_us"] = times[times.size() * 99 / 100];
+  state.counters["landmarks"] = static_cast<double>(landmarks) / static_cast<double>(times.size());
+}
+BENCHMARK(cold_window)
+    ->Arg(100000)
+    ->Arg(1000000)
+    ->Arg(10000000)
+    ->Iterations(2000)
+    ->Unit(benchmark::kMicrosecond);
+
+/// Where is the robot, of all a map: 15 rocks with radii, 10 % wrong, 70 % of those in reach.
+void constellation(benchmark::State& state) {
+  auto map = strewn(static_cast<std::size_t>(state.range(0)),
+                    std::sqrt(static_cast<double>(state.range(0)) / kDensity), 1, 0.05);
+  Random random(1, "radius");
+  std::vector<PlacedLandmark> places;
+  for (MapLandmark& l : map) {
+    l.features.value[0] = random.log_uniform(0.2, 1);
+    places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
+  }
+  const ConstellationIndex index(map, FeatureScales{});
+  std::vector<SightingSet> sets;
+  for (int i = 0; i < 20; ++i)
+    sets.push_back(
+        look(map, places, {.origin = places[random.below(places.size())].at}, {}, {.reach = 18}, random).set);
+  std::size_t found = 0, tries = 0;
+  for (auto _ : state) found += index.find(sets[tries++ % sets.size()]).fix.has_value();
+  state.counters["found"] = static_cast<double>(found) / static_cast<double>(tries);
+  state.counters["bytes/landmark"] = static_cast<double>(index.bytes()) / static_cast<double>(index.size());
+}
+BENCHMARK(constellation)->Arg(1000)->Arg(30000)->Arg(300000)->Unit(benchmark::kMillisecond);
 
 void kalman_update(benchmark::State& state) {
   MapLandmark landmark;
