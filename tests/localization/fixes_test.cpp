@@ -26,12 +26,12 @@ std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, c
 }
 
 TEST(Fixes, PositionAndHeadingAreTheProductOfGaussians) {
-  // 1 m known to 1 m, measured 3 m with 1 m: in the middle, with half the variance.
-  const PoseEstimate start{{1, 0, 0}, Eigen::Vector3d(1, 1, 0.04).asDiagonal()};
+  // 1 m known to 0.3 m, measured 1.6 m with 0.3 m: in the middle, with half the variance.
+  const PoseEstimate start{{1, 0, 0}, Eigen::Vector3d(0.09, 0.09, 0.04).asDiagonal()};
   for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
-    EXPECT_TRUE(filter->fix(GnssFix{{3, 0}, 1}));
-    EXPECT_NEAR(filter->estimate().pose.x, 2, 0.1);
-    EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.5, 0.08);
+    EXPECT_TRUE(filter->fix(GnssFix{{1.6, 0}, 0.3}));
+    EXPECT_NEAR(filter->estimate().pose.x, 1.3, 0.03);
+    EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.045, 0.006);
     EXPECT_TRUE(filter->fix(HeadingFix{0.2, 0.2}));
     EXPECT_NEAR(filter->estimate().pose.yaw, 0.1, 0.03);
     EXPECT_NEAR(filter->estimate().covariance(2, 2), 0.02, 0.005);
