@@ -34,13 +34,8 @@ RobotLog import_victoria_park(const std::filesystem::path& folder) {
   }
   if (std::filesystem::exists(folder / "GPS.txt")) {
     const auto fixes = number_table(folder / "GPS.txt", 3);
-    for (std::size_t i = 0; i < fixes.size(); i += 3) {
+    for (std::size_t i = 0; i < fixes.size(); i += 3)  // truth, and for that reason no reading
       log.truth.push_back({fixes[i], {fixes[i + 2], fixes[i + 1], 0}});
-      GnssFix fix;
-      fix.at = {fixes[i + 2], fixes[i + 1]};
-      fix.sd = 3;
-      log.events.push_back({fixes[i], fix});
-    }
   }
   std::ranges::stable_sort(log.events, {}, &LogEvent::t);
   tidy(log);

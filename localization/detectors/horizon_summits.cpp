@@ -64,6 +64,8 @@ SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSum
     s.type = options.type ? options.type : std::optional<TypeId>(kNoSuchType);
     s.bearing = summit.bearing;
     s.bearing_sd = summit.bearing_sd;
+    s.elevation = summit.elevation;
+    s.elevation_sd = horizon.elevation_sd;
     set.sightings.push_back(s);
   }
   return set;
