@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 #include "geo/local_frame.hpp"
 #include "localization/absolute_fix.hpp"
+#include "localization/graph.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/sighting.hpp"
@@ -45,6 +48,9 @@ struct FelledReading {
   double diameter = 0, height = 0;          ///< m, measured by the head; 0: not
 };
 
+/// Uids of landmarks that said who they are.
+using LandmarkNames = std::unordered_map<LandmarkKey, std::string>;
+
 /// What a robot measured on one drive, in the order of time.
 struct RobotLog {
   std::vector<LogEvent> events;
@@ -55,6 +61,9 @@ struct RobotLog {
   /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
   bool in_crs = false;
   std::string crs;                   ///< of positions `in_crs`, if the log says; any text Crs understands
+  LandmarkNames names;
+  std::optional<OdometryNoise> odometry;  ///< what the reader knows of this vehicle's odometry
+  std::shared_ptr<const PoseGraph> graph;  ///< where the log is a graph; the events are drawn from it
   std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people
 };
 

@@ -2,6 +2,7 @@
 #include "importers/logs/import_log.hpp"
 
 #include "core/error.hpp"
+#include "importers/logs/graph_file.hpp"
 
 namespace waymark {
 namespace {
@@ -19,7 +20,9 @@ std::string recognised(const fs::path& path) {
     throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
   if (path.extension() == ".dat") return "mrclam";
   const std::string name = path.filename().string();
-  return name == "LASER.txt" || name == "DRS.txt" ? "victoria-park" : "waymark";
+  if (name == "LASER.txt" || name == "DRS.txt") return "victoria-park";
+  const std::string graph = graph_format(path);
+  return graph.empty() ? "waymark" : graph;
 }
 
 }  // namespace
@@ -30,8 +33,9 @@ RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogIm
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
+  if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
-              "known are waymark, mrclam and victoria-park");
+              "known are waymark, mrclam, victoria-park, isam, g2o and toro");
 }
 
 }  // namespace waymark

@@ -10,7 +10,7 @@ namespace waymark {
 
 /// How a log is read.
 struct LogImport {
-  std::string format = {};  ///< waymark, mrclam, victoria-park; empty: recognised by what is there
+  std::string format = {};  ///< waymark, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
   std::int64_t robot = 0;   ///< MRCLAM: which of the five; 0: the one whose file is named
 };
 
@@ -29,6 +29,10 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
 /// Landmark_Groundtruth.dat of an MRCLAM dataset (or its folder), in a local CRS. `type`: of these landmarks.
 std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path, TypeId type,
                                               const LandmarkType& declared);
+
+/// A graph file (graph_file.hpp): the graph, and the same as steps and sightings of landmarks that say who they
+/// are, one time unit per pose. Loops that are not steps of the drive are in the graph only.
+RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format);
 
 /// ACFR Victoria Park as text: folder with DRS.txt, LASER.txt, GPS.txt. Scans of a laser on the front bumper;
 /// the truth is GPS, positions only (yaw 0).

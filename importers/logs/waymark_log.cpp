@@ -159,7 +159,11 @@ class Reader {
                               *s.elevation));
     }
     s.elevation_sd = line.positive("elevation_sd", 0.002);
-    if (line.has("landmark")) s.identity = landmark_key(line.text("landmark"));
+    if (line.has("landmark")) {
+      const std::string uid = line.text("landmark");
+      s.identity = landmark_key(uid);
+      log_.names.emplace(*s.identity, uid);
+    }
     if (!line.has("type")) return s;
     const std::string name = line.text("type");
     const LandmarkType* type = types_.find(name);
