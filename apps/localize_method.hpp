@@ -29,6 +29,9 @@ struct LocalizeTask {
   const LocalizeSettings& settings;
   const SensorProfile* sensor;      ///< null: the map's confidence counts
   GroundHeight ground;              ///< empty where no DEM is known
+  std::string command_line = {};   ///< as typed
+  std::string write_map = {};      ///< map to write with what was learnt; empty: none
+  bool update_map = false;         ///< change the map itself
   std::optional<TypeId> stem_type;  ///< type of the stems found in laser scans, if the map has one
 };
 
@@ -41,6 +44,8 @@ class LocalizeMethod {
   virtual StartNeed start() const { return StartNeed::needed; }
   /// false: MAP may have no landmarks.
   virtual bool needs_map() const { return true; }
+  /// Whether --update-map and --write-map mean anything.
+  virtual bool makes_map() const { return false; }
   /// What --set changes beside LocalizeSettings.
   virtual void describe(OptionVisitor&) {}
   virtual Track run(LocalizeTask& task) = 0;

@@ -2,9 +2,13 @@
 #include "apps/robot_map.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <map>
 
+#include "apps/registries.hpp"
 #include "core/error.hpp"
+#include "geodb/write_map.hpp"
 #include "importers/dem.hpp"
 
 namespace waymark {
@@ -114,6 +118,21 @@ GroundHeight open_ground(const RobotMap& map, const std::vector<std::string>& de
 std::vector<MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor, std::int64_t most) {
   if (map.landmarks > most) return {};
   return for_robot(map.store->query({}), map.types(), map.frame, sensor);
+}
+
+OpenedMap no_robot_map() {
+  std::string folder = (std::filesystem::temp_directory_path() / "waymark-XXXXXX").string();
+  if (!::mkdtemp(folder.data()))
+    throw Error(ErrorCode::environment, "cannot make a folder for an empty map", folder,
+                "set TMPDIR to a folder that can be written");
+  const std::filesystem::path file = std::filesystem::path(folder) / "none.gpkg";
+  MapContents contents;
+  contents.types = all_types();
+  write_map(file, contents);
+  OpenedMap map = open_robot_map(file.string(), nullptr, true);
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);  // the open file lives on
+  return map;
 }
 
 OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty) {

@@ -39,4 +39,8 @@ GroundHeight open_ground(const RobotMap& map, const std::vector<std::string>& de
 /// Error{input} for a map without landmarks unless it `may_be_empty`.
 OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty = false);
 
+/// A map without landmarks, with all types, in a local CRS: for methods that need none. Its file is private
+/// and gone.
+OpenedMap no_robot_map();
+
 }  // namespace waymark

@@ -77,7 +77,7 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
   const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
   for (const TrackRow& row : track.rows) {
     const Values v = values_of(row, output.frame);
-    const int places = degrees ? 9 : 4;
+    const int places = degrees ? 11 : 6;
     fmt::format_to(std::back_inserter(text), "{:.4f},{:.{}f},{:.{}f},{:.4f},{:.6f},{:.6f},{:.6f}", v[0], v[1],
                    places, v[2], places, v[3], v[4], v[5], v[6]);
     for (std::size_t i = 7; i < 11; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);

@@ -36,7 +36,7 @@ class Localize final : public Command {
             "Metres are those of the map's east-north-up frame about the middle of its landmarks; of a local "
             "CRS, its own coordinates. --crs writes coordinates of the map's CRS.",
         .arguments =
-            {file_word("MAP.gpkg", &map_, "Map to use; it is not changed"),
+            {Argument{"", "MAP.gpkg", &map_, "Map to use; it is not changed, unless --update-map asks for it; none: no map, for slam, graph and odometry"}.needed().offering(Offer::file),
              Argument{"", "LOG", &log_, "Log of the robot: a file, or the folder of a dataset"}
                  .needed()
                  .offering(Offer::file),
@@ -50,7 +50,7 @@ class Localize final : public Command {
                  .offering(all_sensors().names()),
              Argument{"--seed", "N", &settings_.particles.seed, "Seed of all random numbers"}.or_else("1"),
              Argument{"--log-format", "FORMAT", &how_.format, "Format of the log"}
-                 .one_of({"waymark", "mrclam", "victoria-park"})
+                 .one_of({"waymark", "mrclam", "victoria-park", "isam", "g2o", "toro"})
                  .or_else("recognised by what is there"),
              Argument{"--robot", "K", &how_.robot, "Which robot of an MRCLAM dataset"},
              Argument{"--ids", "HOW", &ids_, "Whether landmarks that say who they are are believed"}
@@ -60,6 +60,11 @@ class Localize final : public Command {
                       "Where the robot starts, metres and radians; truth: as the log says; none: unknown"}
                  .offering({"truth", "none"})
                  .or_else("truth, or the log's start, or none for pf"),
+             Argument{"--write-map", "OUT.gpkg", &write_map_,
+                      "slam, graph: write the map with what the drive taught; MAP stays as it is"}
+                 .offering(Offer::file),
+             Argument{"--update-map", "", &update_map_,
+                      "slam, graph: change MAP itself; `waymark restore MAP` takes it back"},
              Argument{"--set", "OPTION=VALUE", &sets_, "Change a setting of the method; may be repeated"},
              Argument{"--settings", "", &list_, "Write the track, and list all settings with their defaults"},
              Argument{
@@ -84,6 +89,7 @@ class Localize final : public Command {
     if (out.extension() != ".csv" && out.extension() != ".gpkg")
       throw Error(ErrorCode::usage, "a track is written as .csv or .gpkg", output_, "e.g. -o track.csv");
     LocalizeMethod& method = methods_.find(method_);
+    check_map_output(method);
     const DescribeOptions options = [&](OptionVisitor& visitor) {
       settings_.describe(visitor);
       method.describe(visitor);
@@ -92,7 +98,8 @@ class Localize final : public Command {
     settings_.identification.use_identities = ids_ == "known";
     settings_.particles.threads = session.threads;
     const SensorProfile* sensor = sensor_.empty() ? nullptr : &all_sensors().at(sensor_);
-    OpenedMap opened = open_robot_map(map_, sensor, !method.needs_map());
+    OpenedMap opened = map_ == "none" && !method.needs_map() ? no_robot_map()
+                                                           : open_robot_map(map_, sensor, !method.needs_map());
     const RobotMap map = opened.map;
     RobotLog log = import_log(log_, map.types(), how_);
     check_place(log, map);
@@ -117,6 +124,9 @@ class Localize final : public Command {
         .settings = settings_,
         .sensor = sensor,
         .ground = open_ground(map, dem_),
+        .command_line = session.command_line,
+        .write_map = write_map_,
+        .update_map = update_map_,
         .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt};
     const Track track = method.run(task);
 
@@ -134,6 +144,20 @@ class Localize final : public Command {
   }
 
  private:
+  void check_map_output(const LocalizeMethod& method) const {
+    if (write_map_.empty() && !update_map_) return;
+    const char* option = update_map_ ? "--update-map" : "--write-map";
+    if (!method.makes_map())
+      throw Error(ErrorCode::usage, fmt::format("--method {} does not change maps", method.name()), option,
+                  "use --method slam or graph");
+    if (update_map_ && !write_map_.empty())
+      throw Error(ErrorCode::usage, "--update-map and --write-map exclude each other", "", "give one");
+    if (update_map_ && map_ == "none")
+      throw Error(ErrorCode::usage, "there is no map to update", option, "use --write-map OUT.gpkg");
+    if (!write_map_.empty() && std::filesystem::path(write_map_).extension() != ".gpkg")
+      throw Error(ErrorCode::usage, "a map is written as .gpkg", write_map_, "e.g. --write-map map.gpkg");
+  }
+
   void check_place(const RobotLog& log, const RobotMap& map) const {
     if (log.crs.empty()) return;
     const Crs of_log = Crs::from_text(log.crs);
@@ -232,6 +256,8 @@ class Localize final : public Command {
   }
 
   std::string map_, log_, output_, layers_, method_ = "ekf", sensor_, ids_ = "known", start_;
+  std::string write_map_;
+  bool update_map_ = false;
   LogImport how_;
   std::vector<std::string> sets_, dem_;
   bool in_crs_ = false, list_ = false;
