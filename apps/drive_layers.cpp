@@ -26,9 +26,9 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
   ShapeLayer line{.name = "track",
                   .summary = "Where the machine drove",
                   .kind = ShapeKind::line,
-                  .columns = {{"from_t", "s"},
-                              {"to_t", "s"},
-                              {"largest_sd", "m"}},
+                  .columns = {{"from_t", "s", AttributeSpec::Kind::real, "Time of its first pose"},
+                              {"to_t", "s", AttributeSpec::Kind::real, "Time of its last pose"},
+                              {"largest_sd", "m", AttributeSpec::Kind::real, "Largest standard deviation of a pose along it"}},
                   .style = {.colour = "#d95f02", .width = 0.8}};
   // Corners closer than a decimetre say nothing.
   std::vector<Eigen::Vector2d> corners;
@@ -46,10 +46,10 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
     ShapeLayer trees{.name = "harvested",
                      .summary = "Trees felled by the machine",
                      .kind = ShapeKind::point,
-                     .columns = {{"t", "s"},
-                                 {"diameter", "m"},
-                                 {"height", "m"},
-                                 {"sd", "m"}},
+                     .columns = {{"t", "s", AttributeSpec::Kind::real, "Time of felling"},
+                                 {"diameter", "m", AttributeSpec::Kind::real, "Stem diameter at 1.3 m"},
+                                 {"height", "m", AttributeSpec::Kind::real, "Height"},
+                                 {"sd", "m", AttributeSpec::Kind::real, "Standard deviation of its place"}},
                      .style = {.colour = "#b22222"}};
     for (const HarvestedTree& tree : harvested_trees(log.felled, track))
       trees.rows.push_back({{{{in_crs(frame, tree.at)}, {}}},

@@ -93,23 +93,6 @@ std::optional<ShapeLayer> survey_layer(const Canopies& canopies) {
   return layer;
 }
 
-/// The place of an apex as observations and crowns share it.
-std::pair<double, double> place_of(const Eigen::Vector2d& top) {
-  return {top.x(), top.y()};
-}
-
-/// Crowns know their tree by the place of its top: the observation made there tells the landmark.
-void name_crowns(std::vector<CrownShape>& crowns, const std::vector<Observation>& evidence) {
-  std::map<std::pair<std::string, std::pair<double, double>>, const Observation*> at;
-  for (const Observation& seen : evidence)
-    at.emplace(std::pair(seen.source, place_of(seen.position.xyz.head<2>())), &seen);
-  for (CrownShape& crown : crowns) {
-    if (!crown.uid.empty()) continue;
-    const auto found = at.find({crown.source, place_of(crown.top)});
-    if (found != at.end()) crown.uid = found->second->landmark_uid;
-  }
-}
-
 }  // namespace
 
 bool makes_map(const Pipeline& pipeline, const RunResult& result) {
@@ -135,9 +118,7 @@ MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem) {
   bool drawn = false;
   for (const auto& made : result.artifacts<std::vector<CrownShape>>("crowns")) {
     drawn = true;
-    std::vector<CrownShape> named = *made;
-    name_crowns(named, contents.observations);
-    for (const CrownShape& crown : named)
+    for (const CrownShape& crown : *made)
       if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(crown));
   }
   for (const auto& surveys : result.artifacts<Canopies>("canopies"))

@@ -23,7 +23,7 @@ constexpr const char* kStyle = R"css(
 .stem { fill: #1b5e20; fill-opacity: .8; }
 .stands { overflow-x: auto; }
 .stands table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; }
-.stands th, .stands td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--line); vertical-align: bottom; }
+.stands th, .stands td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--line); white-space: normal; vertical-align: top; }
 .stands th:first-child, .stands td:first-child { text-align: left; }
 .stands td small { display: block; }
 .bars rect { fill: #558b2f; } .bars line { stroke: var(--ink); } .bars text { fill: var(--soft); font-size: 11px; }
