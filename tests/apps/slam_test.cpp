@@ -50,7 +50,7 @@ std::string drive(double rounds, int hidden = -1) {
                        {"features", {{"radius", 0.3 + 0.05 * k}}}});
     }
     text += nlohmann::json{{"kind", "sightings"}, {"t", t + 0.001}, {"items", items}}.dump() + "\n";
-    text += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", x}, {"y", y}, {"yaw", yaw}}.dump() + "\n";
+    text += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", x}, {"y", y}, {"yaw", std::remainder(yaw, 2 * std::numbers::pi)}}.dump() + "\n";
   }
   return text;
 }
@@ -114,7 +114,7 @@ TEST_F(SlamCommand, WriteMapLeavesTheMapAlone) {
 TEST_F(SlamCommand, ARockThatIsGoneLosesConfidence) {
   const std::string map = folder_ / "made.gpkg";
   ASSERT_EQ(localize("none", {"--write-map", map}).code, 0);
-  write_text(folder_ / "drive.jsonl", drive(2, 3));
+  write_text(folder_ / "drive.jsonl", drive(6, 3));
   const Outcome updated = localize(map, {"--update-map"});
   ASSERT_EQ(updated.code, 0) << updated.err;
   EXPECT_THAT(updated.err, HasSubstr("1 of the map not there"));

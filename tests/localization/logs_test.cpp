@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -151,13 +152,14 @@ TEST(LaserStems, FindsAPostBeforeTheBackground) {
                  .angle_step = 0.01,
                  .ranges = std::vector<float>(301, 81.0F),
                  .most_range = 80};
-  for (const std::size_t i : {150, 151, 152, 153, 154}) scan.ranges[i] = 10;  // 0.5 m wide
+  for (const std::size_t i : {150, 151, 152, 153, 154}) scan.ranges[i] = 10;  // seen under 0.05 rad
   for (std::size_t i = 200; i < 240; ++i) scan.ranges[i] = 12;                // a wall of 4.8 m
   const auto stems = find_stems(scan, {});
   ASSERT_EQ(stems.size(), 1u);
   EXPECT_NEAR(stems[0].bearing, 0.02, 1e-9);
   EXPECT_NEAR(stems[0].range, 10.25, 0.01);
-  EXPECT_NEAR(stems[0].diameter, 0.5, 0.01);
+  // A circle between two tangents 0.05 rad apart, its nearest point at 10 m.
+  EXPECT_NEAR(stems[0].diameter, 2 * 10 * std::sin(0.025) / (1 - std::sin(0.025)), 1e-3);
   EXPECT_TRUE(find_stems({}, {}).empty());
 }
 
