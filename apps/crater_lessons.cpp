@@ -12,8 +12,8 @@
 namespace waymark {
 namespace {
 
-Ground draw_ground(Random& random, double gsd, double width) {
-  Ground ground;
+MadeGround draw_ground(Random& random, double gsd, double width) {
+  MadeGround ground;
   ground.width = ground.height = 1.15 * width;
   ground.cell = random.uniform(1, 1.6) * gsd;
   ground.relief.longest = width * random.log_uniform(0.2, 1.5);

@@ -8,8 +8,8 @@
 namespace waymark {
 namespace {
 
-std::vector<Summit> summits_of(const RobotMap& map) {
-  std::vector<Summit> all;
+std::vector<SkylineSummit> summits_of(const RobotMap& map) {
+  std::vector<SkylineSummit> all;
   const LandmarkType* type = map.types().find("mountain_top");
   if (!type) return all;
   const auto feature = [&](const Landmark& l, std::string_view name) {

@@ -13,7 +13,7 @@
 namespace waymark {
 
 Scene forest_ground(const Scenario& scenario) {
-  Ground ground = scenario.ground;
+  MadeGround ground = scenario.ground;
   constexpr double kMargin = 30;  // m; a machine may leave the forest
   ground.width = scenario.forest.width + 2 * kMargin;
   ground.height = scenario.forest.height + 2 * kMargin;

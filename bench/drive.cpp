@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 Scene site(double rocks) {
-  Ground ground;
+  MadeGround ground;
   ground.width = ground.height = 150;
   ground.cell = 0.3;
   ground.relief = {.rms = 2, .longest = 250, .roughness = 0.5};

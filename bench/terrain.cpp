@@ -51,7 +51,7 @@ BENCHMARK(build_terrain)->Unit(benchmark::kMillisecond);
 
 const Scene& site() {
   static const Scene scene = [] {
-    Ground ground;
+    MadeGround ground;
     ground.width = ground.height = 800;
     ground.cell = 0.4;
     return make_scene(ground, 1);
@@ -60,7 +60,7 @@ const Scene& site() {
 }
 
 void make_ground(benchmark::State& state) {
-  Ground ground;
+  MadeGround ground;
   ground.width = ground.height = 800;
   ground.cell = 0.4;
   for (auto _ : state) benchmark::DoNotOptimize(make_scene(ground, 1));

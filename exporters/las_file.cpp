@@ -93,7 +93,7 @@ LasFile::LasFile(std::filesystem::path path, const Crs& crs, double origin_x, do
     : state_(std::make_unique<State>(std::move(path), crs, std::floor(origin_x), std::floor(origin_y))) {}
 LasFile::~LasFile() = default;
 
-void LasFile::add(const LasPoint& point) {
+void LasFile::add(const LasReturn& point) {
   State& s = *state_;
   std::string record(kPoint, '\0');
   const std::array<double, 3> at{point.x, point.y, point.z};

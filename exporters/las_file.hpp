@@ -8,7 +8,7 @@
 namespace waymark {
 
 /// A point of a cloud; x, y in the units of the CRS, z in metres.
-struct LasPoint {
+struct LasReturn {
   double x = 0, y = 0, z = 0;
   std::uint16_t intensity = 0;
   std::uint8_t number = 1, of = 1;  ///< return `number` of `of`, 1 to 15
@@ -26,7 +26,7 @@ class LasFile {
   LasFile(const LasFile&) = delete;
   LasFile& operator=(const LasFile&) = delete;
 
-  void add(const LasPoint& point);
+  void add(const LasReturn& point);
   /// Writes the header and gives the file its name. Throws Error{output}.
   void close();
 

@@ -17,7 +17,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::size_t kKept = 10;
 
 /// How likely a summit stands on the horizon of someone that far away.
-double likely(const Summit& summit, double distance) {
+double likely(const SkylineSummit& summit, double distance) {
   return std::clamp(std::max(summit.isolation / distance, summit.prominence / (0.02 * distance)), 0.1, 1.0);
 }
 
@@ -163,7 +163,7 @@ class SkylineSearch {
     if (!height) return {};
     Matches matches = match(e.pose, 0, 0);
     const Eigen::Vector3d eye(e.pose.x, e.pose.y, *height + o_.eye);
-    const auto visible = [&](const Summit& s) {
+    const auto visible = [&](const SkylineSummit& s) {
       const Eigen::Vector3d top(s.at.x(), s.at.y(), s.height + o_.height_sd);
       return clears_ground(eye, top, ground_, o_, std::max(30.0, o_.place_sd), 3 * o_.place_sd + 100);
     };
@@ -176,7 +176,7 @@ class SkylineSearch {
     // Views of all summits in reach: how many would fit by chance.
     std::vector<SummitView> views;
     double low = 1, high = -1;
-    for (const Summit& s : summits_) {
+    for (const SkylineSummit& s : summits_) {
       const SummitView v = view_of(s, e.pose.at(), eye.z(), o_);
       if (v.distance > o_.reach) continue;
       views.push_back(v);
@@ -237,7 +237,7 @@ class SkylineSearch {
 
   std::span<const HorizonTop> tops_;
   const SkylineIndex& index_;
-  std::span<const Summit> summits_;
+  std::span<const SkylineSummit> summits_;
   const GroundHeight& ground_;
   const SkylineOptions& o_;
   Eigen::AlignedBox2d bounds_;
@@ -264,7 +264,7 @@ SkylineAnswer SkylineIndex::find(std::span<const HorizonTop> tops, std::optional
   return SkylineSearch(tops, *this, options).find();
 }
 
-SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const Summit> summits,
+SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const SkylineSummit> summits,
                               const GroundHeight& ground, const SkylineOptions& options) {
   return SkylineIndex({summits.begin(), summits.end()}, ground, options).find(tops);
 }

@@ -9,7 +9,7 @@
 namespace waymark {
 
 /// A mountain top of the map.
-struct Summit {
+struct SkylineSummit {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< map frame, m
   double height = 0;                             ///< m above the datum of the ground
   double prominence = 0, isolation = 0;          ///< m; 0: not known
@@ -32,8 +32,9 @@ struct SkylineOptions {
   double height_sd = 15;  ///< m: error of summits and ground, also of a coarse DEM that cuts tops off
   double place_sd = 60;   ///< m: error of a summit's place, about a cell of the DEM
   std::int64_t least_matches = 5;
-  double false_alarms = 1e-5;  ///< poses of the map that may fit as well by chance; summits repeat their looks
-  double lead = 100;           ///< by which the best pose must be less probable by chance than the next
+  double false_alarms =
+      1e-5;           ///< poses of the map that may fit as well by chance; summits repeat their looks
+  double lead = 100;  ///< by which the best pose must be less probable by chance than the next
   std::int64_t most_tried = 150;
   std::optional<double> heading = {};  ///< rad, of a compass
   double heading_sd = 0.05;
@@ -60,7 +61,7 @@ struct SkylineAnswer {
 /// best places are fitted (resection: at least 3 bearings, 2 with a compass), summits hidden by the ground
 /// are left out, and a fix must be too good for chance. Tops of ridges that are no summits are expected.
 /// About a second for 100 km x 100 km and 500 summits.
-SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const Summit> summits,
+SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const SkylineSummit> summits,
                               const GroundHeight& ground, const SkylineOptions& options = {});
 
 /// Whether the line from one point (m, height above datum) to another clears the ground, curvature included.
@@ -69,7 +70,8 @@ bool clears_ground(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const
                    const SkylineOptions& options, double step, double margin);
 
 /// Least squares of a pose by matched tops; nothing where they do not determine it. `start`: near enough.
-std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops, std::span<const Summit> summits,
+std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops,
+                                      std::span<const SkylineSummit> summits,
                                       std::span<const std::optional<std::uint32_t>> matches,
                                       const PoseEstimate& start, const GroundHeight& ground,
                                       const SkylineOptions& options);

@@ -36,9 +36,10 @@ bool may_clear(const Eigen::Vector3d& eye, const Eigen::Vector3d& top, const Gro
 
 }  // namespace
 
-SkylineIndex::SkylineIndex(std::vector<Summit> summits, GroundHeight ground, const SkylineOptions& options)
+SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, GroundHeight ground,
+                           const SkylineOptions& options)
     : summits_(std::move(summits)), ground_(std::move(ground)), options_(options) {
-  for (const Summit& s : summits_) bounds_.extend(s.at);
+  for (const SkylineSummit& s : summits_) bounds_.extend(s.at);
   if (summits_.size() < 3) return;
   for (double y = bounds_.min().y(); y <= bounds_.max().y(); y += options_.step)
     for (double x = bounds_.min().x(); x <= bounds_.max().x(); x += options_.step)

@@ -9,7 +9,7 @@ namespace waymark {
 /// the DEM. A few seconds for 100 km x 100 km, 1 km apart, and 1000 summits; memory 200 bytes per place.
 class SkylineIndex {
  public:
-  SkylineIndex(std::vector<Summit> summits, GroundHeight ground, const SkylineOptions& options);
+  SkylineIndex(std::vector<SkylineSummit> summits, GroundHeight ground, const SkylineOptions& options);
 
   /// As find_by_skyline. `heading` of a compass, with its standard deviation, instead of that of the options.
   SkylineAnswer find(std::span<const HorizonTop> tops, std::optional<double> heading = {}) const;
@@ -24,7 +24,7 @@ class SkylineIndex {
   };
   std::optional<Place> look_round(const Eigen::Vector2d& at) const;
 
-  std::vector<Summit> summits_;
+  std::vector<SkylineSummit> summits_;
   GroundHeight ground_;
   SkylineOptions options_;
   Eigen::AlignedBox2d bounds_;

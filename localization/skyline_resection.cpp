@@ -6,7 +6,7 @@
 
 namespace waymark {
 
-SummitView view_of(const Summit& summit, const Eigen::Vector2d& eye, double eye_height,
+SummitView view_of(const SkylineSummit& summit, const Eigen::Vector2d& eye, double eye_height,
                    const SkylineOptions& options) {
   const Eigen::Vector2d d = summit.at - eye;
   const double distance = std::max(d.norm(), 1.0);
@@ -30,7 +30,8 @@ bool clears_ground(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const
   return true;
 }
 
-std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops, std::span<const Summit> summits,
+std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops,
+                                      std::span<const SkylineSummit> summits,
                                       std::span<const std::optional<std::uint32_t>> matches,
                                       const PoseEstimate& start, const GroundHeight& ground,
                                       const SkylineOptions& options) {
@@ -52,7 +53,7 @@ std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops, std::spa
     const double eye = *height + options.eye;
     for (std::size_t i = 0; i < tops.size(); ++i) {
       if (!matches[i]) continue;
-      const Summit& summit = summits[*matches[i]];
+      const SkylineSummit& summit = summits[*matches[i]];
       const SummitView view = view_of(summit, at, eye, options);
       const Eigen::Vector2d along = (summit.at - at) / view.distance;
       const double r = view.distance, place = options.place_sd / r, tall = options.height_sd / r;

@@ -7,7 +7,7 @@ namespace waymark {
 struct SummitView {
   double azimuth = 0, elevation = 0, distance = 1;
 };
-SummitView view_of(const Summit& summit, const Eigen::Vector2d& eye, double eye_height,
+SummitView view_of(const SkylineSummit& summit, const Eigen::Vector2d& eye, double eye_height,
                    const SkylineOptions& options);
 
 }  // namespace waymark

@@ -72,7 +72,7 @@ Eigen::Vector3d plane_around(const Grid<float>& heights, const NodeGrid& nodes, 
 }
 
 // Swarms of craters thrown out by a distant impact: along a line, drawn out along it, half as deep.
-void add_secondaries(std::vector<CraterPlan>& plans, const Ground& ground, std::uint64_t seed) {
+void add_secondaries(std::vector<CraterPlan>& plans, const MadeGround& ground, std::uint64_t seed) {
   const CraterLaw& law = ground.craters;
   const CraterProfiles& profiles = CraterProfiles::instance();
   Random random(seed, "secondary craters");
@@ -100,7 +100,7 @@ void add_secondaries(std::vector<CraterPlan>& plans, const Ground& ground, std::
 
 }  // namespace
 
-std::vector<CraterPlan> draw_craters(const Ground& ground, std::uint64_t seed) {
+std::vector<CraterPlan> draw_craters(const MadeGround& ground, std::uint64_t seed) {
   const CraterLaw& law = ground.craters;
   const CraterProfiles& profiles = CraterProfiles::instance();
   std::vector<CraterPlan> plans;

@@ -23,7 +23,7 @@ struct CraterPlan {
 };
 
 /// Craters of the site, oldest first in time. Some lie beyond its edges and reach in.
-std::vector<CraterPlan> draw_craters(const Ground& ground, std::uint64_t seed);
+std::vector<CraterPlan> draw_craters(const MadeGround& ground, std::uint64_t seed);
 
 /// Digs the crater: the ground inside its rim is first levelled to the plane through its surroundings, as an
 /// impact does, then bowl, rim and ejecta are added.

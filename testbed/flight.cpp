@@ -64,7 +64,7 @@ Camera camera_of(const Lens& lens) {
 
 std::vector<Shot> plan_shots(const Scenario& scenario) {
   const Camera camera = camera_of(scenario.lens);
-  const Ground& ground = scenario.ground;
+  const MadeGround& ground = scenario.ground;
   const double position_sd = scenario.pose_errors.position_sd;
   const double attitude_sd = to_radians(scenario.pose_errors.attitude_sd).value;
   std::vector<Shot> shots;
@@ -102,8 +102,8 @@ std::vector<Shot> plan_shots(const Scenario& scenario) {
   return shots;
 }
 
-Ground sized_for(const Scenario& scenario, const std::vector<Shot>& shots) {
-  Ground ground = scenario.ground;
+MadeGround sized_for(const Scenario& scenario, const std::vector<Shot>& shots) {
+  MadeGround ground = scenario.ground;
   if (ground.width > 0 && ground.height > 0) return ground;
   double half_width = 0, half_height = 0;
   for (const Shot& shot : shots)

@@ -17,7 +17,7 @@ std::vector<Shot> plan_shots(const Scenario& scenario);
 
 /// The site with width and height filled in where they are 0: all footprints on level ground at its mean
 /// height and a tenth more. Throws Error{usage} for a camera that sees the sky.
-Ground sized_for(const Scenario& scenario, const std::vector<Shot>& shots);
+MadeGround sized_for(const Scenario& scenario, const std::vector<Shot>& shots);
 
 /// Throws Error{usage} naming the first image that looks past the terrain, with what to change.
 void check_footprints(const Scene& scene, const std::vector<Shot>& shots);

@@ -4,7 +4,7 @@
 namespace waymark {
 
 /// Relief without landmarks: fractal noise (each octave an octave shorter and 2^-hurst lower) and mountains.
-struct Relief {
+struct MadeRelief {
   double rms = 5;        ///< metres, over `longest`
   double longest = 600;  ///< metres, longest wavelength
   double hurst = 0.85;   ///< 0.5 rough, 1 smooth
@@ -63,11 +63,11 @@ struct AlbedoLaw {
 };
 
 /// A made piece of planet. Metres in a grid frame whose origin is the middle of the site.
-struct Ground {
+struct MadeGround {
   double cell = 0.5;                   ///< metres, between nodes of the terrain
   double width = 600, height = 600;    ///< metres east-west, north-south
   double east = 0, north = 0, up = 0;  ///< of the middle, GridFrame
-  Relief relief;
+  MadeRelief relief;
   CraterLaw craters;
   RockLaw rocks;
   DuneLaw dunes;

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-void check(const Ground& ground) {
+void check(const MadeGround& ground) {
   const auto positive = [](double value, const char* name) {
     if (!(value > 0))
       throw Error(ErrorCode::usage, std::string("the ground's ") + name + " must be above 0",
@@ -36,7 +36,7 @@ void check(const Ground& ground) {
 
 }  // namespace
 
-Scene make_scene(const Ground& ground, std::uint64_t seed) {
+Scene make_scene(const MadeGround& ground, std::uint64_t seed) {
   check(ground);
   const NodeGrid nodes = nodes_of(ground);
   // Craters level the ground they hit, so the finest relief comes after them.

@@ -9,7 +9,7 @@
 
 namespace waymark {
 
-Grid<float> raise_outcrops(Grid<float>& heights, const Ground& ground, const NodeGrid& nodes,
+Grid<float> raise_outcrops(Grid<float>& heights, const MadeGround& ground, const NodeGrid& nodes,
                            std::uint64_t seed) {
   const OutcropLaw& law = ground.outcrops;
   Grid<float> cover(nodes.columns, nodes.rows, 0.0F);

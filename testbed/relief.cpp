@@ -16,7 +16,7 @@ std::uint32_t noise_seed(std::uint64_t seed, std::string_view name) {
   return static_cast<std::uint32_t>(named_seed(seed, name));
 }
 
-void raise_mountain(Grid<float>& heights, const NodeGrid& nodes, const Relief& relief, Random& random,
+void raise_mountain(Grid<float>& heights, const NodeGrid& nodes, const MadeRelief& relief, Random& random,
                     double x, double y) {
   const double radius = relief.mountain_radius * random.uniform(0.5, 1);
   const double height = relief.mountain_height * random.uniform(0.5, 1);
@@ -39,7 +39,7 @@ void raise_mountain(Grid<float>& heights, const NodeGrid& nodes, const Relief& r
 
 }  // namespace
 
-NodeGrid nodes_of(const Ground& ground) {
+NodeGrid nodes_of(const MadeGround& ground) {
   const auto count = [&](double length) {
     return static_cast<std::int64_t>(std::llround(length / ground.cell)) + 1;
   };
@@ -49,15 +49,16 @@ NodeGrid nodes_of(const Ground& ground) {
   return nodes;
 }
 
-Fractal relief_fractal(const Relief& relief, double shortest, std::uint64_t seed) {
+Fractal relief_fractal(const MadeRelief& relief, double shortest, std::uint64_t seed) {
   Fractal fractal{relief.longest, shortest, 1, relief.hurst, noise_seed(seed, "relief")};
   // The octaves' variances form a geometric series whose sum is rms^2.
   fractal.amplitude = relief.rms * std::sqrt(1 - std::exp2(-2 * relief.hurst));
   return fractal;
 }
 
-Grid<float> coarse_relief(const Ground& ground, const NodeGrid& nodes, double finest, std::uint64_t seed) {
-  const Relief& relief = ground.relief;
+Grid<float> coarse_relief(const MadeGround& ground, const NodeGrid& nodes, double finest,
+                          std::uint64_t seed) {
+  const MadeRelief& relief = ground.relief;
   NodeGrid about_middle = nodes;
   about_middle.x0 -= ground.east;
   about_middle.y0 -= ground.north;
@@ -76,7 +77,7 @@ Grid<float> coarse_relief(const Ground& ground, const NodeGrid& nodes, double fi
   return heights;
 }
 
-Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGrid& nodes,
+Grid<float> blow_dunes(Grid<float>& heights, const MadeGround& ground, const NodeGrid& nodes,
                        std::uint64_t seed) {
   const DuneLaw& law = ground.dunes;
   Grid<float> cover(nodes.columns, nodes.rows, 0.0F);
@@ -132,7 +133,7 @@ Grid<float> blow_dunes(Grid<float>& heights, const Ground& ground, const NodeGri
   return cover;
 }
 
-Grid<float> paint(const Ground& ground, const NodeGrid& nodes, const Grid<float>& dunes,
+Grid<float> paint(const MadeGround& ground, const NodeGrid& nodes, const Grid<float>& dunes,
                   const Grid<float>& outcrops, const std::vector<CraterPlan>& craters, std::uint64_t seed) {
   const AlbedoLaw& law = ground.albedo;
   NodeGrid about_middle = nodes;

@@ -30,7 +30,8 @@ std::vector<double> cumulative_numbers(const RockLaw& law, std::size_t count) {
 }
 
 // How much denser than the mean the rocks of each square are; mean 1.
-Grid<double> density_map(const Ground& ground, const std::vector<CraterPlan>& craters, std::uint64_t seed) {
+Grid<double> density_map(const MadeGround& ground, const std::vector<CraterPlan>& craters,
+                         std::uint64_t seed) {
   const NodeGrid squares{static_cast<std::int64_t>(std::ceil(ground.width / kPatch)),
                          static_cast<std::int64_t>(std::ceil(ground.height / kPatch)),
                          ground.east - ground.width / 2 + kPatch / 2,
@@ -76,7 +77,7 @@ double rocks_per_area(const RockLaw& law, double diameter) {
   return diameter < law.max_diameter ? cumulative_numbers(above, 400).front() : 0;
 }
 
-RockField strew_rocks(const Ground& ground, const Terrain& terrain, const Grid<float>& dunes,
+RockField strew_rocks(const MadeGround& ground, const Terrain& terrain, const Grid<float>& dunes,
                       const std::vector<CraterPlan>& craters, std::uint64_t seed) {
   const RockLaw& law = ground.rocks;
   if (!(law.k > 0) || !(law.max_diameter > law.min_diameter)) return {};

@@ -21,7 +21,7 @@ struct RockField {
 };
 /// Rocks on the ground, widest first, none within another's outline. Dunes (cover of each node, [0, 1]) have
 /// buried nine tenths of theirs.
-RockField strew_rocks(const Ground& ground, const Terrain& terrain, const Grid<float>& dunes,
+RockField strew_rocks(const MadeGround& ground, const Terrain& terrain, const Grid<float>& dunes,
                       const std::vector<CraterPlan>& craters, std::uint64_t seed);
 
 }  // namespace waymark

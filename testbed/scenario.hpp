@@ -50,7 +50,7 @@ struct Scenario {
   std::string name = "A made landing site";
   std::string crs = "local";  ///< of the grid frame: local, or a projected CRS
   std::int64_t seed = 1;
-  Ground ground;  ///< width or height 0: as much as the images see
+  MadeGround ground;  ///< width or height 0: as much as the images see
   Exposure exposure;
   std::int64_t bits = 8;  ///< of the images: 8 or 16
   Lens lens;
@@ -58,7 +58,7 @@ struct Scenario {
   PoseErrors pose_errors;
   DemModel dem;
   DriveSettings drive;  ///< `on` where the file has the section
-  ForestLaw forest;  ///< `on` where the file has the section
+  ForestLaw forest;     ///< `on` where the file has the section
 };
 
 /// Reads a scenario (docs/testbed.md). `source` names the file in messages. Throws Error{usage} with the JSON

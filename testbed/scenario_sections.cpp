@@ -11,7 +11,7 @@ void describe_file(Scenario& s, OptionVisitor& field) {
 }
 
 void describe_ground(Scenario& s, OptionVisitor& field) {
-  Ground& g = s.ground;
+  MadeGround& g = s.ground;
   field("cell", g.cell, {.help = "Metres between the heights of the ground", .min = 0.01, .max = 1000});
   field("width", g.width, {.help = "Metres east-west; 0: as much as the images see", .min = 0, .max = 1e6});
   field("height", g.height,
@@ -22,7 +22,7 @@ void describe_ground(Scenario& s, OptionVisitor& field) {
 }
 
 void describe_relief(Scenario& s, OptionVisitor& field) {
-  Relief& r = s.ground.relief;
+  MadeRelief& r = s.ground.relief;
   field("rms", r.rms, {.help = "Standard deviation of the heights, metres", .min = 0, .max = 1e4});
   field("longest", r.longest, {.help = "Longest wavelength, metres", .min = 0.1, .max = 1e6});
   field("hurst", r.hurst, {.help = "Smoothness: 0.5 rough, 1 smooth", .min = 0.2, .max = 1.5});

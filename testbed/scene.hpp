@@ -34,7 +34,7 @@ inline constexpr double kErased = 0.4;
 
 /// A made piece of planet with everything known about it. Copies share the terrain.
 struct Scene {
-  Ground ground;
+  MadeGround ground;
   std::uint64_t seed = 0;
   Terrain terrain;
   Grid<float> albedo;               ///< at the terrain's nodes
@@ -45,6 +45,6 @@ struct Scene {
 
 /// The same scene for the same ground and seed, bit for bit, whatever the number of threads.
 /// Throws Error{usage} for sizes that make no sense and above 1e9 nodes. About 1 s per 4 M nodes on one core.
-Scene make_scene(const Ground& ground, std::uint64_t seed);
+Scene make_scene(const MadeGround& ground, std::uint64_t seed);
 
 }  // namespace waymark

@@ -113,7 +113,7 @@ class TileSurvey {
     path_.clear();
     while (is_owned(c, r) && labels_(c - 1, r - 1) == kUnlabelled) {
       path_.push_back(&labels_(c - 1, r - 1));
-      const Step up = steepest_step(c, r);
+      const NeighbourStep up = steepest_step(c, r);
       c += up.column;
       r += up.row;
     }
@@ -122,11 +122,11 @@ class TileSurvey {
     return node;
   }
 
-  Step steepest_step(std::int64_t c, std::int64_t r) const {
-    Step best{0, 0};
+  NeighbourStep steepest_step(std::int64_t c, std::int64_t r) const {
+    NeighbourStep best{0, 0};
     double best_height = heights_(c, r);
     std::int64_t best_cell = cell(c, r);
-    for (const Step step : kRing) {
+    for (const NeighbourStep step : kRing) {
       const double height = heights_(c + step.column, r + step.row);
       if (height < best_height) continue;
       const std::int64_t there = cell(c + step.column, r + step.row);
@@ -170,7 +170,7 @@ class TileSurvey {
   }
 
   bool touches_hidden_ground(std::int64_t c, std::int64_t r) const {
-    return std::ranges::any_of(kRing, [&](Step s) { return hides_ground(c + s.column, r + s.row); });
+    return std::ranges::any_of(kRing, [&](NeighbourStep s) { return hides_ground(c + s.column, r + s.row); });
   }
 
   void label_border() {

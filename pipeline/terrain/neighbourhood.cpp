@@ -8,7 +8,7 @@ namespace waymark {
 namespace {
 
 bool touch(int a, int b) {
-  const Step p = kRing[static_cast<std::size_t>(a)], q = kRing[static_cast<std::size_t>(b)];
+  const NeighbourStep p = kRing[static_cast<std::size_t>(a)], q = kRing[static_cast<std::size_t>(b)];
   return std::abs(p.column - q.column) <= 1 && std::abs(p.row - q.row) <= 1;
 }
 

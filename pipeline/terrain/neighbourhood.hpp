@@ -6,10 +6,10 @@
 namespace waymark {
 
 /// The eight neighbours, clockwise from north; bit i of a mask stands for kRing[i].
-struct Step {
+struct NeighbourStep {
   int column, row;
 };
-inline constexpr std::array<Step, 8> kRing{
+inline constexpr std::array<NeighbourStep, 8> kRing{
     {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}}};
 
 /// Of the neighbours in `mask`, the connected parts: one neighbour of each, as a mask. Two neighbours are

@@ -74,7 +74,7 @@ std::filesystem::path dems() {
 
 struct Country {
   Ground ground;
-  std::vector<Summit> summits;
+  std::vector<SkylineSummit> summits;
 };
 
 Country country(const std::string& dem_file, const std::string& summit_file, double least_prominence,
@@ -152,10 +152,10 @@ TEST(Skyline, PlacesInThePyrenees) {
 
 /// Cones on a plain: everything is known.
 struct Cones {
-  std::vector<Summit> summits;
+  std::vector<SkylineSummit> summits;
   std::optional<double> operator()(const Eigen::Vector2d& p) const {
     double height = 0;
-    for (const Summit& s : summits) height = std::max(height, s.height - 0.4 * (p - s.at).norm());
+    for (const SkylineSummit& s : summits) height = std::max(height, s.height - 0.4 * (p - s.at).norm());
     return height;
   }
 };
@@ -175,7 +175,7 @@ std::vector<HorizonTop> tops_of(const Cones& c, const Pose2& robot, const Skylin
   std::vector<HorizonTop> tops;
   const GroundHeight ground = c;
   const Eigen::Vector3d eye(robot.x, robot.y, *c(robot.at()) + o.eye);
-  for (const Summit& s : c.summits) {
+  for (const SkylineSummit& s : c.summits) {
     const Eigen::Vector2d d = s.at - robot.at();
     const double drop = curvature_drop(d.norm(), o.body_radius, o.refraction);
     if (tops.size() == most || d.norm() > o.reach ||

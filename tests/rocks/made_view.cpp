@@ -12,7 +12,7 @@ MadeView made_view(int number) {
   Random random(static_cast<std::uint64_t>(number), "made view of rocks");
   constexpr std::int64_t kPixels = 448;
   const double gsd = random.log_uniform(0.1, 0.5);  // the finer, the more of the ground's texture is seen
-  Ground ground;
+  MadeGround ground;
   ground.width = ground.height = 1.5 * gsd * kPixels;
   ground.cell = random.uniform(1.5, 4) * gsd;
   ground.rocks.k = random.log_uniform(0.006, 0.3);

@@ -33,8 +33,11 @@ std::vector<StandingTree> stand(double side, double per_hectare, std::uint64_t s
     bool free = at.norm() > 3;
     for (const StandingTree& t : trees) free = free && (t.foot.head<2>() - at).norm() > 1.5;
     if (free)
-      trees.push_back({.foot = {at.x(), at.y(), 0}, .height = 20, .dbh = random.uniform(0.12, 0.45),
-                       .crown_diameter = 4, .crown_base = 9});
+      trees.push_back({.foot = {at.x(), at.y(), 0},
+                       .height = 20,
+                       .dbh = random.uniform(0.12, 0.45),
+                       .crown_diameter = 4,
+                       .crown_base = 9});
   }
   return trees;
 }
@@ -99,9 +102,10 @@ StemScore score_stems(double from, double to, const ForestClutter& clutter, std:
 TEST(LaserStems, AreFoundAndMeasuredWithinTwelveMetres) {
   for (const double to : {4.0, 8.0, 12.0, 18.0}) {
     const StemScore s = score_stems(to - 4, to, {}, 100);
-    std::printf("%4.0f m: D RMSE %.1f cm, bias %.1f cm, place %.1f cm, %d of %d visible found, %d of %d false\n", to,
-                100 * std::sqrt(s.squares / s.found), 100 * s.bias / s.found,
-                100 * std::sqrt(s.position / s.found), s.found, s.visible, s.is_false, s.stems);
+    std::printf(
+        "%4.0f m: D RMSE %.1f cm, bias %.1f cm, place %.1f cm, %d of %d visible found, %d of %d false\n", to,
+        100 * std::sqrt(s.squares / s.found), 100 * s.bias / s.found, 100 * std::sqrt(s.position / s.found),
+        s.found, s.visible, s.is_false, s.stems);
   }
   const StemScore at_twelve = score_stems(11, 13, {}, 200);
   EXPECT_LE(std::sqrt(at_twelve.squares / at_twelve.found), 0.025);
@@ -112,7 +116,10 @@ TEST(LaserStems, AreFoundAndMeasuredWithinTwelveMetres) {
 }
 
 TEST(LaserStems, AScanOfMissesHasNone) {
-  LaserScan scan{.robot_from_sensor = {}, .first_angle = -1, .angle_step = 0.01, .ranges = std::vector<float>(200, 0.0F)};
+  LaserScan scan{.robot_from_sensor = {},
+                 .first_angle = -1,
+                 .angle_step = 0.01,
+                 .ranges = std::vector<float>(200, 0.0F)};
   EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
   scan.ranges.clear();
   EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
@@ -122,7 +129,7 @@ TEST(LaserStems, AScanOfMissesHasNone) {
 }
 
 Scene rocky() {
-  Ground ground;
+  MadeGround ground;
   ground.width = ground.height = 100;
   ground.cell = 0.4;
   ground.relief = {.rms = 0.4, .longest = 60, .roughness = 0.5};
@@ -145,7 +152,8 @@ TEST(LaserRocks, MostOfWhatIsFoundIsThere) {
     const RayFan fan(targets, eye, 25);
     const LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), {.field = Degrees{359}}, random);
     for (const SeenRock& rock : find_rocks(scan, {})) {
-      const Eigen::Vector2d at = eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
+      const Eigen::Vector2d at =
+          eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
       double nearest = 1e9;
       for (const TrueRock& r : scene.rocks)
         nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
@@ -169,7 +177,8 @@ TEST(DepthRocks, MostOfWhatIsFoundIsThere) {
     const RayFan fan(targets, eye, 18);
     const DepthImage image = depth_image(fan, Eigen::Matrix3d::Identity(), {}, random);
     for (const DepthRock& rock : find_rocks(image, {})) {
-      const Eigen::Vector2d at = eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
+      const Eigen::Vector2d at =
+          eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
       double nearest = 1e9;
       for (const TrueRock& r : scene.rocks)
         nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
@@ -183,9 +192,11 @@ TEST(DepthRocks, MostOfWhatIsFoundIsThere) {
 }
 
 TEST(HorizonSummits, StandOutOfBothSides) {
-  HorizonProfile horizon{.first_angle = -std::numbers::pi, .angle_step = 2 * std::numbers::pi / 360,
+  HorizonProfile horizon{.first_angle = -std::numbers::pi,
+                         .angle_step = 2 * std::numbers::pi / 360,
                          .elevations = std::vector<float>(360, 0.01F)};
-  for (int k = -20; k <= 20; ++k) horizon.elevations[static_cast<std::size_t>(200 + k)] += 0.002F * float(20 - std::abs(k));
+  for (int k = -20; k <= 20; ++k)
+    horizon.elevations[static_cast<std::size_t>(200 + k)] += 0.002F * float(20 - std::abs(k));
   horizon.elevations[300] += 0.004F;  // too low to count
   for (int k = -3; k <= 3; ++k)       // across the seam
     horizon.elevations[static_cast<std::size_t>((360 + k) % 360)] += 0.01F * float(4 - std::abs(k));
@@ -205,8 +216,9 @@ TEST(HarvestedTrees, StandWhereTheCraneReaches) {
     row.at.covariance.diagonal() << 0.04, 0.01, 0;
     track.rows.push_back(row);
   }
-  const std::vector<FelledReading> felled{{.t = -1, .range = 5, .bearing = 0},
-                                          {.t = 1.5, .range = 5, .bearing = 0, .range_sd = 0.1, .diameter = 0.3}};
+  const std::vector<FelledReading> felled{
+      {.t = -1, .range = 5, .bearing = 0},
+      {.t = 1.5, .range = 5, .bearing = 0, .range_sd = 0.1, .diameter = 0.3}};
   const auto trees = harvested_trees(felled, track);
   ASSERT_EQ(trees.size(), 1u) << "nobody knows where the machine stood before the first row";
   EXPECT_NEAR((trees[0].at - Eigen::Vector2d(1, 5)).norm(), 0, 1e-12);

@@ -28,8 +28,8 @@ Terrain slope(double forward, double left, double side = 60) {
   return {std::move(heights), -side / 2, side / 2, 1, 1};
 }
 
-Ground small_site() {
-  Ground ground;
+MadeGround small_site() {
+  MadeGround ground;
   ground.width = ground.height = 90;
   ground.cell = 0.5;
   ground.relief.rms = 0.5;
@@ -45,7 +45,11 @@ std::vector<StandingTree> rows_of_trees(const Terrain& terrain) {
     for (int j = -3; j <= 3; ++j) {
       const double x = 5.5 * i + 1, y = 5.5 * j + 0.7 * i;
       if (const auto z = terrain.height(x, y))
-        trees.push_back({.foot = {x, y, *z}, .height = 20, .dbh = 0.15 + 0.03 * (i + 4), .crown_diameter = 4, .crown_base = 9});
+        trees.push_back({.foot = {x, y, *z},
+                         .height = 20,
+                         .dbh = 0.15 + 0.03 * (i + 4),
+                         .crown_diameter = 4,
+                         .crown_base = 9});
     }
   return trees;
 }
@@ -100,8 +104,13 @@ TEST(RayFan, AFelledTreeIsGone) {
 TEST(LaserScanner, AWideBeamSeesStemsWiderAndTheDetectorKnows) {
   const LaserTargets targets(slope(0, 0), {}, {StemSolid{.foot = {8, 0.01, 0}, .dbh = 0.3, .height = 20}});
   const RayFan fan(targets, {0, 0, 1.3}, 30);
-  LaserModel laser{.field = Degrees{60}, .divergence = Degrees{0.5}, .rays = 9, .range_sd = 0, .dropouts = 0,
-                   .clutter = 0, .mixed = 0};
+  LaserModel laser{.field = Degrees{60},
+                   .divergence = Degrees{0.5},
+                   .rays = 9,
+                   .range_sd = 0,
+                   .dropouts = 0,
+                   .clutter = 0,
+                   .mixed = 0};
   laser.step = Degrees{0.05};
   Random random(1);
   LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
@@ -163,7 +172,7 @@ TEST(Drive, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Drive, AHarvesterFellsWhatStandsInItsWay) {
-  Ground ground = small_site();
+  MadeGround ground = small_site();
   ground.rocks.k = 0;
   ground.craters.density = 0;
   const Scene scene = make_scene(ground, 4);
@@ -199,7 +208,8 @@ TEST(DriveSection, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal(R"({"speeed": 1})"), HasSubstr("did you mean 'speed'"));
   EXPECT_THAT(refusal(R"({"laser": {"step": 0}})"), HasSubstr("drive.laser.step = 0 is outside"));
   EXPECT_THAT(refusal(R"({"route": "waypoints"})"), HasSubstr("drive.waypoints is missing"));
-  EXPECT_THAT(refusal(R"({"waypoints": [[1, 2], [3]]})"), HasSubstr("drive.waypoints[1] must be [east, north]"));
+  EXPECT_THAT(refusal(R"({"waypoints": [[1, 2], [3]]})"),
+              HasSubstr("drive.waypoints[1] must be [east, north]"));
   EXPECT_THAT(refusal(R"({"vehicle": "tank"})"), HasSubstr("must be one of rover, harvester"));
 }
 
@@ -215,9 +225,10 @@ TEST(DriveSection, ComesBackAsItWasWritten) {
 
 TEST(TreeTable, IsReadWithWhatItHas) {
   const Terrain flat = slope(0, 0);
-  const auto trees = trees_from_table("tree_id,stand_id,year,dbh,x_coord,y_coord\n1,A,2000,30,0,0\n1,A,2010,40,0,0\n"
-                                      "2,A,2010,20,10,4\n3,B,2010,20,900,4\n4,A,2010,,5,5\n",
-                                      "t.csv", "A", {0, 0}, flat);
+  const auto trees = trees_from_table(
+      "tree_id,stand_id,year,dbh,x_coord,y_coord\n1,A,2000,30,0,0\n1,A,2010,40,0,0\n"
+      "2,A,2010,20,10,4\n3,B,2010,20,900,4\n4,A,2010,,5,5\n",
+      "t.csv", "A", {0, 0}, flat);
   ASSERT_EQ(trees.size(), 2u);
   EXPECT_NEAR(trees[0].dbh, 0.4, 1e-12);
   EXPECT_NEAR(trees[0].foot.x(), -5, 1e-12);

@@ -18,15 +18,15 @@
 namespace waymark {
 namespace {
 
-Ground small_site() {
-  Ground ground;
+MadeGround small_site() {
+  MadeGround ground;
   ground.width = ground.height = 100;
   ground.craters.max_diameter = 40;
   return ground;
 }
 
-Ground bare_site() {
-  Ground ground = small_site();
+MadeGround bare_site() {
+  MadeGround ground = small_site();
   ground.relief.rms = 0;
   ground.craters.density = 0;
   ground.craters.clusters = 0;
@@ -80,7 +80,7 @@ TEST(CraterProfiles, WearDownFromTheFreshBowl) {
 }
 
 TEST(Craters, TheDugCraterIsTheOneAskedFor) {
-  const Ground ground = bare_site();
+  const MadeGround ground = bare_site();
   const NodeGrid nodes = nodes_of(ground);
   Grid<float> heights(nodes.columns, nodes.rows, 3.0F);
   const CraterPlan plan{
@@ -96,7 +96,7 @@ TEST(Craters, TheDugCraterIsTheOneAskedFor) {
 }
 
 TEST(Craters, FollowTheirSizeLaw) {
-  Ground ground = small_site();
+  MadeGround ground = small_site();
   ground.width = ground.height = 3000;
   ground.craters = {.density = 0.5, .slope = 2, .min_diameter = 8, .max_diameter = 200, .clusters = 0};
   std::size_t above_10 = 0, above_20 = 0, above_40 = 0;
@@ -151,7 +151,7 @@ TEST(Rocks, ARayMeetsWhatBlocksIt) {
 }
 
 TEST(Rocks, FollowGolombeksLaw) {
-  Ground ground = bare_site();
+  MadeGround ground = bare_site();
   ground.width = ground.height = 200;
   ground.rocks = {.k = 0.05, .min_diameter = 0.4, .max_diameter = 6, .clustering = 0, .on_rims = 0};
   const Scene scene = make_scene(ground, 11);
@@ -169,7 +169,7 @@ TEST(Rocks, FollowGolombeksLaw) {
 }
 
 TEST(Outcrops, StandAboveTheGroundAndAreBright) {
-  Ground ground = bare_site();
+  MadeGround ground = bare_site();
   ground.width = ground.height = 300;
   const Scene bare = make_scene(ground, 2);
   ground.outcrops = {.cover = 0.2, .height = 3, .longest = 60, .brightness = 0.5};
@@ -202,13 +202,13 @@ TEST(Scene, IsTheSameBitForBitOnOneThread) {
 }
 
 TEST(Scene, MoreRocksLeaveTheCratersAlone) {
-  Ground rocky = small_site();
+  MadeGround rocky = small_site();
   rocky.rocks.k = 0.2;
   EXPECT_EQ(make_scene(rocky, 5).terrain.heights(), make_scene(small_site(), 5).terrain.heights());
 }
 
 TEST(Scene, RefusesSizesThatMakeNoSense) {
-  Ground ground = small_site();
+  MadeGround ground = small_site();
   ground.cell = 0;
   try {
     make_scene(ground, 1);

@@ -15,8 +15,8 @@
 namespace waymark {
 namespace {
 
-Ground bare_ground() {
-  Ground ground;
+MadeGround bare_ground() {
+  MadeGround ground;
   ground.width = ground.height = 40;
   ground.relief.rms = 0;
   ground.craters.density = 0;
@@ -89,7 +89,7 @@ TEST(Render, ARockCastsAShadowOfItsLength) {
 }
 
 TEST(Render, ShadowsOfTheGroundAreThoseOfRays) {
-  Ground ground = bare_ground();
+  MadeGround ground = bare_ground();
   ground.relief = {.rms = 4, .longest = 40, .hurst = 0.8, .roughness = 0.3};
   const Scene scene = make_scene(ground, 3);
   for (const double azimuth : {10.0, 100.0, 190.0, 305.0}) {
@@ -129,7 +129,7 @@ TEST(Render, PastTheGroundIsNoData) {
 }
 
 TEST(Render, IsTheSameBitForBitOnOneThread) {
-  Ground ground;
+  MadeGround ground;
   ground.width = ground.height = 60;
   ground.craters.max_diameter = 20;
   const Scene scene = make_scene(ground, 2);
