@@ -8,7 +8,14 @@ function(waymark_folder)
     file(GLOB found_sources CONFIGURE_DEPENDS ${folder}/*.cpp)
     file(GLOB found_headers CONFIGURE_DEPENDS ${folder}/*.hpp)
     list(APPEND sources ${found_sources})
-    list(APPEND headers ${found_headers})
+    foreach(header IN LISTS found_headers)
+      cmake_path(REPLACE_EXTENSION header cpp OUTPUT_VARIABLE its_source)
+      if(its_source IN_LIST found_sources)
+        list(APPEND headers ${header})
+      else()
+        list(APPEND lone_headers ${header})
+      endif()
+    endforeach()
   endforeach()
   if(NOT sources)  # a room that is not furnished yet
     file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${arg_NAME}_empty.cpp CONTENT "")
@@ -17,13 +24,19 @@ function(waymark_folder)
   set(target waymark_${arg_NAME})
   add_library(${target} STATIC ${sources})
   add_library(Waymark::${arg_NAME} ALIAS ${target})
-  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME} VERIFY_INTERFACE_HEADER_SETS ON)
+  # A header stands alone: its own .cpp includes it first (which the asan preset, without precompiled headers,
+  # proves); a header without one is compiled by itself.
+  target_sources(${target} PUBLIC
+    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers}
+    FILE_SET lone TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${lone_headers})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME} VERIFY_INTERFACE_HEADER_SETS ON
+                        INTERFACE_HEADER_SETS_TO_VERIFY lone)
   target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE $<BUILD_INTERFACE:waymark_build_rules> ${arg_PRIVATE})
   target_compile_features(${target} PUBLIC cxx_std_20)
   if(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
     waymark_use_precompiled(${target} waymark_precompiled)
   endif()
   install(TARGETS ${target} EXPORT WaymarkTargets ARCHIVE COMPONENT development
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development)
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development
+          FILE_SET lone DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development)
 endfunction()

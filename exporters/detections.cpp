@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/principal_axes.hpp"
 #include "landmarks/uid.hpp"
 
 namespace waymark {
@@ -35,13 +37,10 @@ GroundEllipse on_ground(const PixelEllipse& outline, const Eigen::Vector2d& size
   const Eigen::Rotation2Dd turn(outline.angle);
   Eigen::Matrix2d axes = turn.toRotationMatrix() * Eigen::Vector2d(outline.major, outline.minor).asDiagonal();
   axes = size.asDiagonal() * axes;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(axes * axes.transpose());
-  const Eigen::Vector2d squares = solver.eigenvalues().cwiseMax(0);
-  const Eigen::Vector2d along = solver.eigenvectors().col(1);  // right, down = east, south
-  double azimuth = std::atan2(along.x(), -along.y());
+  const PrincipalAxes ground = principal_axes(axes * axes.transpose());  // right, down = east, south
+  double azimuth = ground.angle + std::numbers::pi / 2;
   if (azimuth > std::numbers::pi / 2) azimuth -= std::numbers::pi;
-  if (azimuth <= -std::numbers::pi / 2) azimuth += std::numbers::pi;
-  return {std::sqrt(squares(1)), std::sqrt(squares(0)), azimuth};
+  return {std::sqrt(std::max(ground.major, 0.0)), std::sqrt(std::max(ground.minor, 0.0)), azimuth};
 }
 
 Eigen::Vector2d map_position(const Georeference& place, const PixelEllipse& outline) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -11,12 +10,14 @@
 #include <iterator>
 #include <numbers>
 
+#include "core/principal_axes.hpp"
+
 namespace waymark {
 namespace {
 
 constexpr double kEllipseScale = 10;
 constexpr double kWidth = 900, kChart = 220, kBorder = 46;  // pixels
-constexpr double kLargestEllipse = 90;                    // pixels; larger ones are drawn as they are
+constexpr double kLargestEllipse = 90;                      // pixels; larger ones are drawn as they are
 constexpr double kSmallestError = 0.01;                     // metres, foot of the chart
 constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "#1b9e77",
                                               "#c51b7d", "#8c6d31", "#444444"};
@@ -24,10 +25,14 @@ constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "
 std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
-    if (c == '&') safe += "&amp;";
-    else if (c == '<') safe += "&lt;";
-    else if (c == '>') safe += "&gt;";
-    else safe += c;
+    if (c == '&')
+      safe += "&amp;";
+    else if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else
+      safe += c;
   }
   return safe;
 }
@@ -57,7 +62,8 @@ class Drawing {
   std::string page() {
     const double all = 30 + height_ + 30 + kChart + 50;
     svg_ = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 "
+        "{0:.0f} "
         "{1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" "
         "fill=\"#ffffff\"/>\n<text x=\"{2}\" y=\"20\" font-size=\"15\">{3}</text>\n",
         kWidth, all, kBorder, escaped(picture_.title));
@@ -79,15 +85,16 @@ class Drawing {
       const Eigen::Vector2d at = places(i);
       fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ", x(at.x()), y(at.y()));
     }
-    svg_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", points, paint,
-                        width);
+    svg_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n", points,
+                        paint, width);
   }
 
   void map() {
     svg_ += fmt::format(
         "<clipPath id=\"map\"><rect x=\"{0}\" y=\"30\" width=\"{1:.1f}\" height=\"{2:.1f}\"/></clipPath>"
-        "<g clip-path=\"url(#map)\"><rect x=\"{0}\" y=\"30\" width=\"{1:.1f}\" height=\"{2:.1f}\" fill=\"#f6f3ee\" stroke=\"#999\"/>\n", kBorder,
-        scale_ * box_.sizes().x(), height_);
+        "<g clip-path=\"url(#map)\"><rect x=\"{0}\" y=\"30\" width=\"{1:.1f}\" height=\"{2:.1f}\" "
+        "fill=\"#f6f3ee\" stroke=\"#999\"/>\n",
+        kBorder, scale_ * box_.sizes().x(), height_);
     for (const PictureDot& dot : picture_.map) {
       if (!box_.contains(dot.at)) continue;
       svg_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" fill=\"{}\"/>\n", x(dot.at.x()),
@@ -96,7 +103,8 @@ class Drawing {
     for (const PictureDot& dot : picture_.harvested)
       if (box_.contains(dot.at))
         svg_ += fmt::format(
-            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\"/>\n",
+            "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"none\" stroke=\"{}\" "
+            "stroke-width=\"1.3\"/>\n",
             x(dot.at.x()), y(dot.at.y()), dot.colour);
     line([&](std::size_t i) { return picture_.truth[i].pose.at(); }, picture_.truth.size(), "#000000", 3.5);
     for (std::size_t k = 0; k < picture_.tracks.size(); ++k) {
@@ -106,7 +114,8 @@ class Drawing {
     }
     const double bar = round_length(box_.sizes().x() / 4);
     svg_ += fmt::format(
-        "<path d=\"M {0:.1f} {1:.1f} h {2:.1f}\" stroke=\"#000\" stroke-width=\"3\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\">{4:g} "
+        "<path d=\"M {0:.1f} {1:.1f} h {2:.1f}\" stroke=\"#000\" stroke-width=\"3\"/><text x=\"{0:.1f}\" "
+        "y=\"{3:.1f}\">{4:g} "
         "m</text></g>\n",
         kBorder + 10, 30 + height_ - 12, scale_ * bar, 30 + height_ - 18, bar);
     legend();
@@ -115,17 +124,19 @@ class Drawing {
   void ellipses(const std::vector<TrackRow>& rows, const char* paint) {
     const std::size_t step = std::max<std::size_t>(1, rows.size() / 14);
     for (std::size_t i = step; i < rows.size(); i += step) {
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(rows[i].at.covariance.topLeftCorner<2, 2>());
-      Eigen::Vector2d sd = axes.eigenvalues().cwiseMax(0).cwiseSqrt() * 3 * kEllipseScale * scale_;
+      const PrincipalAxes axes = principal_axes(rows[i].at.covariance.topLeftCorner<2, 2>());
+      Eigen::Vector2d sd =
+          Eigen::Vector2d(axes.major, axes.minor).cwiseMax(0).cwiseSqrt() * 3 * kEllipseScale * scale_;
       const bool as_it_is = !(sd.maxCoeff() < kLargestEllipse);
       if (as_it_is) sd /= kEllipseScale;
       if (!(sd.maxCoeff() < 10 * kWidth)) continue;
-      const double turn = -std::atan2(axes.eigenvectors()(1, 1), axes.eigenvectors()(0, 1)) * 180 / std::numbers::pi;
+      const double turn = -axes.angle * 180 / std::numbers::pi;
       const Eigen::Vector2d at = rows[i].at.pose.at();
       svg_ += fmt::format(
-          "<ellipse rx=\"{:.1f}\" ry=\"{:.1f}\" transform=\"translate({:.1f} {:.1f}) rotate({:.1f})\" fill=\"{}\" "
+          "<ellipse rx=\"{:.1f}\" ry=\"{:.1f}\" transform=\"translate({:.1f} {:.1f}) rotate({:.1f})\" "
+          "fill=\"{}\" "
           "fill-opacity=\"{}\" stroke=\"{}\" stroke-width=\"0.8\"{}/>\n",
-          sd.y(), sd.x(), x(at.x()), y(at.y()), turn, paint, as_it_is ? 0.03 : 0.1, paint,
+          sd.x(), sd.y(), x(at.x()), y(at.y()), turn, paint, as_it_is ? 0.03 : 0.1, paint,
           as_it_is ? " stroke-dasharray=\"4 3\"" : "");
     }
   }
@@ -134,20 +145,23 @@ class Drawing {
     const double left = kWidth - kBorder - 226;
     const auto rows = static_cast<double>(picture_.tracks.size() + 2);
     svg_ += fmt::format(
-        "<rect x=\"{}\" y=\"36\" width=\"220\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"#bbb\"/>\n",
+        "<rect x=\"{}\" y=\"36\" width=\"220\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
+        "stroke=\"#bbb\"/>\n",
         left, rows * 17 + 6);
     double at = 52;
     const auto entry = [&](const std::string& name, const char* paint, double width) {
       svg_ += fmt::format(
-          "<path d=\"M {} {} h 24\" stroke=\"{}\" stroke-width=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n", left + 6,
-          at - 4, paint, width, left + 36, at, escaped(name));
+          "<path d=\"M {} {} h 24\" stroke=\"{}\" stroke-width=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
+          left + 6, at - 4, paint, width, left + 36, at, escaped(name));
       at += 17;
     };
     entry("truth", "#000000", 3.5);
     for (std::size_t k = 0; k < picture_.tracks.size(); ++k)
-      entry(fmt::format("{}{}", picture_.tracks[k].name, median_text(picture_.tracks[k].track)), colour(k), 2);
-    svg_ += fmt::format("<text x=\"{}\" y=\"{}\" font-size=\"10\">3 sigma: {:g} times as large; dashed: true size</text>\n",
-                        left + 6, at, kEllipseScale);
+      entry(fmt::format("{}{}", picture_.tracks[k].name, median_text(picture_.tracks[k].track)), colour(k),
+            2);
+    svg_ += fmt::format(
+        "<text x=\"{}\" y=\"{}\" font-size=\"10\">3 sigma: {:g} times as large; dashed: true size</text>\n",
+        left + 6, at, kEllipseScale);
   }
 
   std::vector<std::pair<double, double>> errors(const Track& track) const {
@@ -180,7 +194,8 @@ class Drawing {
     for (double d = 0; d <= decades; ++d) {
       const double metres = kSmallestError * std::pow(10, d);
       svg_ += fmt::format(
-          "<path d=\"M {0} {1:.1f} h {2}\" stroke=\"#ccc\"/><text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
+          "<path d=\"M {0} {1:.1f} h {2}\" stroke=\"#ccc\"/><text x=\"{3}\" y=\"{4:.1f}\" "
+          "text-anchor=\"end\">{5:g}</text>\n",
           kBorder, height(metres), width, kBorder - 5, height(metres) + 4, metres);
     }
     for (std::size_t k = 0; k < picture_.tracks.size(); ++k) {
@@ -190,11 +205,11 @@ class Drawing {
       for (std::size_t i = 0; i < all.size(); i += step)
         fmt::format_to(std::back_inserter(points), "{:.1f},{:.1f} ",
                        kBorder + width * (all[i].first - from) / span, height(all[i].second));
-      svg_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n", points,
-                          colour(k));
+      svg_ += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\"/>\n",
+                          points, colour(k));
     }
-    svg_ += fmt::format(
-        "<text x=\"{}\" y=\"{:.1f}\">position error, m, over {:.0f} s</text>\n", kBorder, top + kChart + 20, span);
+    svg_ += fmt::format("<text x=\"{}\" y=\"{:.1f}\">position error, m, over {:.0f} s</text>\n", kBorder,
+                        top + kChart + 20, span);
   }
 
   const TrackPicture& picture_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <stdexcept>
 
 #include "localization/kalman.hpp"
@@ -9,14 +8,21 @@
 namespace waymark {
 namespace {
 
-/// Lower triangular L with L L' = m m', without forming the product.
-template <int Rows, int Columns>
-Eigen::Matrix<double, Rows, Rows> lower_root(const Eigen::Matrix<double, Rows, Columns>& m) {
-  const Eigen::Matrix<double, Columns, Rows> t = m.transpose();
-  const Eigen::HouseholderQR<Eigen::Matrix<double, Columns, Rows>> qr(t);
-  const Eigen::Matrix<double, Rows, Rows> upper =
-      qr.matrixQR().template topRows<Rows>().template triangularView<Eigen::Upper>();
-  return upper.transpose();
+/// Lower triangular L with L L' = m m', without forming the product: modified Gram-Schmidt over the rows
+/// (Golub and Van Loan 2013, 5.2.8), whose triangular factor is as exact as Householder's.
+template <int Columns>
+Eigen::Matrix3d lower_root(Eigen::Matrix<double, 3, Columns> m) {
+  Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    root(i, i) = m.row(i).norm();
+    if (!(root(i, i) > 0)) continue;
+    m.row(i) /= root(i, i);
+    for (int j = i + 1; j < 3; ++j) {
+      root(j, i) = m.row(j).dot(m.row(i));
+      m.row(j) -= root(j, i) * m.row(i);
+    }
+  }
+  return root;
 }
 
 double circular_mean(const double* angles, int count) {
@@ -57,7 +63,7 @@ void UnscentedKalman::move(const BodyMotion& motion) {
   points.colwise() -= mean;
   for (int i = 0; i < kPoints; ++i) points(2, i) = wrapped(points(2, i));
   pose_ = pose_of(mean);
-  root_ = lower_root<3, kPoints>(points / std::sqrt(double{kPoints}));
+  root_ = lower_root<kPoints>(points / std::sqrt(double{kPoints}));
 }
 
 void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
@@ -91,7 +97,7 @@ void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_fr
     const Eigen::Matrix<double, 3, 2> gain = points * seen.transpose() * s.inverse();
     Eigen::Matrix<double, 3, kPoints + 2> after;
     after << points - gain * seen, gain * noise_root;
-    root_ = lower_root<3, kPoints + 2>(after);
+    root_ = lower_root<kPoints + 2>(after);
     pose_ = pose_of(pose_.vector() + gain * innovation(*use.seen, mean));
   }
 }

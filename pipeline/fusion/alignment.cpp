@@ -2,12 +2,12 @@
 #include "pipeline/fusion/alignment.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "core/principal_axes.hpp"
 #include "pipeline/fusion/body_radius.hpp"
 #include "pipeline/fusion/clustering.hpp"
 #include "pipeline/fusion/local_ground.hpp"
@@ -31,9 +31,16 @@ struct Tie {
 };
 
 Eigen::Matrix2d positive(const Eigen::Matrix2d& matrix, double least) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver((matrix + matrix.transpose()) / 2);
-  const Eigen::Vector2d values = solver.eigenvalues().cwiseMax(least * least);
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+  const PrincipalAxes axes = principal_axes(matrix);
+  const Eigen::Vector2d along = axes.along(), across = axes.across();
+  return std::max(axes.major, least * least) * along * along.transpose() +
+         std::max(axes.minor, least * least) * across * across.transpose();
+}
+
+// C of a level shift from C of a pose. Not one inline product of three: a second of compiling each.
+Eigen::Matrix2d carried(const Matrix26& per_pose, const Matrix6& covariance) {
+  const Matrix26 half = per_pose * covariance;
+  return half * per_pose.transpose();
 }
 
 class Bundle {
@@ -90,14 +97,14 @@ class Bundle {
   Eigen::Vector<double, 6> correction(int image) const { return correction_.segment<6>(6 * image); }
   Matrix6 covariance(int image) const { return posterior_.block<6, 6>(6 * image, 6 * image); }
   /// Covariance of the mean shift of all images.
-  Eigen::Matrix2d common() const { return middle_ * posterior_ * middle_.transpose(); }
+  Eigen::Matrix2d common() const { return middle_posterior() * middle_.transpose(); }
   Eigen::Vector2d shift(const Tie& tie) const { return tie.per_pose * correction(tie.image); }
   /// Of a tie's place against the mean of all images.
   Eigen::Matrix2d relative(const Tie& tie, const Eigen::MatrixXd& middle_posterior,
                            const Eigen::Matrix2d& mean) const {
     const Matrix26 cross = middle_posterior.block<2, 6>(0, 6 * tie.image);
     const Eigen::Matrix2d both = tie.per_pose * cross.transpose();
-    return tie.per_pose * covariance(tie.image) * tie.per_pose.transpose() - both - both.transpose() + mean;
+    return carried(tie.per_pose, covariance(tie.image)) - both - both.transpose() + mean;
   }
   Eigen::MatrixXd middle_posterior() const { return middle_ * posterior_; }
 
@@ -121,8 +128,7 @@ class Bundle {
     }
     const double least = std::max(0.01, body ? 0.03 * body->metres : 0);
     const Eigen::Matrix2d told = o.covariance.topLeftCorner<2, 2>();
-    const Eigen::Matrix2d pose =
-        tie.per_pose * prior_.block<6, 6>(6 * image, 6 * image) * tie.per_pose.transpose();
+    const Eigen::Matrix2d pose = carried(tie.per_pose, prior_.block<6, 6>(6 * image, 6 * image));
     tie.own = told.allFinite() ? positive(told - pose, least) : Eigen::Matrix2d::Identity();
     tie.sighting.at = o.position.xyz.head<2>();
     tie.sighting.type = o.type;
