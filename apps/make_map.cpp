@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/make_map.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -10,6 +9,7 @@
 #include "apps/map_of_run.hpp"
 #include "apps/output_path.hpp"
 #include "apps/progress.hpp"
+#include "apps/provenance.hpp"
 #include "apps/registries.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
@@ -37,15 +37,12 @@ void check_request(const Job& job, const MapRequest& request, const RunOptions& 
 
 RunRecord record_of(const Job& job, const RunResult& result, const Session& session,
                     std::chrono::system_clock::time_point started) {
-  const auto second = std::chrono::floor<std::chrono::seconds>(started);
-  return {.version = program_version(),
-          .command_line = session.command_line,
-          .job_json = job_as_json(job.name, job.pipeline),
-          .started_utc = fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(second))),
-          .report_json = report_as_json(result.report),
-          .seconds = result.report.seconds,
-          .seed = 0,  // no stage draws random numbers
-          .inputs = result.inputs};
+  RunRecord run = record_of_run(session.command_line, started);
+  run.job_json = job_as_json(job.name, job.pipeline);
+  run.report_json = report_as_json(result.report);
+  run.seconds = result.report.seconds;
+  run.inputs = result.inputs;
+  return run;
 }
 
 /// Failures are told even by a quiet program.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/slam_update.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +11,8 @@
 #include <unordered_map>
 
 #include "apps/log.hpp"
+#include "apps/provenance.hpp"
 #include "apps/registries.hpp"
-#include "apps/session.hpp"
 #include "core/error.hpp"
 #include "core/quality.hpp"
 #include "geodb/update_map.hpp"
@@ -86,16 +85,9 @@ bool same(const OdometryNoise& a, const OdometryNoise& b) {
          a.position_per_second == b.position_per_second && a.yaw_per_second == b.yaw_per_second;
 }
 
-std::string now_utc() {
-  return fmt::format("{:%FT%TZ}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-}
-
 RunRecord record_of(const LocalizeTask& task, const SlamUpdate& update, const std::string& job) {
-  RunRecord run;
-  run.version = program_version();
-  run.command_line = task.command_line;
+  RunRecord run = record_of_run(task.command_line, std::chrono::system_clock::now());
   run.job_json = job;
-  run.started_utc = now_utc();
   run.report_json = nlohmann::json{{"changed", update.changed.size()},
                                    {"added", update.added.size()},
                                    {"evidence", update.evidence.size()},

@@ -2,19 +2,17 @@
 #include "apps/write_detections.hpp"
 
 #include <cpl_vsi.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <filesystem>
 
 #include "apps/log.hpp"
 #include "apps/output_path.hpp"
+#include "apps/provenance.hpp"
 #include "apps/registries.hpp"
 #include "core/error.hpp"
 #include "exporters/aside_folder.hpp"
 #include "geodb/write_map.hpp"
-#include "importers/hash.hpp"
-#include "pipeline/engine/report.hpp"
 
 namespace waymark {
 namespace {
@@ -36,19 +34,7 @@ RunRecord record_of(const ImageDetections& found, const std::string& path, const
   stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
   stage.units = stage.made = 1;
   stage.counts.in = stage.counts.out = static_cast<std::int64_t>(found.detections.size());
-  stage.seconds = std::chrono::duration<double>(Clock::now() - started).count();
-  RunReport report;
-  report.seconds = stage.seconds;
-  report.stages.push_back(std::move(stage));
-  RunRecord run;
-  run.version = program_version();
-  run.command_line = session.command_line;
-  run.started_utc = fmt::format(
-      "{:%FT%TZ}", fmt::gmtime(Clock::to_time_t(std::chrono::floor<std::chrono::seconds>(started))));
-  run.report_json = report_as_json(report);
-  run.seconds = report.seconds;
-  run.inputs = {hash_file(path)};
-  return run;
+  return record_of_one(std::move(stage), path, session, started);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,14 +8,13 @@
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "apps/output_path.hpp"
+#include "apps/provenance.hpp"
 #include "apps/registries.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
-#include "importers/hash.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/table_landmarks.hpp"
-#include "pipeline/engine/report.hpp"
 
 namespace waymark {
 namespace {
@@ -32,19 +30,7 @@ RunRecord record_of(const ImportedTable& table, const std::string& path, const S
   stage.counts.out = static_cast<std::int64_t>(table.landmarks.size());
   for (const auto& [reason, count] : table.rejected_by_reason) stage.counts.rejected[reason] = count;
   stage.warnings = table.warnings;
-  stage.seconds = std::chrono::duration<double>(Clock::now() - started).count();
-  RunReport report;
-  report.seconds = stage.seconds;
-  report.stages.push_back(std::move(stage));
-  RunRecord run;
-  run.version = program_version();
-  run.command_line = session.command_line;
-  run.started_utc = fmt::format(
-      "{:%FT%TZ}", fmt::gmtime(Clock::to_time_t(std::chrono::floor<std::chrono::seconds>(started))));
-  run.report_json = report_as_json(report);
-  run.seconds = report.seconds;
-  run.inputs = {hash_file(path)};
-  return run;
+  return record_of_one(std::move(stage), path, session, started);
 }
 
 class Import final : public Command {

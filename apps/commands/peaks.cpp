@@ -1,24 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "apps/make_map.hpp"
-#include "apps/registries.hpp"
-#include "apps/stage_options.hpp"
+#include "apps/shortcut.hpp"
 
 namespace waymark {
 namespace {
 
-class Peaks final : public Command {
+class Peaks final : public Shortcut {
  public:
-  CommandSpec describe() override {
-    std::vector<Argument> all{
-        file_word("DEM...", &files_,
-                  "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")};
-    for (auto& argument : map_arguments(request_)) all.push_back(argument);
-    for (auto& argument : options_.arguments()) all.push_back(argument);
-    all.push_back({"--print-job", "", &print_job_,
-                   "Print the job instead of running it: the start of one of your own"});
+  Peaks()
+      : Shortcut({"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation", "load_dem.nodata",
+                  "join_mountain_tops.base", "measure_isolation.isolation", "measure_isolation.distance",
+                  "map_mountain_tops.visible_range", "load_dem.crs", "load_dem.height_sd",
+                  "load_dem.tile_cells", "load_dem.memory"}) {}
+
+ private:
+  CommandSpec describe_own() override {
     return {
         .name = "peaks",
         .group = Group::make,
@@ -26,7 +23,9 @@ class Peaks final : public Command {
         .about =
             "Several files that touch or overlap are one DEM. The result does not depend on --threads or "
             "--tile-cells. Every height that hidden ground could change comes with a certified lower bound.",
-        .arguments = all,
+        .arguments =
+            {file_word("DEM...", &files_,
+                       "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")},
         .examples = {
             {"waymark peaks alps.tif -o alps.gpkg --min-prominence 30",
              "A map of the summits that rise 30 m"},
@@ -37,31 +36,14 @@ class Peaks final : public Command {
             {"waymark peaks alps.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
   }
 
-  int run(const Session& session) override {
-    const Job job = make_job();
-    if (!print_job_) return make_map(job, request_, run_options(session), session);
-    std::cout << job_as_json(job.name, job.pipeline) << '\n';
-    return 0;
-  }
-
- private:
-  Job make_job() const {
-    Pipeline pipeline(all_stages());
+  void add_stages(Pipeline& pipeline) const override {
     pipeline.add("load_dem", nlohmann::json{{"files", files_}}.dump());
     for (const char* stage :
          {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
       pipeline.add(stage);
-    options_.apply(pipeline);
-    return {"peaks", std::move(pipeline)};
   }
 
   std::vector<std::string> files_;
-  MapRequest request_;
-  StageOptions options_{{"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation",
-                         "load_dem.nodata", "join_mountain_tops.base", "measure_isolation.isolation",
-                         "measure_isolation.distance", "map_mountain_tops.visible_range", "load_dem.crs",
-                         "load_dem.height_sd", "load_dem.tile_cells", "load_dem.memory"}};
-  bool print_job_ = false;
 };
 
 }  // namespace

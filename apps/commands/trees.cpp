@@ -1,19 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "apps/make_map.hpp"
-#include "apps/registries.hpp"
-#include "apps/stage_options.hpp"
+#include "apps/shortcut.hpp"
 #include "core/error.hpp"
 
 namespace waymark {
 namespace {
 
-class Trees final : public Command {
+class Trees final : public Shortcut {
  public:
-  CommandSpec describe() override {
-    const auto files = [](const char* name, const char* word, std::vector<std::string>* into, const char* help) {
+  Trees()
+      : Shortcut({"trees_from_canopy.preset", "trees_from_canopy.method", "trees_from_canopy.min_height",
+                  "trees_from_canopy.isolation_base", "trees_from_canopy.isolation_slope",
+                  "trees_from_canopy.prominence", "trees_from_canopy.smoothing",
+                  "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
+                  "trees_from_canopy.species", "load_canopy.resolution", "load_canopy.forest_type",
+                  "load_canopy.crs", "load_canopy.tile_cells", "load_canopy.memory"}) {}
+
+ private:
+  CommandSpec describe_own() override {
+    const auto files = [](const char* name, const char* word, std::vector<std::string>* into,
+                          const char* help) {
       return Argument{name, word, into, help}.offering(Offer::file);
     };
     std::vector<Argument> all{
@@ -21,43 +28,35 @@ class Trees final : public Command {
         files("--dsm", "DSM...", &dsm_, "Surface models, with --dtm"),
         files("--dtm", "DTM...", &dtm_, "Terrain models, on any grid"),
         files("--las", "FILE...", &las_, "LAS 1.0 to 1.4 files, one catalogue, ground classified")};
-    for (auto& argument : map_arguments(request_)) all.push_back(argument);
-    for (auto& argument : options_.arguments()) all.push_back(argument);
     all.push_back({"--flights", "", &flights_,
                    "Each file is a survey of its own: trees that several saw are merged and valued"});
     all.push_back({"--no-crowns", "", &no_crowns_, "Treetops alone: no crowns, no crown diameters"});
-    all.push_back({"--print-job", "", &print_job_,
-                   "Print the job instead of running it: the start of one of your own"});
-    return {.name = "trees",
-            .group = Group::make,
-            .summary = "Find the trees of a canopy, their crowns and stem diameters",
-            .about =
-                "A treetop stands out by its height, its isolation and its prominence, like a mountain top; its "
-                "crown is the ground that drains towards it with the canopy upside down. Stem diameters come from "
-                "an allometry table: --allometry, made by `waymark allometry fit`. The map has a point per tree "
-                "(height, diameter, crown_diameter) and a layer of crown polygons. It does not depend on --threads "
-                "or --tile-cells.",
-            .arguments = all,
-            .examples = {
-                {"waymark trees --chm chm.tif -o trees.gpkg --preset conifer", "A map of trees and crowns"},
-                {"waymark trees --dsm dsm.tif --dtm dtm.tif -o trees.gpkg", "Surface less terrain"},
-                {"waymark trees --las flight_*.las -o trees.gpkg", "From laser points: ground, canopy, trees"},
-                {"waymark trees --chm 2019.tif 2023.tif --flights -o trees.gpkg",
-                 "Two surveys of one forest: trees are merged and valued"},
-                {"waymark trees --chm chm.tif -o trees.gpkg --allometry table.csv --species PIAB",
-                 "Stem diameters of spruce"},
-                {"waymark trees --chm chm.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
+    return {
+        .name = "trees",
+        .group = Group::make,
+        .summary = "Find the trees of a canopy, their crowns and stem diameters",
+        .about =
+            "A treetop stands out by its height, its isolation and its prominence, like a mountain top; its "
+            "crown is the ground that drains towards it with the canopy upside down. Stem diameters come "
+            "from "
+            "an allometry table: --allometry, made by `waymark allometry fit`. The map has a point per tree "
+            "(height, diameter, crown_diameter) and a layer of crown polygons. It does not depend on "
+            "--threads "
+            "or --tile-cells.",
+        .arguments = all,
+        .examples = {
+            {"waymark trees --chm chm.tif -o trees.gpkg --preset conifer", "A map of trees and crowns"},
+            {"waymark trees --dsm dsm.tif --dtm dtm.tif -o trees.gpkg", "Surface less terrain"},
+            {"waymark trees --las flight_*.las -o trees.gpkg", "From laser points: ground, canopy, trees"},
+            {"waymark trees --chm 2019.tif 2023.tif --flights -o trees.gpkg",
+             "Two surveys of one forest: trees are merged and valued"},
+            {"waymark trees --chm chm.tif -o trees.gpkg --allometry table.csv --species PIAB",
+             "Stem diameters of spruce"},
+            {"waymark trees --chm chm.tif --print-job > job.json",
+             "The job, to change it and `waymark run` it"}}};
   }
 
-  int run(const Session& session) override {
-    const Job job = make_job();
-    if (!print_job_) return make_map(job, request_, run_options(session), session);
-    std::cout << job_as_json(job.name, job.pipeline) << '\n';
-    return 0;
-  }
-
- private:
-  Job make_job() const {
+  void add_stages(Pipeline& pipeline) const override {
     const bool surface = !dsm_.empty() || !dtm_.empty();
     if (chm_.empty() && las_.empty() && !surface)
       throw Error(ErrorCode::usage, "no canopy is given", "",
@@ -69,26 +68,20 @@ class Trees final : public Command {
       throw Error(ErrorCode::usage, "--chm is given together with --dsm or --dtm", "",
                   "a canopy height model needs no terrain: leave out one or the other");
     if (surface && (dsm_.empty() || dtm_.empty()))
-      throw Error(ErrorCode::usage, dsm_.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
+      throw Error(ErrorCode::usage,
+                  dsm_.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
                   "heights of trees are the surface less the terrain: give both");
-    Pipeline pipeline(all_stages());
-    pipeline.add("load_canopy", nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}, {"flights", flights_}}.dump());
+    pipeline.add(
+        "load_canopy",
+        nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}, {"flights", flights_}}
+            .dump());
     pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", !no_crowns_}}.dump());
     pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
     pipeline.add("value_flights");
-    options_.apply(pipeline);
-    return {"trees", std::move(pipeline)};
   }
 
   std::vector<std::string> chm_, dsm_, dtm_, las_;
-  MapRequest request_;
-  StageOptions options_{{"trees_from_canopy.preset", "trees_from_canopy.method", "trees_from_canopy.min_height",
-                         "trees_from_canopy.isolation_base", "trees_from_canopy.isolation_slope",
-                         "trees_from_canopy.prominence", "trees_from_canopy.smoothing",
-                         "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
-                         "trees_from_canopy.species", "load_canopy.resolution", "load_canopy.forest_type",
-                         "load_canopy.crs", "load_canopy.tile_cells", "load_canopy.memory"}};
-  bool flights_ = false, no_crowns_ = false, print_job_ = false;
+  bool flights_ = false, no_crowns_ = false;
 };
 
 }  // namespace

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/shortcut.hpp"
+
+#include <iostream>
+
+#include "apps/registries.hpp"
+
+namespace waymark {
+
+CommandSpec Shortcut::describe() {
+  CommandSpec spec = describe_own();
+  for (auto& argument : map_arguments(request_)) spec.arguments.push_back(std::move(argument));
+  for (auto& argument : options_.arguments()) spec.arguments.push_back(std::move(argument));
+  spec.arguments.push_back(
+      {"--print-job", "", &print_job_, "Print the job instead of running it: the start of one of your own"});
+  return spec;
+}
+
+int Shortcut::run(const Session& session) {
+  Pipeline pipeline(all_stages());
+  add_stages(pipeline);
+  options_.apply(pipeline);
+  const Job job{describe_own().name, std::move(pipeline)};
+  if (!print_job_) return make_map(job, request_, run_options(session), session);
+  std::cout << job_as_json(job.name, job.pipeline) << '\n';
+  return 0;
+}
+
+}  // namespace waymark
