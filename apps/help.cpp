@@ -102,7 +102,7 @@ std::string command_help(const CommandSpec& command, std::span<const Argument> g
 
 std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
   std::string text = program_version() +
-                     ": semantic navigation maps from elevation models\n\n"
+                     ": semantic navigation maps from elevation models, images and laser data\n\n"
                      "Usage: waymark COMMAND [arguments and options]\n";
   for (const Group group : {Group::make, Group::use, Group::look_up}) {
     text += "\n" + heading(group) + ":\n";
