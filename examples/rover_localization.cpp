@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rover drives a round in a map of rocks. Its wheels slip; the rocks it sees say where it is.
+#include <iostream>
+#include <waymark/waymark.hpp>
+using namespace waymark;
+
+namespace {
+
+// Sixty rocks of different sizes. A map of your own: MapStore::open("landing.gpkg").query({}).
+SemanticMap field_of_rocks(Random& random) {
+  TypeRegistry types;
+  register_landmark_types(types);
+  const TypeId rock = types.id("rock");
+  std::vector<Landmark> rocks(60);
+  for (std::size_t i = 0; i < rocks.size(); ++i) {
+    Landmark& one = rocks[i];
+    one.uid = "rock-" + std::to_string(i);
+    one.type = rock;
+    one.position.xyz = {random.uniform(-60, 60), random.uniform(-60, 60), 0};
+    one.covariance = Eigen::Vector3d(0.1, 0.1, 0.1).cwiseAbs2().asDiagonal();
+    one.features.resize(types[rock].features.size());
+    one.features[feature_index(types[rock], "radius")] = {.value = random.log_uniform(0.2, 1.5),
+                                                          .observations = 1};
+    one.confidence = 0.95;
+  }
+  return SemanticMap(types, Crs::local(), std::move(rocks), {});
+}
+
+// What a laser with 25 m of reach would tell: range, bearing and radius, with their noise; not which rock it
+// is.
+SightingSet look_round(const Pose2& robot, const LandmarkGrid& rocks, Random& random) {
+  SightingSet seen;
+  for (const MapLandmark& rock : rocks.landmarks()) {
+    const Eigen::Vector2d away = rock.at - robot.at();
+    if (away.norm() > 25) continue;
+    SeenLandmark one;
+    one.type = rock.type;
+    one.features = rock.features;
+    one.range_sd = 0.05, one.bearing_sd = 0.01;
+    one.range = away.norm() + random.normal(0, one.range_sd);
+    one.bearing = wrapped(std::atan2(away.y(), away.x()) - robot.yaw + random.normal(0, one.bearing_sd));
+    one.features.value[0] *= random.normal(1, 0.1);
+    seen.sightings.push_back(one);
+  }
+  return seen;
+}
+
+}  // namespace
+
+int main() try {
+  Random random(1, "rover");
+  const SemanticMap map = field_of_rocks(random);
+  const LandmarkGrid rocks(landmarks_of(map));
+
+  Pose2 truth{0, -40, 0};
+  const PoseEstimate start{truth, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+  IdentificationOptions without_names;
+  without_names.use_identities = false;
+  DeadReckoning odometry(start);
+  ExtendedKalman filter(start, LandmarkWindow(rocks), FeatureScales(map.types()), without_names);
+
+  const double speed = 0.5, turn = 0.0125, seconds = 1;  // a circle of 40 m about the middle of the map
+  std::size_t sightings = 0, matched = 0;
+  for (double t = 0; t < 500; t += seconds) {
+    truth = truth * twist_motion(speed, 0, turn, seconds, {}).step;
+    const double slip = random.normal(0.97, 0.05), drift = random.normal(0.001, 0.005);
+    const BodyMotion wheels = twist_motion(speed / slip, 0, turn + drift, seconds, {});
+    odometry.move(wheels);
+    filter.move(wheels);
+    for (const Match& match : filter.see(look_round(truth, rocks, random)))
+      ++sightings, matched += match.verdict == Verdict::matched;
+  }
+  const auto error = [&](const Localizer& localizer) {
+    return (localizer.estimate().pose.at() - truth.at()).norm();
+  };
+  std::cout << "after 250 m: odometry is " << error(odometry) << " m off, the filter " << error(filter)
+            << " m; " << matched << " of " << sightings << " sightings recognised\n";
+  return error(filter) < 0.3 && error(odometry) > 2 ? 0 : 1;
+} catch (const Error& error) {
+  std::cerr << error.what() << '\n';
+  return exit_code(error.code());
+}
