@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/global_control.h>
+
 #include <iostream>
 #include <new>
+#include <optional>
 
 #include "apps/command.hpp"
 #include "apps/help.hpp"
@@ -26,6 +29,10 @@ int run_command(const CommandTable& commands, Session& session, const std::vecto
   }
   require(spec.name, arguments);
   begin(session);
+  // For libraries below a command that start threads of their own accord, too.
+  std::optional<tbb::global_control> at_most;
+  if (session.threads > 0)
+    at_most.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(session.threads));
   return command.run(session);
 }
 
