@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/quality.hpp"
+#include "geodb/attribute_column.hpp"
 #include "geodb/geometry_blob.hpp"
 #include "geodb/sql_text.hpp"
 #include "landmarks/sensor_profile.hpp"
@@ -26,18 +27,6 @@ void check_name(const std::string& table) {
   if (taken)
     throw Error(ErrorCode::usage, "a map cannot have a landmark type named '" + table + "'", "",
                 "that table is the map's own: choose another name");
-}
-
-const char* sql_type(AttributeSpec::Kind kind) {
-  switch (kind) {
-    case AttributeSpec::Kind::real:
-      return "DOUBLE";
-    case AttributeSpec::Kind::integer:
-      return "INTEGER";
-    case AttributeSpec::Kind::text:
-      return "TEXT";
-  }
-  return "";
 }
 
 std::string with_unit(const std::string& name, const std::string& unit) {
@@ -64,30 +53,6 @@ std::string names_of(std::span<const LandmarkColumn> columns, std::string_view b
   std::vector<std::string> names;
   for (const auto& column : columns) names.push_back(std::string(before) + sql_name(column.name));
   return fmt::format("{}", fmt::join(names, ", "));
-}
-
-void bind_attribute(sqlite::Statement& statement, int parameter, const AttributeValue& value) {
-  std::visit(
-      [&](const auto& v) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
-          statement.bind(parameter, nullptr);
-        else
-          statement.bind(parameter, v);
-      },
-      value);
-}
-
-AttributeValue read_attribute(const sqlite::Statement& row, int column, AttributeSpec::Kind kind) {
-  if (row.null(column)) return {};
-  switch (kind) {
-    case AttributeSpec::Kind::real:
-      return row.real(column);
-    case AttributeSpec::Kind::integer:
-      return row.integer(column);
-    case AttributeSpec::Kind::text:
-      return std::string(row.text(column));
-  }
-  return {};
 }
 
 std::optional<double> spread(const FeatureValue& feature) {

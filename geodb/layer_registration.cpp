@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "geodb/layer_style.hpp"
 #include "geodb/sql_text.hpp"
 
 namespace waymark {
@@ -87,13 +86,12 @@ void create_evidence_links(const sqlite::Database& database, const std::string& 
   }
 }
 
-void store_style(const sqlite::Database& database, const LandmarkType& type, std::string_view changed) {
-  const std::string qml = qml_style(type), sld = sld_style(type);
+void store_style(const sqlite::Database& database, std::string_view table, const std::string& qml,
+                 const std::string& sld, std::string_view summary, std::string_view changed) {
   sqlite::Statement style = database.prepare(
       "INSERT INTO layer_styles (f_table_name, f_geometry_column, styleName, styleQML, styleSLD, "
-      "useAsDefault,"
-      "  description, update_time) VALUES (?1, 'geom', ?1, ?2, ?3, 1, ?4, ?5)");
-  style.bind_all(type.name, qml, sld, type.summary, changed);
+      "useAsDefault, description, update_time) VALUES (?1, 'geom', ?1, ?2, ?3, 1, ?4, ?5)");
+  style.bind_all(table, qml, sld, summary, changed);
   style.run();
 }
 

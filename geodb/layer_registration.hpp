@@ -27,8 +27,9 @@ void describe_columns(const sqlite::Database& database, const LandmarkLayout& la
 /// `<type>_observation`, which links landmarks to their evidence (related tables extension).
 void create_evidence_links(const sqlite::Database& database, const std::string& type);
 
-/// The style QGIS draws the type's table with when it opens the map.
-void store_style(const sqlite::Database& database, const LandmarkType& type, std::string_view changed);
+/// The style QGIS draws a table with when it opens the map, and the same for readers of SLD.
+void store_style(const sqlite::Database& database, std::string_view table, const std::string& qml,
+                 const std::string& sld, std::string_view summary, std::string_view changed);
 
 /// The view `landmark`: what all landmarks have in common, whatever their type.
 void create_landmark_view(const sqlite::Database& database, const TypeRegistry& types);

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "core/error.hpp"
+#include "geodb/attribute_column.hpp"
 #include "geodb/open_map.hpp"
 #include "geodb/shape_blob.hpp"
 #include "geodb/shape_table.hpp"
@@ -35,13 +36,6 @@ std::vector<AttributeSpec> columns_of(const sqlite::Database& database, const st
   return columns;
 }
 
-AttributeValue value_of(const sqlite::Statement& row, int column, AttributeSpec::Kind kind) {
-  if (row.null(column)) return {};
-  if (kind == AttributeSpec::Kind::text) return std::string(row.text(column));
-  if (kind == AttributeSpec::Kind::integer) return row.integer(column);
-  return row.real(column);
-}
-
 void read_rows(const sqlite::Database& database, ShapeLayer& layer) {
   std::string names = "geom";
   for (const AttributeSpec& column : layer.columns) names += ", " + sql_name(column.name);
@@ -51,7 +45,7 @@ void read_rows(const sqlite::Database& database, ShapeLayer& layer) {
     Shape& shape = layer.rows.emplace_back();
     if (!row.null(0)) shape.parts = parts_of(row.blob(0));
     for (std::size_t i = 0; i < layer.columns.size(); ++i)
-      shape.values.push_back(value_of(row, 1 + static_cast<int>(i), layer.columns[i].kind));
+      shape.values.push_back(read_attribute(row, 1 + static_cast<int>(i), layer.columns[i].kind));
   }
 }
 

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "geodb/attribute_column.hpp"
 #include "geodb/hilbert.hpp"
 #include "geodb/layer_registration.hpp"
 #include "geodb/open_map.hpp"
@@ -29,12 +30,6 @@ bool is_name(std::string_view name) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   return !name.empty() && letter(name[0]) &&
          std::ranges::all_of(name, [&](char c) { return letter(c) || c == '_' || (c >= '0' && c <= '9'); });
-}
-
-const char* sql_type(AttributeSpec::Kind kind) {
-  return kind == AttributeSpec::Kind::real   ? "DOUBLE"
-         : kind == AttributeSpec::Kind::text ? "TEXT"
-                                             : "INTEGER";
 }
 
 void check_names(const ShapeLayer& layer) {
@@ -113,17 +108,6 @@ void create_table(const sqlite::Database& database, const ShapeLayer& layer) {
                                sql_name(layer.name), geometry_name(layer.kind), columns));
 }
 
-void bind_value(sqlite::Statement& statement, int parameter, const AttributeValue& value) {
-  std::visit(
-      [&](const auto& v) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
-          statement.bind(parameter, nullptr);
-        else
-          statement.bind(parameter, v);
-      },
-      value);
-}
-
 // Boxes that lie near each other share a node of the index.
 void sort_boxes(std::vector<IndexedBox>& boxes, const Envelope& extent) {
   const double width = std::max({extent.max_x - extent.min_x, extent.max_y - extent.min_y, 1e-9});
@@ -157,7 +141,7 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
     insert.bind(2, nullptr);
     if (!shape.parts.empty()) insert.bind(2, std::span<const std::byte>(blob));
     for (std::size_t c = 0; c < layer.columns.size(); ++c)
-      bind_value(insert, 3 + static_cast<int>(c), shape.values[c]);
+      bind_attribute(insert, 3 + static_cast<int>(c), shape.values[c]);
     insert.run();
     if (shape.parts.empty()) continue;
     const Envelope box = envelope_of(shape.parts);
@@ -178,13 +162,7 @@ void describe(const sqlite::Database& database, const ShapeLayer& layer, std::st
                     c.summary);
     column.run();
   }
-  const std::string qml = qml_shape_style(layer), sld = sld_shape_style(layer);
-  sqlite::Statement style = database.prepare(
-      "INSERT INTO layer_styles (f_table_name, f_geometry_column, styleName, styleQML, styleSLD, "
-      "useAsDefault,"
-      "  description, update_time) VALUES (?1, 'geom', ?1, ?2, ?3, 1, ?4, ?5)");
-  style.bind_all(layer.name, qml, sld, layer.summary, changed);
-  style.run();
+  store_style(database, layer.name, qml_shape_style(layer), sld_shape_style(layer), layer.summary, changed);
   sqlite::Statement declare = database.prepare("INSERT INTO waymark_layer VALUES (?, ?, ?)");
   const char* kinds[] = {"point", "line", "polygon"};
   declare.bind_all(layer.name, std::string_view(kinds[static_cast<int>(layer.kind)]), layer.summary);

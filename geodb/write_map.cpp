@@ -15,6 +15,7 @@
 #include "geodb/geometry_blob.hpp"
 #include "geodb/landmark_layout.hpp"
 #include "geodb/layer_registration.hpp"
+#include "geodb/layer_style.hpp"
 #include "geodb/migrations.hpp"
 #include "geodb/packed_rtree.hpp"
 #include "geodb/provenance.hpp"
@@ -111,7 +112,7 @@ class MapWriter {
                                 .changed = changed_});
     describe_columns(*database_, layout);
     create_evidence_links(*database_, type.name);
-    store_style(*database_, type, changed_);
+    store_style(*database_, type.name, qml_style(type), sld_style(type), type.summary, changed_);
     whole_extent_.add(extent);
   }
 
