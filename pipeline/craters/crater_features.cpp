@@ -61,6 +61,25 @@ void gradients(const Patch& patch, float* out) {
   for (const float v : cells) *out++ = 4 * std::min(0.25F, v * scale);
 }
 
+struct BowlSample {
+  std::size_t index;  // in the patch
+  double bowl;        // brightness there of a bowl lit by slope
+};
+
+std::vector<BowlSample> slope_bowl() {
+  constexpr double step = 2 * kPatchReach / kPatchSide;  // radii between samples
+  std::vector<BowlSample> samples;
+  for (int j = 0; j < kPatchSide; ++j)
+    for (int i = 0; i < kPatchSide; ++i) {
+      const double u = (i - (kPatchSide - 1) / 2.0) * step, v = (j - (kPatchSide - 1) / 2.0) * step;
+      if (std::max(std::abs(u), std::abs(v)) > 1.35) continue;
+      const double r = std::hypot(u, v);
+      samples.push_back(
+          {static_cast<std::size_t>(j * kPatchSide + i), r < 1 ? -u : 0.45 * u / std::pow(r, 5)});
+    }
+  return samples;
+}
+
 }  // namespace
 
 PatchSource::PatchSource(const Pixels& image, Radians sun_angle) : sun_angle_(sun_angle) {
@@ -114,16 +133,13 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
 
 double PatchSource::slope_correlation(const CraterCandidate& c) const {
   const Patch seen = patch(c);
-  constexpr double step = 2 * kPatchReach / kPatchSide;  // radii between samples
-  double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  for (int j = 0; j < kPatchSide; ++j)
-    for (int i = 0; i < kPatchSide; ++i) {
-      const double u = (i - (kPatchSide - 1) / 2.0) * step, v = (j - (kPatchSide - 1) / 2.0) * step;
-      if (std::max(std::abs(u), std::abs(v)) > 1.35) continue;
-      const double r = std::hypot(u, v), bowl = r < 1 ? -u : 0.45 * u / std::pow(r, 5);
-      const double value = seen[static_cast<std::size_t>(j * kPatchSide + i)];
-      ++n, a += value, b += bowl, aa += value * value, bb += bowl * bowl, ab += value * bowl;
-    }
+  static const std::vector<BowlSample> bowl = slope_bowl();
+  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (const BowlSample& at : bowl) {
+    const double value = seen[at.index];
+    a += value, b += at.bowl, aa += value * value, bb += at.bowl * at.bowl, ab += value * at.bowl;
+  }
+  const auto n = double(bowl.size());
   const double spread = (aa - a * a / n) * (bb - b * b / n);
   return spread > 0 ? (ab - a * b / n) / std::sqrt(spread) : 0;
 }

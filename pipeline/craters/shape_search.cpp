@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/craters/pixel_noise.hpp"
@@ -93,10 +94,11 @@ double vertex(double before, double at, double after) {
 template <class ToImage>
 void collect(const cv::Mat1f& score, const cv::Rect& core, double least, const ToImage& to_image,
              std::vector<CraterCandidate>& found) {
-  for (int y = core.y; y < core.y + core.height; ++y)
+  for (int y = core.y; y < core.y + core.height; ++y) {
+    const float* row = score.ptr<float>(y);
     for (int x = core.x; x < core.x + core.width; ++x) {
-      const float s = score(y, x);
-      if (!(s >= least) || s < score(y, x - 1)) continue;
+      const float s = row[x];
+      if (!(s >= least) || s < row[x - 1]) continue;
       bool highest = true;
       for (int j = -1; j <= 1 && highest; ++j)
         for (int i = -1; i <= 1 && highest; ++i)
@@ -106,9 +108,11 @@ void collect(const cv::Mat1f& score, const cv::Rect& core, double least, const T
       found.push_back(to_image(x + vertex(score(y, x - 1), s, score(y, x + 1)),
                                y + vertex(score(y - 1, x), s, score(y + 1, x)), static_cast<double>(s)));
     }
+  }
 }
 
-std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search) {
+// `made`: by size, once for all levels; what is not there yet is added.
+std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search, std::map<int, Bowl>& made) {
   std::vector<Bowl> bowls;
   const double shrink = std::exp2(level);
   // The finest level also has the bowls too small for an octave of their own.
@@ -116,7 +120,9 @@ std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search) {
     const double diameter = kLargestBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
     if (diameter * shrink < search.min_diameter * 0.95 || diameter * shrink > search.max_diameter * 1.05)
       continue;
-    bowls.push_back(make_bowl(diameter, search.shapes(diameter)));
+    auto known = made.find(i);
+    if (known == made.end()) known = made.emplace(i, make_bowl(diameter, search.shapes(diameter))).first;
+    bowls.push_back(known->second);
   }
   return bowls;
 }
@@ -158,12 +164,13 @@ void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y, cons
 
 std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSearch& search) {
   std::vector<CraterCandidate> candidates;
+  std::map<int, Bowl> made;
   cv::Mat1f at_level = as_matrix(image);
   for (int level = 0;; ++level) {
     if (std::min(at_level.cols, at_level.rows) < 8 ||
         kLargestBowl / 2 * std::exp2(level) > search.max_diameter)
       break;
-    const auto bowls = bowls_of_level(level, search);
+    const auto bowls = bowls_of_level(level, search, made);
     cv::Mat1f searched = at_level, mean;
     if (search.level_mean > 0) {
       cv::GaussianBlur(at_level, mean, {}, search.level_mean, 0, cv::BORDER_REFLECT_101);
