@@ -13,17 +13,20 @@
 namespace waymark {
 namespace {
 
+constexpr std::size_t kLine = 140;  // characters of the model per line of source: below 300 lines
+
 // The file that is compiled into the program; a text file otherwise.
 std::string as_source(const std::string& text) {
   std::string source =
       "// SPDX-License-Identifier: Apache-2.0\n"
       "// Made by `waymark train craters -o pipeline/craters/built_in_model.cpp`; do not edit.\n"
+      "// clang-format off\n"
       "#include \"pipeline/craters/crater_model.hpp\"\n\nnamespace waymark {\n\n"
       "const CraterModel& built_in_crater_model() {\n"
       "  static const CraterModel model = parse_crater_model(\n";
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t line = text.find('\n', begin);
-    const std::size_t end = std::min(begin + 90, line == std::string::npos ? text.size() : line);
+    const std::size_t end = std::min(begin + kLine, line == std::string::npos ? text.size() : line);
     const bool ends_line = end == line;
     source += fmt::format("      \"{}{}\"\n", text.substr(begin, end - begin), ends_line ? "\\n" : "");
     begin = ends_line ? end + 1 : end;

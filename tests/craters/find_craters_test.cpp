@@ -180,6 +180,32 @@ TEST(CraterModel, TextKeepsIt) {
   EXPECT_NEAR(judge(model, features).probability, judge(again, features).probability, 1e-3);
 }
 
+TEST(CraterModel, ShippedTextIsWhatTrainingWrites) {
+  const std::string text = as_text(built_in_crater_model());
+  EXPECT_EQ(as_text(parse_crater_model(text, "test")), text);
+  EXPECT_THAT(text, HasSubstr("scenes 0 to 119, 640 px"));
+}
+
+// The slow twin: each output by itself, its products in the order of the inputs.
+TEST(CraterModel, SumsAsOneByOne) {
+  const CraterModel& model = built_in_crater_model();
+  CraterFeatures features{};
+  for (std::size_t i = 0; i < features.size(); ++i)
+    features[i] = static_cast<float>(std::cos(3.0 * double(i)));
+  std::vector<float> in(features.begin(), features.end());
+  for (const CraterModel::Layer& layer : model.layers) {
+    std::vector<float> out;
+    for (std::size_t o = 0; o < layer.biases.size(); ++o) {
+      float total = 0;
+      for (std::size_t i = 0; i < in.size(); ++i) total += layer.weights[o * in.size() + i] * in[i];
+      total += layer.biases[o];
+      out.push_back(&layer == &model.layers.back() || total > 0 ? total : 0.1F * total);
+    }
+    in = out;
+  }
+  EXPECT_EQ(judge(model, features).probability, 1 / (1 + std::exp(-double(in[0]))));
+}
+
 TEST(CraterModel, SaysWhatIsWrongWithAFile) {
   const auto message = [](const std::string& text) {
     try {
