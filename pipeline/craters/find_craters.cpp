@@ -15,6 +15,7 @@ namespace waymark {
 namespace {
 
 constexpr double kLeastCorrelation = 0.5;
+constexpr double kMostOverlap = 0.225;   // of two rims, common area over joint area
 constexpr double kLeastKnown = 2.0 / 3;  // share of a crater's square that must have data
 
 void check(const CraterSearch& search) {
@@ -90,7 +91,7 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   }
   std::vector<Detection> found;
   // Smaller ones than asked for have had their say in which circles stand for the same rim.
-  for (const CraterCandidate& c : suppress_overlaps(circles)) {
+  for (const CraterCandidate& c : suppress_overlaps(circles, kMostOverlap)) {
     if (c.diameter < sizes.smallest) continue;
     const auto bowl =
         std::find_if(bowls.begin(), bowls.end(), [&](const VerifiedBowl& b) { return b.circle == c; });

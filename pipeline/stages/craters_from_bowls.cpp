@@ -32,7 +32,7 @@ struct CratersFromBowls {
   static StageSpec spec() {
     return {.name = "craters_from_bowls",
             .summary = "Finds craters in an image by shaded bowls, refined rims and a trained model",
-            .version = 2,
+            .version = 3,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};

@@ -32,7 +32,7 @@ struct CratersFromEdges {
   static StageSpec spec() {
     return {.name = "craters_from_edges",
             .summary = "Finds craters in an image by pairing lit and shaded rim edges along the light",
-            .version = 1,
+            .version = 2,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};
