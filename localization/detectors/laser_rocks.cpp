@@ -43,21 +43,16 @@ std::vector<SeenRock> find_rocks(const LaserScan& scan, const LaserRocks& option
   std::vector<SeenRock> rocks;
   const std::vector<double> ranges = bridged_ranges(scan, options.jump);
   const std::size_t n = ranges.size();
-  for (std::size_t first = 0; first < n;) {
-    std::size_t last = first;
-    while (last + 1 < n && std::abs(ranges[last + 1] - ranges[last]) < options.jump) ++last;
-    const std::size_t beams = last - first + 1, begin = first;
-    first = last + 1;
+  for (const BeamRun& run : runs_of(ranges, options.jump)) {
+    const auto [begin, last] = run;
+    const std::size_t beams = run.beams();
     if (static_cast<int>(beams) < std::max(options.least_beams, 3) || begin == 0 || last + 1 >= n) continue;
     const double ends = std::max(ranges[begin], ranges[last]);
     if (!(ends < options.most_range) || !(ranges[begin - 1] > ranges[begin] + options.clear) ||
         !(ranges[last + 1] > ranges[last] + options.clear))
       continue;
     const Arc arc = fit_arc({ranges.data() + begin, beams});
-    const double wide = std::max(0.3 * scan.angle_step,
-                                 static_cast<double>(beams) * scan.angle_step - scan.beam_width.value_or(0));
-    const double half_sine = std::sin(std::min(wide, 2.0) / 2);
-    const double radius = arc.front * half_sine / (1 - half_sine);
+    const double radius = cylinder_radius(arc.front, width_of(scan, beams));
     const double width = 2 * radius;
     if (!(width >= options.least_width && width <= options.most_width) ||
         !(arc.residual <= options.roughness * width) || !(arc.bulge >= options.least_bulge * width))

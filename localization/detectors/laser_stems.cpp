@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include "localization/detectors/level_scan.hpp"
@@ -16,14 +17,13 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
   const auto n = ranges.size();
   stem.beams = static_cast<int>(n);
   stem.bearing = first_bearing + 0.5 * step * static_cast<double>(n - 1);
-  const double half_sine = std::sin(std::min(width, 2.0) / 2);
   // The nearest of a few noisy ranges lies before the stem, the mean of all behind its front: the middle third
   // is nearly flat.
   double front = 0;
   const std::size_t skip = n / 3;
   for (std::size_t i = skip; i < n - skip; ++i) front += ranges[i];
   front /= static_cast<double>(n - 2 * skip);
-  stem.diameter = 2 * front * half_sine / (1 - half_sine);
+  stem.diameter = 2 * cylinder_radius(front, width);
 
   const double radius = stem.diameter / 2;
   const auto middle_from = [&](std::size_t i) {
@@ -45,6 +45,24 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
   return stem;
 }
 
+// What stands beside is farther away. On one side it may be nearer, if the stem is whole all the same: then
+// its last beam there lies as far behind the front as a stem's edge does. At the ends of the scan nobody knows
+// what stands beside.
+bool stands_out(std::span<const double> ranges, const BeamRun& run, double mean, const LaserStems& options) {
+  const auto [first, last] = run;
+  if (first == 0 || last + 1 >= ranges.size()) return false;
+  const double before = ranges[first - 1], after = ranges[last + 1];
+  const bool clear_before = before > mean + options.clear, clear_after = after > mean + options.clear;
+  if (clear_before && clear_after) return true;
+  if (!options.partly_hidden || clear_before == clear_after || last - first < 5) return false;
+  const bool at_end = clear_before;  // which side is hidden
+  if (!((at_end ? after : before) < mean - options.clear)) return false;
+  double front = ranges[first];
+  for (std::size_t i = first; i <= last; ++i) front = std::min(front, ranges[i]);
+  const double hidden = ranges[at_end ? last : first] - front, open = ranges[at_end ? first : last] - front;
+  return hidden > 0.5 * open && hidden > 0.05;
+}
+
 }  // namespace
 
 LaserStems forest_stems() {
@@ -55,34 +73,28 @@ LaserStems forest_stems() {
           .least_diameter = 0.05,
           .most_range = 25,
           .roughness = 0.06,
+          .rough_base = 0.025,
+          .rough_share = 0.15,
           .least_beams = 3,
           .range_sd = 0,
-          .bearing_sd = 0};
+          .bearing_sd = 0,
+          .partly_hidden = true};
 }
 
 std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options) {
   std::vector<Stem> stems;
   const std::vector<double> ranges = bridged_ranges(scan, options.jump);
-  const std::size_t n = ranges.size();
-  for (std::size_t first = 0; first < n;) {
-    std::size_t last = first;
-    double sum = ranges[first];
-    while (last + 1 < n && std::abs(ranges[last + 1] - ranges[last]) < options.jump) sum += ranges[++last];
-    const int beams = static_cast<int>(last - first) + 1;
-    const double mean = sum / beams;
-    // At the ends of the scan nobody knows what stands beside.
-    const bool stands_out = first > 0 && last + 1 < n && ranges[first - 1] > mean + options.clear &&
-                            ranges[last + 1] > mean + options.clear;
-    if (stands_out && mean < options.most_range && beams >= options.least_beams) {
-      const double width = std::max(0.3 * scan.angle_step, beams * scan.angle_step - scan.beam_width.value_or(0));
-      const Stem stem = stem_of({ranges.data() + first, static_cast<std::size_t>(beams)},
-                                scan.first_angle + static_cast<double>(first) * scan.angle_step,
-                                scan.angle_step, width);
-      if (stem.diameter >= options.least_diameter && stem.diameter <= options.most_diameter &&
-          stem.roughness <= options.roughness)
-        stems.push_back(stem);
-    }
-    first = last + 1;
+  for (const BeamRun& run : runs_of(ranges, options.jump)) {
+    const std::span<const double> hits(ranges.data() + run.first, run.beams());
+    const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / static_cast<double>(hits.size());
+    if (!stands_out(ranges, run, mean, options) || !(mean < options.most_range) ||
+        static_cast<int>(run.beams()) < options.least_beams)
+      continue;
+    const Stem stem = stem_of(hits, scan.first_angle + static_cast<double>(run.first) * scan.angle_step,
+                              scan.angle_step, width_of(scan, run.beams()));
+    if (stem.diameter >= options.least_diameter && stem.diameter <= options.most_diameter &&
+        stem.roughness <= std::min(options.roughness, options.rough_base + options.rough_share * stem.diameter))
+      stems.push_back(stem);
   }
   return stems;
 }

@@ -15,9 +15,12 @@ struct LaserStems {
   double least_diameter = 0.02;  ///< m
   double most_range = 70;        ///< m; a stem farther away is hit by too few beams
   double roughness = 1;          ///< m: RMS by which ranges may differ from those of a cylinder; bushes do
+  double rough_base = 1;         ///< m, and by no more than this
+  double rough_share = 0;        ///< and this share of the diameter: a thin stem is smoother
   int least_beams = 1;           ///< fewer are no stem
   double range_sd = 0.3;         ///< m; 0: what the scan itself says
   double bearing_sd = 0.02;      ///< rad; 0: what the scan itself says
+  bool partly_hidden = false;    ///< take stems beside something nearer too, where their shape is whole
 };
 
 /// For a machine among trees: bushes are told from stems, errors are those of the scan.
@@ -36,7 +39,7 @@ struct Stem {
 /// Clusters of beams that stand before their background on both sides, are as wide as a stem and as round.
 /// The diameter is that of the cylinder of this angular width w, less what the beam's own width adds:
 /// D = 2 r sin(w/2) / (1 - sin(w/2)) with r the nearest range (Ringdahl et al. 2013); the middle is where the
-/// ranges of the inner beams put such a cylinder. A single beam that returned nothing amid others is bridged.
+/// ranges of the inner beams put such a cylinder. A single odd beam amid others is bridged.
 /// 5 us per scan of 361 beams.
 std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options);
 

@@ -2,6 +2,7 @@
 #include "localization/detectors/level_scan.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
@@ -18,10 +19,31 @@ std::vector<double> bridged_ranges(const LaserScan& scan, double jump) {
   for (std::size_t i = 1; i + 1 < ranges.size(); ++i) {
     const double a = before, b = ranges[i + 1];
     before = ranges[i];
-    const bool speck = ranges[i] == far || ranges[i] < std::min(a, b) - jump;
+    const bool speck = ranges[i] < std::min(a, b) - jump || ranges[i] > std::max(a, b) + jump;
     if (a < far && b < far && speck && std::abs(a - b) < jump) ranges[i] = (a + b) / 2;
   }
   return ranges;
+}
+
+std::vector<BeamRun> runs_of(std::span<const double> ranges, double jump) {
+  std::vector<BeamRun> runs;
+  for (std::size_t first = 0; first < ranges.size();) {
+    std::size_t last = first;
+    while (last + 1 < ranges.size() && std::abs(ranges[last + 1] - ranges[last]) < jump) ++last;
+    runs.push_back({first, last});
+    first = last + 1;
+  }
+  return runs;
+}
+
+double width_of(const LaserScan& scan, std::size_t beams) {
+  return std::max(0.3 * scan.angle_step,
+                  static_cast<double>(beams) * scan.angle_step - scan.beam_width.value_or(0));
+}
+
+double cylinder_radius(double front, double width) {
+  const double half_sine = std::sin(std::min(width, 2.0) / 2);
+  return front * half_sine / (1 - half_sine);
 }
 
 RangeBearing on_level_ground(const LaserScan& scan, double range, double bearing) {

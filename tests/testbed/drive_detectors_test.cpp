@@ -109,6 +109,8 @@ TEST(LaserStems, AreFoundAndMeasuredWithinTwelveMetres) {
   }
   const StemScore at_twelve = score_stems(11, 13, {}, 200);
   EXPECT_LE(std::sqrt(at_twelve.squares / at_twelve.found), 0.025);
+  const StemScore ring = score_stems(8, 12, {}, 100);  // one beam from nowhere cuts a stem in two there
+  EXPECT_LE(std::sqrt(ring.squares / ring.found), 0.025);
   const StemScore all = score_stems(2, 12, {}, 300);
   EXPECT_GE(all.found, 0.9 * all.visible);
   EXPECT_LE(all.is_false, 0.05 * all.stems);
