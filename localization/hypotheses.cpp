@@ -30,6 +30,10 @@ void HypothesesOptions::describe(OptionVisitor& option) {
          {.help = "Standard deviation of yaw, radians, above which a Gaussian is split", .min = 0.01});
   option("lost_after", lost_after,
          {.help = "Sets of sightings in a row that fit nowhere before the filter searches", .min = 1});
+  option("same_error", same_error,
+         {.help = "Metres driven until the error of a landmark on the map counts as new; 0: at once",
+          .min = 0,
+          .max = 1e6});
   option("search_growth", search_growth,
          {.help = "Growth of the standard deviations per set while searching", .min = 1, .max = 10});
 }
@@ -47,6 +51,13 @@ HypothesesFilter::HypothesesFilter(const PoseEstimate& start, LandmarkWindow map
 
 void HypothesesFilter::move(const BodyMotion& motion) {
   for (Part& part : parts_) part.at = moved(part.at, motion);
+  driven_ += motion.step.at().norm();
+}
+
+double HypothesesFilter::alike(LandmarkKey key) const {
+  const auto used = uses_.find(key);
+  if (used == uses_.end() || !(options_.same_error > 0)) return 0;
+  return used->second.count * std::exp((used->second.driven - driven_) / options_.same_error);
 }
 
 // A Gaussian wide in yaw becomes five along its main line of yaw, with the same mean and covariance.
@@ -88,12 +99,19 @@ void HypothesesFilter::see_some(const SightingSet& some, const LandmarkGrid& map
     if (!found) continue;
     for (const JointHypothesis& h : *found) {
       Part& after = next.emplace_back(part);
-      after.at = updated(part.at, h.evidence);
-      for (std::size_t i = 0; i < sets.size(); ++i)
-        after.choice.push_back(
-            h.choice[i] < 0
-                ? -1
-                : static_cast<int>(sets[i].pairings[static_cast<std::size_t>(h.choice[i])].landmark));
+      JointEvidence evidence;
+      for (std::size_t i = 0; i < sets.size(); ++i) {
+        after.choice.push_back(-1);
+        if (h.choice[i] < 0) continue;
+        const CandidatePair& pair = sets[i].pairings[static_cast<std::size_t>(h.choice[i])];
+        after.choice.back() = static_cast<int>(pair.landmark);
+        const MapLandmark& landmark = map[pair.landmark];
+        const double floor = identification_.quality_floor;
+        evidence += evidence_of(some.sightings[i], expect(part.at.pose, some.robot_from_sensor, landmark.at),
+                                (1 + alike(landmark.key) / 2) * landmark.covariance,
+                                floor < 1 ? std::max(landmark.quality, floor) : 1);
+      }
+      after.at = updated(part.at, evidence);
       logs.push_back(std::log(part.weight) + h.log_weight);
     }
   }
@@ -181,6 +199,7 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);
       match.key = map[match.pairing.landmark].key;
+      uses_[match.key] = {1 + alike(match.key), driven_};
     }
   }
   // What was paired how no longer matters: the same place is the same hypothesis.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <unordered_map>
 #include "localization/landmark_window.hpp"
 #include "localization/localizer.hpp"
 namespace waymark {
@@ -11,6 +12,10 @@ struct HypothesesOptions {
   double split_yaw = 0.25;       ///< rad: Gaussians wider than this are split before they meet sightings
   std::int64_t lost_after = 10;  ///< sets in a row that fit nowhere until the search begins
   double search_growth = 2;      ///< of the standard deviations per further set
+  /// m driven until a landmark's error on the map counts as new. Whoever sees a landmark again and again sees
+  /// the same error of the map: after n sightings in a row its variance counts 1 + n/2 times, with which the
+  /// filter's errors were as large as it says in made stands. 0: each errs anew.
+  double same_error = 15;
 
   void describe(OptionVisitor& option);
 };
@@ -46,12 +51,19 @@ class HypothesesFilter final : public Localizer {
   void split();
   void prune();
   void see_some(const SightingSet& some, const LandmarkGrid& map);
+  /// Sightings of a landmark of late that erred alike.
+  double alike(LandmarkKey key) const;
 
   LandmarkWindow map_;
   FeatureScales scales_;
   IdentificationOptions identification_;
   HypothesesOptions options_;
   std::vector<Part> parts_;
+  struct Use {
+    double count = 0, driven = 0;  // sightings, and the way driven at the last one
+  };
+  std::unordered_map<LandmarkKey, Use> uses_;
+  double driven_ = 0;
   std::int64_t missed_ = 0;
   FixGate gnss_, heading_;
 };
