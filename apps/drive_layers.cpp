@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "geodb/shape_layer.hpp"
 #include "localization/harvested.hpp"
@@ -16,6 +17,13 @@ Eigen::Vector2d in_crs(const LocalFrame& frame, const Eigen::Vector2d& at) {
 
 AttributeValue or_null(double value) {
   return value > 0 ? AttributeValue(value) : AttributeValue();
+}
+
+// Trees felled up to the last row.
+std::size_t felled_until(const RobotLog& log, const Track& track) {
+  if (track.rows.empty()) return 0;
+  const auto after = std::ranges::upper_bound(log.felled, track.rows.back().t, {}, &FelledReading::t);
+  return static_cast<std::size_t>(after - log.felled.begin());
 }
 
 }  // namespace
@@ -51,13 +59,28 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
                                  {"height", "m", AttributeSpec::Kind::real, "Height"},
                                  {"sd", "m", AttributeSpec::Kind::real, "Standard deviation of its place"}},
                      .style = {.colour = "#b22222"}};
-    for (const HarvestedTree& tree : harvested_trees(log.felled, track))
+    const std::span<const FelledReading> felled(log.felled.data(), felled_until(log, track));
+    for (const HarvestedTree& tree : harvested_trees(felled, track))
       trees.rows.push_back({{{{in_crs(frame, tree.at)}, {}}},
                             {tree.t, or_null(tree.diameter), or_null(tree.height),
                              std::sqrt(tree.covariance.trace() / 2)}});
     layers.push_back(std::move(trees));
   }
   write_layers(map, layers);
+}
+
+LiveLayers::LiveLayers(std::filesystem::path map, const RobotLog& log, const LocalFrame& frame, double every)
+    : map_(std::move(map)), log_(&log), frame_(frame), every_(every) {
+  if (!log.events.empty()) next_ = log.events.front().t;
+}
+
+void LiveLayers::operator()(const Track& so_far) {
+  const double now = so_far.rows.back().t;
+  const std::size_t felled = felled_until(*log_, so_far);
+  if (now < next_ && felled == felled_) return;
+  felled_ = felled;
+  next_ = now + every_;
+  write_drive_layers(map_, *log_, so_far, frame_);
 }
 
 }  // namespace waymark

@@ -23,7 +23,7 @@ Track play_task(const LocalizeTask& task, Localizer& localizer) {
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       },
-      task.ground);
+      task.ground, task.watch);
 }
 
 Track FilterMethod::run(LocalizeTask& task) {

@@ -32,7 +32,8 @@ struct LocalizeTask {
   std::string command_line = {};   ///< as typed
   std::string write_map = {};      ///< map to write with what was learnt; empty: none
   bool update_map = false;         ///< change the map itself
-  std::optional<TypeId> stem_type;  ///< type of the stems found in laser scans, if the map has one
+  TrackWatcher watch = {};         ///< shown the track while it grows
+  std::optional<TypeId> stem_type = {};  ///< type of the stems found in laser scans, if the map has one
 };
 
 /// A way to localize: a file of apps/methods that defines register_method_<name>(MethodTable&).

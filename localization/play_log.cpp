@@ -18,7 +18,7 @@ class Player {
         clock_(clock),
         ground_(ground) {}
 
-  Track play() {
+  Track play(const TrackWatcher& watch) {
     if (!log_.events.empty()) now_ = log_.events.front().t;
     for (const LogEvent& event : log_.events) {
       advance(event.t);
@@ -33,6 +33,7 @@ class Player {
       if (!row.at.pose.finite() || !row.at.covariance.allFinite())
         throw std::logic_error("a localizer has an estimate that is not finite");
       track_.rows.push_back(row);
+      if (watch) watch(track_);
     }
     return std::move(track_);
   }
@@ -134,8 +135,8 @@ void PlayOptions::describe(OptionVisitor& option) {
 }
 
 Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,
-           const Clock& clock, const GroundHeight& ground) {
-  return Player(log, localizer, options, detect, clock, ground).play();
+           const Clock& clock, const GroundHeight& ground, const TrackWatcher& watch) {
+  return Player(log, localizer, options, detect, clock, ground).play(watch);
 }
 
 }  // namespace waymark

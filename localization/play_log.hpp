@@ -22,10 +22,14 @@ using ScanDetector = std::function<SightingSet(const LaserScan&)>;
 /// Seconds since some moment, to measure updates; none given: not measured.
 using Clock = std::function<double()>;
 
+/// Is shown the track so far after each new row.
+using TrackWatcher = std::function<void(const Track&)>;
+
 /// Plays a log to a localizer, from the first event to the last. Every row is finite. With the ground known,
 /// way driven on a slope is shortened to what it is on the map, and rows have z, roll and pitch; where the
 /// ground is not known, those of level ground at the last known height.
 Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options,
-           const ScanDetector& detect = {}, const Clock& clock = {}, const GroundHeight& ground = {});
+           const ScanDetector& detect = {}, const Clock& clock = {}, const GroundHeight& ground = {},
+           const TrackWatcher& watch = {});
 
 }  // namespace waymark

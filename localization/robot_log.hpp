@@ -57,6 +57,7 @@ struct RobotLog {
   std::vector<StampedPose> truth;  ///< where it really was, as far as that is known; ascending
   std::vector<FelledReading> felled;  ///< ascending
   std::optional<Pose2> start;
+  double start_sd = 0, start_yaw_sd = 0.05;  ///< m, rad: how well it is known; 0: the log does not say
   Ackermann car;
   /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
   bool in_crs = false;

@@ -55,9 +55,10 @@ class LogMaker {
     const bool local = place_.crs == "local";
     return fmt::format(
         "{{\"kind\":\"header\",\"version\":1,\"frame\":\"{}\"{},\"start\":{{\"x\":{:.4f},\"y\":{:.4f},\"yaw\":"
-        "{:.5f}}},\"vehicle\":\"{}\",\"seed\":{}}}\n",
+        "{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"vehicle\":\"{}\",\"seed\":{}}}\n",
         local ? "map" : "crs", local ? "" : fmt::format(",\"crs\":\"{}\"", place_.crs),
-        x / place_.metres_per_unit, y / place_.metres_per_unit, yaw, s.vehicle, world_.seed);
+        x / place_.metres_per_unit, y / place_.metres_per_unit, yaw, std::max(s.start_sd, 0.01),
+        std::max(to_radians(s.start_yaw_sd).value, 0.001), s.vehicle, world_.seed);
   }
 
   void odometry() {

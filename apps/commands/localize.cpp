@@ -75,7 +75,10 @@ class Localize final : public Command {
              Argument{"--crs", "", &in_crs_, "Write positions in the map's CRS"},
              Argument{"--layers", "MAP.gpkg", &layers_,
                       "Map file that gets the layers track and, of a harvester, harvested"}
-                 .offering(Offer::file)},
+                 .offering(Offer::file),
+             Argument{"--live", "SECONDS", &live_,
+                      "Write --layers while the log plays: so often, in seconds of the log, and after each "
+                      "felled tree"}},
         .examples = {
             {"waymark localize site.gpkg drive.jsonl -o track.csv --method pf --start none",
              "Find the robot and follow it"},
@@ -128,6 +131,10 @@ class Localize final : public Command {
         .write_map = write_map_,
         .update_map = update_map_,
         .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt};
+    if (live_ != 0 && (layers_.empty() || !(live_ > 0)))
+      throw Error(ErrorCode::usage, "--live takes the seconds between two writings of --layers", "--live",
+                  "e.g. --layers MAP.gpkg --live 10");
+    if (live_ > 0) task.watch = LiveLayers(layers_, log, map.frame, live_);
     const Track track = method.run(task);
 
     TrackOutput form{.frame = in_crs_ ? &map.frame : nullptr, .crs = &map.crs()};
@@ -213,6 +220,10 @@ class Localize final : public Command {
     }
     if (log.start && start_.empty()) {
       start.pose = *log.start;
+      const bool told = std::ranges::any_of(sets_, [](const std::string& s) { return s.starts_with("start_"); });
+      if (log.start_sd > 0 && !told)
+        start.covariance.diagonal() << log.start_sd * log.start_sd, log.start_sd * log.start_sd,
+            log.start_yaw_sd * log.start_yaw_sd;
       return start;
     }
     if (need != StartNeed::needed && start_.empty()) return {};
@@ -258,6 +269,7 @@ class Localize final : public Command {
   std::string map_, log_, output_, layers_, method_ = "ekf", sensor_, ids_ = "known", start_;
   std::string write_map_;
   bool update_map_ = false;
+  double live_ = 0;
   LogImport how_;
   std::vector<std::string> sets_, dem_;
   bool in_crs_ = false, list_ = false;

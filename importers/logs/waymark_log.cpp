@@ -5,7 +5,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <set>
 #include <optional>
 #include <sstream>
 
@@ -125,13 +124,16 @@ class Reader {
     if (line.has("version") && line.number("version") > 1)
       line.fail(fmt::format("is of version {}, this program reads version 1", line.number("version")));
     const std::string frame = line.has("frame") ? line.text("frame") : "map";
-    if (frame != "map" && frame != "crs")
-      line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
+    if (frame != "map" && frame != "crs") line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
     log_.in_crs = frame == "crs";
     if (line.has("crs")) log_.crs = line.text("crs");
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
     log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
-    if (line.has("start")) log_.start = line.part(line.object()["start"]).pose();
+    if (line.has("start")) start(line.part(line.object()["start"]));
+  }
+  void start(const Line& line) {
+    log_.start = line.pose();
+    log_.start_sd = line.positive("sd", 0), log_.start_yaw_sd = line.positive("yaw_sd", log_.start_yaw_sd);
   }
 
   SightingSet sightings(const Line& line) {
