@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
+#include "pipeline/forest/air_recall.hpp"
 
 namespace waymark {
 namespace {
@@ -104,6 +105,7 @@ MapTrees trees_of(const MapStore& map) {
   ShapeLayer crowns;
   for (const std::string& name : shape_layers(map.path()))
     if (name == "crown") crowns = read_shape_layer(map.path(), name);
+  all.from_air = !crowns.rows.empty();
   const auto outlines = outlines_by_tree(crowns);
   const auto evidence = observed_errors(map, height, diameter, crown);
   for (const Landmark& landmark : map.query({.types = {"tree"}})) {
@@ -167,7 +169,12 @@ StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables&
   }
   InventoryOptions all = options;
   all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
-  result.figures = inventory(result.trees, result.stand.ground, all);
+  result.figures = result.complete = inventory(result.trees, result.stand.ground, all);
+  if (map.from_air && all.recall.empty()) {
+    all.recall = air_recall(result.figures.dominant_height.value);
+    all.recall_errs_alike = true;
+    result.complete = inventory(result.trees, result.stand.ground, all);
+  }
   result.members = trees_in(result.trees, result.stand.ground);
   result.cover = cover(crowns, result.stand.ground);
   return result;

@@ -14,6 +14,7 @@ struct MapTrees {
   std::vector<StandTree> trees;
   std::vector<StandCrown> crowns;  ///< crowns[i] of trees[i]; no diameter where none is known
   double unit = 1;                 ///< metres per unit of the map's CRS
+  bool from_air = false;           ///< found in a canopy model: those under others are missing
 };
 
 /// Throws Error{input} where the map has no type `tree`, or its CRS is in degrees. Crowns are the outlines of
@@ -41,6 +42,7 @@ struct StandResult {
   std::vector<StandTree> trees;      ///< these, with the diameters and volumes of the stand's species
   std::vector<std::size_t> members;  ///< those counted in the stand: indices of `near` and `trees`
   StandFigures figures;
+  StandFigures complete;  ///< with the trees nobody found: by the recall given, else of trees from the air
   Estimate cover;
 };
 

@@ -43,6 +43,18 @@ constexpr FigureColumn kFigures[] = {
      [](const StandResult& r) { return r.cover; }},
 };
 
+// With the trees nobody found.
+constexpr FigureColumn kComplete[] = {
+    {"stems_per_ha_all", "1/ha", "Trees per hectare, with those nobody found", 1,
+     [](const StandResult& r) { return r.complete.stems; }},
+    {"basal_area_m2_per_ha_all", "m2/ha", "Stem cross-sections, with those of trees nobody found", 1,
+     [](const StandResult& r) { return r.complete.basal_area; }},
+    {"volume_m3_per_ha_all", "m3/ha", "Stem volume, with that of trees nobody found", 1,
+     [](const StandResult& r) { return r.complete.volume; }},
+    {"lorey_height_m_all", "m", "Mean height weighted by basal area, of all trees", 1,
+     [](const StandResult& r) { return r.complete.lorey_height; }},
+};
+
 std::string class_name(const DiameterClass& c) {
   return fmt::format("stems_per_ha_d{:03.0f}", 100 * c.from);
 }
@@ -77,6 +89,11 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
     layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
                              "Standard error of " + std::string(figure.name)});
   }
+  for (const FigureColumn& figure : kComplete) {
+    layer.columns.push_back({figure.name, figure.unit, Kind::real, figure.summary});
+    layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
+                             "Standard error of " + std::string(figure.name)});
+  }
   const std::vector<DiameterClass> classes = all_classes(results);
   for (const DiameterClass& c : classes) {
     layer.columns.push_back(
@@ -91,6 +108,7 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
                   number(r.figures.hectares), std::int64_t{r.figures.trees},
                   std::int64_t{r.figures.without_diameter}};
     for (const FigureColumn& figure : kFigures) push(row, figure.of(r), figure.factor);
+    for (const FigureColumn& figure : kComplete) push(row, figure.of(r), figure.factor);
     for (std::size_t i = 0; i < classes.size(); ++i)
       push(row, i < r.figures.classes.size() ? r.figures.classes[i].stems : Estimate{0, 0}, 1);
     layer.rows.push_back(std::move(row));

@@ -251,7 +251,7 @@ std::string inventory_html(const InventoryPage& page) {
   }
   html +=
       "<h2>Stands</h2>\n<p>Standard errors (±) come from the errors of the single trees; trees nobody found "
-      "are in them only where a recall was given.</p>\n";
+      "are in the columns marked “all”, and elsewhere only where a recall was given.</p>\n";
   html += table_of(page);
   html += "<h2>Map</h2>\n" + map_figure(page);
   html += "<h2>Diameters</h2>\n" + charts_of(page.stands);

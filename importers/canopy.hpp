@@ -36,8 +36,9 @@ std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import);
 /// The same from LAS files, which make one catalogue: the canopy model of pipeline/forest/canopy_model.hpp,
 /// made block by block when it is read, so that memory does not grow with the files. Noise (classes 7 and 18)
 /// and withheld points are left out. Feet, horizontal and vertical, by the units the CRS names. Throws
-/// Error{input} as read_las_header does, for a CRS in degrees, files of different CRSs, and where no point is
-/// classified as ground.
+/// Error{input} as read_las_header does, for a CRS in degrees and files of different CRSs. Where no point is
+/// classified as ground it is sought (pipeline/forest/ground_filter.hpp), with a warning; Error{input} where the
+/// points are too few for that.
 std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import);
 
 }  // namespace waymark

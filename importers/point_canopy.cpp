@@ -10,12 +10,15 @@
 #include "importers/canopy.hpp"
 #include "importers/las_catalogue.hpp"
 #include "pipeline/forest/canopy_model.hpp"
+#include "pipeline/forest/ground_filter.hpp"
 
 namespace waymark {
 namespace {
 
 constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
 constexpr double kAround = 20;        // metres of points around a block
+constexpr double kGroundAround = 60;  // metres of points around a block in which ground is sought
+constexpr double kFewest = 0.25;      // returns per m2, below which ground cannot be told by its shape
 constexpr std::size_t kKeptBlocks = 256;
 
 /// The CRS all files agree on.
@@ -55,6 +58,7 @@ class PointCanopy final : public ImportedCanopy {
     unit_ = crs.metres_per_unit();
     set_height_unit();
     lay_grid();
+    if (catalogue_.ground_points() == 0) check_unclassified();
   }
 
   const GridGeometry& geometry() const override { return grid_; }
@@ -94,12 +98,22 @@ class PointCanopy final : public ImportedCanopy {
   void check_points() {
     if (catalogue_.points() == 0)
       throw Error(ErrorCode::input, "the files hold no points", import_.las[0], "check that they are the right ones");
-    if (catalogue_.ground_points() == 0)
-      throw Error(ErrorCode::input, "no point is classified as ground (class 2): heights of trees need the ground",
-                  import_.las[0],
-                  "classify it first (pdal ground, lasground), or make rasters and pass --dsm and --dtm");
     if (const auto out = catalogue_.left_out(); out > 0)
       warnings_.push_back(fmt::format("{}: {} points are noise or withheld and left out", import_.las[0], out));
+  }
+
+  void check_unclassified() {
+    const LasBox& box = catalogue_.box();
+    const double width = (box.right - box.left) * unit_, height = (box.high - box.low) * unit_;
+    if (!(static_cast<double>(catalogue_.points()) > kFewest * width * height) || !(std::min(width, height) > 20))
+      throw Error(ErrorCode::input,
+                  "no point is classified as ground (class 2), and the points are too few to find it: heights of "
+                  "trees need the ground",
+                  import_.las[0],
+                  "classify it first (pdal ground, lasground), or make rasters and pass --dsm and --dtm");
+    warnings_.push_back(import_.las[0] +
+                        ": no point is classified as ground (class 2): the ground is found by its shape (Axelsson "
+                        "2000), which takes low dense canopy and steps of the ground for the other");
   }
 
   void set_height_unit() {
@@ -156,15 +170,17 @@ class PointCanopy final : public ImportedCanopy {
     const Georeference& where = grid_.where;
     const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
     const CellFrame frame{where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
-    const double around = kAround / unit_, last = static_cast<double>(kBlock);
+    const bool classified = catalogue_.ground_points() > 0;
+    const double around = (classified ? kAround : kGroundAround) / unit_, last = static_cast<double>(kBlock);
     LaserPoints points;
     catalogue_.visit({where.x(first) - around, where.y(top + last) - around, where.x(first + last) + around,
                       where.y(top) + around},
                      [&](const LasPoint& p) {
                        const Eigen::Vector3d at(p.x * unit_, p.y * unit_, p.z * height_unit_);
-                       if (p.classification == 2) points.ground.push_back(at);
+                       if (p.classification == 2 || !classified) points.ground.push_back(at);
                        if (is_first(p)) points.surface.push_back(at);
                      });
+    if (!classified) points.ground = ground_returns(points.ground);
     return canopy_block(points, frame, spacing_);
   }
 

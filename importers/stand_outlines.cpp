@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "core/error.hpp"
-#include "importers/gdal_session.hpp"
+#include "importers/vector_layer.hpp"
 
 namespace waymark {
 namespace {
@@ -21,19 +21,6 @@ namespace {
 constexpr double kTouching = 1;  // m2 two neighbours may share by rounding
 
 using Geometry = std::unique_ptr<OGRGeometry>;
-
-GdalDataset open_polygons(const std::string& path) {
-  const GdalListener gdal;
-  GdalDataset dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (dataset) return dataset;
-  VSIStatBufL status;
-  if (path.find(':') == std::string::npos && VSIStatL(path.c_str(), &status) != 0)
-    throw Error(ErrorCode::input, "there is no such file of stands", path, "check the path");
-  const std::string said = gdal.error_about(path);
-  throw Error(ErrorCode::input, "this is no vector layer that GDAL reads" + (said.empty() ? "" : ": " + said),
-              path, "stands are polygons: a GeoPackage, Shapefile, GeoJSON, ...");
-}
 
 bool may_hold_polygons(OGRLayer& layer) {
   const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
@@ -47,37 +34,15 @@ OGRLayer& choose_layer(GDALDataset& dataset, const std::string& path, const std:
     all.emplace_back(layer->GetName());
     if (may_hold_polygons(*layer)) areas.emplace_back(layer->GetName());
   }
-  const auto by_name = [&](const std::string& wanted) { return dataset.GetLayerByName(wanted.c_str()); };
-  if (!name.empty()) {
-    if (OGRLayer* layer = by_name(name)) return *layer;
-    const std::string near = nearest_name(name, all);
-    throw Error(
-        ErrorCode::usage, fmt::format("the file has no layer '{}'", name), path,
-        near.empty() ? fmt::format("it has {}", fmt::join(all, ", ")) : "did you mean '" + near + "'?");
-  }
+  if (!name.empty()) return layer_named(dataset, path, name, all);
   if (areas.empty())
     throw Error(ErrorCode::input, "the file has no layer of polygons", path,
                 all.empty() ? "it is empty" : fmt::format("it has: {}", fmt::join(all, ", ")));
   for (const char* usual : {"stand", "stands"})
-    if (std::ranges::count(areas, usual) > 0) return *by_name(usual);
-  if (areas.size() == 1) return *by_name(areas[0]);
+    if (std::ranges::count(areas, usual) > 0) return *dataset.GetLayerByName(usual);
+  if (areas.size() == 1) return *dataset.GetLayerByName(areas[0].c_str());
   throw Error(ErrorCode::usage, "the file holds several layers of polygons", path,
               fmt::format("choose one with --stands-layer: {}", fmt::join(areas, ", ")));
-}
-
-std::optional<Crs> crs_of(OGRLayer& layer) {
-  const OGRSpatialReference* reference = layer.GetSpatialRef();
-  if (reference == nullptr) return {};
-  char* wkt = nullptr;
-  const char* const wkt2[] = {"FORMAT=WKT2_2019", nullptr};
-  reference->exportToWkt(&wkt, wkt2);
-  const std::string definition = wkt ? wkt : "";
-  CPLFree(wkt);
-  try {
-    return definition.empty() ? std::optional<Crs>{} : Crs::from_text(definition);
-  } catch (const Error&) {
-    return {};
-  }
 }
 
 int column_of(OGRLayer& layer, std::initializer_list<const char*> names) {
@@ -99,7 +64,7 @@ void collect_polygons(const OGRGeometry& geometry, std::vector<const OGRPolygon*
 class Reader {
  public:
   Reader(const std::string& path, const std::string& name, const Crs& into)
-      : path_(path), dataset_(open_polygons(path)), layer_(&choose_layer(*dataset_, path, name)) {
+      : path_(path), dataset_(open_vector(path, "file of stands", "stands are polygons: a GeoPackage, Shapefile, GeoJSON, ...")), layer_(&choose_layer(*dataset_, path, name)) {
     const std::optional<Crs> own = crs_of(*layer_);
     if (into.kind() == CrsKind::local) {
       if (own && own->kind() != CrsKind::local && own->id() != "EPSG:4326")

@@ -8,24 +8,11 @@
 #include <filesystem>
 
 #include "core/error.hpp"
-#include "importers/gdal_session.hpp"
 #include "importers/table.hpp"
+#include "importers/vector_layer.hpp"
 
 namespace waymark {
 namespace {
-
-GdalDataset open_vector(const std::string& path) {
-  const GdalListener gdal;
-  GdalDataset dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (dataset) return dataset;
-  VSIStatBufL status;
-  if (path.find(':') == std::string::npos && VSIStatL(path.c_str(), &status) != 0)
-    throw Error(ErrorCode::input, "there is no such file", path, "check the path");
-  const std::string said = gdal.error_about(path);
-  throw Error(ErrorCode::input, "this is no vector layer that GDAL reads" + (said.empty() ? "" : ": " + said),
-              path, "pass --from csv for a table of text; `ogrinfo --formats` lists the rest");
-}
 
 bool has_geometry(OGRLayer& layer) {
   return layer.GetGeomType() != wkbNone;
@@ -43,31 +30,11 @@ OGRLayer& choose_layer(GDALDataset& dataset, const std::string& path, const std:
     throw Error(ErrorCode::input, "the file holds no layer", path, "`ogrinfo` shows what it holds");
   for (const std::string& wanted : {name, type})
     if (OGRLayer* layer = wanted.empty() ? nullptr : dataset.GetLayerByName(wanted.c_str())) return *layer;
-  if (!name.empty()) {
-    const std::string nearest = nearest_name(name, all);
-    throw Error(
-        ErrorCode::usage, fmt::format("the file has no layer '{}'", name), path,
-        nearest.empty() ? fmt::format("it has {}", fmt::join(all, ", ")) : "did you mean '" + nearest + "'?");
-  }
+  if (!name.empty()) return layer_named(dataset, path, name, all);
   if (with_geometry.size() == 1) return *with_geometry[0];
   if (all.size() == 1) return *dataset.GetLayer(0);
   throw Error(ErrorCode::usage, "the file holds several layers", path,
               fmt::format("choose one with --layer: {}", fmt::join(all, ", ")));
-}
-
-std::optional<Crs> crs_of(OGRLayer& layer) {
-  const OGRSpatialReference* reference = layer.GetSpatialRef();
-  if (reference == nullptr) return {};
-  char* wkt = nullptr;
-  const char* const wkt2[] = {"FORMAT=WKT2_2019", nullptr};
-  reference->exportToWkt(&wkt, wkt2);
-  const std::string definition = wkt ? wkt : "";
-  CPLFree(wkt);
-  try {
-    return definition.empty() ? std::optional<Crs>{} : Crs::from_text(definition);
-  } catch (const Error&) {
-    return {};  // GeoPackage's "undefined Cartesian" and the like: the caller must be told by --crs
-  }
 }
 
 std::string text(double value) {
@@ -77,7 +44,8 @@ std::string text(double value) {
 class OgrTable final : public TableSource {
  public:
   OgrTable(const std::string& path, const std::string& name, const std::string& type)
-      : dataset_(open_vector(path)), layer_(&choose_layer(*dataset_, path, name, type)) {
+      : dataset_(open_vector(path, "file",
+                             "pass --from csv for a table of text; `ogrinfo --formats` lists the rest")), layer_(&choose_layer(*dataset_, path, name, type)) {
     const GdalListener quiet;
     header_.path = path;
     header_.layer = layer_->GetName();

@@ -76,8 +76,8 @@ struct Part {
 
 class Figures {
  public:
-  Figures(const std::vector<Member>& members, std::span<const RecallRow> recall)
-      : members_(&members), recall_(recall) {}
+  Figures(const std::vector<Member>& members, const InventoryOptions& options)
+      : members_(&members), recall_(options.recall), alike_(options.recall_errs_alike) {}
 
   /// `part(tree)` gives the part, or a part with a = NaN for a tree that says nothing. `fixed` > 0: the
   /// denominator.
@@ -112,7 +112,7 @@ class Figures {
              square(m.weight) * (square(p.a_by_height * t.height_sd) + square(by_diameter * t.diameter_sd));
       shared += m.weight * by_diameter * t.diameter_bias;
       if (!recall_.empty())
-        by_recall[m.recall_row] += m.weight * pull * recall_[m.recall_row].sd / recall_[m.recall_row].recall;
+        by_recall[alike_ ? 0 : m.recall_row] += m.weight * pull * recall_[m.recall_row].sd / recall_[m.recall_row].recall;
     }
     double sum = own + shared * shared;
     for (const auto& [row, pull] : by_recall) sum += pull * pull;
@@ -121,6 +121,7 @@ class Figures {
 
   const std::vector<Member>* members_;
   std::span<const RecallRow> recall_;
+  bool alike_;
 };
 
 double section(double diameter) {
@@ -206,7 +207,7 @@ StandFigures inventory(std::span<const StandTree> trees, const StandPolygon& sta
   }
   if (!(out.hectares > 0)) return out;
 
-  const Figures figures(members, options.recall);
+  const Figures figures(members, options);
   const double ha = out.hectares;
   out.stems = figures.ratio([](const StandTree&) { return Part{.a = 1}; }, ha);
   out.basal_area = figures.ratio(
