@@ -132,8 +132,8 @@ class Reader {
     if (line.has("start")) start(line.part(line.object()["start"]));
   }
   void start(const Line& line) {
-    log_.start = line.pose();
-    log_.start_sd = line.positive("sd", 0), log_.start_yaw_sd = line.positive("yaw_sd", log_.start_yaw_sd);
+    log_.start = line.pose(), log_.start_sd = line.has("sd") ? line.positive("sd", 1) : 0;
+    log_.start_yaw_sd = line.positive("yaw_sd", log_.start_yaw_sd);
   }
 
   SightingSet sightings(const Line& line) {
