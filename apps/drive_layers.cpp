@@ -19,17 +19,15 @@ AttributeValue or_null(double value) {
   return value > 0 ? AttributeValue(value) : AttributeValue();
 }
 
-// Trees felled up to the last row.
-std::size_t felled_until(const RobotLog& log, const Track& track) {
-  if (track.rows.empty()) return 0;
-  const auto after = std::ranges::upper_bound(log.felled, track.rows.back().t, {}, &FelledReading::t);
+std::size_t felled_until(const RobotLog& log, double until) {
+  const auto after = std::ranges::upper_bound(log.felled, until, {}, &FelledReading::t);
   return static_cast<std::size_t>(after - log.felled.begin());
 }
 
 }  // namespace
 
 void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, const Track& track,
-                        const LocalFrame& frame) {
+                        const LocalFrame& frame, double until) {
   std::vector<ShapeLayer> layers;
   ShapeLayer line{.name = "track",
                   .summary = "Where the machine drove",
@@ -59,7 +57,7 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
                                  {"height", "m", AttributeSpec::Kind::real, "Height"},
                                  {"sd", "m", AttributeSpec::Kind::real, "Standard deviation of its place"}},
                      .style = {.colour = "#b22222"}};
-    const std::span<const FelledReading> felled(log.felled.data(), felled_until(log, track));
+    const std::span<const FelledReading> felled(log.felled.data(), felled_until(log, until));
     for (const HarvestedTree& tree : harvested_trees(felled, track))
       trees.rows.push_back({{{{in_crs(frame, tree.at)}, {}}},
                             {tree.t, or_null(tree.diameter), or_null(tree.height),
@@ -76,11 +74,11 @@ LiveLayers::LiveLayers(std::filesystem::path map, const RobotLog& log, const Loc
 
 void LiveLayers::operator()(const Track& so_far) {
   const double now = so_far.rows.back().t;
-  const std::size_t felled = felled_until(*log_, so_far);
+  const std::size_t felled = felled_until(*log_, now);
   if (now < next_ && felled == felled_) return;
   felled_ = felled;
   next_ = now + every_;
-  write_drive_layers(map_, *log_, so_far, frame_);
+  write_drive_layers(map_, *log_, so_far, frame_, now);
 }
 
 }  // namespace waymark

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <limits>
 #include "geo/local_frame.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/track.hpp"
@@ -8,10 +9,10 @@ namespace waymark {
 
 /// Writes the layers `track` (one line and its points' times) and, of a harvester, `harvested` (a point per felled
 /// tree with t, diameter, height, sd) into a map file. `frame`: of track and log. All or nothing, so that a
-/// process killed meanwhile leaves the layers of the time before. Trees felled after the last row are left
-/// out: it may be called while the track grows.
+/// process killed meanwhile leaves the layers of the time before. Trees felled after `until`, s, are left out:
+/// it may be called while the track grows.
 void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, const Track& track,
-                        const LocalFrame& frame);
+                        const LocalFrame& frame, double until = std::numeric_limits<double>::infinity());
 
 /// Writes them again and again while a track grows: every `every` seconds of the log, and after each felled tree.
 class LiveLayers {

@@ -21,7 +21,7 @@ class LiveLayers : public ::testing::Test {
   void SetUp() override {
     write_text(folder_ / "rocks.csv", rocks_csv());
     std::string log = drive_log({.steps = 400});
-    for (const char* t : {"20", "60", "100"})
+    for (const char* t : {"120", "160", "200"})
       log += std::string(R"({"kind":"felled","t":)") + t +
              R"(,"range":5,"bearing":0.1,"range_sd":0.1,"bearing_sd":0.01,"features":{"diameter":0.3,"height":20}})" "\n";
     write_text(folder_ / "log.jsonl", log);
