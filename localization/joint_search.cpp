@@ -2,13 +2,16 @@
 #include "localization/joint_search.hpp"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 #include <numbers>
 
 #include "localization/chi_square.hpp"
 
 namespace waymark {
 namespace {
+
+constexpr double kLeast = 14;  // ln of 1e6: hypotheses less probable than the best by this are left out
+const double kLogTurn = std::log(2 * std::numbers::pi);
 
 class CompatibilitySearch {
  public:
@@ -74,34 +77,52 @@ class HypothesisList {
 
   bool list() {
     JointChoice none(sets_.size(), -1);
+    most_left_.assign(sets_.size() + 1, 0);
+    for (std::size_t i = sets_.size(); i-- > 0;) {
+      double most = unpaired(i);
+      for (const CandidatePair& p : sets_[i].pairings)
+        most = std::max(most, paired(i, p) - (p.evidence.log_det + p.evidence.rows * kLogTurn) / 2);
+      most_left_[i] = most_left_[i + 1] + most;
+    }
     descend(0, {}, 0, none);
     return left_ >= 0;
   }
   std::vector<JointHypothesis> found;
 
  private:
+  // Branch and bound: given what is paired so far, no sighting left can be denser than at the peak of its
+  // sensor's noise. What could not come within kLeast of the best is not followed; it would be left out anyway.
   void descend(std::size_t depth, const JointEvidence& so_far, double log_weight, JointChoice& choice) {
     if (--left_ < 0) return;
-    if (depth == sets_.size()) {
+    double value = log_weight;
+    if (so_far.rows) {
       const JointDistance d = joint_distance(so_far, pose_);
-      const double density = -(d.squares + d.log_det + so_far.rows * std::log(2 * std::numbers::pi)) / 2;
-      found.push_back({choice, so_far, log_weight + (so_far.rows ? density : 0)});
+      value -= (d.squares + d.log_det + so_far.rows * kLogTurn) / 2;
+    }
+    if (value + most_left_[depth] < best_ - kLeast) return;
+    if (depth == sets_.size()) {
+      found.push_back({choice, so_far, value});
+      best_ = std::max(best_, value);
       return;
     }
-    const SeenLandmark& seen = seen_.sightings[depth];
     const auto& pairings = sets_[depth].pairings;
     for (std::size_t i = 0; i < pairings.size(); ++i) {
       if (taken(depth, pairings[i].landmark, choice)) continue;
-      const double existence = std::log(map_[pairings[i].landmark].quality * seen.confidence);
       choice[depth] = static_cast<int>(i);
-      descend(depth + 1, so_far + pairings[i].evidence, log_weight + existence - pairings[i].features / 2,
-              choice);
+      descend(depth + 1, so_far + pairings[i].evidence, log_weight + paired(depth, pairings[i]), choice);
     }
     choice[depth] = -1;
-    // A sighting without range is clutter anywhere along its bearing.
-    const double clutter = std::log(options_.clutter * (seen.range ? 1 : options_.bearing_reach)) -
-                           0.5 * (pairings.empty() ? 0 : typical_features(pairings));
-    descend(depth + 1, so_far, log_weight + clutter, choice);
+    descend(depth + 1, so_far, log_weight + unpaired(depth), choice);
+  }
+
+  double paired(std::size_t sighting, const CandidatePair& p) const {
+    return std::log(map_[p.landmark].quality * seen_.sightings[sighting].confidence) - p.features / 2;
+  }
+  // A sighting without range is clutter anywhere along its bearing.
+  double unpaired(std::size_t sighting) const {
+    const auto& pairings = sets_[sighting].pairings;
+    return std::log(options_.clutter * (seen_.sightings[sighting].range ? 1 : options_.bearing_reach)) -
+           0.5 * (pairings.empty() ? 0 : typical_features(pairings));
   }
 
   // What features cost a right pairing on average, so that unpaired sightings are judged by the same measure.
@@ -122,6 +143,8 @@ class HypothesisList {
   Eigen::Matrix3d pose_;
   const IdentificationOptions& options_;
   std::int64_t left_;
+  std::vector<double> most_left_;  // by depth: the most that the sightings from there on can add
+  double best_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
@@ -141,7 +164,7 @@ std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Can
   std::ranges::stable_sort(all.found, std::greater<>{}, &JointHypothesis::probability);
   const double best = all.found[0].probability;
   double total = 0;
-  std::erase_if(all.found, [&](const JointHypothesis& h) { return h.probability < best - 14; });
+  std::erase_if(all.found, [&](const JointHypothesis& h) { return h.probability < best - kLeast; });
   for (JointHypothesis& h : all.found) total += h.probability = std::exp(h.probability - best);
   for (JointHypothesis& h : all.found) h.probability /= total;
   return std::move(all.found);

@@ -99,22 +99,6 @@ TEST(AssignCheapest, IsTheBestOfAll) {
   }
 }
 
-SeenLandmark seen_at(double range, double bearing) {
-  SeenLandmark s;
-  s.range = range;
-  s.range_sd = 0.1;
-  s.bearing = bearing;
-  s.bearing_sd = 0.02;
-  return s;
-}
-
-MapLandmark landmark_at(double x, double y, LandmarkKey key) {
-  MapLandmark l;
-  l.key = key;
-  l.at = {x, y};
-  return l;
-}
-
 // Two landmarks abreast, the robot's heading uncertain: each sighting for itself is nearest to the left one,
 // but together they fit only one way.
 TEST(Identify, JointAssociationsUseTheSharedHeading) {
@@ -132,6 +116,59 @@ TEST(Identify, JointAssociationsUseTheSharedHeading) {
     for (std::size_t i = 0; i < 3; ++i) {
       ASSERT_EQ(matches[i].verdict, Verdict::matched) << association << i;
       EXPECT_EQ(map[matches[i].pairing.landmark].key, i + 1) << association;
+    }
+  }
+}
+
+// The slow twin: every way to pair the set, none left out before its probability is known.
+TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Random random(seed, "joint");
+    const auto all = strewn(30, 8, seed, 0.1);
+    const LandmarkGrid map(all);
+    const PoseEstimate robot{{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-3, 3)},
+                             Eigen::Vector3d(0.2, 0.2, 0.03).asDiagonal()};
+    SightingSet seen;
+    std::vector<Candidates> sets;
+    const IdentificationOptions options;
+    for (int i = 0; i < 4; ++i) {
+      seen.sightings.push_back(seen_at(random.uniform(1, 5), random.uniform(-1, 1)));
+      sets.push_back(candidates(seen.sightings.back(), {}, robot, map, FeatureScales{}, options));
+      if (sets.back().pairings.size() > 5) sets.back().pairings.resize(5);
+    }
+    std::vector<std::pair<double, JointChoice>> expected;
+    JointChoice choice(4, -1);
+    const auto go = [&](const auto& self, std::size_t depth, const JointEvidence& e, double weight) -> void {
+      if (depth == 4) {
+        const JointDistance d = joint_distance(e, robot.covariance);
+        const double density = e.rows ? -(d.squares + d.log_det + e.rows * std::log(2 * std::numbers::pi)) / 2 : 0;
+        expected.emplace_back(weight + density, choice);
+        return;
+      }
+      for (std::size_t i = 0; i < sets[depth].pairings.size(); ++i) {
+        const CandidatePair& p = sets[depth].pairings[i];
+        bool taken = false;
+        for (std::size_t k = 0; k < depth; ++k)
+          taken = taken || (choice[k] >= 0 && sets[k].pairings[std::size_t(choice[k])].landmark == p.landmark);
+        if (taken) continue;
+        choice[depth] = int(i);
+        self(self, depth + 1, e + p.evidence, weight + std::log(map[p.landmark].quality) - p.features / 2);
+      }
+      choice[depth] = -1;
+      self(self, depth + 1, e, weight + std::log(options.clutter) -
+                                   (sets[depth].pairings.empty() ? 0 : 0.5 * sets[depth].pairings[0].feature_count));
+    };
+    go(go, 0, {}, 0);
+    double best = -1e300;
+    for (const auto& [weight, how] : expected) best = std::max(best, weight);
+    std::erase_if(expected, [&](const auto& h) { return h.first < best - 14; });
+    const auto found = joint_hypotheses(sets, seen, map, robot.covariance, options);
+    ASSERT_TRUE(found);
+    ASSERT_EQ(found->size(), expected.size()) << seed;
+    for (const JointHypothesis& h : *found) {
+      const auto twin = std::ranges::find(expected, h.choice, [](const auto& e) { return e.second; });
+      ASSERT_NE(twin, expected.end()) << seed;
+      EXPECT_NEAR(h.log_weight, twin->first, 1e-9);
     }
   }
 }
@@ -239,77 +276,6 @@ TEST(Paper, DistanceIsEquation11) {
   const auto found = candidates(seen_at(10.1, 0.02), {}, {}, map, {}, options);
   ASSERT_EQ(found.pairings.size(), 1u);
   EXPECT_NEAR(found.pairings[0].squares, 1 + 1, 1e-9);  // one standard deviation each
-}
-
-TEST(Paper, WeightsOfEquation14) {
-  EXPECT_EQ(paper_weights(std::vector<double>{0, 5, 10}), (std::vector<double>{1, 0.5, 0}));
-  const std::vector<double> same{1, 1, 1};
-  EXPECT_EQ(paper_weights(std::vector<double>{0, 0, 0}), same) << "e_max = 0";
-  EXPECT_EQ(paper_weights(std::vector<double>{7, 7, 7}), same) << "all equal: 0 for each by the letter";
-  EXPECT_EQ(paper_weights(std::vector<double>{7}), std::vector<double>{1}) << "a single particle";
-}
-
-// By the letter of eqs. 12-14 a particle that matches nothing has error 0, the best there is.
-TEST(Paper, UnmatchedSightingsCostTheGate) {
-  const LandmarkGrid map({landmark_at(10, 0, 1)});
-  const FeatureScales scales;
-  WeightOptions options;
-  options.weights = "paper";
-  const SightingSet seen{{}, {seen_at(10, 0)}};
-  const Pose2 near{0.1, 0, 0}, nowhere{100, 0, 0};
-  const SightingScore sound(seen, map, scales, options, false);
-  EXPECT_LT(sound(near), sound(nowhere));
-  options.unmatched_cost = 0;
-  const SightingScore letter(seen, map, scales, options, false);
-  EXPECT_GT(letter(near), letter(nowhere));
-}
-
-TEST(SightingScore, IsTheDensityOfTheNearestLandmark) {
-  Random random(3);
-  const auto all = strewn(40, 20, 2, 0.1);
-  const LandmarkGrid map(all);
-  const FeatureScales scales;
-  WeightOptions options;
-  options.temper = 1;
-  const SightingSet seen{{0.3, 0.1, 0.2}, {seen_at(4, 0.3), seen_at(6, -0.8)}};
-  const SightingScore score(seen, map, scales, options, false);
-  for (int i = 0; i < 200; ++i) {
-    const Pose2 robot{random.uniform(-8, 8), random.uniform(-8, 8), random.uniform(-3, 3)};
-    double expected = 0;
-    for (const SeenLandmark& s : seen.sightings) {
-      double best = 0;
-      for (const MapLandmark& l : all) {
-        const auto e = evidence_of(s, expect(robot, seen.robot_from_sensor, l.at), l.covariance);
-        if (e.squares > chi_square_quantile(options.gate, 2)) continue;
-        best = std::max(best, std::exp(-(e.squares + e.log_det) / 2) / (2 * std::numbers::pi));
-      }
-      expected += std::log(options.clutter + best);
-    }
-    ASSERT_NEAR(score(robot), expected, 2e-3 * std::max(1.0, std::abs(expected)));
-  }
-}
-
-TEST(Resampling, DrawsEachWithinOneOfItsShare) {
-  Random random(9);
-  for (int i = 0; i < 100; ++i) {
-    std::vector<double> logs(50);
-    for (double& w : logs) w = random.uniform(-5, 0);
-    const auto weights = normalised(logs);
-    std::vector<int> count(50, 0);
-    for (const auto k : resample(weights, 200, random.uniform())) ++count[k];
-    for (std::size_t k = 0; k < 50; ++k) EXPECT_LT(std::abs(count[k] - 200 * weights[k]), 1 + 1e-9);
-  }
-}
-
-TEST(Resampling, HopelessWeightsBecomeEqual) {
-  const double none = -std::numeric_limits<double>::infinity();
-  EXPECT_EQ(normalised(std::vector<double>{none, none}), (std::vector<double>{0.5, 0.5}));
-  EXPECT_EQ(normalised(std::vector<double>{-1e6, none}), (std::vector<double>{1, 0})) << "no underflow";
-}
-
-TEST(Resampling, KldCountOfFox) {
-  EXPECT_EQ(kld_count(1, 0.05), 1u);
-  EXPECT_NEAR(static_cast<double>(kld_count(100, 0.05)), 1349, 6);  // chi2(0.99, 99) = 134.64 over 2 x 0.05
 }
 
 }  // namespace

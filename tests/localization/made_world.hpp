@@ -90,4 +90,20 @@ inline double nees(const PoseEstimate& estimate, const Pose2& truth) {
   return e.dot(estimate.covariance.ldlt().solve(e));
 }
 
+inline SeenLandmark seen_at(double range, double bearing) {
+  SeenLandmark s;
+  s.range = range;
+  s.range_sd = 0.1;
+  s.bearing = bearing;
+  s.bearing_sd = 0.02;
+  return s;
+}
+
+inline MapLandmark landmark_at(double x, double y, LandmarkKey key) {
+  MapLandmark l;
+  l.key = key;
+  l.at = {x, y};
+  return l;
+}
+
 }  // namespace waymark::testing

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/particle_weights.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "localization/chi_square.hpp"
+#include "localization/resampling.hpp"
+#include "made_world.hpp"
+
+namespace waymark::testing {
+namespace {
+
+TEST(Paper, WeightsOfEquation14) {
+  EXPECT_EQ(paper_weights(std::vector<double>{0, 5, 10}), (std::vector<double>{1, 0.5, 0}));
+  const std::vector<double> same{1, 1, 1};
+  EXPECT_EQ(paper_weights(std::vector<double>{0, 0, 0}), same) << "e_max = 0";
+  EXPECT_EQ(paper_weights(std::vector<double>{7, 7, 7}), same) << "all equal: 0 for each by the letter";
+  EXPECT_EQ(paper_weights(std::vector<double>{7}), std::vector<double>{1}) << "a single particle";
+}
+
+// By the letter of eqs. 12-14 a particle that matches nothing has error 0, the best there is.
+TEST(Paper, UnmatchedSightingsCostTheGate) {
+  const LandmarkGrid map({landmark_at(10, 0, 1)});
+  const FeatureScales scales;
+  WeightOptions options;
+  options.weights = "paper";
+  const SightingSet seen{{}, {seen_at(10, 0)}};
+  const Pose2 near{0.1, 0, 0}, nowhere{100, 0, 0};
+  const SightingScore sound(seen, map, scales, options, false);
+  EXPECT_LT(sound(near), sound(nowhere));
+  options.unmatched_cost = 0;
+  const SightingScore letter(seen, map, scales, options, false);
+  EXPECT_GT(letter(near), letter(nowhere));
+}
+
+TEST(SightingScore, IsTheDensityOfTheNearestLandmark) {
+  Random random(3);
+  const auto all = strewn(40, 20, 2, 0.1);
+  const LandmarkGrid map(all);
+  const FeatureScales scales;
+  WeightOptions options;
+  options.temper = 1;
+  const SightingSet seen{{0.3, 0.1, 0.2}, {seen_at(4, 0.3), seen_at(6, -0.8)}};
+  const SightingScore score(seen, map, scales, options, false);
+  for (int i = 0; i < 200; ++i) {
+    const Pose2 robot{random.uniform(-8, 8), random.uniform(-8, 8), random.uniform(-3, 3)};
+    double expected = 0;
+    for (const SeenLandmark& s : seen.sightings) {
+      double best = 0;
+      for (const MapLandmark& l : all) {
+        const auto e = evidence_of(s, expect(robot, seen.robot_from_sensor, l.at), l.covariance);
+        if (e.squares > chi_square_quantile(options.gate, 2)) continue;
+        best = std::max(best, std::exp(-(e.squares + e.log_det) / 2) / (2 * std::numbers::pi));
+      }
+      expected += std::log(options.clutter + best);
+    }
+    ASSERT_NEAR(score(robot), expected, 2e-3 * std::max(1.0, std::abs(expected)));
+  }
+}
+
+TEST(Resampling, DrawsEachWithinOneOfItsShare) {
+  Random random(9);
+  for (int i = 0; i < 100; ++i) {
+    std::vector<double> logs(50);
+    for (double& w : logs) w = random.uniform(-5, 0);
+    const auto weights = normalised(logs);
+    std::vector<int> count(50, 0);
+    for (const auto k : resample(weights, 200, random.uniform())) ++count[k];
+    for (std::size_t k = 0; k < 50; ++k) EXPECT_LT(std::abs(count[k] - 200 * weights[k]), 1 + 1e-9);
+  }
+}
+
+TEST(Resampling, HopelessWeightsBecomeEqual) {
+  const double none = -std::numeric_limits<double>::infinity();
+  EXPECT_EQ(normalised(std::vector<double>{none, none}), (std::vector<double>{0.5, 0.5}));
+  EXPECT_EQ(normalised(std::vector<double>{-1e6, none}), (std::vector<double>{1, 0})) << "no underflow";
+}
+
+TEST(Resampling, KldCountOfFox) {
+  EXPECT_EQ(kld_count(1, 0.05), 1u);
+  EXPECT_NEAR(static_cast<double>(kld_count(100, 0.05)), 1349, 6);  // chi2(0.99, 99) = 134.64 over 2 x 0.05
+}
+
+}  // namespace
+}  // namespace waymark::testing
