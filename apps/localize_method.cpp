@@ -11,6 +11,10 @@
 
 namespace waymark {
 
+LineOfSight sight_of(const LocalizeTask& task) {
+  return sight_over(task.ground, task.settings.sight);
+}
+
 Track play_task(const LocalizeTask& task, Localizer& localizer) {
   const TypeRegistry& types = task.map.map.types();
   const auto type = [&](const char* name) {

@@ -75,9 +75,16 @@ struct SearchOptions {
 /// when it is asked first.
 PoseFinder finder_for(const LocalizeTask& task, const SearchOptions& search);
 
+/// A filter that begins anew where that finder is sure. One that is told no identities must not grow until
+/// something fits: in a map of many landmarks something always does.
+double search_growth(const LocalizeTask& task, double wished);
+
 /// A particle filter with that finder. Without a start it searches from the beginning.
 std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::optional<PoseEstimate>& start,
                                                const SearchOptions& search);
+
+/// What the DEM, if there is one, lets the robot see.
+LineOfSight sight_of(const LocalizeTask& task);
 
 /// Plays a log with stems found in its scans, and measures the time of updates.
 Track play_task(const LocalizeTask& task, Localizer& localizer);

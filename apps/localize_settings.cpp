@@ -88,6 +88,7 @@ void LocalizeSettings::describe(OptionVisitor& option) {
   particles.describe(option);
   play.describe(option);
   scans.describe(option);
+  sight.describe(option);
   option("start_sd", start_sd, {.help = "Metres by which the start may be off", .min = 1e-6, .max = 1e6});
   option("start_yaw_sd", start_yaw_sd,
          {.help = "Radians by which the heading of the start may be off", .min = 1e-6, .max = 4});

@@ -18,6 +18,7 @@ struct LocalizeSettings {
   ParticleOptions particles;
   PlayOptions play;
   ScanLandmarks scans;
+  SightOptions sight;
   double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: how well --start is known
 
   void describe(OptionVisitor& option);

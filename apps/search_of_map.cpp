@@ -3,6 +3,7 @@
 
 #include "apps/localize_method.hpp"
 #include "apps/log.hpp"
+#include "localization/restarting.hpp"
 #include "localization/skyline_index.hpp"
 
 namespace waymark {
@@ -88,12 +89,25 @@ PoseFinder finder_for(const LocalizeTask& task, const SearchOptions& search) {
   };
 }
 
+double search_growth(const LocalizeTask& task, double wished) {
+  const bool by_default = wished == KalmanOptions{}.search_growth;
+  return by_default && !task.settings.identification.use_identities ? 1 : wished;
+}
+
 std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::optional<PoseEstimate>& start,
                                                const SearchOptions& search) {
   PoseFinder finder = finder_for(task, search);
-  return std::make_unique<ParticleFilter>(start, std::move(task.map.window),
-                                          FeatureScales(task.map.map.types()), task.settings.identification,
-                                          task.settings.particles, std::move(finder));
+  const auto particles = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
+                          &settings = task.settings, visible = sight_of(task)](
+                             const std::optional<PoseEstimate>& from, PoseFinder by) {
+    auto filter = std::make_unique<ParticleFilter>(from, window, scales, settings.identification, settings.particles,
+                                                   std::move(by));
+    filter->look_over(visible);
+    return filter;
+  };
+  if (!start) return particles({}, std::move(finder));
+  return std::make_unique<Restarting>(
+      *start, [particles](const PoseEstimate& from) { return particles(from, {}); }, std::move(finder));
 }
 
 }  // namespace waymark

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 #include "core/options.hpp"
 #include "localization/landmark_grid.hpp"
+#include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/slam_state.hpp"
 namespace waymark {
@@ -47,9 +47,6 @@ struct SlamLandmark {
   std::size_t index = 0;                ///< stays the same while the filter lives
   std::optional<SlamState::Slot> slot;  ///< nothing: it is known from the map and was not seen yet
 };
-
-/// Whether the ground lets a sensor at a pose see a landmark; none given: always.
-using LineOfSight = std::function<bool(const Pose2& sensor, const Eigen::Vector2d& landmark)>;
 
 /// Robot and landmarks in one Gaussian (section 4.4; Smith, Self & Cheeseman 1990), updated where the robot is
 /// (SlamState). Starts with a map or with none: landmarks of the map enter the Gaussian with their covariance

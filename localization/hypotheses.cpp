@@ -6,7 +6,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "localization/joint_search.hpp"
 #include "localization/kalman.hpp"
 
 namespace waymark {
@@ -50,8 +49,13 @@ HypothesesFilter::HypothesesFilter(const PoseEstimate& start, LandmarkWindow map
 }
 
 void HypothesesFilter::move(const BodyMotion& motion) {
-  for (Part& part : parts_) part.at = moved(part.at, motion);
+  for (Part& part : parts_) part.at = options_.unscented ? unscented_moved(part.at, motion) : moved(part.at, motion);
   driven_ += motion.step.at().norm();
+}
+
+void HypothesesFilter::expect_landmarks(const WeightOptions& view, LineOfSight visible) {
+  if (view.expect_unseen) view_ = view;
+  visible_ = std::move(visible);
 }
 
 double HypothesesFilter::alike(LandmarkKey key) const {
@@ -84,6 +88,42 @@ void HypothesesFilter::split() {
   parts_ = std::move(next);
 }
 
+// The Gaussians of a set that was paired one way are told apart by the landmarks they should have seen too.
+void HypothesesFilter::miss(const SightingSet& seen, const LandmarkGrid& map) {
+  SightingScore score(seen, map, scales_, *view_, identification_.use_identities);
+  std::vector<double> logs;
+  for (const Part& part : parts_) {
+    score.hide(hidden_landmarks(part.at.pose * seen.robot_from_sensor, map, view_->view_range, visible_));
+    std::vector<std::uint32_t> matched;
+    for (const int l : part.choice)
+      if (l >= 0) matched.push_back(static_cast<std::uint32_t>(l));
+    logs.push_back(std::log(part.weight) + score.unseen(part.at.pose, matched));
+  }
+  const std::vector<double> weights = normalised(logs);
+  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].weight = weights[i];
+}
+
+PoseEstimate HypothesesFilter::updated_by(const Part& part, const SightingSet& some,
+                                          const std::vector<Candidates>& sets, const JointHypothesis& how,
+                                          const LandmarkGrid& map) const {
+  PoseEstimate at = part.at;
+  JointEvidence evidence;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (how.choice[i] < 0) continue;
+    MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
+    landmark.covariance *= 1 + alike(landmark.key) / 2;
+    const double floor = identification_.quality_floor;
+    const double trust = floor < 1 ? std::max(landmark.quality, floor) : 1;
+    const SeenLandmark& seen = some.sightings[i];
+    if (options_.unscented)
+      at = unscented_updated(at, seen, some.robot_from_sensor, landmark, trust);
+    else
+      evidence += evidence_of(seen, expect(part.at.pose, some.robot_from_sensor, landmark.at), landmark.covariance, trust);
+  }
+  if (!options_.unscented) at = updated(part.at, evidence);
+  return at;
+}
+
 void HypothesesFilter::see_some(const SightingSet& some, const LandmarkGrid& map) {
   std::vector<Part> next;
   std::vector<double> logs;
@@ -99,19 +139,12 @@ void HypothesesFilter::see_some(const SightingSet& some, const LandmarkGrid& map
     if (!found) continue;
     for (const JointHypothesis& h : *found) {
       Part& after = next.emplace_back(part);
-      JointEvidence evidence;
-      for (std::size_t i = 0; i < sets.size(); ++i) {
-        after.choice.push_back(-1);
-        if (h.choice[i] < 0) continue;
-        const CandidatePair& pair = sets[i].pairings[static_cast<std::size_t>(h.choice[i])];
-        after.choice.back() = static_cast<int>(pair.landmark);
-        const MapLandmark& landmark = map[pair.landmark];
-        const double floor = identification_.quality_floor;
-        evidence += evidence_of(some.sightings[i], expect(part.at.pose, some.robot_from_sensor, landmark.at),
-                                (1 + alike(landmark.key) / 2) * landmark.covariance,
-                                floor < 1 ? std::max(landmark.quality, floor) : 1);
-      }
-      after.at = updated(part.at, evidence);
+      after.at = updated_by(part, some, sets, h, map);
+      for (std::size_t i = 0; i < sets.size(); ++i)
+        after.choice.push_back(
+            h.choice[i] < 0
+                ? -1
+                : static_cast<int>(sets[i].pairings[static_cast<std::size_t>(h.choice[i])].landmark));
       logs.push_back(std::log(part.weight) + h.log_weight);
     }
   }
@@ -159,6 +192,7 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
   for (const SeenLandmark& s : seen.sightings)
     if (s.sound())
       farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : identification_.bearing_reach);
+  if (view_) farthest = std::max(farthest, view_->view_range);
   const double width = std::sqrt(before.covariance(0, 0) + before.covariance(1, 1));
   const LandmarkGrid& map = map_.around(before.pose.at(), farthest + 6 * width + 1);
 
@@ -183,6 +217,7 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
     if (some.sightings.size() == kTogether) flush();
   }
   flush();
+  if (view_) miss(seen, map);
 
   bool fits = places.empty();
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -206,13 +241,13 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
   for (Part& part : parts_) part.choice.clear();
   prune();
   missed_ = fits ? 0 : missed_ + 1;
-  if (missed_ >= options_.lost_after) widen();
+  if (missed_ >= options_.lost_after && options_.search_growth > 1) widen(options_.search_growth);
   return matches;
 }
 
-void HypothesesFilter::widen() {
+void HypothesesFilter::widen(double factor) {
   for (Part& part : parts_) {
-    const Eigen::Vector3d sd = part.at.covariance.diagonal().cwiseSqrt() * options_.search_growth;
+    const Eigen::Vector3d sd = part.at.covariance.diagonal().cwiseSqrt() * factor;
     part.at.covariance = widest(sd).cwiseAbs2().asDiagonal();
   }
 }
@@ -227,7 +262,7 @@ bool HypothesesFilter::take(const Fix& measured, int rows) {
   };
   if (!gate.pass(least(), rows)) return false;
   if (gate.overruled())
-    for (int i = 0; i < 40 && least() > 4; ++i) widen();
+    for (int i = 0; i < 40 && least() > 4; ++i) widen(2);
   std::vector<double> logs;
   for (Part& part : parts_) {
     const FixUpdate update = updated(part.at, measured);

@@ -63,7 +63,7 @@ std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
   } else if (!uses.empty()) {
     missed_ = 0;
     update(uses, seen.robot_from_sensor);
-  } else if (strange && ++missed_ >= options_.lost_after) {
+  } else if (strange && ++missed_ >= options_.lost_after && options_.search_growth > 1) {
     widen(options_.search_growth);
   }
   return matches;

@@ -6,7 +6,7 @@ namespace waymark {
 
 struct KalmanOptions {
   std::int64_t lost_after = 10;  ///< sets in a row without a match until the search begins
-  double search_growth = 2;      ///< by which the standard deviations grow with each further set
+  double search_growth = 2;      ///< by which the standard deviations grow with each further set; 1: not
 
   void describe(OptionVisitor& option);
 };
@@ -67,6 +67,11 @@ Eigen::Vector3d widest(const Eigen::Vector3d& sd);
 /// One update of an EKF by one sighting, Joseph form. `trust` as in KalmanOptions.
 PoseEstimate kalman_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
                             const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust = 1);
+
+/// One step and one update of the unscented filter below, for who keeps covariances.
+PoseEstimate unscented_moved(const PoseEstimate& estimate, const BodyMotion& motion);
+PoseEstimate unscented_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
+                               const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust = 1);
 
 /// Unscented filter with the symmetric points of Arasaratnam & Haykin (2009, "cubature"), which have positive
 /// weights, in square-root form: the covariance cannot become negative. Angles are averaged on the circle.

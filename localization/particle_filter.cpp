@@ -14,6 +14,7 @@
 namespace waymark {
 namespace {
 
+constexpr double kNearEnough = 2;  // m: what the mean cannot see, no particle can
 constexpr double kCluster = 1.5;  // m: particles nearer than this are one hypothesis
 
 /// Calls work(i) for all i, on several threads where it pays. Results must not depend on the order.
@@ -156,8 +157,13 @@ void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, st
 }
 
 void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
-  const SightingScore score(seen, map, scales_, options_.weight, identification_.use_identities);
+  SightingScore score(seen, map, scales_, options_.weight, identification_.use_identities);
   if (score.sightings() == 0) return;
+  // Seen from the mean: a search has no such place, and expects all.
+  const double spread = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
+  if (visible_ && options_.weight.expect_unseen && spread < kNearEnough)
+    score.hide(hidden_landmarks(summary_.pose * seen.robot_from_sensor, map, options_.weight.view_range + spread,
+                                visible_));
   std::vector<double> fit(poses_.size());
   for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) { fit[i] = score(poses_[i]); });
   if (options_.weight.weights == "paper") {
@@ -189,9 +195,11 @@ void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map
   std::vector<Pose2> next;
   next.reserve(count);
   const double fresh = options_.recovery && slow_ > 0 ? std::clamp(1 - fast_ / slow_, 0.0, 0.2) : 0;
+  // A pose that explains one sighting is right once in as many as there are landmarks.
+  const bool sensible = !hints_.empty() || map.size() <= count;
   for (const std::uint32_t i : drawn) {
     std::optional<Pose2> other;
-    if (fresh > 0.02 && random.chance(fresh)) other = pose_that_explains(seen, map, random);
+    if (fresh > 0.02 && sensible && random.chance(fresh)) other = pose_that_explains(seen, map, random);
     next.push_back(other ? *other : poses_[i]);
   }
   poses_ = std::move(next);
@@ -251,6 +259,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   for (const SeenLandmark& s : seen.sightings)
     if (s.sound())
       farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
+  if (options_.weight.expect_unseen) farthest = std::max(farthest, options_.weight.view_range);
   const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
   const LandmarkGrid& map = map_.around(summary_.pose.at(), farthest + 6 * width);
   ++sets_;

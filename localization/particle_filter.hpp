@@ -3,6 +3,7 @@
 #include <optional>
 #include "core/random.hpp"
 #include "localization/landmark_window.hpp"
+#include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/particle_weights.hpp"
 #include "localization/pose_finder.hpp"
@@ -43,6 +44,9 @@ class ParticleFilter final : public Localizer {
   PoseEstimate estimate() const override { return moved(summary_, pending_); }
   Trust trust() const override;
 
+  /// With `expect_unseen`: what the ground hides is not expected.
+  void look_over(LineOfSight visible) { visible_ = std::move(visible); }
+
   std::size_t particles() const { return poses_.size(); }
 
  private:
@@ -75,6 +79,7 @@ class ParticleFilter final : public Localizer {
   std::uint64_t sets_ = 0;
   double found_sd_ = 0;  // m, of the last pose the finder was sure of: no search gets nearer by itself
   FixGate gnss_;
+  LineOfSight visible_;
 };
 
 }  // namespace waymark

@@ -88,11 +88,17 @@ double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, doubl
   map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
+    if (std::ranges::binary_search(hidden_, i)) return;
     const Eigen::Vector2d d = l.at - sensor;
     if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < least * d.norm()) return;
     if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
   });
   return sum;
+}
+
+double SightingScore::unseen(const Pose2& robot, std::span<const std::uint32_t> matched) const {
+  const Pose2 sensor = robot * robot_from_sensor_;
+  return unseen(sensor.at(), std::cos(sensor.yaw), std::sin(sensor.yaw), matched);
 }
 
 double SightingScore::pair(const Prepared& p, std::uint32_t landmark, const Eigen::Vector2d& sensor,

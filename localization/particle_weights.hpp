@@ -45,6 +45,10 @@ class SightingScore {
   /// `paper`: e of eq. 12, the sum of match distances times qualities.
   double operator()(const Pose2& robot) const;
   std::size_t sightings() const { return prepared_.size(); }
+  /// Landmarks that cannot be seen from where the robot about is, ascending: they are not expected.
+  void hide(std::vector<std::uint32_t> landmarks) { hidden_ = std::move(landmarks); }
+  /// The sum of log(1 - q detection) over landmarks in view that are not among those matched.
+  double unseen(const Pose2& robot, std::span<const std::uint32_t> matched) const;
 
  private:
   struct Prepared {
@@ -74,6 +78,7 @@ class SightingScore {
   Pose2 robot_from_sensor_;
   std::vector<Prepared> prepared_;
   bool paper_;
+  std::vector<std::uint32_t> hidden_;
   std::vector<TypeId> types_;  // that the sensor sees, as far as this set tells
 };
 

@@ -80,7 +80,7 @@ class Graph final : public LocalizeMethod {
   Track smoothed(LocalizeTask& task) const {
     const SlamRun run = slam_run(task, slam_);
     EkfSlam slam(run.start, task.map.window.around(run.start.pose.at(), kAround),
-                 FeatureScales(task.map.map.types()), run.options);
+                 FeatureScales(task.map.map.types()), run.options, sight_of(task));
     GraphOfDrive drive(run.start, slam);
     Track track = play_with(task, run, drive);
     std::vector<SlamLandmark> landmarks;

@@ -26,7 +26,7 @@ class Slam final : public LocalizeMethod {
   Track run(LocalizeTask& task) override {
     const SlamRun run = slam_run(task, options_);
     EkfSlam slam(run.start, task.map.window.around(run.start.pose.at(), kAround),
-                 FeatureScales(task.map.map.types()), run.options);
+                 FeatureScales(task.map.map.types()), run.options, sight_of(task));
     Track track = play_with(task, run, slam);
     const std::vector<SlamLandmark> landmarks = slam.landmarks();
     tell(landmarks, run.options);

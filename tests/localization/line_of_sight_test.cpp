@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/line_of_sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "localization/hypotheses.hpp"
+#include "localization/particle_weights.hpp"
+#include "made_world.hpp"
+
+namespace waymark::testing {
+namespace {
+
+/// A wall of 3 m that runs north at x = 5 m, from y = 0 on.
+std::optional<double> wall(const Eigen::Vector2d& p) {
+  if (p.x() > 1000) return {};
+  return std::abs(p.x() - 5) < 1 && p.y() > 0 ? 3 : 0;
+}
+
+TEST(LineOfSight, HillsHideAndUnknownGroundDoesNot) {
+  const LineOfSight sees = sight_over(wall, {});
+  EXPECT_TRUE(sees({0, 3, 0}, {3, 3}));
+  EXPECT_FALSE(sees({0, 3, 0}, {10, 3}));
+  EXPECT_FALSE(sees({10, 3, 0}, {0, 3}));
+  EXPECT_TRUE(sees({0, 3, 0}, {5, 3})) << "what stands on the wall is seen";
+  EXPECT_TRUE(sees({0, -3, 0}, {10, -3}));
+  EXPECT_TRUE(sees({0, 3, 0}, {2000, 3}));
+  EXPECT_TRUE(sees({0, 3, 0}, {0, 3}));
+  EXPECT_TRUE(sight_over(wall, {.sensor_height = 10, .landmark_height = 10})({0, 3, 0}, {10, 3}));
+  EXPECT_FALSE(sight_over({}, {}));
+}
+
+TEST(LineOfSight, HiddenLandmarksAreThoseOfASearchOfAll) {
+  const auto all = strewn(200, 40, 5);
+  const LandmarkGrid map(all);
+  const LineOfSight sees = sight_over(wall, {});
+  const Pose2 sensor{-2, 4, 0.3};
+  const auto hidden = hidden_landmarks(sensor, map, 15, sees);
+  EXPECT_GT(hidden.size(), 3u);
+  for (std::uint32_t i = 0; i < map.size(); ++i) {
+    const bool near = (map[i].at - sensor.at()).norm() <= 15;
+    EXPECT_EQ(std::ranges::binary_search(hidden, i), near && !sees(sensor, map[i].at)) << i;
+  }
+  EXPECT_TRUE(hidden_landmarks(sensor, map, 15, {}).empty());
+}
+
+// A landmark 3 m ahead: the one at x = 3 seen from x = 0, or the one at x = 5 seen from x = 2. From there a third
+// one behind the wall would be in view.
+double x_of_estimate(const LineOfSight& visible) {
+  std::vector<MapLandmark> all{landmark_at(3, -2, 1), landmark_at(5, -2, 2), landmark_at(9, 5, 3)};
+  for (MapLandmark& l : all) l.covariance = Eigen::Matrix2d::Identity() * 1e-4;
+  WeightOptions view;
+  view.expect_unseen = true;
+  view.detection = 0.95;
+  view.view_range = 11;
+  HypothesesFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()}, LandmarkWindow{LandmarkGrid(all)},
+                          FeatureScales{});
+  filter.expect_landmarks(view, visible);
+  filter.see({{}, {seen_at(3, 0)}});
+  return filter.estimate().pose.x;
+}
+
+TEST(LineOfSight, WhatIsHiddenIsNotExpectedByTheSumOfGaussians) {
+  EXPECT_NEAR(x_of_estimate({}), 0, 0.2) << "the unseen landmark speaks against x = 2";
+  EXPECT_GT(x_of_estimate(sight_over(wall, {})), 0.5) << "both are possible, or all but so";
+}
+
+TEST(LineOfSight, WhatIsHiddenIsNotExpectedByParticles) {
+  std::vector<MapLandmark> all{landmark_at(3, 4, 1), landmark_at(9, 5, 2)};
+  const LandmarkGrid map(all);
+  WeightOptions view;
+  view.expect_unseen = true;
+  const SightingSet seen{{}, {seen_at(3, 0)}};
+  const FeatureScales scales;
+  SightingScore score(seen, map, scales, view, false);
+  const double expects = score({0, 4, 0});
+  score.hide(hidden_landmarks({0, 4, 0}, map, 20, sight_over(wall, {})));
+  EXPECT_NEAR(score({0, 4, 0}) - expects, -view.temper * std::log1p(-view.detection), 1e-9);
+}
+
+}  // namespace
+}  // namespace waymark::testing
