@@ -79,12 +79,6 @@ void count(const SlamLandmark& seen, Landmark& into) {
   into.quality.visible += static_cast<int>(std::max(seen.expected, seen.matches));
 }
 
-bool same(const OdometryNoise& a, const OdometryNoise& b) {
-  return a.along_per_metre == b.along_per_metre && a.across_per_metre == b.across_per_metre &&
-         a.yaw_per_metre == b.yaw_per_metre && a.yaw_per_radian == b.yaw_per_radian &&
-         a.position_per_second == b.position_per_second && a.yaw_per_second == b.yaw_per_second;
-}
-
 RunRecord record_of(const LocalizeTask& task, const SlamUpdate& update, const std::string& job) {
   RunRecord run = record_of_run(task.command_line, std::chrono::system_clock::now());
   run.job_json = job;
@@ -109,7 +103,6 @@ SlamRun slam_run(const LocalizeTask& task, const SlamOptions& options) {
               .start = task.start.value_or(PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-9})};
   run.options.use_identities = task.settings.identification.use_identities;
   run.options.quality_floor = task.settings.identification.quality_floor;
-  if (task.log.odometry && same(run.play.odometry, OdometryNoise{})) run.play.odometry = *task.log.odometry;
   return run;
 }
 

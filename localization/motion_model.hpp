@@ -16,6 +16,7 @@ struct OdometryNoise {
   double yaw_per_second = 1e-6;       ///< rad^2/s
 
   void describe(OptionVisitor& option);
+  bool operator==(const OdometryNoise&) const = default;
 };
 
 /// Differential drive: speeds held for `seconds`, along an exact arc. speed m/s forward, turn rad/s to the

@@ -14,9 +14,12 @@ class Player {
       : log_(log),
         localizer_(localizer),
         options_(options),
+        odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
         detect_(detect),
         clock_(clock),
-        ground_(ground) {}
+        ground_(ground),
+        repeated_({options.error_memory * log.error_memory.range,
+                   options.error_memory * log.error_memory.bearing}) {}
 
   Track play(const TrackWatcher& watch) {
     if (!log_.events.empty()) now_ = log_.events.front().t;
@@ -45,15 +48,20 @@ class Player {
     const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.longest_hold);
     now_ = std::max(now_, t);
     if (const auto* twist = std::get_if<TwistReading>(&held_))
-      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, options_.odometry));
+      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_));
     else if (const auto* car = std::get_if<CarReading>(&held_))
-      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, options_.odometry));
-    if (seconds > driven) localizer_.move(step_motion({}, seconds - driven, options_.odometry));
+      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, odometry_));
+    if (seconds > driven) move(step_motion({}, seconds - driven, odometry_));
   }
 
   void drive(BodyMotion motion) {
     motion.step = on_map(motion.step, stance_);
+    move(motion);
+  }
+
+  void move(const BodyMotion& motion) {
     localizer_.move(motion);
+    repeated_.move(motion);
   }
 
   void look_down(const Pose2& pose) {
@@ -65,7 +73,7 @@ class Player {
   bool take(const TwistReading& reading, TrackRow&) { return held_ = reading, false; }
   bool take(const CarReading& reading, TrackRow&) { return held_ = reading, false; }
   bool take(const StepReading& reading, TrackRow&) {
-    drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), options_.odometry));
+    drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), odometry_));
     last_step_ = now_;
     return false;
   }
@@ -86,6 +94,7 @@ class Player {
       s.bearing_sd *= options_.sensor_noise;
       s.range_sd *= options_.sensor_noise;
     }
+    repeated_.widen(seen, now_);
     const double before = clock_ ? clock_() : 0;
     const std::vector<Match> matches = localizer_.see(seen);
     if (clock_) track_.seconds += clock_() - before;
@@ -108,10 +117,12 @@ class Player {
   const RobotLog& log_;
   Localizer& localizer_;
   const PlayOptions& options_;
+  const OdometryNoise odometry_;
   const ScanDetector& detect_;
   const Clock& clock_;
   const GroundHeight& ground_;
   Stance stance_;
+  RepeatedSightings repeated_;
   Track track_;
   std::variant<std::monostate, TwistReading, CarReading> held_;
   double now_ = 0, last_step_ = 0;
@@ -132,6 +143,11 @@ void PlayOptions::describe(OptionVisitor& option) {
          {.help = "Factor on the standard deviations of ranges and bearings that the log states",
           .min = 0.01,
           .max = 100});
+  option("error_memory", error_memory,
+         {.help = "Factor on the times over which the log says a sensor's errors stay alike; 0: each sighting "
+                  "errs anew",
+          .min = 0,
+          .max = 1000});
 }
 
 Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,

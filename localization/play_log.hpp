@@ -7,9 +7,10 @@
 namespace waymark {
 
 struct PlayOptions {
-  OdometryNoise odometry;
+  OdometryNoise odometry;                 ///< unchanged: as the reader of the log knows it, if it does
   double longest_hold = 1;                ///< s: how long a speed holds without a new reading
   double sensor_noise = 1;                ///< factor on the standard deviations the log states
+  double error_memory = 1;                ///< factor on the times over which the log says errors stay alike
   bool use_fixes = true;                  ///< GNSS and compass readings are used
   double wheelbase = 1, track_width = 1;  ///< m, between the wheels: what of the ground tilts the robot
   bool every_event = true;                ///< a row for each event; false: for each set of sightings

@@ -12,6 +12,7 @@
 #include "localization/graph.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"
+#include "localization/repeated_sightings.hpp"
 #include "localization/sighting.hpp"
 namespace waymark {
 
@@ -63,6 +64,7 @@ struct RobotLog {
   bool in_crs = false;
   std::string crs;                   ///< of positions `in_crs`, if the log says; any text Crs understands
   LandmarkNames names;
+  ErrorMemory error_memory;  ///< of its sensors
   std::optional<OdometryNoise> odometry;  ///< what the reader knows of this vehicle's odometry
   std::shared_ptr<const PoseGraph> graph;  ///< where the log is a graph; the events are drawn from it
   std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people

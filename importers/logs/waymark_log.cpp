@@ -41,6 +41,11 @@ class Line {
     if (!(value > 0)) fail(fmt::format("\"{}\" must be above 0, is {}", key, value));
     return value;
   }
+  double not_negative(const char* key) const {
+    const double value = number(key, 0);
+    if (!(value >= 0)) fail(fmt::format("\"{}\" must not be below 0, is {}", key, value));
+    return value;
+  }
   /// Radians; what is more than two turns was meant in degrees.
   double angle(const char* key, std::optional<double> otherwise = {}) const {
     const double value = otherwise ? number(key, *otherwise) : number(key);
@@ -102,7 +107,7 @@ class Reader {
     else if (kind == "compass")
       add(t, heading(line));
     else if (kind == "truth")
-      log_.truth.push_back({t, line.pose()});
+      log_.truth.push_back({t, truth(line)});
     else
       ++unknown_[kind];
   }
@@ -120,6 +125,15 @@ class Reader {
  private:
   void add(double t, LogReading reading) { log_.events.push_back({t, std::move(reading)}); }
 
+  // A yaw that was never wrapped grows turn by turn. One that begins beyond two turns, or jumps, was meant in
+  // degrees.
+  Pose2 truth(const Line& line) {
+    const double yaw = line.number("yaw", 0);
+    if (!(std::abs(yaw - last_truth_yaw_) <= std::numbers::pi)) line.angle("yaw", 0);
+    last_truth_yaw_ = yaw;
+    return {line.number("x"), line.number("y"), wrapped(yaw)};
+  }
+
   void header(const Line& line) {
     if (line.has("version") && line.number("version") > 1)
       line.fail(fmt::format("is of version {}, this program reads version 1", line.number("version")));
@@ -129,6 +143,7 @@ class Reader {
     if (line.has("crs")) log_.crs = line.text("crs");
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
     log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
+    log_.error_memory = {line.not_negative("range_memory"), line.not_negative("bearing_memory")};
     if (line.has("start")) start(line.part(line.object()["start"]));
   }
   void start(const Line& line) {
@@ -271,6 +286,7 @@ class Reader {
     return fix;
   }
 
+  double last_truth_yaw_ = 0;
   const TypeRegistry& types_;
   RobotLog log_;
   std::map<std::string, std::size_t> unknown_, no_type_;

@@ -125,11 +125,11 @@ void write_mrclam(const std::string& folder) {
   how.steps = 200;
   for (const Moment& m : drive(how)) {
     truth << m.t << '\t' << m.x << '\t' << m.y << '\t' << m.yaw << '\n';
-    odometry << m.t << '\t' << m.v << '\t' << m.omega << '\n';
-    // The camera takes its time to find a code: the reader knows.
+    // Commands are obeyed late and in part, and the camera takes its time to find a code: the reader knows.
+    odometry << m.t - 0.2 << '\t' << m.v / 0.93 << '\t' << m.omega / 0.89 << '\n';
     for (const Seen& s : m.seen)
-      seen << m.t + 0.15 << '\t' << 106 + s.rock << '\t' << s.range << '\t' << s.bearing << '\n';
-    seen << m.t + 0.15 << "\t102\t1.5\t0.1\n";  // another robot
+      seen << m.t + 0.05 << '\t' << 106 + s.rock << '\t' << s.range << '\t' << s.bearing << '\n';
+    seen << m.t + 0.05 << "\t102\t1.5\t0.1\n";  // another robot
   }
   const auto write = [&](const char* name, const std::ostringstream& text) {
     write_text(fs::path(folder) / name, text.str());
