@@ -6,14 +6,10 @@
 #include <cstdio>
 #include <numbers>
 
-#include "localization/detectors/depth_rocks.hpp"
-#include "localization/detectors/horizon_summits.hpp"
 #include "localization/detectors/laser_rocks.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/harvested.hpp"
 #include "testbed/laser_scanner.hpp"
-#include "testbed/scene.hpp"
-#include "testbed/stereo_camera.hpp"
 
 namespace waymark {
 namespace {
@@ -128,85 +124,6 @@ TEST(LaserStems, AScanOfMissesHasNone) {
   EXPECT_TRUE(find_rocks(scan, {}).empty());
   scan.ranges.assign(200, std::nanf(""));
   EXPECT_TRUE(find_rocks(scan, {}).empty());
-}
-
-Scene rocky() {
-  MadeGround ground;
-  ground.width = ground.height = 100;
-  ground.cell = 0.4;
-  ground.relief = {.rms = 0.4, .longest = 60, .roughness = 0.5};
-  ground.craters.density = 0;
-  ground.craters.clusters = 0;
-  ground.rocks = {.k = 0.14, .min_diameter = 0.5, .max_diameter = 3};
-  ground.dunes.cover = 0;
-  return make_scene(ground, 8);
-}
-
-TEST(LaserRocks, MostOfWhatIsFoundIsThere) {
-  const Scene scene = rocky();
-  const LaserTargets targets(scene.terrain, scene.solids);
-  Random random(3);
-  int found = 0, right = 0;
-  double squares = 0;
-  for (int k = 0; k < 25; ++k) {
-    const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
-    const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 0.35);
-    const RayFan fan(targets, eye, 25);
-    const LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), {.field = Degrees{359}}, random);
-    for (const SeenRock& rock : find_rocks(scan, {})) {
-      const Eigen::Vector2d at =
-          eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
-      double nearest = 1e9;
-      for (const TrueRock& r : scene.rocks)
-        nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
-      ++found;
-      if (nearest < 0.4) ++right, squares += std::pow(std::max(0.0, nearest), 2);
-    }
-  }
-  std::printf("%d of %d rocks in scans are there\n", right, found);
-  EXPECT_GT(found, 60);
-  EXPECT_GE(right, 0.85 * found);
-}
-
-TEST(DepthRocks, MostOfWhatIsFoundIsThere) {
-  const Scene scene = rocky();
-  const LaserTargets targets(scene.terrain, scene.solids);
-  Random random(4);
-  int found = 0, right = 0;
-  for (int k = 0; k < 12; ++k) {
-    const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
-    const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 1.5);
-    const RayFan fan(targets, eye, 18);
-    const DepthImage image = depth_image(fan, Eigen::Matrix3d::Identity(), {}, random);
-    for (const DepthRock& rock : find_rocks(image, {})) {
-      const Eigen::Vector2d at =
-          eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing));
-      double nearest = 1e9;
-      for (const TrueRock& r : scene.rocks)
-        nearest = std::min(nearest, (r.position.head<2>() - at).norm() - 0.3 * r.width);
-      ++found;
-      right += nearest < 0.5;
-    }
-  }
-  std::printf("%d of %d rocks in depth images are there\n", right, found);
-  EXPECT_GT(found, 12);
-  EXPECT_GE(right, 0.8 * found);
-}
-
-TEST(HorizonSummits, StandOutOfBothSides) {
-  HorizonProfile horizon{.first_angle = -std::numbers::pi,
-                         .angle_step = 2 * std::numbers::pi / 360,
-                         .elevations = std::vector<float>(360, 0.01F)};
-  for (int k = -20; k <= 20; ++k)
-    horizon.elevations[static_cast<std::size_t>(200 + k)] += 0.002F * float(20 - std::abs(k));
-  horizon.elevations[300] += 0.004F;  // too low to count
-  for (int k = -3; k <= 3; ++k)       // across the seam
-    horizon.elevations[static_cast<std::size_t>((360 + k) % 360)] += 0.01F * float(4 - std::abs(k));
-  const auto summits = find_summits(horizon, {});
-  ASSERT_EQ(summits.size(), 2u);
-  EXPECT_NEAR(summits[0].bearing, 200 * horizon.angle_step - std::numbers::pi, 1e-3);
-  EXPECT_NEAR(std::abs(summits[1].bearing), std::numbers::pi, 1e-3);
-  EXPECT_NEAR(summits[1].prominence, 0.04, 1e-6);
 }
 
 TEST(HarvestedTrees, StandWhereTheCraneReaches) {
