@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,8 @@
 #include <map>
 #include <memory>
 
+#include "bench/judged_localizer.hpp"
+#include "bench/tables.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
@@ -33,10 +34,6 @@ namespace {
 std::string whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-double seconds() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 struct Site {
@@ -106,59 +103,6 @@ RobotLog only(const RobotLog& log, const std::string& sensor, bool features, con
   }
   return some;
 }
-
-// Counts pairings that the true pose contradicts: the landmark must be within a metre (or its radius) of
-// where the sighting truly is.
-class Judged final : public Localizer {
- public:
-  Judged(Localizer& inner, const RobotLog& log, const LandmarkGrid& map) : inner_(inner), map_(map) {
-    for (const LogEvent& e : log.events)
-      if (std::holds_alternative<SightingSet>(e.what)) truth_.push_back(pose_at(log.truth, e.t));
-  }
-  void move(const BodyMotion& motion) override { inner_.move(motion); }
-  PoseEstimate estimate() const override { return inner_.estimate(); }
-  Trust trust() const override { return inner_.trust(); }
-  std::vector<Match> see(const SightingSet& seen) override {
-    const double before = seconds();
-    std::vector<Match> matches = inner_.see(seen);
-    spent += seconds() - before;
-    ++updates;
-    const auto truth = truth_[next_++];
-    if (!truth) return matches;
-    const Pose2 sensor = *truth * seen.robot_from_sensor;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      const SeenLandmark& s = seen.sightings[i];
-      bool possible = false, right = false;
-      const auto fits = [&](const MapLandmark& l) {
-        const double wide = std::max(1.0, 1.2 * (l.features.known(0) ? l.features.value[0] : 0));
-        if (s.range) {
-          const double a = sensor.yaw + s.bearing;
-          return (sensor.at() + *s.range * Eigen::Vector2d(std::cos(a), std::sin(a)) - l.at).norm() < wide;
-        }
-        const Eigen::Vector2d to = l.at - sensor.at();
-        return to.norm() < 25 && std::abs(wrapped(std::atan2(to.y(), to.x()) - sensor.yaw - s.bearing)) <
-                                     std::max(0.02, wide / to.norm() / 2);
-      };
-      map_.near(sensor.at(), 27, [&](std::uint32_t l) {
-        if (!fits(map_[l])) return;
-        possible = true;
-        right = right || (matches[i].verdict == Verdict::matched && map_[l].key == matches[i].key);
-      });
-      matched += matches[i].verdict == Verdict::matched;
-      correct += right;
-      findable += possible;
-    }
-    return matches;
-  }
-  double spent = 0;
-  std::int64_t updates = 0, matched = 0, correct = 0, findable = 0;
-
- private:
-  Localizer& inner_;
-  const LandmarkGrid& map_;
-  std::vector<std::optional<Pose2>> truth_;
-  std::size_t next_ = 0;
-};
 
 struct Sum {
   std::vector<double> rmse, median, rpe, heading, anees;
@@ -243,7 +187,8 @@ int main(int argc, char** argv) {
     variants.push_back({method, "laser", true, false});
     variants.push_back({method, "laser", false, false});
   }
-  std::string md, html;
+  Tables tables({"method", "sensor", "quality", "features", "ATE RMSE, median of runs", "worst run", "median error",
+                 "RPE 1 s", "heading deg", "NEES / 3", "precision", "recall", "us per update"});
   for (int s = 5; s < argc; s += 3) {
     const Site site = open_site(argv[s], argv[s + 1], argv[s + 2]);
     std::vector<MapLandmark> flat = site.landmarks;
@@ -278,46 +223,26 @@ int main(int argc, char** argv) {
       }
       fmt::print(stderr, "{} {}/{}\n", site.name, r + 1, runs);
     }
-    md += fmt::format("\n## {}: {} rocks on the map, mean quality {:.2f}; {} drives of {:g} m\n\n", site.name,
-                      site.landmarks.size(), quality, runs, metres);
-    md += "| method | sensor | quality | features | ATE RMSE, median of runs | worst run | median error | RPE 1 s | "
-          "heading deg | NEES / 3 | precision | recall | us per update |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
-    html += fmt::format("<h2>{}: {} rocks on the map, mean quality {:.2f}; {} drives of {:g} m</h2>\n<table><tr>",
-                        site.name, site.landmarks.size(), quality, runs, metres);
-    for (const char* head : {"method", "sensor", "quality", "features", "ATE RMSE, median of runs", "worst run",
-                             "median error", "RPE 1 s", "heading deg", "NEES / 3", "precision", "recall", "us per update"})
-      html += fmt::format("<th>{}</th>", head);
-    html += "</tr>\n";
+    tables.site(fmt::format("{}: {} rocks on the map, mean quality {:.2f}; {} drives of {:g} m", site.name,
+                            site.landmarks.size(), quality, runs, metres));
     for (std::size_t i = 0; i < variants.size(); ++i) {
       const Variant& v = variants[i];
       const Sum& sum = sums[i];
       if (sum.rmse.empty()) continue;
-      const bool pairs = v.method != "odometry" && v.method != "slam";
+      const bool moves = v.method != "odometry", pairs = moves && v.method != "slam";
       const auto ratio = [&](std::int64_t part, std::int64_t all) {
         return pairs && all > 0 ? fmt::format("{:.3f}", double(part) / double(all)) : std::string();
       };
-      const std::vector<std::string> cells{
-          v.method, v.method == "odometry" ? "" : v.sensor, v.method == "odometry" ? "" : v.quality ? "yes" : "no",
-          v.method == "odometry" ? "" : v.features ? "yes" : "no", fmt::format("{:.3f}", middle(sum.rmse)),
-          fmt::format("{:.3f}", *std::ranges::max_element(sum.rmse)), fmt::format("{:.3f}", middle(sum.median)),
-          fmt::format("{:.3f}", mean(sum.rpe)), fmt::format("{:.2f}", mean(sum.heading)),
-          fmt::format("{:.2f}", middle(sum.anees)), ratio(sum.correct, sum.matched), ratio(sum.correct, sum.findable),
-          fmt::format("{:.0f}", 1e6 * sum.spent / double(std::max<std::int64_t>(1, sum.updates)))};
-      md += fmt::format("|");
-      html += "<tr>";
-      for (const std::string& cell : cells) {
-        md += fmt::format(" {} |", cell);
-        html += fmt::format("<td>{}</td>", cell);
-      }
-      md += "\n";
-      html += "</tr>\n";
+      const auto said = [&](const std::string& word) { return moves ? word : std::string(); };
+      tables.row({v.method, said(v.sensor), said(v.quality ? "yes" : "no"), said(v.features ? "yes" : "no"),
+                  fmt::format("{:.3f}", middle(sum.rmse)), fmt::format("{:.3f}", *std::ranges::max_element(sum.rmse)),
+                  fmt::format("{:.3f}", middle(sum.median)), fmt::format("{:.3f}", mean(sum.rpe)),
+                  fmt::format("{:.2f}", mean(sum.heading)), fmt::format("{:.2f}", middle(sum.anees)),
+                  ratio(sum.correct, sum.matched), ratio(sum.correct, sum.findable),
+                  fmt::format("{:.0f}", 1e6 * sum.spent / double(std::max<std::int64_t>(1, sum.updates)))});
     }
-    html += "</table>\n";
   }
-  std::ofstream(argv[3]) << md;
-  std::ofstream(argv[4]) << "<!doctype html><meta charset=\"utf-8\"><title>Localizers compared</title><style>body{font-family:"
-                            "sans-serif}td,th{padding:2px 8px;text-align:right}td:first-child{text-align:left}tr:nth-child("
-                            "even){background:#f3f3f3}</style>\n<h1>Localizers compared</h1>\n"
-                         << html;
+  std::ofstream(argv[3]) << tables.markdown();
+  std::ofstream(argv[4]) << tables.html("Localizers compared");
   return 0;
 }

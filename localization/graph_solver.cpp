@@ -202,26 +202,16 @@ class Growing {
       place(e.landmark, graph_.landmarks[e.landmark].at);
     else if (const auto at = place_seen(e, pose_of(at_[e.pose])))
       place(e.landmark, *at);
-    else if (const auto crossing = crossing_of_bearings(waiting_[e.landmark]))
+    else if (const auto crossing = crossing_of(ray(waiting_[e.landmark].front()), ray(waiting_[e.landmark].back())))
       place(e.landmark, *crossing);
   }
 
-  /// Where the first and the last of some bearings cross, if they do so at more than 6 degrees and ahead.
-  std::optional<Eigen::Vector2d> crossing_of_bearings(const std::vector<std::size_t>& sightings) const {
-    constexpr double kLeastSine = 0.1;
-    const auto ray = [&](std::size_t s) {
-      const SightingEdge& e = graph_.sightings[s];
-      Pose2 sensor = pose_of(at_[e.pose]) * e.robot_from_sensor;
-      sensor.yaw += e.value[1];
-      return sensor;
-    };
-    const Pose2 a = ray(sightings.front()), b = ray(sightings.back());
-    const double sine = std::sin(b.yaw - a.yaw);
-    if (std::abs(sine) < kLeastSine) return {};
-    const Eigen::Vector2d between = b.at() - a.at(), along(std::cos(a.yaw), std::sin(a.yaw));
-    const double far = (between.x() * std::sin(b.yaw) - between.y() * std::cos(b.yaw)) / sine;
-    if (!(far > 0)) return {};
-    return a.at() + far * along;
+  /// From the sensor along a bearing.
+  Pose2 ray(std::size_t sighting) const {
+    const SightingEdge& e = graph_.sightings[sighting];
+    Pose2 sensor = pose_of(at_[e.pose]) * e.robot_from_sensor;
+    sensor.yaw += e.value[1];
+    return sensor;
   }
 
   const PoseGraph& graph_;

@@ -143,4 +143,14 @@ std::optional<Pose2> pose_by_landmarks(const PoseGraph& graph, const std::vector
   return Pose2{at.x(), at.y(), turn.yaw};
 }
 
+std::optional<Eigen::Vector2d> crossing_of(const Pose2& a, const Pose2& b) {
+  constexpr double kLeastSine = 0.1;
+  const double sine = std::sin(b.yaw - a.yaw);
+  if (std::abs(sine) < kLeastSine) return {};
+  const Eigen::Vector2d between = b.at() - a.at(), along(std::cos(a.yaw), std::sin(a.yaw));
+  const double far = (between.x() * std::sin(b.yaw) - between.y() * std::cos(b.yaw)) / sine;
+  if (!(far > 0)) return {};
+  return a.at() + far * along;
+}
+
 }  // namespace waymark

@@ -24,4 +24,7 @@ std::vector<Placement> placing_order(const PoseGraph& graph);
 std::optional<Pose2> pose_by_landmarks(const PoseGraph& graph, const std::vector<std::size_t>& sightings,
                                        const std::vector<bool>& placed);
 
+/// Where two rays cross (each from its place along its yaw), if they do so at more than 6 degrees and ahead.
+std::optional<Eigen::Vector2d> crossing_of(const Pose2& a, const Pose2& b);
+
 }  // namespace waymark
