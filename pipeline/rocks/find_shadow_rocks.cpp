@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/rocks/rock_network.hpp"
 #include "pipeline/rocks/spot_context.hpp"
 #include "pipeline/vision/class_share.hpp"
 namespace waymark {
@@ -16,25 +17,19 @@ constexpr Radians kUsualElevation = to_radians(Degrees{40});
 constexpr int kTile = 32;
 constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of the scale, diameter
 
-// Rocks are no ellipsoids: what the fit's own standard deviations are to be widened by (views 0 to 109 of the
-// testbed, docs/rocks.md).
-constexpr double kWidthShare = 1.7, kReachShare = 2.2;
-// The same for their middle and what of their width is irregular (4640 rocks of views 200 to 215: 90 %
-// ellipses cover 90 %).
-constexpr double kUneven = 0.1;
-
 // Share of rocks among the dark spots the confidence was fitted on, and how far towards the image's own share
 // the confidences are moved (chosen on landings 301 and 302, docs/rocks.md).
-constexpr double kFittedShare = 0.47, kShareTrust = 0.6;
+constexpr double kShareTrust = 0.6;
 
-// Ground without small rocks has as many dark spots as gravel: how many of them are rocks is seen in the image.
+// Ground without small rocks has as many dark spots as gravel: how many of them are rocks is seen in the
+// image.
 void adapt_to_share(std::vector<JudgedRock>& all) {
   std::vector<double> log_odds;
   for (const JudgedRock& one : all) {
     const double p = std::clamp(one.confidence, 1e-9, 1 - 1e-9);
     log_odds.push_back(std::log(p / (1 - p)));
   }
-  const double shift = kShareTrust * share_shift(log_odds, kFittedShare);
+  const double shift = kShareTrust * share_shift(log_odds, static_cast<double>(rock_network::kShareOfRocks));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + shift)));
 }
 
@@ -49,21 +44,26 @@ Pixels halved(const Pixels& image) {
 
 Detection detection_of(const JudgedRock& judged, const RockSearch& search, const LightFrame& light) {
   const RockCandidate& rock = judged.rock;
-  const double scale = judged.scale;
+  const RockJudgement& say = judged.judgement;
+  const double scale = judged.scale, unit = place_unit(rock.size.radius);
   // The centre of a coarser pixel lies amid the finer ones it covers.
   const auto place = [&](double c) { return scale * (c + 0.5) - 0.5; };
   Detection found;
   found.type = search.type;
-  const double diameter = 2 * scale * rock.size.radius;
-  found.outline = {.x = place(rock.x), .y = place(rock.y), .major = diameter, .minor = diameter, .angle = 0};
-  const double along_sd = scale * std::hypot(0.4, 0.15 * std::hypot(rock.size.radius, rock.size.reach));
-  const double across_sd = scale * std::hypot(0.28, 0.08 * rock.size.radius);
+  const double diameter = 2 * scale * judged.radius();
+  found.outline = {.x = place(rock.x + unit * say.along * light.ux),
+                   .y = place(rock.y + unit * say.along * light.uy),
+                   .major = diameter,
+                   .minor = diameter,
+                   .angle = 0};
+  const double along_sd = scale * unit * say.along_sd, across_sd = scale * unit * say.across_sd;
   Eigen::Matrix2d turn;
   turn << light.ux, -light.uy, light.uy, light.ux;
   found.covariance =
       turn * Eigen::Vector2d{along_sd * along_sd, across_sd * across_sd}.asDiagonal() * turn.transpose();
-  found.diameter_sd = std::hypot(2 * scale * kWidthShare * rock.size.radius_sd, kUneven * diameter);
-  found.shadow_reach = Measured{scale * rock.size.reach, scale * kReachShare * rock.size.reach_sd};
+  found.diameter_sd = diameter * say.log_radius_sd;
+  const double reach = scale * rock.size.reach * std::exp(say.log_reach);
+  found.shadow_reach = Measured{reach, reach * say.log_reach_sd};
   found.confidence = judged.confidence;
   return found;
 }
@@ -114,10 +114,15 @@ std::vector<Detection> without_repeats(std::vector<Detection> all, const LightFr
 
 }  // namespace
 
+double JudgedRock::radius() const {
+  return rock.size.radius * std::exp(judgement.log_radius);
+}
+
 std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table) {
-  const float smooth_noise = 0.375F * map.noise;  // under the binomial mask
-  const SegmentLimits limits{.grow = std::max(0.06F, 2.5F * smooth_noise),
-                             .seed = std::max(0.12F, 4.5F * smooth_noise),
+  const float smooth_noise = 0.5F * map.noise;  // under the mask
+  const SegmentLimits limits{.grow = std::max(0.04F, 2.5F * smooth_noise),
+                             .seed = std::max(0.06F, 4.5F * smooth_noise),
+                             .merge = 0.88F,
                              .most_cells = static_cast<std::size_t>(4 * map.tile * map.tile)};
   std::vector<JudgedRock> judged;
   for (const ShadowSegment& segment : find_segments(map, limits)) {
@@ -140,8 +145,9 @@ std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& li
     spots.push_back({one.rock.shadow.x, one.rock.shadow.y, one.rock.shadow.peak});
   const auto contexts = spot_contexts(spots, map.alpha.columns(), map.alpha.rows());
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    judged[i].evidence = gather_evidence(map, judged[i].rock, light, contexts[i]);
-    judged[i].confidence = rock_confidence(judged[i].evidence);
+    judged[i].evidence = gather_evidence(map, judged[i].rock, light, contexts[i], table);
+    judged[i].judgement = judge_rock(judged[i].evidence);
+    judged[i].confidence = judged[i].judgement.confidence;
   }
   return judged;
 }
@@ -218,7 +224,7 @@ std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& 
   const LightFrame light = LightFrame::of(sun_angle);
   std::vector<Detection> found;
   for (const JudgedRock& judged : judge_scales(image, search, sun_angle)) {
-    const double diameter = 2 * judged.scale * judged.rock.size.radius;
+    const double diameter = 2 * judged.scale * judged.radius();
     if (judged.confidence >= search.min_confidence && diameter >= search.min_diameter &&
         diameter <= search.max_diameter)
       found.push_back(detection_of(judged, search, light));

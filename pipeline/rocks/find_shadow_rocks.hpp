@@ -11,9 +11,12 @@ namespace waymark {
 struct JudgedRock {
   RockCandidate rock;
   RockEvidence evidence{};
-  double confidence = 0;
+  RockJudgement judgement{};      ///< of this candidate alone
+  double confidence = 0;          ///< moved towards the image's share of rocks
   double noise = 0, texture = 0;  ///< standard deviations in alpha where it stands
   double scale = 1;               ///< side of its map's pixels, image pixels
+
+  double radius() const;  ///< as judged, pixels of its scale
 };
 
 /// Every dark spot that could be a rock's shadow, at one scale: rocks up to about half a tile.

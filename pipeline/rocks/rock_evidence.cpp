@@ -36,10 +36,27 @@ class Around {
   const LightFrame& light_;
 };
 
+// The net of places, from before the lit face to behind the shadow.
+void add_net(const Around& around, const RockCandidate& rock, RockEvidence& evidence) {
+  const double middle = rock.size.offset;  // of the shadow, from the rock's
+  const double step_along = std::clamp(0.9 * std::sqrt(rock.shadow.along_variance), 1.0, 20.0);
+  const double step_across = std::clamp(0.9 * std::sqrt(rock.shadow.across_variance), 1.0, 20.0);
+  std::size_t next = kEvidenceCount - 45;
+  for (int i = -5; i <= 3; ++i) {
+    const double t = middle + i * step_along;
+    evidence[next++] = around.excess(0, t);
+    for (const double s : {step_across, 2 * step_across}) {
+      const double left = around.excess(-s, t), right = around.excess(s, t);
+      evidence[next++] = 0.5 * (left + right);
+      evidence[next++] = std::abs(left - right);
+    }
+  }
+}
+
 }  // namespace
 
 RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light,
-                             const SpotContext& context) {
+                             const SpotContext& context, const RockTable& table) {
   const Around around(map, rock, light);
   const double r = rock.size.radius, reach = rock.size.reach, tip = std::hypot(r, reach);
   const double root = r * r / tip;  // where the shadow begins on the rock, from its middle
@@ -52,27 +69,37 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
   const double spread = std::sqrt(rock.shadow.along_variance * rock.shadow.across_variance);
   const double noise = std::max(1e-3, static_cast<double>(map.noise));
   const double texture = static_cast<double>(map.texture_at(rock.x, rock.y));
-  return {rock.shadow.peak,
-          std::log(r),
-          rock.log_ratio_excess,
-          spread > 0 ? std::abs(rock.shadow.covariance) / spread : 0,
-          std::min(5.0, rock.size.misfit),
-          std::clamp(std::log(rock.shadow.peak / noise), 0.0, 4.0),
-          std::min(1.0, texture),
-          around.band(0.5 * r, -(r + 1.5)),
-          around.band(0.4 * r, -0.6 * r),
-          lit_most,
-          around.band(0.4 * r, mid),
-          around.band(0.5 * r, tip + 1.0),
-          around.band(0.5 * r, tip + r + 2.0),
-          std::min(near_left, near_right),
-          std::max(near_left, near_right),
-          std::min(far_left, far_right),
-          std::max(far_left, far_right),
-          std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))),
-          std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.usual)), -2.0, 3.0),
-          std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.deep)), -2.0, 3.0),
-          std::log(0.2 + context.crowded)};
+  const ShadowMeasure shape = measure_of(rock.shadow);
+  RockEvidence evidence{
+      rock.shadow.peak,
+      std::log(r),
+      rock.log_ratio_excess,
+      spread > 0 ? std::abs(rock.shadow.covariance) / spread : 0,
+      std::min(5.0, rock.size.misfit),
+      std::clamp(std::log(rock.shadow.peak / noise), 0.0, 4.0),
+      std::min(1.0, texture),
+      around.band(0.5 * r, -(r + 1.5)),
+      around.band(0.4 * r, -0.6 * r),
+      lit_most,
+      around.band(0.4 * r, mid),
+      around.band(0.5 * r, tip + 1.0),
+      around.band(0.5 * r, tip + r + 2.0),
+      std::min(near_left, near_right),
+      std::max(near_left, near_right),
+      std::min(far_left, far_right),
+      std::max(far_left, far_right),
+      std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))),
+      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.usual)), -2.0, 3.0),
+      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.deep)), -2.0, 3.0),
+      std::log(0.2 + context.crowded),
+      std::log(noise),
+      table.log_tan_elevation(),
+      table.knows_elevation() ? 1.0 : 0.0,
+      shape.log_area,
+      shape.log_across,
+      shape.log_along};
+  add_net(around, rock, evidence);
+  return evidence;
 }
 
 }  // namespace waymark

@@ -57,7 +57,8 @@ ShadowMeasure measure_of(const ShadowShape& shape) {
           0.5 * std::log(std::max(0.02, shape.along_variance)), 0};
 }
 
-RockTable::RockTable(Radians elevation, bool known, double blur) : tan_elevation_(std::tan(elevation.value)) {
+RockTable::RockTable(Radians elevation, bool known, double blur)
+    : tan_elevation_(std::tan(elevation.value)), known_(known) {
   ratio_mean_ = std::log(2 * kMeanHeight / tan_elevation_);
   ratio_sd_ = known ? kHeightSpread : 0.8;
   first_ratio_ = std::log(2 * kLeastHeight / tan_elevation_);

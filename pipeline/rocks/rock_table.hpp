@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cmath>
 
 #include "pipeline/rocks/shadow_shape.hpp"
 namespace waymark {
@@ -35,11 +36,15 @@ class RockTable {
   /// log(reach / radius) of a rock of usual height / diameter.
   double usual_log_ratio() const { return ratio_mean_; }
 
+  double log_tan_elevation() const { return std::log(tan_elevation_); }  ///< of the sun it was made for
+  bool knows_elevation() const { return known_; }
+
  private:
   static constexpr int kRadii = 11, kHeights = 8;
   ShadowMeasure at(double log_radius, double log_ratio) const;
 
   double tan_elevation_ = 1;
+  bool known_ = false;
   double ratio_mean_ = 0, ratio_sd_ = 0.5;  // prior of log(reach / radius)
   double first_ratio_ = 0, ratio_step_ = 0.3;
   std::array<std::array<ShadowMeasure, kHeights>, kRadii> nodes_{};

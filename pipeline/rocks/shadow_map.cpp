@@ -9,7 +9,8 @@
 namespace waymark {
 namespace {
 
-constexpr float kDarkest = 1.3F, kBrightest = -1.5F;  // beyond lies noise, not shadow
+constexpr float kDarkest = 1.3F, kBrightest = -1.5F;   // beyond lies noise, not shadow
+constexpr float kSide = 1.0F / 6, kCentre = 4.0F / 6;  // small rocks side by side stay two
 constexpr float kBrightestSmoothed = -0.2F;  // a lit face must not blot out the small shadow beside it
 
 float median_of(std::vector<float> values) {
@@ -86,9 +87,10 @@ Grid<float> smoothed(const Grid<float>& alpha) {
     const auto below = alpha.row(std::min(rows - 1, y + 1));
     const auto dim = [](float a) { return std::max(kBrightestSmoothed, a); };
     for (std::size_t x = 0; x < columns; ++x)
-      sum[x] = 0.25F * (dim(above[x]) + dim(below[x])) + 0.5F * dim(here[x]);
+      sum[x] = kSide * (dim(above[x]) + dim(below[x])) + kCentre * dim(here[x]);
     const auto out = smooth.row(y);
-    for (std::size_t x = 1; x + 1 < columns; ++x) out[x] = 0.25F * (sum[x - 1] + sum[x + 1]) + 0.5F * sum[x];
+    for (std::size_t x = 1; x + 1 < columns; ++x)
+      out[x] = kSide * (sum[x - 1] + sum[x + 1]) + kCentre * sum[x];
     out[0] = sum[0];
     out[columns - 1] = sum[columns - 1];
   }

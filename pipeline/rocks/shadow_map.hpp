@@ -11,7 +11,7 @@ namespace waymark {
 /// 0 is ground like that around it, 1 full shadow, below 0 brighter than the ground; clipped to [-1.5, 1.3].
 struct ShadowMap {
   Grid<float> alpha;    ///< 0 where there is no data or the ground around is itself in shadow
-  Grid<float> smooth;   ///< alpha under the binomial mask (1 2 1) / 4 both ways
+  Grid<float> smooth;   ///< alpha under the mask (1 4 1) / 6 both ways
   float umbra = 0;      ///< brightness of full shadow, in the image's numbers
   float noise = 0;      ///< standard deviation of pixel noise in alpha, median over the image
   Grid<float> texture;  ///< per tile: spread of alpha over the ground
@@ -20,7 +20,7 @@ struct ShadowMap {
   float texture_at(double x, double y) const;
 };
 
-/// The binomial mask (1 2 1) / 4 both ways; of alpha from -0.2 up, so that a lit face does not blot out
+/// The mask (1 4 1) / 6 both ways; of alpha from -0.2 up, so that a lit face does not blot out
 /// the small shadow beside it; border pixels are smoothed along the border alone.
 Grid<float> smoothed(const Grid<float>& alpha);
 

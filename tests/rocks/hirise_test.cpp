@@ -86,7 +86,7 @@ TEST(HiriseScene, AnnotatedRocks) {
                   static_cast<double>(c.hit) / c.rocks,
                   static_cast<double>(c.hit) / std::max(1, c.hit + c.wrong));
       if (method != RockMethod::shadow) continue;
-      EXPECT_GE(c.hit, 0.75 * c.rocks);
+      EXPECT_GE(c.hit, 0.9 * c.rocks);
       EXPECT_LE(c.wrong, 25);
     }
   }

@@ -6,8 +6,8 @@
 #include <cstdlib>
 
 #include "pipeline/rocks/find_rocks.hpp"
-#include "tests/rocks/confidence_fit.hpp"
 #include "tests/rocks/made_view.hpp"
+#include "tests/rocks/network_fit.hpp"
 #include "tests/rocks/rock_score.hpp"
 namespace waymark::testing {
 namespace {
@@ -85,14 +85,16 @@ TEST(RockTargets, MadeViews) {
   EXPECT_GT(score.recall(0), classic.recall(0));
 }
 
-TEST(RockConfidence, DISABLED_Fit) {
-  std::vector<ConfidenceSample> samples;
-  for (const bool made : {true, false})
-    for (int k = 0; k < (made ? 240 : 45); ++k)
-      for (const auto& sample : confidence_samples(k, made)) samples.push_back(sample);
-  std::FILE* file = std::fopen("rock_confidence_weights.hpp", "w");
+TEST(RockNetwork, DISABLED_Fit) {
+  std::vector<NetworkSample> samples;
+  const auto take = [&](const MadeView& view, int number) {
+    for (const auto& sample : network_samples(view, number, 400)) samples.push_back(sample);
+  };
+  for (int k = 0; k < 240; ++k) take(made_view(k), k);
+  for (int k = 0; k < 45; ++k) take(drawn_view(k), k);
+  std::FILE* file = std::fopen("rock_network.hpp", "w");
   ASSERT_NE(file, nullptr);
-  std::fputs(fit_confidence(samples).c_str(), file);
+  std::fputs(fit_network(samples).c_str(), file);
   std::fclose(file);
 }
 

@@ -79,9 +79,9 @@ TEST(Smoothed, KeepsTheMeanAndSpreadsAPoint) {
   Grid<float> alpha(9, 9);
   alpha(4, 4) = 1;
   const Grid<float> smooth = smoothed(alpha);
-  EXPECT_FLOAT_EQ(smooth(4, 4), 0.25F);
-  EXPECT_FLOAT_EQ(smooth(3, 4), 0.125F);
-  EXPECT_FLOAT_EQ(smooth(3, 3), 0.0625F);
+  EXPECT_FLOAT_EQ(smooth(4, 4), 16.0F / 36);
+  EXPECT_FLOAT_EQ(smooth(3, 4), 4.0F / 36);
+  EXPECT_FLOAT_EQ(smooth(3, 3), 1.0F / 36);
 }
 
 TEST(MapShadows, IsLinearInBrightness) {

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pipeline/rocks/rock_evidence.hpp"
+#include "tests/rocks/made_view.hpp"
+#include "tests/rocks/rock_scene.hpp"
+namespace waymark::testing {
+
+/// A dark spot of a made scene: what was seen of it, whether it is a rock's shadow, and what a network ought
+/// to say of that rock (RockJudgement).
+struct NetworkSample {
+  bool rock = false;
+  RockEvidence evidence{};
+  double log_radius = 0, log_reach = 0, along = 0, across = 0;
+};
+
+/// A scene with everything drawn at random: sun, relief, dunes, craters, haze, blur, noise, rocks.
+RockScene random_scene(int number);
+
+/// The same as a view.
+MadeView drawn_view(int number);
+
+/// The dark spots of a view, judged as the detector would that half of the time is told the sun's elevation
+/// and has a direction of light that is wrong by a few degrees; `number` seeds what it is told. At most
+/// `most` of them, at random: scenes count alike, crowded or bare.
+std::vector<NetworkSample> network_samples(const MadeView& view, int number, std::size_t most);
+
+/// Fits the network of judge_rock (Adam, fixed number of rounds, numbers from a fixed seed) and writes it as
+/// the source file pipeline/rocks/rock_network.hpp.
+std::string fit_network(const std::vector<NetworkSample>& samples);
+
+}  // namespace waymark::testing
