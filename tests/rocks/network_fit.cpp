@@ -55,16 +55,20 @@ void slope_of(const NetworkSample& sample, const float* out, float* slope) {
 }
 
 void append_numbers(std::string& text, const char* name, const float* values, std::size_t count) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "inline constexpr float %s[] = {", name);
-  text += buffer;
+  std::string line = std::string("inline constexpr float ") + name + "[] = {";
   for (std::size_t i = 0; i < count; ++i) {
-    std::snprintf(buffer, sizeof buffer, "%s%.5gF", i == 0 ? "" : ", ", static_cast<double>(values[i]));
-    std::string number = buffer + (i == 0 ? 0 : 2);
-    if (number.find_first_of(".e") == std::string::npos) number.insert(number.size() - 1, ".0");
-    text += (i == 0 ? "" : i % 12 == 0 ? ",\n    " : ", ") + number;
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.4g", static_cast<double>(values[i]));
+    std::string number = buffer;
+    if (number.find_first_of(".e") == std::string::npos) number += ".0";
+    number += i + 1 < count ? "F, " : "F};\n";
+    if (line.size() + number.size() > 110) {
+      text += line.substr(0, line.size() - 1) + "\n";
+      line = "    ";
+    }
+    line += number;
   }
-  text += "};\n";
+  text += line;
 }
 
 }  // namespace
@@ -217,6 +221,7 @@ std::string fit_network(const std::vector<NetworkSample>& samples) {
       "// Made by tests/rocks (test RockNetwork.DISABLED_Fit); do not edit.\n"
       "#pragma once\n"
       "#include <cstddef>\n"
+      "// clang-format off\n"
       "namespace waymark::rock_network {\n\n"
       "inline constexpr std::size_t kOutputs = 8;\n"
       "// Share of rocks among the dark spots it was fitted on.\n";
