@@ -17,9 +17,14 @@ constexpr Radians kUsualElevation = to_radians(Degrees{40});
 constexpr int kTile = 32;
 constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of the scale, diameter
 
-// Share of the corrections of widths that is made: all of them leave ellipsoids a tenth too narrow, for the
-// network cannot tell shapes apart (the table's own widths are right for ellipsoids, too wide for others).
-constexpr double kWidthTrust = 0.6;
+// What a correction of a width is lessened by: at most a share of it, and no more than this logarithm. The
+// network cannot tell shapes apart, and takes ellipsoids, for which the table's widths are right, for the
+// mean.
+constexpr double kMostLessened = 0.06, kLessenedShare = 0.4;
+
+double width_correction(double told) {
+  return told - std::copysign(std::min(kMostLessened, kLessenedShare * std::abs(told)), told);
+}
 
 // Share of rocks among the dark spots the confidence was fitted on, and how far towards the image's own share
 // the confidences are moved (chosen on landings 301 and 302, docs/rocks.md).
@@ -65,7 +70,8 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   turn << light.ux, -light.uy, light.uy, light.ux;
   found.covariance =
       turn * Eigen::Vector2d{along_sd * along_sd, across_sd * across_sd}.asDiagonal() * turn.transpose();
-  found.diameter_sd = diameter * std::hypot(say.log_radius_sd, (1 - kWidthTrust) * say.log_radius);
+  found.diameter_sd =
+      diameter * std::hypot(say.log_radius_sd, say.log_radius - width_correction(say.log_radius));
   const double reach = scale * rock.size.reach * std::exp(say.log_reach);
   found.shadow_reach = Measured{reach, reach * say.log_reach_sd};
   found.confidence = judged.confidence;
@@ -119,7 +125,7 @@ std::vector<Detection> without_repeats(std::vector<Detection> all, const LightFr
 }  // namespace
 
 double JudgedRock::radius() const {
-  return rock.size.radius * std::exp(kWidthTrust * judgement.log_radius);
+  return rock.size.radius * std::exp(width_correction(judgement.log_radius));
 }
 
 std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table) {
