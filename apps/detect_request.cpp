@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 
 namespace waymark {
 namespace {
@@ -39,8 +39,9 @@ const Kind& kind_called(std::string word) {
     if (kind.word == word) return kind;
   const std::string nearest = nearest_name(word, std::vector<std::string>{"craters", "rocks", "trees"});
   refuse(fmt::format("'{}' cannot be detected", word),
-         nearest.empty() ? "write `waymark detect craters IMAGE`, `detect rocks IMAGE` or `detect trees IMAGE`"
-                         : "did you mean '" + nearest + "'?");
+         nearest.empty()
+             ? "write `waymark detect craters IMAGE`, `detect rocks IMAGE` or `detect trees IMAGE`"
+             : "did you mean '" + nearest + "'?");
 }
 
 void check_method(const Kind& kind, const std::string& method) {

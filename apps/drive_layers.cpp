@@ -34,14 +34,16 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
                   .kind = ShapeKind::line,
                   .columns = {{"from_t", "s", AttributeSpec::Kind::real, "Time of its first pose"},
                               {"to_t", "s", AttributeSpec::Kind::real, "Time of its last pose"},
-                              {"largest_sd", "m", AttributeSpec::Kind::real, "Largest standard deviation of a pose along it"}},
+                              {"largest_sd", "m", AttributeSpec::Kind::real,
+                               "Largest standard deviation of a pose along it"}},
                   .style = {.colour = "#d95f02", .width = 0.8}};
   // Corners closer than a decimetre say nothing.
   std::vector<Eigen::Vector2d> corners;
   double largest = 0;
   for (const TrackRow& row : track.rows) {
     largest = std::max(largest, std::sqrt(std::max(row.at.covariance(0, 0), row.at.covariance(1, 1))));
-    if (corners.empty() || (row.at.pose.at() - corners.back()).norm() > 0.1) corners.push_back(row.at.pose.at());
+    if (corners.empty() || (row.at.pose.at() - corners.back()).norm() > 0.1)
+      corners.push_back(row.at.pose.at());
   }
   if (corners.size() > 1) {
     for (Eigen::Vector2d& at : corners) at = in_crs(frame, at);
@@ -59,9 +61,9 @@ void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, c
                      .style = {.colour = "#b22222"}};
     const std::span<const FelledReading> felled(log.felled.data(), felled_until(log, until));
     for (const HarvestedTree& tree : harvested_trees(felled, track))
-      trees.rows.push_back({{{{in_crs(frame, tree.at)}, {}}},
-                            {tree.t, or_null(tree.diameter), or_null(tree.height),
-                             std::sqrt(tree.covariance.trace() / 2)}});
+      trees.rows.push_back(
+          {{{{in_crs(frame, tree.at)}, {}}},
+           {tree.t, or_null(tree.diameter), or_null(tree.height), std::sqrt(tree.covariance.trace() / 2)}});
     layers.push_back(std::move(trees));
   }
   write_layers(map, layers);

@@ -7,14 +7,15 @@
 #include "localization/track.hpp"
 namespace waymark {
 
-/// Writes the layers `track` (one line and its points' times) and, of a harvester, `harvested` (a point per felled
-/// tree with t, diameter, height, sd) into a map file. `frame`: of track and log. All or nothing, so that a
-/// process killed meanwhile leaves the layers of the time before. Trees felled after `until`, s, are left out:
-/// it may be called while the track grows.
+/// Writes the layers `track` (one line and its points' times) and, of a harvester, `harvested` (a point per
+/// felled tree with t, diameter, height, sd) into a map file. `frame`: of track and log. All or nothing, so
+/// that a process killed meanwhile leaves the layers of the time before. Trees felled after `until`, s, are
+/// left out: it may be called while the track grows.
 void write_drive_layers(const std::filesystem::path& map, const RobotLog& log, const Track& track,
                         const LocalFrame& frame, double until = std::numeric_limits<double>::infinity());
 
-/// Writes them again and again while a track grows: every `every` seconds of the log, and after each felled tree.
+/// Writes them again and again while a track grows: every `every` seconds of the log, and after each felled
+/// tree.
 class LiveLayers {
  public:
   LiveLayers(std::filesystem::path map, const RobotLog& log, const LocalFrame& frame, double every);

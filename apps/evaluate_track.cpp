@@ -45,9 +45,9 @@ std::vector<PictureDot> dots_of(OpenedMap& opened) {
   for (const MapLandmark& l : opened.window.around({0, 0}, 0).landmarks()) {
     const std::string type = opened.map.types()[l.type].name;
     const bool radius = type == "rock" || type == "crater";
-    const double size = radius && l.features.known(0)                    ? l.features.value[0]
-                        : type == "tree" && l.features.known(1)          ? l.features.value[1]
-                                                                         : 0.5;
+    const double size = radius && l.features.known(0)           ? l.features.value[0]
+                        : type == "tree" && l.features.known(1) ? l.features.value[1]
+                                                                : 0.5;
     if (type == "crater") continue;  // wide discs would hide the rest
     dots.push_back({l.at, size, type == "tree" ? "#8fbc8f" : "#b5ada3"});
   }
@@ -58,13 +58,17 @@ void draw(const std::string& track_file, const Track& track, const Truth& truth,
           const TrackEvaluation& how) {
   if (!how.picture.ends_with(".svg"))
     throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", how.picture);
-  TrackPicture picture{.title = std::filesystem::path(track_file).stem(), .map = {}, .truth = truth.poses,
-                       .tracks = {}, .harvested = {}};
+  TrackPicture picture{.title = std::filesystem::path(track_file).stem(),
+                       .map = {},
+                       .truth = truth.poses,
+                       .tracks = {},
+                       .harvested = {}};
   if (opened) picture.map = dots_of(*opened);
   for (const std::string& more : how.also) {
     const std::size_t equals = more.find('=');
     if (equals == std::string::npos || equals == 0)
-      throw Error(ErrorCode::usage, "--also takes NAME=TRACK.csv, is '" + more + "'", "", "e.g. --also ekf=ekf.csv");
+      throw Error(ErrorCode::usage, "--also takes NAME=TRACK.csv, is '" + more + "'", "",
+                  "e.g. --also ekf=ekf.csv");
     picture.tracks.push_back({more.substr(0, equals), read_track_csv(more.substr(equals + 1))});
   }
   picture.tracks.push_back({std::filesystem::path(track_file).stem(), track});
@@ -76,22 +80,24 @@ void draw(const std::string& track_file, const Track& track, const Truth& truth,
 }  // namespace
 
 std::vector<Argument> track_arguments(TrackEvaluation& into) {
-  return {Argument{"--align", "HOW", &into.align, "track: how it is laid over the truth first"}
-              .one_of({"none", "se2", "sim2"})
-              .or_else("none"),
-          Argument{"--log-format", "FORMAT", &into.log_format, "track: format of a truth that is a log"}
-              .one_of({"waymark", "mrclam", "victoria-park"})
-              .or_else("recognised"),
-          Argument{"--robot", "K", &into.robot, "track: which robot of an MRCLAM dataset is the truth"},
-          Argument{"--picture", "FILE.svg", &into.picture,
-                   "track: draw truth, track and their errors"}.offering(Offer::file),
-          Argument{"--map", "MAP", &into.map,
-                   "track: map that the robot used; it is drawn, and a truth in CRS coordinates is put into its frame"}
-              .offering(Offer::file),
-          Argument{"--also", "NAME=TRACK", &into.also, "track: another track of the picture; may be repeated"},
-          Argument{"--longest-gap", "S", &into.longest_gap,
-                   "track: seconds between two true poses that may be interpolated"}
-              .or_else("0.5")};
+  return {
+      Argument{"--align", "HOW", &into.align, "track: how it is laid over the truth first"}
+          .one_of({"none", "se2", "sim2"})
+          .or_else("none"),
+      Argument{"--log-format", "FORMAT", &into.log_format, "track: format of a truth that is a log"}
+          .one_of({"waymark", "mrclam", "victoria-park"})
+          .or_else("recognised"),
+      Argument{"--robot", "K", &into.robot, "track: which robot of an MRCLAM dataset is the truth"},
+      Argument{"--picture", "FILE.svg", &into.picture, "track: draw truth, track and their errors"}.offering(
+          Offer::file),
+      Argument{
+          "--map", "MAP", &into.map,
+          "track: map that the robot used; it is drawn, and a truth in CRS coordinates is put into its frame"}
+          .offering(Offer::file),
+      Argument{"--also", "NAME=TRACK", &into.also, "track: another track of the picture; may be repeated"},
+      Argument{"--longest-gap", "S", &into.longest_gap,
+               "track: seconds between two true poses that may be interpolated"}
+          .or_else("0.5")};
 }
 
 std::string evaluate_track(const std::string& track_file, const std::string& truth_file,

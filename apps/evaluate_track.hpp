@@ -11,8 +11,8 @@ struct TrackEvaluation {
   std::string align = "none", log_format;
   std::int64_t robot = 0;
   double longest_gap = 0.5;
-  std::string picture, map;        ///< SVG to draw; map whose landmarks are drawn and whose frame truth is put in
-  std::vector<std::string> also;   ///< NAME=TRACK.csv: more tracks of the picture
+  std::string picture, map;  ///< SVG to draw; map whose landmarks are drawn and whose frame truth is put in
+  std::vector<std::string> also;  ///< NAME=TRACK.csv: more tracks of the picture
 };
 
 /// Options that only this comparison has; they point into `into`.

@@ -26,8 +26,10 @@ TreeSearch imagery_search() {
   TreeSearch search;
   search.forest.name = "imagery";
   search.forest.smoothing = 0.9;
-  search.forest.tops = {.min_height = kLeastGreen, .isolation_base = 3, .isolation_slope = 0, .prominence = 0};
-  search.forest.crowns = {.floor = 0.6 * kLeastGreen, .floor_share = 0.5, .radius_base = 6, .radius_slope = 0, .max_radius = 6};
+  search.forest.tops = {
+      .min_height = kLeastGreen, .isolation_base = 3, .isolation_slope = 0, .prominence = 0};
+  search.forest.crowns = {
+      .floor = 0.6 * kLeastGreen, .floor_share = 0.5, .radius_base = 6, .radius_slope = 0, .max_radius = 6};
   return search;
 }
 
@@ -45,14 +47,16 @@ double pixel_metres(const DetectPlan& plan, FoundInImage& found) {
   if (plan.gsd) return plan.gsd->value;
   for (const std::string& warning : plan.warnings)
     if (warning.starts_with("its georeference is not used"))
-      throw Error(ErrorCode::input, "the size of a pixel in metres is not known, and trees are told by metres", info.path,
+      throw Error(ErrorCode::input,
+                  "the size of a pixel in metres is not known, and trees are told by metres", info.path,
                   "reproject it into metres (gdalwarp -t_srs EPSG:...), or pass --gsd");
   found.warnings.push_back(
       fmt::format("the size of a pixel is not known and taken as {:g} m: pass --gsd", kUsualPixel));
   return kUsualPixel;
 }
 
-std::vector<FoundTree> search_tiles(const CanopySource& canopy, const TreeSearch& search, std::int64_t side, int threads) {
+std::vector<FoundTree> search_tiles(const CanopySource& canopy, const TreeSearch& search, std::int64_t side,
+                                    int threads) {
   const GridGeometry& grid = canopy.geometry();
   const std::vector<Tile> tiles = tiles_of(grid.columns, grid.rows, side);
   std::vector<std::vector<FoundTree>> parts(tiles.size());
@@ -62,7 +66,8 @@ std::vector<FoundTree> search_tiles(const CanopySource& canopy, const TreeSearch
                       [&](std::size_t i) { parts[i] = find_trees(canopy, tiles[i].cells, search); });
   });
   std::vector<FoundTree> all;
-  for (auto& part : parts) all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+  for (auto& part : parts)
+    all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
   return all;
 }
 
@@ -70,7 +75,8 @@ Detection detection_of(const FoundTree& tree, TypeId type, double metres, bool i
   Detection one;
   one.type = type;
   const double diameter = std::max(tree.crown_diameter / metres, 1.0);
-  one.outline = {static_cast<double>(tree.top.column), static_cast<double>(tree.top.row), diameter, diameter, 0};
+  one.outline = {static_cast<double>(tree.top.column), static_cast<double>(tree.top.row), diameter, diameter,
+                 0};
   const TreeErrors errors;
   const double sd = imagery ? 1.5 : errors.place_base + errors.place_slope * tree.height;
   one.covariance = Eigen::Matrix2d::Identity() * (sd * sd / (metres * metres) + 1.0 / 12);
@@ -87,10 +93,13 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads) {
   const std::string method = !plan.method.empty() ? plan.method : bands >= 3 ? "imagery" : "peaks";
   const bool imagery = method == "imagery";
   if (imagery && bands < 3)
-    throw Error(ErrorCode::usage, fmt::format("--method imagery needs a colour image; this one has {} band{}", bands, bands == 1 ? "" : "s"),
+    throw Error(ErrorCode::usage,
+                fmt::format("--method imagery needs a colour image; this one has {} band{}", bands,
+                            bands == 1 ? "" : "s"),
                 info.path, "heights above ground are searched with --method peaks or lmf");
   if (!imagery && bands > 2)
-    throw Error(ErrorCode::usage, fmt::format("--method {} needs one band of heights; this image has {}", method, bands),
+    throw Error(ErrorCode::usage,
+                fmt::format("--method {} needs one band of heights; this image has {}", method, bands),
                 info.path, "colour images are searched with --method imagery");
   FoundInImage found;
   const double metres = pixel_metres(plan, found);
@@ -112,13 +121,18 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads) {
     FeatureSet features;
   };
   std::vector<Kept> kept;
-  for (const FoundTree& tree : search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads)) {
+  for (const FoundTree& tree :
+       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads)) {
     Kept one{detection_of(tree, type, metres, imagery), {}};
     if (one.detection.confidence < plan.min_confidence) continue;
     const double diameter = one.detection.outline.diameter();
-    if (diameter < plan.search.min_diameter || (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter)) continue;
+    if (diameter < plan.search.min_diameter ||
+        (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter))
+      continue;
     one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
-    if (imagery) one.features[feature_index(tree_type, "height")] = one.features[feature_index(tree_type, "diameter")] = {};
+    if (imagery)
+      one.features[feature_index(tree_type, "height")] =
+          one.features[feature_index(tree_type, "diameter")] = {};
     kept.push_back(std::move(one));
   }
   std::stable_sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) {

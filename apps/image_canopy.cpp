@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "importers/gdal_session.hpp"
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 
 namespace waymark {
 namespace {
@@ -37,8 +37,8 @@ class ImageCanopy final : public CanopySource {
     for (std::size_t i = 0; i < canopy.cells().size(); ++i) {
       const auto at = [&](std::size_t band) { return pixels[band].cells()[i]; };
       const float sign = sign_ == CanopySign::height ? height(at(0))
-                         : bands_.size() == 4       ? greenness(at(0), at(1), at(2), at(3))
-                                                    : greenness(at(0), at(1), at(2));
+                         : bands_.size() == 4        ? greenness(at(0), at(1), at(2), at(3))
+                                                     : greenness(at(0), at(1), at(2));
       if (!std::isnan(sign)) canopy.cells()[i] = sign;
     }
     return canopy;

@@ -7,9 +7,9 @@
 #include <vector>
 #include "apps/localize_settings.hpp"
 #include "apps/robot_map.hpp"
-#include "localization/constellation.hpp"
-#include "localization/pose_finder.hpp"
-#include "localization/skyline.hpp"
+#include "localization/global/constellation.hpp"
+#include "localization/global/pose_finder.hpp"
+#include "localization/global/skyline.hpp"
 #include "localization/track.hpp"
 namespace waymark {
 
@@ -27,12 +27,12 @@ struct LocalizeTask {
   OpenedMap map;
   std::optional<PoseEstimate> start;
   const LocalizeSettings& settings;
-  const SensorProfile* sensor;      ///< null: the map's confidence counts
-  GroundHeight ground;              ///< empty where no DEM is known
-  std::string command_line = {};   ///< as typed
-  std::string write_map = {};      ///< map to write with what was learnt; empty: none
-  bool update_map = false;         ///< change the map itself
-  TrackWatcher watch = {};         ///< shown the track while it grows
+  const SensorProfile* sensor;           ///< null: the map's confidence counts
+  GroundHeight ground;                   ///< empty where no DEM is known
+  std::string command_line = {};         ///< as typed
+  std::string write_map = {};            ///< map to write with what was learnt; empty: none
+  bool update_map = false;               ///< change the map itself
+  TrackWatcher watch = {};               ///< shown the track while it grows
   std::optional<TypeId> stem_type = {};  ///< type of the stems found in laser scans, if the map has one
 };
 

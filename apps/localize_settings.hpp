@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 #include "localization/detectors/scan_landmarks.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/kalman.hpp"
-#include "localization/particle_filter.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
 #include "localization/play_log.hpp"
 namespace waymark {
 

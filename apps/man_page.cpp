@@ -66,10 +66,10 @@ std::string section(const CommandSpec& command) {
 }  // namespace
 
 std::string man_page(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
-  std::string text =
-      ".TH WAYMARK 1 \"\" \"" + program_version() +
-      "\" \"User commands\"\n.SH NAME\nwaymark \\- semantic navigation maps from elevation models, images and laser data\n"
-      ".SH SYNOPSIS\n.B waymark\n.I COMMAND\n[arguments and options]\n.SH COMMANDS\n";
+  std::string text = ".TH WAYMARK 1 \"\" \"" + program_version() +
+                     "\" \"User commands\"\n.SH NAME\nwaymark \\- semantic navigation maps from elevation "
+                     "models, images and laser data\n"
+                     ".SH SYNOPSIS\n.B waymark\n.I COMMAND\n[arguments and options]\n.SH COMMANDS\n";
   for (const CommandSpec& command : commands) text += section(command);
   text += ".SH OPTIONS OF EVERY COMMAND\n";
   for (const Argument& argument : globals) text += entry(argument);

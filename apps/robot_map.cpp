@@ -9,7 +9,7 @@
 #include "apps/registries.hpp"
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 
 namespace waymark {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include "geodb/map_store.hpp"
 #include "localization/ground.hpp"
-#include "localization/landmark_window.hpp"
+#include "localization/identification/landmark_window.hpp"
 namespace waymark {
 
 /// A map file as a robot uses it.

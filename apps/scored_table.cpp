@@ -8,8 +8,8 @@
 
 #include "core/error.hpp"
 #include "geodb/map_store.hpp"
-#include "importers/table.hpp"
-#include "importers/table_number.hpp"
+#include "importers/tables/table.hpp"
+#include "importers/tables/table_number.hpp"
 #include "landmarks/sensor_profile.hpp"
 
 namespace waymark {

@@ -3,8 +3,8 @@
 
 #include "apps/localize_method.hpp"
 #include "apps/log.hpp"
-#include "localization/restarting.hpp"
-#include "localization/skyline_index.hpp"
+#include "localization/filters/restarting.hpp"
+#include "localization/global/skyline_index.hpp"
 
 namespace waymark {
 namespace {
@@ -98,10 +98,10 @@ std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::op
                                                const SearchOptions& search) {
   PoseFinder finder = finder_for(task, search);
   const auto particles = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
-                          &settings = task.settings, visible = sight_of(task)](
-                             const std::optional<PoseEstimate>& from, PoseFinder by) {
-    auto filter = std::make_unique<ParticleFilter>(from, window, scales, settings.identification, settings.particles,
-                                                   std::move(by));
+                          &settings = task.settings,
+                          visible = sight_of(task)](const std::optional<PoseEstimate>& from, PoseFinder by) {
+    auto filter = std::make_unique<ParticleFilter>(from, window, scales, settings.identification,
+                                                   settings.particles, std::move(by));
     filter->look_over(visible);
     return filter;
   };

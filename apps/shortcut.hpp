@@ -8,8 +8,8 @@
 #include "pipeline/engine/pipeline.hpp"
 namespace waymark {
 
-/// A command that builds a job from files and a few options of its stages, and runs it as `waymark run` would:
-/// the same code path, and --print-job shows the job.
+/// A command that builds a job from files and a few options of its stages, and runs it as `waymark run`
+/// would: the same code path, and --print-job shows the job.
 class Shortcut : public Command {
  public:
   CommandSpec describe() final;

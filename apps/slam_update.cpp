@@ -20,7 +20,7 @@
 #include "importers/hash.hpp"
 #include "landmarks/uid.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
-#include "localization/existence.hpp"
+#include "localization/slam/existence.hpp"
 
 namespace waymark {
 namespace {
@@ -82,11 +82,12 @@ void count(const SlamLandmark& seen, Landmark& into) {
 RunRecord record_of(const LocalizeTask& task, const SlamUpdate& update, const std::string& job) {
   RunRecord run = record_of_run(task.command_line, std::chrono::system_clock::now());
   run.job_json = job;
-  run.report_json = nlohmann::json{{"changed", update.changed.size()},
-                                   {"added", update.added.size()},
-                                   {"evidence", update.evidence.size()},
-                                   {"left_out_untyped", update.untyped}}
-                        .dump();
+  run.report_json = nlohmann::json{
+      {"changed", update.changed.size()},
+      {"added", update.added.size()},
+      {"evidence", update.evidence.size()},
+      {"left_out_untyped",
+       update.untyped}}.dump();
   for (const std::string& file : {task.map_file, task.log_file})
     if (std::filesystem::is_regular_file(file)) run.inputs.push_back(hash_file(file));
   return run;
@@ -96,8 +97,8 @@ RunRecord record_of(const LocalizeTask& task, const SlamUpdate& update, const st
 
 SlamRun slam_run(const LocalizeTask& task, const SlamOptions& options) {
   if (!task.start && task.map.map.landmarks > 0)
-    throw Error(ErrorCode::usage, "SLAM must know where the robot starts in a map with landmarks", task.log_file,
-                "give --start X,Y,YAW (metres and radians), or the map none");
+    throw Error(ErrorCode::usage, "SLAM must know where the robot starts in a map with landmarks",
+                task.log_file, "give --start X,Y,YAW (metres and radians), or the map none");
   SlamRun run{.options = options,
               .play = task.settings.play,
               .start = task.start.value_or(PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-9})};
@@ -113,11 +114,12 @@ Track play_with(const LocalizeTask& task, const SlamRun& run, Localizer& localiz
   };
   const ScanTypes seen{type("tree"), type("rock")};
   ScanLandmarks scans = task.settings.scans;
-  // A map without landmarks has all types and says nothing; the log of a park does. Its beams are so far apart
-  // that a stem is one or two wide: diameters only mislead (ATE 1.9 m with, 1.2 m without).
+  // A map without landmarks has all types and says nothing; the log of a park does. Its beams are so far
+  // apart that a stem is one or two wide: diameters only mislead (ATE 1.9 m with, 1.2 m without).
   if (scans.find == "auto" && task.log.odometry) scans = {.find = "stems", .features = false};
   return play(
-      task.log, localizer, run.play, [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, scans); },
+      task.log, localizer, run.play,
+      [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, scans); },
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       });

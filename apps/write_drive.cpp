@@ -20,8 +20,10 @@ std::string write_drive(const std::filesystem::path& folder, const Scenario& sce
     std::ifstream file(table, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     if (text.empty())
-      throw Error(ErrorCode::input, "cannot read the table of trees", table, "see drive.trees of the scenario");
-    trees = trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north}, scene.terrain);
+      throw Error(ErrorCode::input, "cannot read the table of trees", table,
+                  "see drive.trees of the scenario");
+    trees =
+        trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north}, scene.terrain);
   }
   const DriveWorld world = make_drive(drive, scene, std::move(trees), scene.seed);
   const LogPlace place{scenario.crs,
@@ -35,11 +37,10 @@ std::string write_drive(const std::filesystem::path& folder, const Scenario& sce
     write_file(folder / "truth/trees.csv", standing_table(world, place));
     write_file(folder / "truth/felled.csv", felled_table(world, place));
   }
-  return fmt::format("drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().way,
-                     world.steps.back().t,
-                     world.trees.empty()
-                         ? ""
-                         : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
+  return fmt::format(
+      "drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().way, world.steps.back().t,
+      world.trees.empty() ? ""
+                          : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
 }
 
 }  // namespace waymark

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-#include "testbed/drive_log.hpp"
+#include "testbed/drive/drive_log.hpp"
 #include "testbed/scenario.hpp"
 namespace waymark {
 

@@ -8,7 +8,7 @@
 #include "exporters/aside_folder.hpp"
 #include "exporters/las_file.hpp"
 #include "exporters/raster_file.hpp"
-#include "testbed/forest_files.hpp"
+#include "testbed/forest/forest_files.hpp"
 
 namespace waymark {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
-#include "testbed/forest.hpp"
+#include "testbed/forest/forest.hpp"
 #include "testbed/scenario.hpp"
 #include "testbed/scene.hpp"
 namespace waymark {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares localizers x sensors x map qualities on drives of the testbed and writes a Markdown and an HTML page.
-// usage: bench_compare_localizers RUNS METRES OUT.md OUT.html NAME SCENARIO.json MAP.gpkg [NAME SCENARIO MAP]...
-// One thread; scripts/compare-localizers makes the maps and calls it.
+// Compares localizers x sensors x map qualities on drives of the testbed and writes a Markdown and an HTML
+// page. usage: bench_compare_localizers RUNS METRES OUT.md OUT.html NAME SCENARIO.json MAP.gpkg [NAME
+// SCENARIO MAP]... One thread; scripts/compare-localizers makes the maps and calls it.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -18,14 +18,14 @@
 #include "geodb/map_store.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
-#include "localization/ekf_slam.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/kalman.hpp"
-#include "localization/particle_filter.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
 #include "localization/play_log.hpp"
+#include "localization/slam/ekf_slam.hpp"
 #include "localization/track_score.hpp"
-#include "testbed/drive_log.hpp"
-#include "testbed/flight.hpp"
+#include "testbed/drive/drive_log.hpp"
+#include "testbed/landing/flight.hpp"
 #include "testbed/scenario.hpp"
 
 namespace waymark {
@@ -53,7 +53,8 @@ Site open_site(const std::string& name, const std::string& scenario_file, const 
   SensorRegistry sensors;
   register_sensor_profiles(sensors);
   for (const Landmark& l : site.store.query({.types = {"rock"}}))
-    site.landmarks.push_back(map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
+    site.landmarks.push_back(
+        map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
   // A map that is worse than any of ours: as many false rocks as true ones, which it knows to be doubtful.
   if (name.find("false rocks added") == std::string::npos) return site;
   Eigen::AlignedBox2d box;
@@ -85,7 +86,8 @@ SensorKind kind_of(const LogEvent& e) {
 RobotLog only(const RobotLog& log, const std::string& sensor, bool features, const ScanTypes& types) {
   RobotLog some = log;
   std::erase_if(some.events, [&](const LogEvent& e) {
-    if (!std::holds_alternative<LaserScan>(e.what) && !std::holds_alternative<SightingSet>(e.what)) return false;
+    if (!std::holds_alternative<LaserScan>(e.what) && !std::holds_alternative<SightingSet>(e.what))
+      return false;
     const SensorKind kind = kind_of(e);
     return !(sensor == "laser + stereo" ? kind != SensorKind::camera
              : sensor == "laser"        ? kind == SensorKind::laser
@@ -132,10 +134,12 @@ std::unique_ptr<Localizer> make(const Variant& v, const PoseEstimate& start, con
   if (v.method == "odometry") return std::make_unique<DeadReckoning>(start);
   if (v.method == "slam") return std::make_unique<EkfSlam>(start);
   if (v.method.starts_with("pf"))
-    return std::make_unique<ParticleFilter>(start, LandmarkWindow(map), scales, id,
-                                            ParticleOptions{.particles = 300, .recovery = v.method != "pf", .threads = 1, .weight = {}});
+    return std::make_unique<ParticleFilter>(
+        start, LandmarkWindow(map), scales, id,
+        ParticleOptions{.particles = 300, .recovery = v.method != "pf", .threads = 1, .weight = {}});
   if (v.method == "ukf") return std::make_unique<UnscentedKalman>(start, LandmarkWindow(map), scales, id);
-  if (v.method == "ekf, one Gaussian") return std::make_unique<ExtendedKalman>(start, LandmarkWindow(map), scales, id);
+  if (v.method == "ekf, one Gaussian")
+    return std::make_unique<ExtendedKalman>(start, LandmarkWindow(map), scales, id);
   return std::make_unique<HypothesesFilter>(start, LandmarkWindow(map), scales, id);
 }
 
@@ -178,7 +182,8 @@ int main(int argc, char** argv) {
   const int runs = std::stoi(argv[1]);
   const double metres = std::stod(argv[2]);
   std::vector<Variant> variants;
-  for (const char* method : {"odometry", "ekf", "ekf, one Gaussian", "ukf", "pf", "pf, recovery", "slam"}) variants.push_back({method});
+  for (const char* method : {"odometry", "ekf", "ekf, one Gaussian", "ukf", "pf", "pf, recovery", "slam"})
+    variants.push_back({method});
   for (const char* sensor : {"stereo", "laser + stereo"})
     for (const char* method : {"ekf", "pf"}) variants.push_back({method, sensor});
   variants.push_back({"pf", "camera"});  // the others are slow or lost with bearings alone
@@ -187,8 +192,9 @@ int main(int argc, char** argv) {
     variants.push_back({method, "laser", true, false});
     variants.push_back({method, "laser", false, false});
   }
-  Tables tables({"method", "sensor", "quality", "features", "ATE RMSE, median of runs", "worst run", "median error",
-                 "RPE 1 s", "heading deg", "NEES / 3", "precision", "recall", "us per update"});
+  Tables tables({"method", "sensor", "quality", "features", "ATE RMSE, median of runs", "worst run",
+                 "median error", "RPE 1 s", "heading deg", "NEES / 3", "precision", "recall",
+                 "us per update"});
   for (int s = 5; s < argc; s += 3) {
     const Site site = open_site(argv[s], argv[s + 1], argv[s + 2]);
     std::vector<MapLandmark> flat = site.landmarks;
@@ -217,9 +223,11 @@ int main(int argc, char** argv) {
         if (made) at->second = only(log, v.sensor, v.features, types);
         run(v, at->second, site, v.quality ? with : without, sums[i]);
         if (r == 0)
-          fmt::print(stderr, "{} {} {} {}: RMSE {:.3f} median {:.3f}, {} of {} right of {} findable, {:.1f} s in {} updates\n",
-                     v.method, v.sensor, v.quality, v.features, sums[i].rmse[0], sums[i].median[0], sums[i].correct,
-                     sums[i].matched, sums[i].findable, sums[i].spent, sums[i].updates);
+          fmt::print(stderr,
+                     "{} {} {} {}: RMSE {:.3f} median {:.3f}, {} of {} right of {} findable, {:.1f} s in {} "
+                     "updates\n",
+                     v.method, v.sensor, v.quality, v.features, sums[i].rmse[0], sums[i].median[0],
+                     sums[i].correct, sums[i].matched, sums[i].findable, sums[i].spent, sums[i].updates);
       }
       fmt::print(stderr, "{} {}/{}\n", site.name, r + 1, runs);
     }
@@ -235,7 +243,8 @@ int main(int argc, char** argv) {
       };
       const auto said = [&](const std::string& word) { return moves ? word : std::string(); };
       tables.row({v.method, said(v.sensor), said(v.quality ? "yes" : "no"), said(v.features ? "yes" : "no"),
-                  fmt::format("{:.3f}", middle(sum.rmse)), fmt::format("{:.3f}", *std::ranges::max_element(sum.rmse)),
+                  fmt::format("{:.3f}", middle(sum.rmse)),
+                  fmt::format("{:.3f}", *std::ranges::max_element(sum.rmse)),
                   fmt::format("{:.3f}", middle(sum.median)), fmt::format("{:.3f}", mean(sum.rpe)),
                   fmt::format("{:.2f}", mean(sum.heading)), fmt::format("{:.2f}", middle(sum.anees)),
                   ratio(sum.correct, sum.matched), ratio(sum.correct, sum.findable),

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "testbed/laser_scanner.hpp"
+#include "testbed/drive/laser_scanner.hpp"
 #include "testbed/scene.hpp"
 
 namespace waymark {
@@ -43,8 +43,11 @@ void harvester_scan(benchmark::State& state) {
   std::vector<StandingTree> trees;
   for (int i = 0; i < 1125; ++i) {  // 500 per hectare
     const double x = random.uniform(-74, 74), y = random.uniform(-74, 74);
-    trees.push_back({.foot = {x, y, *scene.terrain.height(x, y)}, .height = 20, .dbh = random.uniform(0.1, 0.45),
-                     .crown_diameter = 4, .crown_base = 9});
+    trees.push_back({.foot = {x, y, *scene.terrain.height(x, y)},
+                     .height = 20,
+                     .dbh = random.uniform(0.1, 0.45),
+                     .crown_diameter = 4,
+                     .crown_base = 9});
   }
   ForestSolids solids = forest_solids(trees, {}, scene.terrain, 3);
   scan_from_everywhere(state, LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geo/camera.hpp"
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 
 namespace waymark {
 namespace {

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 
 namespace {
 

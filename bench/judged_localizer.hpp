@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "localization/landmark_grid.hpp"
+#include "localization/identification/landmark_grid.hpp"
 #include "localization/localizer.hpp"
 #include "localization/robot_log.hpp"
 namespace waymark {

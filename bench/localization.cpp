@@ -9,11 +9,11 @@
 
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
-#include "localization/constellation.hpp"
 #include "localization/detectors/laser_stems.hpp"
-#include "localization/kalman.hpp"
-#include "localization/landmark_window.hpp"
-#include "localization/particle_filter.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
+#include "localization/global/constellation.hpp"
+#include "localization/identification/landmark_window.hpp"
 #include "tests/localization/made_look.hpp"
 #include "tests/localization/made_world.hpp"
 

@@ -2,8 +2,8 @@
 // SLAM among ever more landmarks, and graphs of ever more poses. One thread.
 #include <benchmark/benchmark.h>
 
-#include "localization/ekf_slam.hpp"
-#include "localization/graph_solver.hpp"
+#include "localization/slam/ekf_slam.hpp"
+#include "localization/slam/graph_solver.hpp"
 #include "tests/localization/made_world.hpp"
 
 namespace waymark::testing {
@@ -39,7 +39,8 @@ PoseGraph rounds(std::size_t poses) {
     if (i > 0) graph.steps.push_back({i - 1, i, step, root});
     constexpr std::size_t kRound = 126;  // poses
     if (i >= kRound && i % 10 == 0)
-      graph.steps.push_back({i - kRound, i, {0, 0, wrapped(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
+      graph.steps.push_back(
+          {i - kRound, i, {0, 0, wrapped(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
   }
   return graph;
 }

@@ -6,7 +6,7 @@
 
 #include "core/random.hpp"
 #include "geo/terrain.hpp"
-#include "testbed/lit_ground.hpp"
+#include "testbed/landing/lit_ground.hpp"
 #include "testbed/noise.hpp"
 #include "testbed/render.hpp"
 

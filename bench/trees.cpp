@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "core/random.hpp"
-#include "importers/canopy.hpp"
-#include "importers/las_catalogue.hpp"
+#include "importers/points/canopy.hpp"
+#include "importers/points/las_catalogue.hpp"
 #include "pipeline/forest/find_trees.hpp"
 
 namespace {
@@ -30,7 +30,8 @@ Grid<float> forest() {
     for (std::int64_t r = first(y); r <= last(y); ++r)
       for (std::int64_t c = first(x); c <= last(x); ++c) {
         const double away = std::hypot(static_cast<double>(c) - x, static_cast<double>(r) - y) / radius;
-        if (away < 1) heights(c, r) = std::max(heights(c, r), static_cast<float>(top * (1 - 0.6 * away * away)));
+        if (away < 1)
+          heights(c, r) = std::max(heights(c, r), static_cast<float>(top * (1 - 0.6 * away * away)));
       }
   }
   for (float& h : heights.cells())
@@ -68,14 +69,15 @@ void search(benchmark::State& state, const TreeSearch& how) {
     trees = 0;
     for (std::int64_t row = 0; row < kSide; row += 1024)
       for (std::int64_t column = 0; column < kSide; column += 1024)
-        trees += find_trees(*canopy, {column, row, std::min<std::int64_t>(1024, kSide - column),
-                                      std::min<std::int64_t>(1024, kSide - row)},
+        trees += find_trees(*canopy,
+                            {column, row, std::min<std::int64_t>(1024, kSide - column),
+                             std::min<std::int64_t>(1024, kSide - row)},
                             how)
                      .size();
   }
   state.counters["trees"] = static_cast<double>(trees);
-  state.counters["cells"] = benchmark::Counter(static_cast<double>(kSide * kSide),
-                                               benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["cells"] =
+      benchmark::Counter(static_cast<double>(kSide * kSide), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void Treetops(benchmark::State& state) {
@@ -107,7 +109,9 @@ const std::string& las_file() {
   static const std::string path = [] {
     constexpr std::uint32_t kPoints = 2000000;
     std::string bytes(227 + std::size_t{28} * kPoints, '\0');
-    const auto put = [&](std::size_t at, const auto& value) { std::memcpy(bytes.data() + at, &value, sizeof value); };
+    const auto put = [&](std::size_t at, const auto& value) {
+      std::memcpy(bytes.data() + at, &value, sizeof value);
+    };
     std::memcpy(bytes.data(), "LASF", 4);
     bytes[24] = 1, bytes[25] = 2, bytes[104] = 1;
     put(94, std::uint16_t{227}), put(96, std::uint32_t{227}), put(105, std::uint16_t{28}), put(107, kPoints);

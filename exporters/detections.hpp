@@ -14,13 +14,13 @@ namespace waymark {
 /// What was found in one image, and what is known of its pixels on the ground.
 struct ImageDetections {
   TypeId type = 0;
-  std::string image;                     ///< name: file name without folders
-  std::int64_t columns = 0, rows = 0;    ///< of the image
-  std::vector<Detection> detections;     ///< in the order they are written
-  std::optional<Georeference> place;     ///< of an orthophoto: pixel -> map, projected or local CRS
-  std::optional<Meters> gsd;             ///< of an image without place
-  std::optional<Degrees> sun_elevation;  ///< needed for heights
-  std::optional<Degrees> sun_azimuth;    ///< for the record, clockwise from map north
+  std::string image;                      ///< name: file name without folders
+  std::int64_t columns = 0, rows = 0;     ///< of the image
+  std::vector<Detection> detections;      ///< in the order they are written
+  std::optional<Georeference> place;      ///< of an orthophoto: pixel -> map, projected or local CRS
+  std::optional<Meters> gsd;              ///< of an image without place
+  std::optional<Degrees> sun_elevation;   ///< needed for heights
+  std::optional<Degrees> sun_azimuth;     ///< for the record, clockwise from map north
   std::vector<FeatureSet> features = {};  ///< of each detection, where the detector measures them itself;
                                           ///< empty: from the outlines, by features_on_ground
 };

@@ -46,8 +46,7 @@ class Terrain {
   /// First meeting of the ray with the ground, exact on the bilinear patches (residual < 1e-5 m).
   /// Max-mipmap quadtree (Tevs et al. 2008), O(log n) for coherent rays. Nothing farther than `most_range`
   /// metres is looked at: such rays end in the sky.
-  RayHit cast(const Ray<GridFrame>& ray,
-              double most_range = std::numeric_limits<double>::infinity()) const;
+  RayHit cast(const Ray<GridFrame>& ray, double most_range = std::numeric_limits<double>::infinity()) const;
   /// Whether something stands between the point and the sun (or any direction). Points are lifted by 1 mm.
   bool in_shadow(const Point<GridFrame>& point, const Direction<GridFrame>& towards_light) const;
 

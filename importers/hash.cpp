@@ -10,8 +10,8 @@
 #include <set>
 
 #include "core/error.hpp"
-#include "importers/find_images.hpp"
 #include "importers/gdal_session.hpp"
+#include "importers/images/find_images.hpp"
 #include "pipeline/engine/sha256.hpp"
 
 namespace waymark {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 
 namespace waymark {
 

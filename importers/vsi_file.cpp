@@ -15,7 +15,8 @@ VSILFILE* handle(void* file) {
 }  // namespace
 
 VsiFile::VsiFile(const std::string& path) : file_(VSIFOpenL(path.c_str(), "rb")) {
-  if (file_ == nullptr) throw Error(ErrorCode::input, "the file does not exist or cannot be read", path, "check its name");
+  if (file_ == nullptr)
+    throw Error(ErrorCode::input, "the file does not exist or cannot be read", path, "check its name");
 }
 
 VsiFile::~VsiFile() {

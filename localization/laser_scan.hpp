@@ -12,7 +12,8 @@ struct LaserScan {
   double first_angle = 0, angle_step = 0;
   std::vector<float> ranges;  ///< m; not finite, <= 0 or >= most_range: nothing was hit
   double most_range = 80;     ///< m
-  double roll = 0, pitch = 0;  ///< rad, of the vehicle, if the scanner tilts with it: Rz(yaw) Ry(pitch) Rx(roll)
+  double roll = 0,
+         pitch = 0;  ///< rad, of the vehicle, if the scanner tilts with it: Rz(yaw) Ry(pitch) Rx(roll)
   /// rad: by how much a thing looks wider than it is, because a beam is no line and needs only a part of its
   /// width to return.
   std::optional<double> beam_width = {};

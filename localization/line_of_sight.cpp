@@ -7,11 +7,16 @@ namespace waymark {
 
 void SightOptions::describe(OptionVisitor& option) {
   option("sensor_height", sensor_height,
-         {.help = "With --dem: metres of the sensor above the ground, for what hides landmarks", .min = 0, .max = 100});
-  option("landmark_height", landmark_height,
-         {.help = "With --dem: metres of a landmark above the ground that must be seen", .min = 0, .max = 100});
+         {.help = "With --dem: metres of the sensor above the ground, for what hides landmarks",
+          .min = 0,
+          .max = 100});
+  option(
+      "landmark_height", landmark_height,
+      {.help = "With --dem: metres of a landmark above the ground that must be seen", .min = 0, .max = 100});
   option("sight_step", step,
-         {.help = "With --dem: metres between the places looked at along a line of sight", .min = 0.01, .max = 100});
+         {.help = "With --dem: metres between the places looked at along a line of sight",
+          .min = 0.01,
+          .max = 100});
 }
 
 LineOfSight sight_over(GroundHeight ground, const SightOptions& options) {

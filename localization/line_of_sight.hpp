@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/options.hpp"
 #include "localization/ground.hpp"
-#include "localization/landmark_grid.hpp"
+#include "localization/identification/landmark_grid.hpp"
 namespace waymark {
 
 /// Whether the ground lets a sensor at a pose see a landmark; none given: always.
@@ -19,9 +19,9 @@ struct SightOptions {
   void describe(OptionVisitor& option);
 };
 
-/// By the heights of a DEM. What the ground is not known of does not hide; curvature is left out, so for a few
-/// kilometres. Heights of a DEM of 1 m cells are good to see hills hide landmarks, not to see rocks do. Empty
-/// where `ground` is.
+/// By the heights of a DEM. What the ground is not known of does not hide; curvature is left out, so for a
+/// few kilometres. Heights of a DEM of 1 m cells are good to see hills hide landmarks, not to see rocks do.
+/// Empty where `ground` is.
 LineOfSight sight_over(GroundHeight ground, const SightOptions& options);
 
 /// Landmarks within `range` metres of the sensor that it cannot see, ascending.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
-#include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
-#include "localization/identification.hpp"
+#include "localization/filters/absolute_fix.hpp"
+#include "localization/identification/identification.hpp"
 namespace waymark {
 
 /// What a localizer knows beside its estimate.

@@ -143,11 +143,12 @@ void PlayOptions::describe(OptionVisitor& option) {
          {.help = "Factor on the standard deviations of ranges and bearings that the log states",
           .min = 0.01,
           .max = 100});
-  option("error_memory", error_memory,
-         {.help = "Factor on the times over which the log says a sensor's errors stay alike; 0: each sighting "
-                  "errs anew",
-          .min = 0,
-          .max = 1000});
+  option(
+      "error_memory", error_memory,
+      {.help = "Factor on the times over which the log says a sensor's errors stay alike; 0: each sighting "
+               "errs anew",
+       .min = 0,
+       .max = 1000});
 }
 
 Track play(const RobotLog& log, Localizer& localizer, const PlayOptions& options, const ScanDetector& detect,

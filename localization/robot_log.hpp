@@ -8,12 +8,12 @@
 #include <variant>
 #include <vector>
 #include "geo/local_frame.hpp"
-#include "localization/absolute_fix.hpp"
-#include "localization/graph.hpp"
+#include "localization/filters/absolute_fix.hpp"
+#include "localization/filters/repeated_sightings.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"
-#include "localization/repeated_sightings.hpp"
 #include "localization/sighting.hpp"
+#include "localization/slam/graph.hpp"
 namespace waymark {
 
 /// Speeds of a differential drive; they hold until the next reading.
@@ -44,9 +44,9 @@ struct StampedPose {
 /// A tree that a harvester's crane took hold of, seen from the machine.
 struct FelledReading {
   double t = 0;
-  double range = 0, bearing = 0;            ///< m, rad
+  double range = 0, bearing = 0;  ///< m, rad
   double range_sd = 0.1, bearing_sd = 0.01;
-  double diameter = 0, height = 0;          ///< m, measured by the head; 0: not
+  double diameter = 0, height = 0;  ///< m, measured by the head; 0: not
 };
 
 /// Uids of landmarks that said who they are.
@@ -55,19 +55,19 @@ using LandmarkNames = std::unordered_map<LandmarkKey, std::string>;
 /// What a robot measured on one drive, in the order of time.
 struct RobotLog {
   std::vector<LogEvent> events;
-  std::vector<StampedPose> truth;  ///< where it really was, as far as that is known; ascending
+  std::vector<StampedPose> truth;     ///< where it really was, as far as that is known; ascending
   std::vector<FelledReading> felled;  ///< ascending
   std::optional<Pose2> start;
   double start_sd = 0, start_yaw_sd = 0.05;  ///< m, rad: how well it is known; 0: the log does not say
   Ackermann car;
   /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
   bool in_crs = false;
-  std::string crs;                   ///< of positions `in_crs`, if the log says; any text Crs understands
+  std::string crs;  ///< of positions `in_crs`, if the log says; any text Crs understands
   LandmarkNames names;
-  ErrorMemory error_memory;  ///< of its sensors
-  std::optional<OdometryNoise> odometry;  ///< what the reader knows of this vehicle's odometry
+  ErrorMemory error_memory;                ///< of its sensors
+  std::optional<OdometryNoise> odometry;   ///< what the reader knows of this vehicle's odometry
   std::shared_ptr<const PoseGraph> graph;  ///< where the log is a graph; the events are drawn from it
-  std::vector<std::string> remarks;  ///< what the reader had to mend or leave out, for people
+  std::vector<std::string> remarks;        ///< what the reader had to mend or leave out, for people
 };
 
 /// Sorts by time (stable), drops events and truth that are not finite, and remarks on that, on gaps in the

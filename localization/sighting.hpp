@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 #include <vector>
-#include "localization/known_features.hpp"
-#include "localization/map_landmark.hpp"
+#include "localization/identification/known_features.hpp"
+#include "localization/identification/map_landmark.hpp"
 #include "localization/pose2.hpp"
 namespace waymark {
 

@@ -8,8 +8,8 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "testbed/lit_ground.hpp"
-#include "testbed/rock_tiles.hpp"
+#include "testbed/landing/lit_ground.hpp"
+#include "testbed/landing/rock_tiles.hpp"
 #include "testbed/sensor.hpp"
 
 namespace waymark {

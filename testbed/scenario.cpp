@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
-#include "testbed/scenario_drive.hpp"
+#include "testbed/drive/scenario_drive.hpp"
 #include "testbed/scenario_fields.hpp"
 #include "testbed/scenario_sections.hpp"
 
@@ -30,7 +30,8 @@ void read_flights(Scenario& scenario, const Json& file, const std::string& sourc
     const std::string place = fmt::format("flights[{}]", i);
     if (!(*given)[i].is_object()) throw Error(ErrorCode::usage, place + " must be an object", source);
     Flight flight;
-    read_fields([&](OptionVisitor& field) { describe_flight(flight, field); }, (*given)[i].dump(), place, source);
+    read_fields([&](OptionVisitor& field) { describe_flight(flight, field); }, (*given)[i].dump(), place,
+                source);
     for (const Flight& other : scenario.flights)
       if (other.name == flight.name)
         throw Error(ErrorCode::usage,
@@ -70,8 +71,8 @@ Scenario read_scenario(std::string_view json, const std::string& source) {
     if (!section.name.empty()) object = file.contains(section.name) ? &file[section.name] : &kNothing;
     if (!object->is_object())
       throw Error(ErrorCode::usage, fmt::format("{} must be an object", section.name), source, section.help);
-    read_fields([&](OptionVisitor& field) { section.describe(scenario, field); }, object->dump(), section.name,
-                source, section.name.empty() ? sections : std::vector<std::string>{});
+    read_fields([&](OptionVisitor& field) { section.describe(scenario, field); }, object->dump(),
+                section.name, source, section.name.empty() ? sections : std::vector<std::string>{});
   }
   if (scenario.bits != 8 && scenario.bits != 16)
     throw Error(ErrorCode::usage, fmt::format("picture.bits must be 8 or 16, is {}", scenario.bits), source);
@@ -112,7 +113,8 @@ std::string scenario_schema() {
   Json& properties = schema["properties"];
   properties["waymark_scenario"] = {{"const", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
-    const Json fields = Json::parse(schema_of_fields([&](OptionVisitor& v) { section.describe(defaults, v); }));
+    const Json fields =
+        Json::parse(schema_of_fields([&](OptionVisitor& v) { section.describe(defaults, v); }));
     if (section.name.empty())
       properties.update(fields);
     else

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 #include "core/options.hpp"
-#include "testbed/drive_settings.hpp"
-#include "testbed/forest_law.hpp"
+#include "testbed/drive/drive_settings.hpp"
+#include "testbed/forest/forest_law.hpp"
 #include "testbed/ground.hpp"
 #include "testbed/render.hpp"
 namespace waymark {

@@ -148,8 +148,7 @@ class SchemaWriter final : public OptionVisitor {
 void read_fields(const FieldsOf& describe, std::string_view json, const std::string& place,
                  const std::string& source, const std::vector<std::string>& also) {
   const Json object = Json::parse(json);
-  if (!object.is_object())
-    throw Error(ErrorCode::usage, fmt::format("{} must be an object", place), source);
+  if (!object.is_object()) throw Error(ErrorCode::usage, fmt::format("{} must be an object", place), source);
   Reader reader(object, place, source);
   describe(reader);
   reader.check_names(also);

@@ -10,8 +10,9 @@ namespace waymark {
 /// What visits the fields of one object of a scenario file.
 using FieldsOf = std::function<void(OptionVisitor&)>;
 
-/// Sets the fields that a JSON object gives. `place` is its path in the file, for messages; `also`: names in it
-/// that are no fields. Throws Error{usage} for names that are unknown, values out of range or of the wrong kind.
+/// Sets the fields that a JSON object gives. `place` is its path in the file, for messages; `also`: names in
+/// it that are no fields. Throws Error{usage} for names that are unknown, values out of range or of the wrong
+/// kind.
 void read_fields(const FieldsOf& describe, std::string_view json, const std::string& place,
                  const std::string& source, const std::vector<std::string>& also = {});
 

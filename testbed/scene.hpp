@@ -6,7 +6,7 @@
 #include "core/grid.hpp"
 #include "geo/terrain.hpp"
 #include "testbed/ground.hpp"
-#include "testbed/rock_solid.hpp"
+#include "testbed/landing/rock_solid.hpp"
 namespace waymark {
 
 /// A rock as the truth list tells it.

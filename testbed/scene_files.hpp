@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "testbed/flight.hpp"
+#include "testbed/landing/flight.hpp"
 namespace waymark {
 
 /// The camera file (docs/camera_file.md). `exact`: with the true poses and no standard deviations.

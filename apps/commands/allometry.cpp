@@ -8,7 +8,7 @@
 #include "apps/log.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
-#include "importers/measured_trees.hpp"
+#include "importers/tables/measured_trees.hpp"
 
 namespace waymark {
 namespace {
@@ -34,26 +34,31 @@ class AllometryCommand final : public Command {
         .group = Group::make,
         .summary = "Fit stem diameters to heights (and crowns) of measured trees",
         .about =
-            "Fits D = a (H - 1.3)^b by least squares, for all trees and for each species with enough of them; where "
-            "every tree has a crown diameter also D = a (H CD)^b, and keeps what errs less on trees held out. The "
+            "Fits D = a (H - 1.3)^b by least squares, for all trees and for each species with enough of "
+            "them; where "
+            "every tree has a crown diameter also D = a (H CD)^b, and keeps what errs less on trees held "
+            "out. The "
             "table says how far it errs: held_out_rmse_cm is of trees (of whole plots, where the table names "
-            "plots) that the curve was not fitted to. Columns are found by their usual names; heights are metres.",
-        .arguments = {Argument{"", "fit", &what_, "What to do"}.one_of({"fit"}).needed(),
-                      file_word("TREES.csv", &input_, "Measured trees: any table with heights and diameters"),
-                      Argument{"-o,--output", "TABLE.csv", &output_, "Table for --allometry"}.needed().offering(
-                          Offer::file),
-                      Argument{"--height", "COLUMN", &columns_.height, "Column of heights, metres"},
-                      Argument{"--diameter", "COLUMN", &columns_.diameter, "Column of stem diameters"},
-                      Argument{"--diameter-unit", "UNIT", &columns_.diameter_unit, "Unit of the diameters"}
-                          .one_of({"cm", "m", "mm"})
-                          .or_else("by the size of the numbers"),
-                      Argument{"--crown", "COLUMN", &columns_.crown, "Column of crown diameters, metres"},
-                      Argument{"--species", "COLUMN", &columns_.species, "Column that names the species"},
-                      Argument{"--plot", "COLUMN", &columns_.plot, "Column whose trees are held out together"},
-                      {"--least-trees", "N", &least_, "Species with fewer trees get no row of their own"}},
-        .examples = {{"waymark allometry fit plots.csv -o spruce.csv", "A table for `waymark trees --allometry`"},
-                     {"waymark allometry fit als.csv -o table.csv --height hmax --diameter DBH",
-                      "Diameters from heights as a laser sees them"}}};
+            "plots) that the curve was not fitted to. Columns are found by their usual names; heights are "
+            "metres.",
+        .arguments =
+            {Argument{"", "fit", &what_, "What to do"}.one_of({"fit"}).needed(),
+             file_word("TREES.csv", &input_, "Measured trees: any table with heights and diameters"),
+             Argument{"-o,--output", "TABLE.csv", &output_, "Table for --allometry"}.needed().offering(
+                 Offer::file),
+             Argument{"--height", "COLUMN", &columns_.height, "Column of heights, metres"},
+             Argument{"--diameter", "COLUMN", &columns_.diameter, "Column of stem diameters"},
+             Argument{"--diameter-unit", "UNIT", &columns_.diameter_unit, "Unit of the diameters"}
+                 .one_of({"cm", "m", "mm"})
+                 .or_else("by the size of the numbers"),
+             Argument{"--crown", "COLUMN", &columns_.crown, "Column of crown diameters, metres"},
+             Argument{"--species", "COLUMN", &columns_.species, "Column that names the species"},
+             Argument{"--plot", "COLUMN", &columns_.plot, "Column whose trees are held out together"},
+             {"--least-trees", "N", &least_, "Species with fewer trees get no row of their own"}},
+        .examples = {
+            {"waymark allometry fit plots.csv -o spruce.csv", "A table for `waymark trees --allometry`"},
+            {"waymark allometry fit als.csv -o table.csv --height hmax --diameter DBH",
+             "Diameters from heights as a laser sees them"}}};
   }
 
   int run(const Session&) override {
@@ -66,11 +71,13 @@ class AllometryCommand final : public Command {
                     read.left_out ? fmt::format("; {} rows without them left out", read.left_out) : ""));
     const auto table = fitted(read);
     for (const Allometry& row : table)
-      say(fmt::format("{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n", row.species,
-                      to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
+      say(fmt::format("{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n",
+                      row.species, to_string(row.form), row.a, row.b, row.trees, row.rmse,
+                      row.held_out_rmse));
     std::ofstream file(output_, std::ios::binary | std::ios::trunc);
     if (!(file << allometry_as_csv(table)) || !file.flush())
-      throw Error(ErrorCode::output, "the table cannot be written", output_, "is the disk full or write-protected?");
+      throw Error(ErrorCode::output, "the table cannot be written", output_,
+                  "is the disk full or write-protected?");
     return 0;
   }
 

@@ -47,7 +47,8 @@ class Detect final : public Command {
                  "Metres without a georeference"},
                 {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
                  "Another method, the surer ones only"},
-                {"waymark detect trees naip.tif -o trees.gpkg", "Crowns in an RGB or RGB + near infrared image"}}};
+                {"waymark detect trees naip.tif -o trees.gpkg",
+                 "Crowns in an RGB or RGB + near infrared image"}}};
   }
 
   int run(const Session& session) override {

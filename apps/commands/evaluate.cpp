@@ -29,31 +29,31 @@ class Evaluate final : public Command {
             "(--by overlap: most confident find first, circles with intersection over union of 0.5). True "
             "things that no image shows wholly, or none larger than --min-pixels, are not asked for (columns "
             "images and pixels of a testbed's truth), nor are those of --ignore.",
-        .arguments = {Argument{"", "WHAT", &what_, "What is compared"}.one_of({"landmarks", "track"}).needed(),
-                      file_word("RESULT", &result_, "Map or table of what was found"),
-                      Argument{"--truth", "FILE", &truth_, "Map or table of what is there"}
-                          .offering(Offer::file)
-                          .needed(),
-                      Argument{"--ignore", "FILE", &ignore_,
-                               "More true things: finding or missing one of these counts neither way"}
-                          .offering(Offer::file),
-                      Argument{"--type", "TYPE", &type_, "Compare one landmark type only"}.or_else(
-                          "all that the truth has"),
-                      Argument{"--by", "RULE", &by_, "How pairs are found"}
-                          .one_of({"distance", "overlap"})
-                          .or_else("distance"),
-                      Argument{"--share", "DIAMETERS", &share_, "Largest distance of a pair"}.or_else("0.75"),
-                      Argument{"--least", "UNITS", &least_, "Distance that is always allowed"}.or_else("0"),
-                      Argument{"--min-diameter", "UNITS", &min_diameter_, "Smaller things are not asked for"}
-                          .or_else("0"),
-                      Argument{"--min-pixels", "PIXELS", &min_pixels_,
-                               "Things smaller than this in every image are not asked for"}
-                          .or_else("3"),
-                      Argument{"--size-edges", "D...", &edges_,
-                               "Diameters between which results are told apart"},
-                      Argument{"--format", "FORMAT", &format_, "text or json"}
-                          .one_of({"text", "json"})
-                          .or_else("text")},
+        .arguments =
+            {Argument{"", "WHAT", &what_, "What is compared"}.one_of({"landmarks", "track"}).needed(),
+             file_word("RESULT", &result_, "Map or table of what was found"),
+             Argument{"--truth", "FILE", &truth_, "Map or table of what is there"}
+                 .offering(Offer::file)
+                 .needed(),
+             Argument{"--ignore", "FILE", &ignore_,
+                      "More true things: finding or missing one of these counts neither way"}
+                 .offering(Offer::file),
+             Argument{"--type", "TYPE", &type_, "Compare one landmark type only"}.or_else(
+                 "all that the truth has"),
+             Argument{"--by", "RULE", &by_, "How pairs are found"}
+                 .one_of({"distance", "overlap"})
+                 .or_else("distance"),
+             Argument{"--share", "DIAMETERS", &share_, "Largest distance of a pair"}.or_else("0.75"),
+             Argument{"--least", "UNITS", &least_, "Distance that is always allowed"}.or_else("0"),
+             Argument{"--min-diameter", "UNITS", &min_diameter_, "Smaller things are not asked for"}.or_else(
+                 "0"),
+             Argument{"--min-pixels", "PIXELS", &min_pixels_,
+                      "Things smaller than this in every image are not asked for"}
+                 .or_else("3"),
+             Argument{"--size-edges", "D...", &edges_, "Diameters between which results are told apart"},
+             Argument{"--format", "FORMAT", &format_, "text or json"}
+                 .one_of({"text", "json"})
+                 .or_else("text")},
         .examples = {{"waymark evaluate landmarks mars.gpkg --truth mars/truth.csv --ignore mars/ignored.csv",
                       "A landing map against its testbed"},
                      {"waymark evaluate landmarks out.csv --truth tile_gt.csv --by overlap --min-diameter 16",

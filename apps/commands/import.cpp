@@ -14,7 +14,7 @@
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
-#include "importers/table_landmarks.hpp"
+#include "importers/tables/table_landmarks.hpp"
 
 namespace waymark {
 namespace {

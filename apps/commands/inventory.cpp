@@ -16,7 +16,7 @@
 #include "exporters/inventory_report.hpp"
 #include "exporters/shape_csv.hpp"
 #include "geodb/aside_file.hpp"
-#include "importers/stand_outlines.hpp"
+#include "importers/tables/stand_outlines.hpp"
 
 namespace waymark {
 namespace {

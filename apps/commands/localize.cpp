@@ -36,7 +36,11 @@ class Localize final : public Command {
             "Metres are those of the map's east-north-up frame about the middle of its landmarks; of a local "
             "CRS, its own coordinates. --crs writes coordinates of the map's CRS.",
         .arguments =
-            {Argument{"", "MAP.gpkg", &map_, "Map to use; it is not changed, unless --update-map asks for it; none: no map, for slam, graph and odometry"}.needed().offering(Offer::file),
+            {Argument{"", "MAP.gpkg", &map_,
+                      "Map to use; it is not changed, unless --update-map asks for it; none: no map, for "
+                      "slam, graph and odometry"}
+                 .needed()
+                 .offering(Offer::file),
              Argument{"", "LOG", &log_, "Log of the robot: a file, or the folder of a dataset"}
                  .needed()
                  .offering(Offer::file),
@@ -101,8 +105,9 @@ class Localize final : public Command {
     settings_.identification.use_identities = ids_ == "known";
     settings_.particles.threads = session.threads;
     const SensorProfile* sensor = sensor_.empty() ? nullptr : &all_sensors().at(sensor_);
-    OpenedMap opened = map_ == "none" && !method.needs_map() ? no_robot_map()
-                                                           : open_robot_map(map_, sensor, !method.needs_map());
+    OpenedMap opened = map_ == "none" && !method.needs_map()
+                           ? no_robot_map()
+                           : open_robot_map(map_, sensor, !method.needs_map());
     const RobotMap map = opened.map;
     RobotLog log = import_log(log_, map.types(), how_);
     check_place(log, map);
@@ -220,7 +225,8 @@ class Localize final : public Command {
     }
     if (log.start && start_.empty()) {
       start.pose = *log.start;
-      const bool told = std::ranges::any_of(sets_, [](const std::string& s) { return s.starts_with("start_"); });
+      const bool told =
+          std::ranges::any_of(sets_, [](const std::string& s) { return s.starts_with("start_"); });
       if (log.start_sd > 0 && !told)
         start.covariance.diagonal() << log.start_sd * log.start_sd, log.start_sd * log.start_sd,
             log.start_yaw_sd * log.start_yaw_sd;

@@ -23,9 +23,9 @@ class Peaks final : public Shortcut {
         .about =
             "Several files that touch or overlap are one DEM. The result does not depend on --threads or "
             "--tile-cells. Every height that hidden ground could change comes with a certified lower bound.",
-        .arguments =
-            {file_word("DEM...", &files_,
-                       "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")},
+        .arguments = {file_word(
+            "DEM...", &files_,
+            "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")},
         .examples = {
             {"waymark peaks alps.tif -o alps.gpkg --min-prominence 30",
              "A map of the summits that rise 30 m"},

@@ -14,9 +14,10 @@ class Restore final : public Command {
     return {.name = "restore",
             .group = Group::make,
             .summary = "Take back the last update of a map",
-            .about = "Puts back the state a map had before `waymark localize --update-map` last changed it. "
-                     "That state lies beside the map as MAP.gpkg.before-run-N, N the number of the run; it "
-                     "is used up. Earlier updates can be taken back in turn.",
+            .about =
+                "Puts back the state a map had before `waymark localize --update-map` last changed it. "
+                "That state lies beside the map as MAP.gpkg.before-run-N, N the number of the run; it "
+                "is used up. Earlier updates can be taken back in turn.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to restore")},
             .examples = {{"waymark restore site.gpkg", "Take back what the last drive changed"}}};
   }

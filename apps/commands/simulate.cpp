@@ -16,7 +16,7 @@
 #include "exporters/aside_folder.hpp"
 #include "exporters/image_file.hpp"
 #include "exporters/raster_file.hpp"
-#include "testbed/lit_ground.hpp"
+#include "testbed/landing/lit_ground.hpp"
 #include "testbed/scene_files.hpp"
 
 namespace waymark {
@@ -57,14 +57,13 @@ class Simulate final : public Command {
             "sees it from "
             "the air: dtm.tif, dsm.tif, chm.tif, points.las, stands.geojson, the job and the truth "
             "(docs/forest_testbed.md).\n\nThe scenario is JSON; every field has a default: docs/testbed.md.",
-        .arguments = {file_word("SCENARIO.json", &scenario_, "What to make"),
-                      Argument{"-o,--output", "DIR", &folder_, "Folder for the files; it may exist"}
-                          .needed()
-                          .offering(Offer::folder),
-                      {"--seed", "N", &seed_, "Another site of the same kind; default: the scenario's seed"},
-                      {"--drive-seed", "N", &drive_seed_, "Another drive on the same site"},
-                      {"--drive-only", "", &drive_only_,
-                       "Write the drive and its truth only, no DEM and no images"}},
+        .arguments =
+            {file_word("SCENARIO.json", &scenario_, "What to make"),
+             Argument{"-o,--output", "DIR", &folder_, "Folder for the files; it may exist"}.needed().offering(
+                 Offer::folder),
+             {"--seed", "N", &seed_, "Another site of the same kind; default: the scenario's seed"},
+             {"--drive-seed", "N", &drive_seed_, "Another drive on the same site"},
+             {"--drive-only", "", &drive_only_, "Write the drive and its truth only, no DEM and no images"}},
         .examples = {
             {"waymark simulate scenario.json -o landing", "dem.tif, images, cameras.json, truth, job.json"},
             {"waymark run landing/job.json -o landing.gpkg", "The map of it"},

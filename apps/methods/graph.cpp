@@ -7,9 +7,9 @@
 
 #include "apps/localize_method.hpp"
 #include "apps/slam_update.hpp"
-#include "localization/existence.hpp"
-#include "localization/graph_of_drive.hpp"
-#include "localization/graph_solver.hpp"
+#include "localization/slam/existence.hpp"
+#include "localization/slam/graph_of_drive.hpp"
+#include "localization/slam/graph_solver.hpp"
 
 namespace waymark {
 namespace {
@@ -35,7 +35,8 @@ class Graph final : public LocalizeMethod {
  public:
   std::string_view name() const override { return "graph"; }
   std::string_view summary() const override {
-    return "least squares over all poses and landmarks at once, of a graph file or of a drive; the map may be none";
+    return "least squares over all poses and landmarks at once, of a graph file or of a drive; the map may "
+           "be none";
   }
   StartNeed start() const override { return StartNeed::found; }
   bool needs_map() const override { return false; }

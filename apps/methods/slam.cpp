@@ -6,7 +6,7 @@
 #include "apps/localize_method.hpp"
 #include "apps/log.hpp"
 #include "apps/slam_update.hpp"
-#include "localization/ekf_slam.hpp"
+#include "localization/slam/ekf_slam.hpp"
 
 namespace waymark {
 namespace {
@@ -39,8 +39,8 @@ class Slam final : public LocalizeMethod {
     std::size_t sure = 0, doubtful = 0, unseen = 0, gone = 0;
     for (const SlamLandmark& l : landmarks)
       ++(l.gone ? gone : !l.slot ? unseen : l.log_odds >= options.confirmed ? sure : doubtful);
-    say(fmt::format("landmarks: {} sure, {} doubtful, {} of the map not seen, {} of the map not there\n", sure,
-                    doubtful, unseen, gone));
+    say(fmt::format("landmarks: {} sure, {} doubtful, {} of the map not seen, {} of the map not there\n",
+                    sure, doubtful, unseen, gone));
   }
   static std::string job(const LocalizeTask& task, const SlamOptions& o) {
     return nlohmann::json{{"method", "slam"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/localize_method.hpp"
-#include "localization/restarting.hpp"
+#include "localization/filters/restarting.hpp"
 
 namespace waymark {
 namespace {
@@ -8,7 +8,7 @@ namespace {
 class Ukf final : public FilterMethod {
  public:
   std::string_view name() const override { return "ukf"; }
-  std::string_view summary() const override { 
+  std::string_view summary() const override {
     return "unscented Kalman filter, square root form; without identities a sum of Gaussians, as ekf";
   }
 
@@ -18,7 +18,8 @@ class Ukf final : public FilterMethod {
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
     const auto begin = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
                         &settings = task.settings, visible = sight_of(task),
-                        growth = search_growth(task, task.settings.kalman.search_growth)](const PoseEstimate& start) -> std::unique_ptr<Localizer> {
+                        growth = search_growth(task, task.settings.kalman.search_growth)](
+                           const PoseEstimate& start) -> std::unique_ptr<Localizer> {
       const IdentificationOptions& id = settings.identification;
       if (id.use_identities || id.association != "joint") {
         KalmanOptions options = settings.kalman;

@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "core/error.hpp"
-#include "importers/camera_file.hpp"
-#include "importers/text_table.hpp"
+#include "importers/images/camera_file.hpp"
+#include "importers/tables/text_table.hpp"
 
 namespace waymark {
 namespace {

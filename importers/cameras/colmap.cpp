@@ -11,9 +11,9 @@
 #include <map>
 
 #include "core/error.hpp"
-#include "importers/camera_file.hpp"
+#include "importers/images/camera_file.hpp"
 #include "importers/json_value.hpp"
-#include "importers/text_table.hpp"
+#include "importers/tables/text_table.hpp"
 
 namespace waymark {
 namespace {

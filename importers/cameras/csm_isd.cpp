@@ -18,8 +18,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "importers/camera_file.hpp"
-#include "importers/fit_lens.hpp"
+#include "importers/images/camera_file.hpp"
+#include "importers/images/fit_lens.hpp"
 #include "importers/json_value.hpp"
 
 namespace waymark {

@@ -13,11 +13,11 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "importers/camera_file.hpp"
-#include "importers/fit_lens.hpp"
 #include "importers/gdal_session.hpp"
+#include "importers/images/camera_file.hpp"
+#include "importers/images/fit_lens.hpp"
 #include "importers/json_value.hpp"
-#include "importers/text_table.hpp"
+#include "importers/tables/text_table.hpp"
 
 namespace waymark {
 namespace {

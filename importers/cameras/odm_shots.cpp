@@ -11,9 +11,9 @@
 #include <map>
 
 #include "geo/crs.hpp"
-#include "importers/camera_file.hpp"
-#include "importers/interior.hpp"
+#include "importers/images/camera_file.hpp"
 #include "importers/json_value.hpp"
+#include "importers/rasters/interior.hpp"
 
 namespace waymark {
 namespace {

@@ -14,10 +14,10 @@
 #include <map>
 
 #include "core/error.hpp"
-#include "importers/camera_file.hpp"
-#include "importers/interior.hpp"
+#include "importers/images/camera_file.hpp"
 #include "importers/json_value.hpp"
-#include "importers/text_table.hpp"
+#include "importers/rasters/interior.hpp"
+#include "importers/tables/text_table.hpp"
 
 namespace waymark {
 namespace {

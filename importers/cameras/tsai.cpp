@@ -13,8 +13,8 @@
 #include <map>
 
 #include "core/error.hpp"
-#include "importers/camera_file.hpp"
-#include "importers/text_table.hpp"
+#include "importers/images/camera_file.hpp"
+#include "importers/tables/text_table.hpp"
 
 namespace waymark {
 namespace {

@@ -6,10 +6,10 @@
 #include <Eigen/SVD>
 #include <map>
 
-#include "importers/camera_file.hpp"
-#include "importers/interior.hpp"
+#include "importers/images/camera_file.hpp"
+#include "importers/images/sun_position.hpp"
 #include "importers/json_value.hpp"
-#include "importers/sun_position.hpp"
+#include "importers/rasters/interior.hpp"
 
 namespace waymark {
 namespace {

@@ -65,7 +65,7 @@ void for_each_line(const fs::path& file, const std::string& text, const auto& vi
         continue;
       }
       std::size_t stop = i;
-      while (stop < end && static_cast<unsigned char>(text[stop]) > ' ') ++stop;
+      while (stop<end&& static_cast<unsigned char>(text[stop])> ' ') ++stop;
       const auto token = std::string_view(text).substr(i, stop - i);
       if (line.word.empty())
         line.word = token;

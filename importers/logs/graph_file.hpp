@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-#include "localization/graph.hpp"
+#include "localization/slam/graph.hpp"
 namespace waymark {
 
 /// A graph as its file has it.
@@ -13,14 +13,15 @@ struct ImportedGraph {
   std::vector<std::string> remarks;  ///< what was left out, for people
 };
 
-/// The dialect of a text that holds a graph: "isam", "g2o", "toro", or empty for what is none of them. isam and
-/// toro share the word EDGE2: told apart by the place of the zeros among its six numbers.
+/// The dialect of a text that holds a graph: "isam", "g2o", "toro", or empty for what is none of them. isam
+/// and toro share the word EDGE2: told apart by the place of the zeros among its six numbers.
 std::string graph_format(const std::filesystem::path& file);
 
 /// Reads a plane pose graph with or without landmarks. `format`:
 ///   isam  ODOMETRY or EDGE2 (from to x y yaw), LANDMARK (pose landmark x y), then the square root of the
 ///         information, upper triangle by rows, which may be missing. Landmarks have numbers of their own
-///   g2o   VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, EDGE_PRIOR_SE2, FIX; information,
+///   g2o   VERTEX_SE2, VERTEX_XY, EDGE_SE2, EDGE_SE2_XY, EDGE_BEARING_SE2_XY, EDGE_PRIOR_SE2, FIX;
+///   information,
 ///         upper triangle by rows
 ///   toro  VERTEX2, EDGE2 (information I11 I12 I22 I33 I13 I23), LANDMARK as g2o's EDGE_SE2_XY
 /// Throws Error{input} with the line: a line that is cut off, no number, information that is not positive

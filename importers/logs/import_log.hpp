@@ -10,8 +10,9 @@ namespace waymark {
 
 /// How a log is read.
 struct LogImport {
-  std::string format = {};  ///< waymark, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
-  std::int64_t robot = 0;   ///< MRCLAM: which of the five; 0: the one whose file is named
+  std::string format =
+      {};  ///< waymark, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
+  std::int64_t robot = 0;  ///< MRCLAM: which of the five; 0: the one whose file is named
 };
 
 /// Reads a log of any format. `types` gives the sightings their type ids; sightings of a type it does not
@@ -30,8 +31,8 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
 std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path, TypeId type,
                                               const LandmarkType& declared);
 
-/// A graph file (graph_file.hpp): the graph, and the same as steps and sightings of landmarks that say who they
-/// are, one time unit per pose. Loops that are not steps of the drive are in the graph only.
+/// A graph file (graph_file.hpp): the graph, and the same as steps and sightings of landmarks that say who
+/// they are, one time unit per pose. Loops that are not steps of the drive are in the graph only.
 RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format);
 
 /// ACFR Victoria Park as text: folder with DRS.txt, LASER.txt, GPS.txt. Scans of a laser on the front bumper;

@@ -93,7 +93,8 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
     frames.add(seen[i] - kLatency, s);
   }
   RobotLog log;
-  for (const auto& [code, subject] : subject_of) log.names.emplace(landmark_key(uid_of(subject)), uid_of(subject));
+  for (const auto& [code, subject] : subject_of)
+    log.names.emplace(landmark_key(uid_of(subject)), uid_of(subject));
   log.in_crs = true;
   const auto odometry = number_table(file("Odometry"), 3);
   for (std::size_t i = 0; i < odometry.size(); i += 3)

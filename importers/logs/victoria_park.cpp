@@ -17,10 +17,8 @@ RobotLog import_victoria_park(const std::filesystem::path& folder) {
   RobotLog log;
   log.car = {2.83, 0.76, 3.78, 0.5};
   // Of this car, chosen on the first 200 s.
-  log.odometry = OdometryNoise{.along_per_metre = 0.01,
-                               .across_per_metre = 0.001,
-                               .yaw_per_metre = 2e-4,
-                               .yaw_per_radian = 5e-3};
+  log.odometry = OdometryNoise{
+      .along_per_metre = 0.01, .across_per_metre = 0.001, .yaw_per_metre = 2e-4, .yaw_per_radian = 5e-3};
   const auto drive = number_table(folder / "DRS.txt", 3);
   for (std::size_t i = 0; i < drive.size(); i += 3)
     log.events.push_back({drive[i], CarReading{drive[i + 1], drive[i + 2]}});

@@ -138,7 +138,8 @@ class Reader {
     if (line.has("version") && line.number("version") > 1)
       line.fail(fmt::format("is of version {}, this program reads version 1", line.number("version")));
     const std::string frame = line.has("frame") ? line.text("frame") : "map";
-    if (frame != "map" && frame != "crs") line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
+    if (frame != "map" && frame != "crs")
+      line.fail("\"frame\" must be \"map\" or \"crs\", is \"" + frame + "\"");
     log_.in_crs = frame == "crs";
     if (line.has("crs")) log_.crs = line.text("crs");
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
@@ -233,7 +234,8 @@ class Reader {
   }
 
   static std::vector<float> numbers(const Line& line, const char* key) {
-    if (!line.has(key) || !line.object()[key].is_array()) line.fail(fmt::format("\"{}\" must be a list", key));
+    if (!line.has(key) || !line.object()[key].is_array())
+      line.fail(fmt::format("\"{}\" must be a list", key));
     std::vector<float> all;
     for (const json& value : line.object()[key])
       all.push_back(value.is_number() ? value.get<float>() : std::numeric_limits<float>::quiet_NaN());
@@ -251,7 +253,8 @@ class Reader {
                      .focal = line.positive("focal", 1),
                      .depths = numbers(line, "depths")};
     if (static_cast<std::int64_t>(image.depths.size()) != image.columns * image.rows)
-      line.fail(fmt::format("has {} depths for {} x {} pixels", image.depths.size(), image.columns, image.rows));
+      line.fail(
+          fmt::format("has {} depths for {} x {} pixels", image.depths.size(), image.columns, image.rows));
     return image;
   }
 

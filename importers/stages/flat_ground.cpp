@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geo/plane_dem.hpp"
-#include "importers/dem_codec.hpp"
+#include "importers/rasters/dem_codec.hpp"
 #include "pipeline/engine/stage.hpp"
 
 namespace waymark {

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "geo/plane_dem.hpp"
-#include "importers/canopy.hpp"
-#include "importers/canopy_codec.hpp"
-#include "importers/dem_codec.hpp"
+#include "importers/points/canopy.hpp"
+#include "importers/points/canopy_codec.hpp"
+#include "importers/rasters/dem_codec.hpp"
 #include "importers/tiling.hpp"
 #include "pipeline/engine/stage.hpp"
 
@@ -27,16 +27,20 @@ struct LoadCanopy {
       option("chm", chm, {.help = "Canopy height models: heights above ground"});
       option("dsm", dsm, {.help = "Surface models, instead of chm; the ground is told by dtm"});
       option("dtm", dtm, {.help = "Terrain models under the surface models, on any grid"});
-      option("las", las,
-             {.help = "LAS files, instead of chm: one catalogue of laser points, ground classified (class 2)"});
+      option(
+          "las", las,
+          {.help = "LAS files, instead of chm: one catalogue of laser points, ground classified (class 2)"});
       option("resolution", resolution,
              {.help = "Cell of the canopy made of laser points; 0: by their density", .min = 0, .max = 20});
-      option("flights", flights,
-             {.help = "Each file of chm (of dsm, of las) is a survey of its own: trees that several saw are merged. "
-                      "Otherwise the files make one canopy; where they overlap the first one counts"});
-      option("forest_type", forest_type,
-             {.help = "Raster that tells the type of forest, so that treetops are sought by the preset of each: "
-                      "1 conifer, 2 broadleaf, 3 mixed"});
+      option(
+          "flights", flights,
+          {.help =
+               "Each file of chm (of dsm, of las) is a survey of its own: trees that several saw are merged. "
+               "Otherwise the files make one canopy; where they overlap the first one counts"});
+      option(
+          "forest_type", forest_type,
+          {.help = "Raster that tells the type of forest, so that treetops are sought by the preset of each: "
+                   "1 conifer, 2 broadleaf, 3 mixed"});
       option("crs", crs,
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
       option("tile_cells", tile_cells,
@@ -66,7 +70,8 @@ struct LoadCanopy {
 
   static std::vector<std::string> input_files(const Options& o) {
     std::vector<std::string> all;
-    for (const auto* files : {&o.chm, &o.dsm, &o.dtm, &o.las}) all.insert(all.end(), files->begin(), files->end());
+    for (const auto* files : {&o.chm, &o.dsm, &o.dtm, &o.las})
+      all.insert(all.end(), files->begin(), files->end());
     if (!o.forest_type.empty()) all.push_back(o.forest_type);
     return all;
   }
@@ -115,7 +120,8 @@ struct LoadCanopy {
   // With its folder where another file has the same name: surveys are told apart by their names.
   static std::string name_among(const std::string& file, const std::vector<std::string>& files) {
     const auto plain = [](const std::string& f) { return std::filesystem::path(f).filename(); };
-    const auto alike = std::ranges::count_if(files, [&](const std::string& f) { return plain(f) == plain(file); });
+    const auto alike =
+        std::ranges::count_if(files, [&](const std::string& f) { return plain(f) == plain(file); });
     return alike > 1 ? file : plain(file).string();
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/dem.hpp"
-#include "importers/dem_codec.hpp"
-#include "importers/nodata_policy.hpp"
+#include "importers/rasters/dem.hpp"
+#include "importers/rasters/dem_codec.hpp"
+#include "importers/rasters/nodata_policy.hpp"
 #include "importers/tiling.hpp"
 #include "pipeline/engine/stage.hpp"
 

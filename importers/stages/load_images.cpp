@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "geo/dem_handle.hpp"
-#include "importers/camera_set.hpp"
-#include "importers/control_points.hpp"
-#include "importers/find_images.hpp"
-#include "importers/image_set.hpp"
-#include "importers/list_images.hpp"
-#include "importers/text_table.hpp"
+#include "importers/images/camera_set.hpp"
+#include "importers/images/control_points.hpp"
+#include "importers/images/find_images.hpp"
+#include "importers/images/image_set.hpp"
+#include "importers/images/list_images.hpp"
+#include "importers/tables/text_table.hpp"
 #include "pipeline/engine/stage.hpp"
 
 namespace waymark {

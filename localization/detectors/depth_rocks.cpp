@@ -16,8 +16,8 @@ struct Square {
   int points = 0, segment = -1;
 };
 
-// Height of the ground at a square: a plane through the lowest points around, from which what stands out is left
-// out twice.
+// Height of the ground at a square: a plane through the lowest points around, from which what stands out is
+// left out twice.
 double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64_t row, std::int64_t reach) {
   Eigen::Vector3d plane(0, 0, 0);
   double above = 1e9;
@@ -25,7 +25,8 @@ double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     int used = 0;
-    for (std::int64_t r = std::max<std::int64_t>(0, row - reach); r <= std::min(squares.rows() - 1, row + reach); ++r)
+    for (std::int64_t r = std::max<std::int64_t>(0, row - reach);
+         r <= std::min(squares.rows() - 1, row + reach); ++r)
       for (std::int64_t c = std::max<std::int64_t>(0, column - reach);
            c <= std::min(squares.columns() - 1, column + reach); ++c) {
         const Square& square = squares(c, r);
@@ -131,8 +132,8 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& opt
                    .radius = radius,
                    .height = sum.top,
                    .points = sum.points};
-    rock.range_sd = std::sqrt(0.05 * 0.05 + 0.0625 * radius * radius +
-                              std::pow(0.0006 * sum.near * sum.near, 2));
+    rock.range_sd =
+        std::sqrt(0.05 * 0.05 + 0.0625 * radius * radius + std::pow(0.0006 * sum.near * sum.near, 2));
     rock.bearing_sd = 0.2 * radius / rock.range + 0.5 / image.focal;
     rocks.push_back(rock);
   }

@@ -39,7 +39,8 @@ std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const Horizo
                  .prominence = prominence};
     // A flat top is found less well: where the horizon is within its noise of the summit.
     std::ptrdiff_t wide = 1;
-    while (wide < n / 4 && (at(i + wide) > here - 2 * horizon.elevation_sd || at(i - wide) > here - 2 * horizon.elevation_sd))
+    while (wide < n / 4 &&
+           (at(i + wide) > here - 2 * horizon.elevation_sd || at(i - wide) > here - 2 * horizon.elevation_sd))
       ++wide;
     s.bearing_sd = horizon.angle_step * (0.3 + 0.3 * double(wide));
     summits.push_back(s);

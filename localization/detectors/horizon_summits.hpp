@@ -20,13 +20,13 @@ struct HorizonSummits {
 
 /// A summit on the horizon.
 struct SeenSummit {
-  double bearing = 0, elevation = 0;        ///< rad
-  double prominence = 0;                    ///< rad
+  double bearing = 0, elevation = 0;  ///< rad
+  double prominence = 0;              ///< rad
   double bearing_sd = 0.01;
 };
 
-/// Local maxima of the horizon that stand out; the highest first. A full turn is taken as a ring. The place is
-/// that of a parabola through the highest and its neighbours.
+/// Local maxima of the horizon that stand out; the highest first. A full turn is taken as a ring. The place
+/// is that of a parabola through the highest and its neighbours.
 std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const HorizonSummits& options);
 
 /// Bearings only: the map does not say how far they are.

@@ -8,12 +8,12 @@ namespace waymark {
 
 /// What a line scanner close above the ground takes for a rock.
 struct LaserRocks {
-  std::optional<TypeId> type;   ///< given to the sightings; its first feature is the radius (as `rock`)
-  double jump = 0.35;           ///< m between neighbouring beams that parts two things
-  double clear = 0.5;           ///< m by which what stands beside must be farther away
-  double least_width = 0.2;     ///< m
-  double most_width = 5;        ///< m; what is wider is ground
-  double most_range = 25;       ///< m
+  std::optional<TypeId> type;  ///< given to the sightings; its first feature is the radius (as `rock`)
+  double jump = 0.35;          ///< m between neighbouring beams that parts two things
+  double clear = 0.5;          ///< m by which what stands beside must be farther away
+  double least_width = 0.2;    ///< m
+  double most_width = 5;       ///< m; what is wider is ground
+  double most_range = 25;      ///< m
   int least_beams = 3;
   double roughness = 0.2;       ///< RMS of the ranges about an arc, share of the width
   double least_bulge = -0.05;   ///< how far the ends lie behind the middle, share of the width

@@ -17,8 +17,8 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
   const auto n = ranges.size();
   stem.beams = static_cast<int>(n);
   stem.bearing = first_bearing + 0.5 * step * static_cast<double>(n - 1);
-  // The nearest of a few noisy ranges lies before the stem, the mean of all behind its front: the middle third
-  // is nearly flat.
+  // The nearest of a few noisy ranges lies before the stem, the mean of all behind its front: the middle
+  // third is nearly flat.
   double front = 0;
   const std::size_t skip = n / 3;
   for (std::size_t i = skip; i < n - skip; ++i) front += ranges[i];
@@ -46,8 +46,8 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
 }
 
 // What stands beside is farther away. On one side it may be nearer, if the stem is whole all the same: then
-// its last beam there lies as far behind the front as a stem's edge does. At the ends of the scan nobody knows
-// what stands beside.
+// its last beam there lies as far behind the front as a stem's edge does. At the ends of the scan nobody
+// knows what stands beside.
 bool stands_out(std::span<const double> ranges, const BeamRun& run, double mean, const LaserStems& options) {
   const auto [first, last] = run;
   if (first == 0 || last + 1 >= ranges.size()) return false;
@@ -93,7 +93,8 @@ std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options) {
     const Stem stem = stem_of(hits, scan.first_angle + static_cast<double>(run.first) * scan.angle_step,
                               scan.angle_step, width_of(scan, run.beams()));
     if (stem.diameter >= options.least_diameter && stem.diameter <= options.most_diameter &&
-        stem.roughness <= std::min(options.roughness, options.rough_base + options.rough_share * stem.diameter))
+        stem.roughness <=
+            std::min(options.roughness, options.rough_base + options.rough_share * stem.diameter))
       stems.push_back(stem);
   }
   return stems;

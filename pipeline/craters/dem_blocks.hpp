@@ -8,7 +8,7 @@ namespace waymark {
 /// What to look for in a DEM of any size.
 struct DemSurvey {
   TypeId type = 0;            ///< id of the landmark type `crater`
-  double min_diameter = 9;   ///< cells
+  double min_diameter = 9;    ///< cells
   double max_diameter = 400;  ///< cells, <= kDemLargest
   double min_confidence = 0.5;
 };

@@ -82,8 +82,8 @@ Pixels square_cells(const HeightWindow& heights, double cell_width, double cell_
 double probability(double correlation, const DemRim& rim, double cell) {
   const double cells = std::sqrt(rim.major * rim.minor),
                weakest = std::clamp(rim.weakest / (cells * cell), -0.02, 0.12);
-  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) +
-                             0.3 * std::log2(cells / 16) - 0.77)));
+  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) + 0.3 * std::log2(cells / 16) -
+                             0.77)));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace waymark {
 /// What to look for in a piece of a DEM.
 struct DemCraterSearch {
   double cell_width = 1, cell_height = 1;  ///< metres, > 0
-  double min_diameter = 9;                ///< in cells of the coarser direction, >= 6
+  double min_diameter = 9;                 ///< in cells of the coarser direction, >= 6
   double max_diameter = 0;                 ///< in cells; 0: 0.6 of the window's shorter side
   double min_confidence = 0.5;
 };

@@ -37,7 +37,8 @@ struct RunReport {
 
   /// Every unit was made or reused.
   bool complete() const;
-  /// 0; 2 where a unit refused an option, which no second run mends; else 3 where units failed (interface.md).
+  /// 0; 2 where a unit refused an option, which no second run mends; else 3 where units failed
+  /// (interface.md).
   int exit_code() const;
 };
 

@@ -43,7 +43,8 @@ std::vector<std::string> cells_of(std::string_view line) {
 std::optional<double> number(const std::string& cell) {
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (cell.empty() || error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value)) return {};
+  if (cell.empty() || error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+    return {};
   return value;
 }
 
@@ -158,9 +159,9 @@ std::string allometry_as_csv(std::span<const Allometry> table) {
     const bool quote = row.species.find_first_of(",\"") != std::string::npos;
     std::string species = row.species;
     std::erase(species, '"');
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote ? '"' + species + '"' : species, to_string(row.form),
-                       cell(row.a), cell(row.b), cell(row.sigma), row.trees, cell(row.rmse),
-                       cell(row.held_out_rmse), cell(row.held_out_bias), row.source);
+    csv += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", quote ? '"' + species + '"' : species,
+                       to_string(row.form), cell(row.a), cell(row.b), cell(row.sigma), row.trees,
+                       cell(row.rmse), cell(row.held_out_rmse), cell(row.held_out_bias), row.source);
   }
   return csv;
 }

@@ -21,12 +21,12 @@ struct Allometry {
   std::string species = "all";  ///< "all": of any other species
   AllometryForm form = AllometryForm::height;
   double a = 0, b = 0;
-  double sigma = 0;            ///< standard deviation of a single tree's ln D about the curve
-  std::int64_t trees = 0;      ///< it was fitted to; 0: not told
-  double rmse = kUnknown;      ///< cm, of the trees it was fitted to
+  double sigma = 0;                 ///< standard deviation of a single tree's ln D about the curve
+  std::int64_t trees = 0;           ///< it was fitted to; 0: not told
+  double rmse = kUnknown;           ///< cm, of the trees it was fitted to
   double held_out_rmse = kUnknown;  ///< cm, of trees (plots) it was not fitted to
   double held_out_bias = kUnknown;  ///< cm, predicted less measured, of the same
-  std::string source = {};     ///< where the coefficients come from
+  std::string source = {};          ///< where the coefficients come from
 
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 };

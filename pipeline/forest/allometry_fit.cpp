@@ -113,10 +113,11 @@ std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const 
     by_species[tree.species].push_back(&tree);
   }
   if (all.size() < 5)
-    throw Error(ErrorCode::input,
-                fmt::format("{} trees of {} have a height above 1.3 m and a diameter: too few to fit a curve to",
-                            all.size(), trees.size()),
-                "", "five are the least, fifty make a table worth using");
+    throw Error(
+        ErrorCode::input,
+        fmt::format("{} trees of {} have a height above 1.3 m and a diameter: too few to fit a curve to",
+                    all.size(), trees.size()),
+        "", "five are the least, fifty make a table worth using");
   const auto named = [](Allometry row, const std::string& species) {
     row.species = species;
     row.source = "waymark allometry fit";

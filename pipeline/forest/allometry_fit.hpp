@@ -8,10 +8,10 @@ namespace waymark {
 /// A tree measured in the field.
 struct MeasuredTree {
   std::string species = "all";
-  double height = 0;                     ///< metres
-  double diameter = 0;                   ///< DBH, centimetres
-  double crown = Allometry::kUnknown;    ///< crown diameter, metres
-  std::string plot = {};                 ///< trees of one plot are held out together; empty: each tree alone
+  double height = 0;                   ///< metres
+  double diameter = 0;                 ///< DBH, centimetres
+  double crown = Allometry::kUnknown;  ///< crown diameter, metres
+  std::string plot = {};               ///< trees of one plot are held out together; empty: each tree alone
 };
 
 struct AllometryFit {

@@ -46,8 +46,9 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
     if (!highest.contains(c, r)) continue;
     const double height = std::max(0.0, p.z() - ground_at(block.ground, column, row));
     Highest& best = highest(c, r);
-    const bool replaces = height > best.height || (height == best.height && std::tie(p.x(), p.y()) <
-                                                                                std::tie(best.point.x(), best.point.y()));
+    const bool replaces =
+        height > best.height ||
+        (height == best.height && std::tie(p.x(), p.y()) < std::tie(best.point.x(), best.point.y()));
     if (height <= kHighest && replaces) best = {height, {p.x(), p.y(), height}};
   }
   double tallest = 0;

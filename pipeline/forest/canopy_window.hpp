@@ -11,8 +11,8 @@ struct CanopyCell {
 
 /// Heights above ground in a window of a canopy model.
 struct CanopyWindow {
-  Window cells;                          ///< of the whole grid
-  Grid<float> heights;                   ///< metres; kNoCanopy where unknown
+  Window cells;                            ///< of the whole grid
+  Grid<float> heights;                     ///< metres; kNoCanopy where unknown
   double cell_width = 1, cell_height = 1;  ///< metres
 
   float at(const CanopyCell& c) const { return heights(c.column - cells.column, c.row - cells.row); }

@@ -143,7 +143,9 @@ class Watershed {
     std::vector<Index> order;
     for (std::size_t m = 0; m < maxima_.size(); ++m)
       if (label_[m] == kNobody) order.push_back(static_cast<Index>(m));
-    const auto place = [&](Index m) { return static_cast<std::size_t>(maxima_[static_cast<std::size_t>(m)]); };
+    const auto place = [&](Index m) {
+      return static_cast<std::size_t>(maxima_[static_cast<std::size_t>(m)]);
+    };
     std::sort(order.begin(), order.end(), [&](Index a, Index b) { return is_above(place(a), place(b)); });
     seen_.assign(heights_.cells().size(), 0);
     for (const Index m : order) {

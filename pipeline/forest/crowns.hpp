@@ -22,9 +22,9 @@ struct CrownRules {
 /// The cells of a tree's crown: one connected piece without holes.
 struct Crown {
   Treetop top;
-  std::int64_t cells = 0;  ///< of its own; those it encloses without being theirs included
-  std::vector<CanopyCell> ring;  ///< outline through cell corners, counter-clockwise on a north-up map; corner
-                                 ///< (c, r) is the upper left one of cell (c, r)
+  std::int64_t cells = 0;        ///< of its own; those it encloses without being theirs included
+  std::vector<CanopyCell> ring;  ///< outline through cell corners, counter-clockwise on a north-up map;
+                                 ///< corner (c, r) is the upper left one of cell (c, r)
 };
 
 /// Crowns of the trees whose tops are in `owned`, in the order of `tops`: the watershed of -heights with the

@@ -46,7 +46,8 @@ double height_at(const CanopyWindow& raw, const CanopyCell& top) {
 }  // namespace
 
 std::int64_t search_halo(const TreeSearch& search, double cell) {
-  const std::int64_t tops = tops_reach(search, cell), smoothing = smoothing_reach(search.forest.smoothing, cell);
+  const std::int64_t tops = tops_reach(search, cell),
+                     smoothing = smoothing_reach(search.forest.smoothing, cell);
   if (!search.crowns) return tops + smoothing + 1;
   const std::int64_t crown = crown_reach(search.forest.crowns, cell);
   return std::max(5 * crown / 2 + 3, crown + tops) + smoothing + 1;
@@ -59,7 +60,8 @@ std::vector<FoundTree> find_trees(const CanopySource& canopy, const Window& owne
   if (owned.columns <= 0 || owned.rows <= 0) return {};
   const CanopyWindow raw = window_of(canopy, grown(owned, search_halo(search, least)));
   const CanopyWindow smooth = smoothed(raw, search.forest.smoothing);
-  const Grid<std::uint8_t> types = search.by_type.empty() ? Grid<std::uint8_t>{} : canopy.forest_types(raw.cells);
+  const Grid<std::uint8_t> types =
+      search.by_type.empty() ? Grid<std::uint8_t>{} : canopy.forest_types(raw.cells);
   const RulesAt rules = rules_at(search, raw.cells, types);
   const std::int64_t beyond = search.crowns ? crown_reach(search.forest.crowns, least) : 0;
   const std::vector<Treetop> tops = find_treetops(smooth, grown(owned, beyond), rules);

@@ -17,8 +17,8 @@ struct TreeSearch {
 /// A tree seen from above.
 struct FoundTree {
   CanopyCell top;
-  double height = 0;  ///< metres: the highest of the unsmoothed cells at the top
-  Crown crown;        ///< empty where crowns were not asked for
+  double height = 0;                          ///< metres: the highest of the unsmoothed cells at the top
+  Crown crown;                                ///< empty where crowns were not asked for
   double crown_area = 0, crown_diameter = 0;  ///< m2, and metres of the circle of that area
 };
 

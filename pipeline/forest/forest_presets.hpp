@@ -15,7 +15,8 @@ struct ForestPreset {
   CrownRules crowns;
 };
 
-/// conifer, broadleaf, mixed. Chosen on synthetic forests (docs/trees.md), never on the plots that are scored.
+/// conifer, broadleaf, mixed. Chosen on synthetic forests (docs/trees.md), never on the plots that are
+/// scored.
 const ForestPreset& forest_preset(ForestType type);
 
 /// Throws Error{usage} with the nearest name where there is no such preset.

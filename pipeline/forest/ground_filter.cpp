@@ -22,7 +22,8 @@ using Square = std::pair<std::int64_t, std::int64_t>;  // row, column
 using Lowest = std::map<Square, Eigen::Vector3d>;
 
 Square square_of(const Eigen::Vector3d& p, double side) {
-  return {static_cast<std::int64_t>(std::floor(p.y() / side)), static_cast<std::int64_t>(std::floor(p.x() / side))};
+  return {static_cast<std::int64_t>(std::floor(p.y() / side)),
+          static_cast<std::int64_t>(std::floor(p.x() / side))};
 }
 
 void keep_lowest(Lowest& lowest, const Eigen::Vector3d& p, double side) {
@@ -102,7 +103,8 @@ void frame_in(Tin& tin, const std::vector<Eigen::Vector3d>& returns, double marg
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> returns, const GroundRules& rules) {
+std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> returns,
+                                            const GroundRules& rules) {
   Lowest cells, squares;
   for (const Eigen::Vector3d& p : returns)
     if (p.allFinite()) keep_lowest(cells, p, rules.cell);

@@ -7,7 +7,8 @@ namespace waymark {
 
 /// What of a laser's returns is ground. Metres and radians.
 struct GroundRules {
-  double square = 20;     ///< side of the squares whose lowest return begins the ground: wider than crowns and houses
+  double square =
+      20;  ///< side of the squares whose lowest return begins the ground: wider than crowns and houses
   double cell = 0.5;      ///< of the lowest returns in a cell of this side only the lowest may be ground
   double distance = 1;    ///< largest distance of a return from the plane of its triangle
   double angle = 0.16;    ///< largest angle between that plane and the ways to the triangle's corners
@@ -22,6 +23,7 @@ struct GroundRules {
 /// the returns does not matter. Empty for fewer than four squares with returns.
 /// Departures: only the lowest return of each cell is asked; steep edges are not mirrored, so terraces and
 /// cliffs above `distance` are rounded. About 5 us per cell.
-std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> returns, const GroundRules& rules = {});
+std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> returns,
+                                            const GroundRules& rules = {});
 
 }  // namespace waymark

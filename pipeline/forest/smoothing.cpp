@@ -86,8 +86,7 @@ CanopyWindow smoothed(const CanopyWindow& canopy, double sigma) {
   const auto raw = canopy.heights.cells();
   const auto result = out.heights.cells();
   for (std::size_t i = 0; i < result.size(); ++i)
-    result[i] =
-        raw[i] == kNoCanopy ? kNoCanopy : layers.heights.cells()[i] / layers.weights.cells()[i];
+    result[i] = raw[i] == kNoCanopy ? kNoCanopy : layers.heights.cells()[i] / layers.weights.cells()[i];
   return out;
 }
 

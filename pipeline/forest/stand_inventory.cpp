@@ -112,7 +112,8 @@ class Figures {
              square(m.weight) * (square(p.a_by_height * t.height_sd) + square(by_diameter * t.diameter_sd));
       shared += m.weight * by_diameter * t.diameter_bias;
       if (!recall_.empty())
-        by_recall[alike_ ? 0 : m.recall_row] += m.weight * pull * recall_[m.recall_row].sd / recall_[m.recall_row].recall;
+        by_recall[alike_ ? 0 : m.recall_row] +=
+            m.weight * pull * recall_[m.recall_row].sd / recall_[m.recall_row].recall;
     }
     double sum = own + shared * shared;
     for (const auto& [row, pull] : by_recall) sum += pull * pull;

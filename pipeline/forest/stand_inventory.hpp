@@ -51,8 +51,8 @@ struct InventoryOptions {
   double class_width = 0.05;           ///< metres; classes begin at multiples of it
   double class_end = 0;                ///< metres: classes up to here even where no tree is that thick
   std::vector<RecallRow> recall = {};  ///< empty: what was found is what is there
-  bool recall_errs_alike = false;      ///< rows too high or too low all together, as in a forest unlike others
-  double form_factor_error = 0;        ///< relative sd of the volume all trees of the stand share
+  bool recall_errs_alike = false;  ///< rows too high or too low all together, as in a forest unlike others
+  double form_factor_error = 0;    ///< relative sd of the volume all trees of the stand share
 };
 
 /// The figures of one stand.

@@ -22,7 +22,9 @@ std::vector<Eigen::Vector3d> distinct(std::span<const Eigen::Vector3d> points) {
   std::sort(sorted.begin(), sorted.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return std::tie(a.x(), a.y(), b.z()) < std::tie(b.x(), b.y(), a.z());  // the highest first
   });
-  const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.head<2>() == b.head<2>(); };
+  const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return a.head<2>() == b.head<2>();
+  };
   sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
   return sorted;
 }
@@ -41,8 +43,10 @@ void fill(Grid<float>& heights, const CellFrame& frame, const Eigen::Vector3d& a
   if (!(std::abs(area) > 0)) return;
   const auto [x_low, x_high] = std::minmax({a.x(), b.x(), c.x()});
   const auto [y_low, y_high] = std::minmax({a.y(), b.y(), c.y()});
-  const auto [first, last] = cells_between((x_low - frame.x0) / frame.dx, (x_high - frame.x0) / frame.dx, frame.columns);
-  const auto [top, bottom] = cells_between((y_low - frame.y0) / frame.dy, (y_high - frame.y0) / frame.dy, frame.rows);
+  const auto [first, last] =
+      cells_between((x_low - frame.x0) / frame.dx, (x_high - frame.x0) / frame.dx, frame.columns);
+  const auto [top, bottom] =
+      cells_between((y_low - frame.y0) / frame.dy, (y_high - frame.y0) / frame.dy, frame.rows);
   for (std::int64_t r = top; r <= bottom; ++r)
     for (std::int64_t i = first; i <= last; ++i) {
       const Eigen::Vector2d p(frame.x0 + static_cast<double>(i) * frame.dx - a.x(),
@@ -55,8 +59,8 @@ void fill(Grid<float>& heights, const CellFrame& frame, const Eigen::Vector3d& a
 
 }  // namespace
 
-Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFrame& frame, double longest_edge,
-                           Beyond beyond) {
+Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFrame& frame,
+                           double longest_edge, Beyond beyond) {
   Grid<float> heights(frame.columns, frame.rows, std::nanf(""));
   const std::vector<Eigen::Vector3d> all = distinct(points);
   if (all.empty()) return heights;
@@ -69,18 +73,20 @@ Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFr
   };
   const double longest2 = longest_edge * longest_edge;
   for (auto face = tin.finite_faces_begin(); face != tin.finite_faces_end(); ++face) {
-    const Eigen::Vector3d a = corner(face->vertex(0)), b = corner(face->vertex(1)), c = corner(face->vertex(2));
-    const double edge2 = std::max({(b - a).head<2>().squaredNorm(), (c - b).head<2>().squaredNorm(),
-                                   (a - c).head<2>().squaredNorm()});
+    const Eigen::Vector3d a = corner(face->vertex(0)), b = corner(face->vertex(1)),
+                          c = corner(face->vertex(2));
+    const double edge2 = std::max(
+        {(b - a).head<2>().squaredNorm(), (c - b).head<2>().squaredNorm(), (a - c).head<2>().squaredNorm()});
     if (edge2 <= longest2) fill(heights, frame, a, b, c);
   }
   if (beyond == Beyond::nothing) return heights;
   for (std::int64_t r = 0; r < frame.rows; ++r)
     for (std::int64_t c = 0; c < frame.columns; ++c)
       if (std::isnan(heights(c, r)))
-        heights(c, r) = static_cast<float>(tin.nearest_vertex(Kernel::Point_2(frame.x0 + static_cast<double>(c) * frame.dx,
-                                                                           frame.y0 + static_cast<double>(r) * frame.dy))
-                                               ->info());
+        heights(c, r) = static_cast<float>(
+            tin.nearest_vertex(Kernel::Point_2(frame.x0 + static_cast<double>(c) * frame.dx,
+                                               frame.y0 + static_cast<double>(r) * frame.dy))
+                ->info());
   return heights;
 }
 

@@ -14,9 +14,10 @@ struct CellFrame {
 /// What cells beyond the outermost points get.
 enum class Beyond { nothing, nearest };
 
-/// Heights at the cells' centres from the Delaunay triangulation of points (x, y, z), linear in each triangle;
-/// NaN where there is none. Triangles with an edge longer than `longest_edge` are left out. Of points at one
-/// place the highest counts. The same points in any order give the same heights. About 1 us per point.
+/// Heights at the cells' centres from the Delaunay triangulation of points (x, y, z), linear in each
+/// triangle; NaN where there is none. Triangles with an edge longer than `longest_edge` are left out. Of
+/// points at one place the highest counts. The same points in any order give the same heights. About 1 us per
+/// point.
 Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFrame& frame,
                            double longest_edge, Beyond beyond);
 

@@ -32,8 +32,9 @@ struct Treetop {
 
 /// The treetops among the cells `owned` of a smoothed canopy, in row order. Heights are compared in the order
 /// of pipeline/terrain/cell_order.hpp, so plateaus have one top. Exact, and the same for any window that
-/// reaches treetop_reach() cells beyond `owned`. About 10 ns per cell, prominence included, on smooth canopies.
-/// Departure from topographic prominence: paths farther than kProminenceReach from the top do not count.
+/// reaches treetop_reach() cells beyond `owned`. About 10 ns per cell, prominence included, on smooth
+/// canopies. Departure from topographic prominence: paths farther than kProminenceReach from the top do not
+/// count.
 std::vector<Treetop> find_treetops(const CanopyWindow& smooth, const Window& owned, const RulesAt& rules);
 
 /// Cells beyond `owned` that decide about tops of `rules`: across and down.

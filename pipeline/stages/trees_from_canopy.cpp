@@ -19,30 +19,40 @@ struct TreesFromCanopy {
 
     void describe(OptionVisitor& option) {
       option("preset", preset,
-             {.help = "Type of forest the trees are told by; see docs/trees.md", .choices = forest_preset_names()});
+             {.help = "Type of forest the trees are told by; see docs/trees.md",
+              .choices = forest_preset_names()});
       option("method", method,
-             {.help = "peaks (smoothing, isolation, prominence) or lmf (variable-window local maxima, the reference)",
+             {.help = "peaks (smoothing, isolation, prominence) or lmf (variable-window local maxima, the "
+                      "reference)",
               .choices = {"peaks", "lmf"}});
       option("min_height", min_height, {.help = "Lowest tree kept", .min = 0.5, .max = 100});
-      option("isolation_base", isolation_base,
-             {.help = "No higher cell within isolation_base + isolation_slope x height, metres; -1: as the preset",
-              .min = -1,
-              .max = 100});
-      option("isolation_slope", isolation_slope, {.help = "See isolation_base; -1: as the preset", .min = -1, .max = 2});
+      option(
+          "isolation_base", isolation_base,
+          {.help =
+               "No higher cell within isolation_base + isolation_slope x height, metres; -1: as the preset",
+           .min = -1,
+           .max = 100});
+      option("isolation_slope", isolation_slope,
+             {.help = "See isolation_base; -1: as the preset", .min = -1, .max = 2});
       option("prominence", prominence,
              {.help = "Metres a top stands above the saddle to higher ground nearby; -1: as the preset",
               .min = -1,
               .max = 50});
-      option("smoothing", smoothing,
-             {.help = "Standard deviation of the smoothing, metres; -1: as the preset", .min = -1, .max = 20});
+      option(
+          "smoothing", smoothing,
+          {.help = "Standard deviation of the smoothing, metres; -1: as the preset", .min = -1, .max = 20});
       option("crowns", crowns, {.help = "Outline the crowns; without them trees have no crown diameter"});
       option("max_crown_radius", max_crown_radius,
-             {.help = "A crown reaches no farther from its top, metres; -1: as the preset", .min = -1, .max = 40});
-      option("allometry", allometry,
-             {.help = "CSV table that gives stem diameters, as `waymark allometry fit` writes; empty: Jucker et "
-                      "al. 2017"});
+             {.help = "A crown reaches no farther from its top, metres; -1: as the preset",
+              .min = -1,
+              .max = 40});
+      option(
+          "allometry", allometry,
+          {.help = "CSV table that gives stem diameters, as `waymark allometry fit` writes; empty: Jucker et "
+                   "al. 2017"});
       option("species", species,
-             {.help = "Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), else all"});
+             {.help = "Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), "
+                      "else all"});
     }
   };
   static constexpr In<Canopies> canopies{"canopies"};
@@ -105,7 +115,8 @@ struct TreesFromCanopy {
     for (const auto& canopy : surveys) {
       const Window owned = part_of(canopy->geometry(), common, unit.tile().cells);
       for (const FoundTree& tree : find_trees(*canopy, owned, search)) {
-        seen.push_back(observation_of(tree, *canopy, types[id], id, table, species_of(tree, *canopy, options)));
+        seen.push_back(
+            observation_of(tree, *canopy, types[id], id, table, species_of(tree, *canopy, options)));
         if (options.crowns) outlines.push_back(crown_shape_of(tree, *canopy, seen.back()));
       }
     }

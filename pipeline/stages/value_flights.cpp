@@ -31,7 +31,8 @@ struct ValueFlights {
 
   static StageSpec spec() {
     return {.name = "value_flights",
-            .summary = "Values trees: how many canopy models show them of how many could have; names their crowns",
+            .summary =
+                "Values trees: how many canopy models show them of how many could have; names their crowns",
             .version = 2,
             .scope = Scope::map,
             .inputs = {canopies, merged, merged_evidence, seen_crowns},
@@ -94,8 +95,9 @@ struct ValueFlights {
   }
 
   // One crown per tree: of the first survey by name that shows it.
-  static std::vector<CrownShape> named(const std::vector<std::shared_ptr<const std::vector<CrownShape>>>& parts,
-                                       const std::vector<Observation>& seen, const std::vector<Landmark>& all) {
+  static std::vector<CrownShape> named(
+      const std::vector<std::shared_ptr<const std::vector<CrownShape>>>& parts,
+      const std::vector<Observation>& seen, const std::vector<Landmark>& all) {
     using Key = std::tuple<std::string_view, double, double>;
     std::map<Key, const CrownShape*> at;
     for (const auto& part : parts)

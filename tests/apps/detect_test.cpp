@@ -234,7 +234,8 @@ TEST_F(Detect, WrongOptionsAreRefused) {
     return said.err;
   };
   EXPECT_THAT(refused({}, "crators"), HasSubstr("did you mean 'craters'"));
-  EXPECT_THAT(refused({"--method", "bowl"}, "trees"), HasSubstr("trees are found by imagery or peaks or lmf"));
+  EXPECT_THAT(refused({"--method", "bowl"}, "trees"),
+              HasSubstr("trees are found by imagery or peaks or lmf"));
   EXPECT_THAT(refused({"--method", "shadow"}),
               HasSubstr("craters are found by bowl or edges, not by 'shadow'"));
   EXPECT_THAT(refused({"--sun-azimuth", "90"}),

@@ -16,18 +16,19 @@ using ::testing::HasSubstr;
 
 TEST(GraphCommand, SolvesAGraphWithoutAMap) {
   const TempFolder folder;
-  write_text(folder / "square.txt", "ODOMETRY 0 1 1 0 1.5707963 10 0 0 10 0 10\n"
-                                    "ODOMETRY 1 2 1 0 1.5707963 10 0 0 10 0 10\n"
-                                    "ODOMETRY 2 3 1.1 0 1.5707963 10 0 0 10 0 10\n"
-                                    "ODOMETRY 3 0 1 0 1.5707963 10 0 0 10 0 10\n");
+  write_text(folder / "square.txt",
+             "ODOMETRY 0 1 1 0 1.5707963 10 0 0 10 0 10\n"
+             "ODOMETRY 1 2 1 0 1.5707963 10 0 0 10 0 10\n"
+             "ODOMETRY 2 3 1.1 0 1.5707963 10 0 0 10 0 10\n"
+             "ODOMETRY 3 0 1 0 1.5707963 10 0 0 10 0 10\n");
   const Outcome o = waymark({"localize", "none", folder / "square.txt", "-o", folder / "t.csv", "--method",
                              "graph", "--log-format", "isam"});
   ASSERT_EQ(o.code, 0) << o.err;
   EXPECT_THAT(o.out, AllOf(HasSubstr("chi2"), HasSubstr("converged            true")));
   EXPECT_THAT(text_of(folder / "t.csv"), HasSubstr("t,x,y,z,roll,pitch,yaw,var_x"));
   write_text(folder / "bad.g2o", "VERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 0\n");
-  const Outcome bad = waymark({"localize", "none", folder / "bad.g2o", "-o", folder / "u.csv", "--method",
-                               "graph"});
+  const Outcome bad =
+      waymark({"localize", "none", folder / "bad.g2o", "-o", folder / "u.csv", "--method", "graph"});
   EXPECT_EQ(bad.code, 1);
   EXPECT_THAT(bad.err, AllOf(HasSubstr("line 2"), HasSubstr("cut off")));
   EXPECT_EQ(text_of(folder / "u.csv"), "");
@@ -51,7 +52,8 @@ struct Rounds {
     }
     const auto tie = [&](int from, int to) {
       const MadePose step = truth[std::size_t(from)].to(truth[std::size_t(to)]);
-      edges.push_back({from, to,
+      edges.push_back({from,
+                       to,
                        {step.x + 0.02 * random.normal(), step.y + 0.02 * random.normal(),
                         step.yaw + 0.005 * random.normal()}});
     };
@@ -98,7 +100,8 @@ TEST(GraphCommand, TwoThousandPosesOfG2oToroAndIsamAreOneGraph) {
     // TORO: xx xy yy aa xa ya.
     toro << "EDGE2 " << e.from << ' ' << e.to << ' ' << s.x << ' ' << s.y << ' ' << s.yaw
          << " 2500 0 2500 40000 0 0\n";
-    isam << "EDGE2 " << e.from << ' ' << e.to << ' ' << s.x << ' ' << s.y << ' ' << s.yaw << " 50 0 0 50 0 200\n";
+    isam << "EDGE2 " << e.from << ' ' << e.to << ' ' << s.x << ' ' << s.y << ' ' << s.yaw
+         << " 50 0 0 50 0 200\n";
   }
   const TempFolder folder;
   std::vector<std::vector<MadePose>> solved;

@@ -24,18 +24,20 @@ class LeaveTheMap : public Localize {
       if (std::abs(rock.y) < 1.5) continue;
       made.rocks.push_back(rock);
       if (rock.x < kEdge)
-        made.csv += "r" + std::to_string(i) + "," + std::to_string(rock.x) + "," + std::to_string(rock.y) + "," +
-                    std::to_string(rock.radius) + ",0.05\n";
+        made.csv += "r" + std::to_string(i) + "," + std::to_string(rock.x) + "," + std::to_string(rock.y) +
+                    "," + std::to_string(rock.radius) + ",0.05\n";
     }
     const double bias = 0.03 * random.normal(), turn_bias = 0.001 * random.normal();
     MadePose at{-20, 0, 0};
     std::string& log = made.log;
-    log = R"({"kind":"header","version":1,"start":{"x":-20,"y":0,"yaw":0}})" "\n";
+    log = R"({"kind":"header","version":1,"start":{"x":-20,"y":0,"yaw":0}})"
+          "\n";
     for (int i = 0; i < 620; ++i) {
       const double t = i;
       // There, a half turn of 6 m radius, and back.
       const double speed = 0.5, turn = i >= 290 && i < 328 ? speed / 6 : 0;
-      log += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", at.x}, {"y", at.y}, {"yaw", at.yaw}}.dump() + "\n";
+      log += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", at.x}, {"y", at.y}, {"yaw", at.yaw}}.dump() +
+             "\n";
       log += nlohmann::json{{"kind", "odometry"},
                             {"t", t},
                             {"v", speed * (1 + bias + 0.05 * random.normal())},
@@ -73,7 +75,8 @@ class LeaveTheMap : public Localize {
     MadePose truth;
     std::istringstream lines(made.log);
     while (std::getline(lines, row))
-      if (const auto json = nlohmann::json::parse(row); json["kind"] == "truth") truth = {json["x"], json["y"], json["yaw"]};
+      if (const auto json = nlohmann::json::parse(row); json["kind"] == "truth")
+        truth = {json["x"], json["y"], json["yaw"]};
     return {truth.away({v[1], v[2], 0}), v.back() != 0};
   }
 };

@@ -41,7 +41,9 @@ class Localize : public testing::Test {
     EXPECT_THAT(row,
                 testing::StartsWith("t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected"));
     for (rows_ = 0; std::getline(rows, row); ++rows_) {
-      ASSERT_THAT(row, testing::AllOf(testing::Not(testing::HasSubstr("nan")), testing::Not(testing::HasSubstr("inf")))) << row;
+      ASSERT_THAT(row, testing::AllOf(testing::Not(testing::HasSubstr("nan")),
+                                      testing::Not(testing::HasSubstr("inf"))))
+          << row;
       std::istringstream cells(row);
       for (std::string cell; std::getline(cells, cell, ',');)
         ASSERT_TRUE(std::isfinite(std::stod(cell))) << row;

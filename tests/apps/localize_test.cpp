@@ -157,8 +157,8 @@ TEST_F(Localize, TheDemSaysWhatCouldNotBeSeen) {
   };
   const std::string log = drive_log({.steps = 60, .change = behind});
   for (const std::string method : {"ekf", "ukf", "pf"}) {
-    const std::vector<std::string> expects{"--method", method, "--ids", "unknown", "--set", "expect_unseen=true",
-                                           "--set", "view_range=9"};
+    const std::vector<std::string> expects{"--method",           method,  "--ids",       "unknown", "--set",
+                                           "expect_unseen=true", "--set", "view_range=9"};
     ASSERT_EQ(localize(log, expects).code, 0) << method;
     const std::string without = text_of(track_);
     std::vector<std::string> words = expects;
@@ -173,15 +173,16 @@ TEST_F(Localize, TheDemSaysWhatCouldNotBeSeen) {
 
 TEST_F(Localize, ATrueYawMayGoOnTurning) {
   double yaw = 0, last = 0;
-  const std::string log = drive_log({.steps = 400, .change = [&](int, const std::string& kind, const std::string& line) {
-                                       if (kind != "truth") return line;
-                                       auto json = nlohmann::json::parse(line);
-                                       const double now = json["yaw"];
-                                       yaw += std::remainder(now - last, 2 * M_PI);
-                                       last = now;
-                                       json["yaw"] = yaw;
-                                       return json.dump();
-                                     }});
+  const std::string log =
+      drive_log({.steps = 400, .change = [&](int, const std::string& kind, const std::string& line) {
+                   if (kind != "truth") return line;
+                   auto json = nlohmann::json::parse(line);
+                   const double now = json["yaw"];
+                   yaw += std::remainder(now - last, 2 * M_PI);
+                   last = now;
+                   json["yaw"] = yaw;
+                   return json.dump();
+                 }});
   ASSERT_GT(yaw, 13) << "more than two turns";
   ASSERT_EQ(localize(log, {"--ids", "unknown"}).code, 0);
   EXPECT_LT(score()["heading_rmse_deg"], 3);

@@ -8,8 +8,8 @@ struct MadePose {
   double x = 0, y = 0, yaw = 0;
 
   MadePose operator*(const MadePose& step) const {
-    return {x + std::cos(yaw) * step.x - std::sin(yaw) * step.y, y + std::sin(yaw) * step.x + std::cos(yaw) * step.y,
-            std::remainder(yaw + step.yaw, 2 * M_PI)};
+    return {x + std::cos(yaw) * step.x - std::sin(yaw) * step.y,
+            y + std::sin(yaw) * step.x + std::cos(yaw) * step.y, std::remainder(yaw + step.yaw, 2 * M_PI)};
   }
   /// The other one, seen from here.
   MadePose to(const MadePose& other) const {

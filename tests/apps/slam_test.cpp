@@ -32,10 +32,12 @@ std::string drive(double rounds, int hidden = -1) {
                      "\n";
   const int steps = int(rounds * 63);
   for (int i = 0; i <= steps; ++i) {
-    const double t = i, a = 0.1 * t, x = 10 * std::cos(a), y = 10 * std::sin(a), yaw = a + std::numbers::pi / 2;
-    text += nlohmann::json{{"kind", "odometry"}, {"t", t}, {"v", 1 + noise(0.02)}, {"omega", 0.1 + noise(0.002)}}
-                .dump() +
-            "\n";
+    const double t = i, a = 0.1 * t, x = 10 * std::cos(a), y = 10 * std::sin(a),
+                 yaw = a + std::numbers::pi / 2;
+    text +=
+        nlohmann::json{{"kind", "odometry"}, {"t", t}, {"v", 1 + noise(0.02)}, {"omega", 0.1 + noise(0.002)}}
+            .dump() +
+        "\n";
     nlohmann::json items = nlohmann::json::array();
     for (int k = 0; k < 12; ++k) {
       if (k == hidden) continue;
@@ -51,7 +53,13 @@ std::string drive(double rounds, int hidden = -1) {
                        {"features", {{"radius", 0.3 + 0.05 * k}}}});
     }
     text += nlohmann::json{{"kind", "sightings"}, {"t", t + 0.001}, {"items", items}}.dump() + "\n";
-    text += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", x}, {"y", y}, {"yaw", std::remainder(yaw, 2 * std::numbers::pi)}}.dump() + "\n";
+    text += nlohmann::json{{"kind", "truth"},
+                           {"t", t},
+                           {"x", x},
+                           {"y", y},
+                           {"yaw", std::remainder(yaw, 2 * std::numbers::pi)}}
+                .dump() +
+            "\n";
   }
   return text;
 }
@@ -59,8 +67,9 @@ std::string drive(double rounds, int hidden = -1) {
 class SlamCommand : public ::testing::Test {
  protected:
   void SetUp() override { write_text(folder_ / "drive.jsonl", drive(2)); }
-  Outcome localize(const std::string& map, const std::vector<std::string>& more, const std::string& method = "slam") {
-    std::vector<std::string> words{"localize", map, folder_ / "drive.jsonl", "-o", folder_ / "track.csv",
+  Outcome localize(const std::string& map, const std::vector<std::string>& more,
+                   const std::string& method = "slam") {
+    std::vector<std::string> words{"localize", map,   folder_ / "drive.jsonl", "-o", folder_ / "track.csv",
                                    "--method", method};
     words.insert(words.end(), more.begin(), more.end());
     return waymark(words);
@@ -81,8 +90,8 @@ TEST_F(SlamCommand, MakesAMapFromNothingAndFollowsTheRobot) {
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_EQ(sound(map), "");
   EXPECT_THAT(waymark({"query", map, "--format", "csv"}).out, HasSubstr("rock"));
-  const Outcome score = waymark({"evaluate", "track", folder_ / "track.csv", "--truth", folder_ / "drive.jsonl",
-                                 "--format", "json"});
+  const Outcome score = waymark(
+      {"evaluate", "track", folder_ / "track.csv", "--truth", folder_ / "drive.jsonl", "--format", "json"});
   EXPECT_LT(nlohmann::json::parse(score.out).at("ate_rmse").get<double>(), 0.4) << score.out;
 }
 
@@ -133,12 +142,14 @@ TEST_F(SlamCommand, ARockTheGroundHidesIsNotMissed) {
   dem.geotransform = {-20.125, 0.25, 0, 20.125, 0, -0.25};
   const double b = 2 * std::numbers::pi * 3 / 12 + 0.2;
   dem.height = [&](int column, int row) {
-    const double away = std::hypot(-20 + 0.25 * column - 14 * std::cos(b), 20 - 0.25 * row - 14 * std::sin(b));
+    const double away =
+        std::hypot(-20 + 0.25 * column - 14 * std::cos(b), 20 - 0.25 * row - 14 * std::sin(b));
     return away > 1.5 && away < 2.7 ? 5.0 : 0.0;
   };
   for (const std::string method : {"slam", "graph"}) {
     const Outcome seen = localize(
-        map, {"--dem", make_dem(folder_ / "dem.tif", dem), "--write-map", folder_ / (method + ".gpkg")}, method);
+        map, {"--dem", make_dem(folder_ / "dem.tif", dem), "--write-map", folder_ / (method + ".gpkg")},
+        method);
     ASSERT_EQ(seen.code, 0) << seen.err;
     if (method == "slam") {
       EXPECT_THAT(seen.err, HasSubstr(" 0 of the map not there"));
@@ -153,8 +164,8 @@ TEST_F(SlamCommand, TheGraphOfADriveIsNoWorseThanTheFilter) {
     if (method == "graph") {
       EXPECT_THAT(said.out, HasSubstr("converged            true"));
     }
-    const Outcome score = waymark({"evaluate", "track", folder_ / "track.csv", "--truth", folder_ / "drive.jsonl",
-                                   "--format", "json"});
+    const Outcome score = waymark(
+        {"evaluate", "track", folder_ / "track.csv", "--truth", folder_ / "drive.jsonl", "--format", "json"});
     const auto found = nlohmann::json::parse(score.out);
     EXPECT_GT(found.at("poses").get<int>(), 100);
     return found.at("ate_rmse").get<double>();
@@ -189,14 +200,14 @@ TEST_F(SlamCommand, WrongWishesAreRefused) {
   const Outcome both = localize("none", {"--update-map"});
   EXPECT_EQ(both.code, 2);
   EXPECT_THAT(both.err, HasSubstr("there is no map to update"));
-  const Outcome ekf = waymark({"localize", "none", folder_ / "drive.jsonl", "-o", folder_ / "t.csv", "--method",
-                               "odometry", "--write-map", folder_ / "m.gpkg"});
+  const Outcome ekf = waymark({"localize", "none", folder_ / "drive.jsonl", "-o", folder_ / "t.csv",
+                               "--method", "odometry", "--write-map", folder_ / "m.gpkg"});
   EXPECT_EQ(ekf.code, 2);
   EXPECT_THAT(ekf.err, HasSubstr("does not change maps"));
   const Outcome name = localize("none", {"--write-map", folder_ / "m.csv"});
   EXPECT_EQ(name.code, 2);
-  const Outcome graph = waymark({"localize", "none", folder_ / "missing.g2o", "-o", folder_ / "t.csv", "--method",
-                                 "graph", "--log-format", "g2o"});
+  const Outcome graph = waymark({"localize", "none", folder_ / "missing.g2o", "-o", folder_ / "t.csv",
+                                 "--method", "graph", "--log-format", "g2o"});
   EXPECT_EQ(graph.code, 1);
 }
 

@@ -90,8 +90,10 @@ TEST_F(Trees, WrongUseIsExplained) {
 TEST_F(Trees, AreDetectedInAnImageOfHeights) {
   const Outcome made = waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv"});
   ASSERT_EQ(made.code, 0) << made.err;
-  EXPECT_THAT(text_of(folder_ / "trees.csv"),
-              StartsWith("x,y,diameter,major,minor,angle,confidence,height,tree_diameter,crown_diameter,map_x,map_y\n"));
+  EXPECT_THAT(
+      text_of(folder_ / "trees.csv"),
+      StartsWith(
+          "x,y,diameter,major,minor,angle,confidence,height,tree_diameter,crown_diameter,map_x,map_y\n"));
   EXPECT_EQ(waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv", "--method", "imagery"}).code, 2);
 }
 
@@ -99,12 +101,14 @@ TEST_F(Trees, TakeDiametersFromAFittedTable) {
   std::string plots = "plot,height,dbh\n";
   for (int i = 0; i < 60; ++i) {
     const double height = 8 + 0.2 * i;
-    plots += std::to_string(i / 6) + "," + std::to_string(height) + "," + std::to_string(1.5 * (height - 1.3)) + "\n";
+    plots += std::to_string(i / 6) + "," + std::to_string(height) + "," +
+             std::to_string(1.5 * (height - 1.3)) + "\n";
   }
   write_text(folder_ / "plots.csv", plots);
   const Outcome fit = waymark({"allometry", "fit", folder_ / "plots.csv", "-o", folder_ / "table.csv"});
   ASSERT_EQ(fit.code, 0) << fit.err;
-  EXPECT_THAT(text_of(folder_ / "table.csv"), AllOf(HasSubstr("held_out_rmse_cm"), HasSubstr("all,height,1.5,1,")));
+  EXPECT_THAT(text_of(folder_ / "table.csv"),
+              AllOf(HasSubstr("held_out_rmse_cm"), HasSubstr("all,height,1.5,1,")));
   ASSERT_EQ(trees({"--chm", chm(), "--allometry", folder_ / "table.csv"}).code, 0);
   const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
   for (const json& tree : found)

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "importers/dem.hpp"
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
+#include "importers/rasters/dem.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 #include "pipeline/craters/find_craters.hpp"
 #include "tests/craters/score_circles.hpp"

@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "importers/measured_trees.hpp"
+#include "importers/tables/measured_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
 
 namespace waymark::testing {
@@ -28,8 +28,9 @@ TEST(StemDiameter, IsThatOfTheFormula) {
 }
 
 TEST(AllometryTable, IsReadAsItIsWritten) {
-  const std::vector<Allometry> table{{.species = "all", .a = 1.5, .b = 1.1, .sigma = 0.2, .trees = 50, .source = "x"},
-                                     {.species = "PIAB", .form = AllometryForm::height_crown, .a = 0.5, .b = 0.8, .sigma = 0.1}};
+  const std::vector<Allometry> table{
+      {.species = "all", .a = 1.5, .b = 1.1, .sigma = 0.2, .trees = 50, .source = "x"},
+      {.species = "PIAB", .form = AllometryForm::height_crown, .a = 0.5, .b = 0.8, .sigma = 0.1}};
   const auto read = parse_allometry(allometry_as_csv(table), "t.csv");
   ASSERT_EQ(read.size(), 2U);
   EXPECT_EQ(read[1].species, "PIAB");
@@ -81,7 +82,8 @@ TEST(AllometryFit, TakesCrownsWhereTheyTellMore) {
 }
 
 TEST(MeasuredTrees, AreFoundByTheNamesInUse) {
-  const auto file = write_text("t.csv", "plotID,taxonID,DBH,H\n1,PIAB,24.7,21.9\n1,PIAB,NA,20\n2,FASY,0,10\n2,FASY,31,25\n");
+  const auto file = write_text(
+      "t.csv", "plotID,taxonID,DBH,H\n1,PIAB,24.7,21.9\n1,PIAB,NA,20\n2,FASY,0,10\n2,FASY,31,25\n");
   const MeasuredTrees read = read_measured_trees(file, {});
   ASSERT_EQ(read.trees.size(), 2U);
   EXPECT_EQ(read.left_out, 2);
@@ -89,9 +91,11 @@ TEST(MeasuredTrees, AreFoundByTheNamesInUse) {
   EXPECT_DOUBLE_EQ(read.trees[0].diameter, 24.7);
   const auto metres = write_text("m.csv", "height,dbh\n21.9,0.247\n25,0.31\n");
   EXPECT_NEAR(read_measured_trees(metres, {}).trees[0].diameter, 24.7, 1e-9);
-  EXPECT_THAT(message_of([&] { read_measured_trees(file, {.height = "hoehe"}); }), HasSubstr("no column 'hoehe'"));
+  EXPECT_THAT(message_of([&] { read_measured_trees(file, {.height = "hoehe"}); }),
+              HasSubstr("no column 'hoehe'"));
   const auto none = write_text("n.csv", "a,b\n1,2\n");
-  EXPECT_THAT(message_of([&] { read_measured_trees(none, {}); }), AllOf(HasSubstr("no column of the table is a height"), HasSubstr("--height")));
+  EXPECT_THAT(message_of([&] { read_measured_trees(none, {}); }),
+              AllOf(HasSubstr("no column of the table is a height"), HasSubstr("--height")));
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 #include "core/error.hpp"
 #include "geo/dem_source.hpp"
-#include "importers/canopy.hpp"
-#include "importers/canopy_codec.hpp"
+#include "importers/points/canopy.hpp"
+#include "importers/points/canopy_codec.hpp"
 #include "tests/importers/raster_maker.hpp"
 
 namespace waymark::testing {
@@ -41,8 +41,10 @@ TEST(Canopy, IsSurfaceLessTerrain) {
 }
 
 TEST(Canopy, TerrainOnAnotherGridIsInterpolated) {
-  const auto dsm = write_raster(raster("fine", [](double x, double y) { return 500 + x + 0.5 * y + 12; }, 40, 0.5));
-  const auto dtm = write_raster(raster("coarse", [](double x, double y) { return 500 + x + 0.5 * y; }, 20, 3));
+  const auto dsm = write_raster(raster(
+      "fine", [](double x, double y) { return 500 + x + 0.5 * y + 12; }, 40, 0.5));
+  const auto dtm = write_raster(raster(
+      "coarse", [](double x, double y) { return 500 + x + 0.5 * y; }, 20, 3));
   const auto canopy = import_canopy({.dsm = {dsm}, .dtm = {dtm}});
   EXPECT_THAT(canopy->warnings(), Contains(HasSubstr("the terrain is interpolated")));
   EXPECT_NEAR(canopy->read({20, 20, 1, 1})(0, 0), 12, 1e-3);
@@ -57,8 +59,9 @@ TEST(Canopy, NegativeHeightsCountAsZeroAndHolesAsUnknown) {
   EXPECT_EQ(heights(0, 0), 0);
   EXPECT_EQ(heights(20, 0), kNoCanopy);
   EXPECT_EQ(heights(39, 0), kNoCanopy);
-  EXPECT_THAT(canopy->warnings(), AllOf(Contains(HasSubstr("are negative, down to -3.0 m")),
-                                        Contains(HasSubstr("have no height")), Contains(HasSubstr("which no tree is"))));
+  EXPECT_THAT(canopy->warnings(),
+              AllOf(Contains(HasSubstr("are negative, down to -3.0 m")),
+                    Contains(HasSubstr("have no height")), Contains(HasSubstr("which no tree is"))));
 }
 
 TEST(Canopy, SaysWhatCannotBe) {
@@ -83,7 +86,8 @@ TEST(Canopy, DegreesAreRefused) {
   RasterFile degrees = raster("degrees", [](double, double) { return 10; });
   degrees.crs = "EPSG:4326";
   degrees.transform = centred_on(15, 45, 1e-5);
-  EXPECT_THAT(refusal({.chm = {write_raster(degrees)}}), AllOf(HasSubstr("is in degrees (EPSG:4326)"), HasSubstr("gdalwarp")));
+  EXPECT_THAT(refusal({.chm = {write_raster(degrees)}}),
+              AllOf(HasSubstr("is in degrees (EPSG:4326)"), HasSubstr("gdalwarp")));
 }
 
 TEST(Canopy, FeetBecomeMetres) {
@@ -106,7 +110,10 @@ TEST(Canopy, WithoutCrsIsMetres) {
 
 TEST(Canopy, ForestTypesComeFromASecondRaster) {
   const auto chm = write_raster(raster("chm2", [](double, double) { return 10; }));
-  const auto types = write_raster(raster("types", [](double x, double) { return x < 20 ? 1 : x < 40 ? 2 : 9; }, 10, 6));
+  const auto types = write_raster(raster(
+      "types", [](double x, double) { return x < 20   ? 1
+                                             : x < 40 ? 2
+                                                      : 9; }, 10, 6));
   const auto canopy = import_canopy({.chm = {chm}, .forest_type = types});
   const Grid<std::uint8_t> at = canopy->forest_types({0, 0, 40, 1});
   EXPECT_EQ(at(2, 0), 1);
@@ -128,17 +135,21 @@ TEST(Canopy, KeepsTheNameItIsGiven) {
 }
 
 TEST(CommonGrid, PartsOfTilesCoverEverySurveyOnce) {
-  RasterFile second = raster("second", [](double, double) { return 10; }, 31, 0.7);
+  RasterFile second = raster(
+      "second", [](double, double) { return 10; }, 31, 0.7);
   second.transform = GeoTransform{499990.3, 0.7, 0, 5000004.1, 0, -0.7};
-  const Canopies surveys{import_canopy({.chm = {write_raster(raster("first", [](double, double) { return 10; }))}}),
-                         import_canopy({.chm = {write_raster(second)}})};
+  const Canopies surveys{
+      import_canopy({.chm = {write_raster(raster("first", [](double, double) { return 10; }))}}),
+      import_canopy({.chm = {write_raster(second)}})};
   const GridGeometry common = common_grid(surveys);
   EXPECT_LE(common.where.x(-0.5), 499990.3 + 1e-6);
   for (const auto& survey : surveys) {
     Grid<int> owners(survey->geometry().columns, survey->geometry().rows, 0);
     for (std::int64_t row = 0; row < common.rows; row += 7)
       for (std::int64_t column = 0; column < common.columns; column += 7) {
-        const Window part = part_of(survey->geometry(), common, {column, row, std::min<std::int64_t>(7, common.columns - column), std::min<std::int64_t>(7, common.rows - row)});
+        const Window part = part_of(survey->geometry(), common,
+                                    {column, row, std::min<std::int64_t>(7, common.columns - column),
+                                     std::min<std::int64_t>(7, common.rows - row)});
         for (std::int64_t r = part.row; r < part.end_row(); ++r)
           for (std::int64_t c = part.column; c < part.end_column(); ++c) ++owners(c, r);
       }

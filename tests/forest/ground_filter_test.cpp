@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "core/random.hpp"
-#include "testbed/forest_scan.hpp"
+#include "testbed/forest/forest_scan.hpp"
 #include "testbed/scene.hpp"
 
 namespace waymark {
@@ -57,8 +57,9 @@ TEST(GroundReturns, LieOnTheGroundUnderMadeForests) {
       off_by_a_metre += std::abs(off) > 1;
     }
     const double count = static_cast<double>(ground.size());
-    std::printf("%4.0f stems/ha, %.0f %% conifers, relief %4.1f m: %.0f returns, RMS %.2f m, %.2f %% off by 1 m\n", density,
-                100 * conifers, rms, count, std::sqrt(squares / count), 100 * off_by_a_metre / count);
+    std::printf(
+        "%4.0f stems/ha, %.0f %% conifers, relief %4.1f m: %.0f returns, RMS %.2f m, %.2f %% off by 1 m\n",
+        density, 100 * conifers, rms, count, std::sqrt(squares / count), 100 * off_by_a_metre / count);
     EXPECT_GT(count, 0.3 * 120 * 120);
     EXPECT_LT(std::sqrt(squares / count), 0.3);
     EXPECT_LT(off_by_a_metre, 0.02 * count);

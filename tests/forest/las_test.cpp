@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "core/random.hpp"
-#include "importers/canopy.hpp"
-#include "importers/las_points.hpp"
+#include "importers/points/canopy.hpp"
+#include "importers/points/las_points.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
 
@@ -85,7 +85,10 @@ std::vector<LasPoint> some_points() {
 TEST(Las, EveryPointFormatIsRead) {
   constexpr int kLength[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
   for (int format = 0; format <= 10; ++format) {
-    LasFile las{.minor = format >= 6 ? 4 : 2, .format = format, .length = kLength[format] + format % 3, .points = some_points()};
+    LasFile las{.minor = format >= 6 ? 4 : 2,
+                .format = format,
+                .length = kLength[format] + format % 3,
+                .points = some_points()};
     las.legacy_zero = format >= 6;
     const LasHeader header = read_las_header(written(las));
     ASSERT_EQ(header.points, 4U) << format;
@@ -110,14 +113,16 @@ TEST(Las, SaysWhatIsWrong) {
   las = good, las.promised = 100;
   EXPECT_THAT(refusal(las), HasSubstr("cut off: its header promises 100 points, it holds 4"));
   las = good, las.length = 20;
-  EXPECT_THAT(refusal(las), HasSubstr("a point record of format 1 has 28 bytes at least, the header says 20"));
+  EXPECT_THAT(refusal(las),
+              HasSubstr("a point record of format 1 has 28 bytes at least, the header says 20"));
   las = good, las.format = 11;
   EXPECT_THAT(refusal(las), HasSubstr("point format 11"));
   las = good, las.minor = 5;
   EXPECT_THAT(refusal(las), HasSubstr("LAS 1.5 is not known"));
   las = good;
   for (LasPoint& p : las.points) p.classification = 1;
-  EXPECT_THAT(refusal(las), AllOf(HasSubstr("no point is classified as ground (class 2)"), HasSubstr("classify it first")));
+  EXPECT_THAT(refusal(las),
+              AllOf(HasSubstr("no point is classified as ground (class 2)"), HasSubstr("classify it first")));
   las = good, las.points.clear();
   EXPECT_THAT(refusal(las), HasSubstr("no points"));
   const auto text = write_text("no.las", "not a LAS file at all");
@@ -131,7 +136,8 @@ TEST(Las, FilesOfDifferentPlacesOfReferenceAreRefused) {
   LasFile a{.name = "a.las", .points = some_points()}, b{.name = "b.las", .points = some_points()};
   b.epsg = 32632;
   const std::vector<std::string> files{written(a), written(b)};
-  EXPECT_THAT(message_of([&] { import_canopy({.las = files}); }), AllOf(HasSubstr("EPSG:32633"), HasSubstr("EPSG:32632")));
+  EXPECT_THAT(message_of([&] { import_canopy({.las = files}); }),
+              AllOf(HasSubstr("EPSG:32633"), HasSubstr("EPSG:32632")));
   b.epsg = 4326;
   const auto degrees = written(b);
   EXPECT_THAT(message_of([&] { import_canopy({.las = {degrees}}); }), HasSubstr("in degrees"));
@@ -147,7 +153,8 @@ std::vector<LasPoint> cones(double height_unit = 1) {
     for (const auto& [cx, cy] : {std::pair{15.0, 15.0}, {45.0, 15.0}, {30.0, 45.0}})
       above = std::max(above, 12 - 3 * std::hypot(x - cx, y - cy));
     const auto add = [&](double z, int type, int number) {
-      points.push_back({500000 + x, 5000000 + y, z / height_unit, static_cast<std::uint8_t>(type), static_cast<std::uint8_t>(number), false});
+      points.push_back({500000 + x, 5000000 + y, z / height_unit, static_cast<std::uint8_t>(type),
+                        static_cast<std::uint8_t>(number), false});
     };
     add(ground + above, above > 0 ? 5 : 2, 1);
     if (above > 0 && random.uniform() < 0.2) add(ground, 2, 2);
@@ -159,7 +166,8 @@ TEST(PointCanopy, TreesStandOnTheSlope) {
   const auto canopy = import_canopy({.las = {written({.points = cones()})}});
   EXPECT_NEAR(canopy->geometry().where.dx, 0.5, 1e-12);
   const GridGeometry& grid = canopy->geometry();
-  const auto trees = find_trees(*canopy, {0, 0, grid.columns, grid.rows}, {.forest = forest_preset("conifer")});
+  const auto trees =
+      find_trees(*canopy, {0, 0, grid.columns, grid.rows}, {.forest = forest_preset("conifer")});
   ASSERT_EQ(trees.size(), 3U);
   for (const FoundTree& tree : trees) {
     EXPECT_NEAR(tree.height, 12, 0.8);
@@ -174,7 +182,8 @@ TEST(PointCanopy, ManyFilesAreOneCatalogue) {
   std::vector<LasPoint> west, east;
   for (const LasPoint& p : all) (p.x < 500030 ? west : east).push_back(p);
   const auto one = import_canopy({.las = {written({.name = "all.las", .points = all})}});
-  const auto two = import_canopy({.las = {written({.name = "w.las", .points = west}), written({.name = "e.las", .points = east})}});
+  const auto two = import_canopy(
+      {.las = {written({.name = "w.las", .points = west}), written({.name = "e.las", .points = east})}});
   const Window cells{0, 0, one->geometry().columns, one->geometry().rows};
   EXPECT_EQ(one->read(cells), two->read(cells));
 }

@@ -21,7 +21,8 @@ Cells tops_by_definition(const CanopyWindow& smooth, const TreetopRules& rules) 
   HeightWindow heights(columns + 2, rows + 2, kNoHeight);
   for (std::int64_t r = 0; r < rows; ++r)
     for (std::int64_t c = 0; c < columns; ++c)
-      if (smooth.heights(c, r) != kNoCanopy) heights(c + 1, r + 1) = static_cast<double>(smooth.heights(c, r));
+      if (smooth.heights(c, r) != kNoCanopy)
+        heights(c + 1, r + 1) = static_cast<double>(smooth.heights(c, r));
   const auto tree = std::make_shared<const DivideTree>(
       build_divide_tree(heights, {0, 0, columns, rows}, grid, {.min_prominence = 0}));
   const std::vector all{tree};
@@ -63,7 +64,8 @@ TEST(Treetops, MatchTheDefinition) {
       for (float& h : window.heights.cells()) h = h == kNoCanopy ? h : std::round(h / 4) * 4;
     TreetopRules rules{.min_height = 2, .isolation_base = 0.5, .isolation_slope = 0.05, .prominence = 0.3};
     const RulesAt at = [&](const CanopyCell&) -> const TreetopRules& { return rules; };
-    ASSERT_EQ(cells_of(find_treetops(window, window.cells, at)), tops_by_definition(window, rules)) << "seed " << seed;
+    ASSERT_EQ(cells_of(find_treetops(window, window.cells, at)), tops_by_definition(window, rules))
+        << "seed " << seed;
   }
 }
 
@@ -72,7 +74,8 @@ TEST(Treetops, AFlatCrownHasOne) {
   for (std::int64_t r = 5; r < 25; ++r)
     for (std::int64_t c = 5; c < 25; ++c) window.heights(c, r) = 12;
   const TreetopRules rules;
-  const auto tops = find_treetops(window, window.cells, [&](const CanopyCell&) -> const TreetopRules& { return rules; });
+  const auto tops =
+      find_treetops(window, window.cells, [&](const CanopyCell&) -> const TreetopRules& { return rules; });
   EXPECT_EQ(tops.size(), 1U);
 }
 
@@ -96,7 +99,8 @@ TEST(Smoothing, KeepsALevelAndItsHoles) {
 }
 
 bool same(const FoundTree& a, const FoundTree& b) {
-  return a.top == b.top && a.height == b.height && a.crown.cells == b.crown.cells && a.crown.ring == b.crown.ring;
+  return a.top == b.top && a.height == b.height && a.crown.cells == b.crown.cells &&
+         a.crown.ring == b.crown.ring;
 }
 
 TEST(Trees, DoNotDependOnTiles) {
@@ -117,7 +121,8 @@ TEST(Trees, DoNotDependOnTiles) {
         return std::pair(a.top.row, a.top.column) < std::pair(b.top.row, b.top.column);
       });
       ASSERT_EQ(tiled.size(), whole.size());
-      for (std::size_t i = 0; i < whole.size(); ++i) ASSERT_TRUE(same(tiled[i], whole[i])) << seed << " " << side;
+      for (std::size_t i = 0; i < whole.size(); ++i)
+        ASSERT_TRUE(same(tiled[i], whole[i])) << seed << " " << side;
     }
   }
 }
@@ -144,8 +149,8 @@ TEST(Crowns, OutlinesEncloseTheirCellsOnce) {
 
 TEST(Crowns, FillHolesAndCutCorners) {
   Grid<std::uint8_t> inside(4, 3, 1);
-  inside(1, 1) = 0;                  // a hole
-  inside(3, 0) = inside(3, 2) = 0;   // corners
+  inside(1, 1) = 0;                 // a hole
+  inside(3, 0) = inside(3, 2) = 0;  // corners
   const Outline outline = outline_of(inside, 10, 20);
   EXPECT_EQ(outline.cells, 10);
   EXPECT_EQ(outline.ring.size(), 8U);

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 

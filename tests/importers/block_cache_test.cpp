@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/block_cache.hpp"
+#include "importers/rasters/block_cache.hpp"
 
 #include <gtest/gtest.h>
 

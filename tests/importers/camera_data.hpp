@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include "importers/camera_set.hpp"
-#include "importers/text_table.hpp"
+#include "importers/images/camera_set.hpp"
+#include "importers/tables/text_table.hpp"
 namespace waymark::testing {
 
 /// Real camera files; they stay outside the repository.

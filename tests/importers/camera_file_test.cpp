@@ -5,10 +5,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "importers/camera_set.hpp"
-#include "importers/control_points.hpp"
-#include "importers/image.hpp"
-#include "importers/similarity.hpp"
+#include "importers/images/camera_set.hpp"
+#include "importers/images/control_points.hpp"
+#include "importers/images/image.hpp"
+#include "importers/images/similarity.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/fill_voids.hpp"
+#include "importers/rasters/fill_voids.hpp"
 
 #include <gdal_alg.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "importers/image_set.hpp"
+#include "importers/images/image_set.hpp"
 #include "tests/importers/raster_maker.hpp"
 
 namespace waymark::testing {

@@ -4,10 +4,10 @@
 #include <filesystem>
 
 #include "geo/dem_handle.hpp"
-#include "importers/dem.hpp"
-#include "importers/dem_codec.hpp"
 #include "importers/hash.hpp"
-#include "importers/nodata_policy.hpp"
+#include "importers/rasters/dem.hpp"
+#include "importers/rasters/dem_codec.hpp"
+#include "importers/rasters/nodata_policy.hpp"
 #include "importers/stages.hpp"
 #include "importers/tiling.hpp"
 #include "pipeline/engine/runner.hpp"

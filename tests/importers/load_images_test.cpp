@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "importers/control_points.hpp"
 #include "importers/hash.hpp"
-#include "importers/image_set.hpp"
-#include "importers/list_images.hpp"
+#include "importers/images/control_points.hpp"
+#include "importers/images/image_set.hpp"
+#include "importers/images/list_images.hpp"
 #include "importers/stages.hpp"
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/runner.hpp"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "importers/dem.hpp"
-#include "importers/image_set.hpp"
-#include "importers/list_images.hpp"
+#include "importers/images/image_set.hpp"
+#include "importers/images/list_images.hpp"
+#include "importers/rasters/dem.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/misregistration.hpp"
 #include "tests/importers/raster_maker.hpp"

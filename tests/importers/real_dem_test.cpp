@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 #include "tests/importers/raster_maker.hpp"
 
 namespace waymark::testing {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/sun_position.hpp"
+#include "importers/images/sun_position.hpp"
 
 #include <gmock/gmock.h>
 
-#include "importers/image_labels.hpp"
+#include "importers/images/image_labels.hpp"
 #include "tests/importers/raster_maker.hpp"
 
 namespace waymark::testing {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "localization/constellation.hpp"
+#include "localization/global/constellation.hpp"
 #include "made_look.hpp"
 #include "made_world.hpp"
 

@@ -4,10 +4,10 @@
 #include <Eigen/Eigenvalues>
 #include <functional>
 
-#include "localization/chi_square.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/kalman.hpp"
-#include "localization/particle_filter.hpp"
+#include "localization/filters/chi_square.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {

@@ -3,11 +3,11 @@
 
 #include <numbers>
 
-#include "localization/constellation.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/kalman.hpp"
-#include "localization/particle_filter.hpp"
-#include "localization/sighting_memory.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
+#include "localization/global/constellation.hpp"
+#include "localization/slam/sighting_memory.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "importers/logs/graph_file.hpp"
 #include "importers/logs/import_log.hpp"
-#include "localization/graph_solver.hpp"
+#include "localization/slam/graph_solver.hpp"
 #include "made_graph.hpp"
 
 namespace waymark::testing {
@@ -40,15 +40,18 @@ class GraphFile : public ::testing::Test {
 };
 
 TEST_F(GraphFile, TheSameGraphInThreeDialectsIsTheSame) {
-  const auto isam = read("ODOMETRY 0 1 1 0 0.1 10 0 0 20 0 40\nODOMETRY 1 2 1 0 0.1 10 0 0 20 0 40\n"
-                         "LANDMARK 0 3 2 1 5 0 4\nLANDMARK 2 3 0.1 1 5 0 4\n");
-  const auto g2o = read("# made\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0.1\nVERTEX_SE2 2 2 0 0.2\nVERTEX_XY 3 2 1\n"
-                        "FIX 0\nEDGE_SE2 0 1 1 0 0.1 100 0 0 400 0 1600\n"
-                        "EDGE_SE2 1 2 1 0 0.1 100 0 0 400 0 1600\n"
-                        "EDGE_SE2_XY 0 3 2 1 25 0 16\r\nEDGE_SE2_XY 2 3 0.1 1 25 0 16\n");
-  const auto toro = read("VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0.1\nVERTEX2 2 2 0 0.2\n"
-                         "EDGE2 0 1 1 0 0.1 100 0 400 1600 0 0\nEDGE2 1 2 1 0 0.1 100 0 400 1600 0 0\n"
-                         "LANDMARK 0 3 2 1 25 0 16\nLANDMARK 2 3 0.1 1 25 0 16\n");
+  const auto isam = read(
+      "ODOMETRY 0 1 1 0 0.1 10 0 0 20 0 40\nODOMETRY 1 2 1 0 0.1 10 0 0 20 0 40\n"
+      "LANDMARK 0 3 2 1 5 0 4\nLANDMARK 2 3 0.1 1 5 0 4\n");
+  const auto g2o = read(
+      "# made\nVERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0.1\nVERTEX_SE2 2 2 0 0.2\nVERTEX_XY 3 2 1\n"
+      "FIX 0\nEDGE_SE2 0 1 1 0 0.1 100 0 0 400 0 1600\n"
+      "EDGE_SE2 1 2 1 0 0.1 100 0 0 400 0 1600\n"
+      "EDGE_SE2_XY 0 3 2 1 25 0 16\r\nEDGE_SE2_XY 2 3 0.1 1 25 0 16\n");
+  const auto toro = read(
+      "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0.1\nVERTEX2 2 2 0 0.2\n"
+      "EDGE2 0 1 1 0 0.1 100 0 400 1600 0 0\nEDGE2 1 2 1 0 0.1 100 0 400 1600 0 0\n"
+      "LANDMARK 0 3 2 1 25 0 16\nLANDMARK 2 3 0.1 1 25 0 16\n");
   EXPECT_EQ(isam.format, "isam");
   EXPECT_EQ(g2o.format, "g2o");
   EXPECT_EQ(toro.format, "toro");
@@ -96,15 +99,17 @@ TEST_F(GraphFile, WhatIsWrongIsNamedWithItsLine) {
               AllOf(HasSubstr("line 2"), HasSubstr("pose 7, which the graph does not have")));
   EXPECT_THAT(refusal(good + "ODOMETRY 5 6 1 0 0 10 0 0 10 0 10\n"),
               AllOf(HasSubstr("falls apart"), HasSubstr("pose 5")));
-  EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 0 0 0 0\n"), AllOf(HasSubstr("line 2"), HasSubstr("twice")));
+  EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 0 0 0 0\n"),
+              AllOf(HasSubstr("line 2"), HasSubstr("twice")));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("pose 2")));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 1 1 0 0 1 2 0 1 0 1\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("not positive definite")));
   EXPECT_THAT(refusal("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"), HasSubstr("in space, not in the plane"));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\n"), HasSubstr("no edges"));
-  EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nVERTEX_XY 9 1 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n"),
-              HasSubstr("landmark 9 of the graph was seen from no pose"));
+  EXPECT_THAT(
+      refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nVERTEX_XY 9 1 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n"),
+      HasSubstr("landmark 9 of the graph was seen from no pose"));
 }
 
 TEST_F(GraphFile, ABearingAloneDoesNotPlaceALandmark) {

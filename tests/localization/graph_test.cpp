@@ -11,8 +11,8 @@
 #include "core/random.hpp"
 #include "importers/logs/graph_file.hpp"
 #include "importers/logs/import_log.hpp"
-#include "localization/graph_marginals.hpp"
-#include "localization/graph_solver.hpp"
+#include "localization/slam/graph_marginals.hpp"
+#include "localization/slam/graph_solver.hpp"
 #include "made_graph.hpp"
 
 namespace waymark::testing {
@@ -60,7 +60,8 @@ struct Dense {
     }
     for (const PosePrior& p : g.pose_priors) {
       const Pose2& at = g.poses[p.pose].at;
-      add(Eigen::Vector3d(p.root * Eigen::Vector3d(at.x - p.at.x, at.y - p.at.y, wrapped(at.yaw - p.at.yaw))));
+      add(Eigen::Vector3d(p.root *
+                          Eigen::Vector3d(at.x - p.at.x, at.y - p.at.y, wrapped(at.yaw - p.at.yaw))));
     }
     for (const LandmarkPrior& p : g.landmark_priors)
       add(Eigen::Vector2d(p.root * (g.landmarks[p.landmark].at - p.at)));
@@ -149,7 +150,8 @@ TEST(Graph, SolutionIsThatOfTheDenseTwin) {
         EXPECT_TRUE(fast.pose_covariances[i].isApprox(all.block<3, 3>(3 * (i - 1), 3 * (i - 1)), 1e-4)) << i;
       const std::size_t first = 3 * (made.truth.size() - 1);
       for (std::size_t l = 0; l < made.landmarks.size(); ++l)
-        EXPECT_TRUE(fast.landmark_covariances[l].isApprox(all.block<2, 2>(first + 2 * l, first + 2 * l), 1e-4));
+        EXPECT_TRUE(
+            fast.landmark_covariances[l].isApprox(all.block<2, 2>(first + 2 * l, first + 2 * l), 1e-4));
       EXPECT_EQ(fast.pose_covariances[0], Eigen::Matrix3d::Zero().eval()) << "the first pose is held";
     }
 }

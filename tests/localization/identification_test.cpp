@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/identification.hpp"
+#include "localization/identification/identification.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include <numbers>
 #include <set>
 
-#include "localization/assignment.hpp"
-#include "localization/chi_square.hpp"
-#include "localization/joint_search.hpp"
-#include "localization/landmark_window.hpp"
-#include "localization/particle_weights.hpp"
-#include "localization/resampling.hpp"
+#include "localization/filters/chi_square.hpp"
+#include "localization/filters/particle_weights.hpp"
+#include "localization/filters/resampling.hpp"
+#include "localization/identification/assignment.hpp"
+#include "localization/identification/joint_search.hpp"
+#include "localization/identification/landmark_window.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
@@ -141,7 +141,8 @@ TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
     const auto go = [&](const auto& self, std::size_t depth, const JointEvidence& e, double weight) -> void {
       if (depth == 4) {
         const JointDistance d = joint_distance(e, robot.covariance);
-        const double density = e.rows ? -(d.squares + d.log_det + e.rows * std::log(2 * std::numbers::pi)) / 2 : 0;
+        const double density =
+            e.rows ? -(d.squares + d.log_det + e.rows * std::log(2 * std::numbers::pi)) / 2 : 0;
         expected.emplace_back(weight + density, choice);
         return;
       }
@@ -149,14 +150,16 @@ TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
         const CandidatePair& p = sets[depth].pairings[i];
         bool taken = false;
         for (std::size_t k = 0; k < depth; ++k)
-          taken = taken || (choice[k] >= 0 && sets[k].pairings[std::size_t(choice[k])].landmark == p.landmark);
+          taken =
+              taken || (choice[k] >= 0 && sets[k].pairings[std::size_t(choice[k])].landmark == p.landmark);
         if (taken) continue;
         choice[depth] = int(i);
         self(self, depth + 1, e + p.evidence, weight + std::log(map[p.landmark].quality) - p.features / 2);
       }
       choice[depth] = -1;
-      self(self, depth + 1, e, weight + std::log(options.clutter) -
-                                   (sets[depth].pairings.empty() ? 0 : 0.5 * sets[depth].pairings[0].feature_count));
+      self(self, depth + 1, e,
+           weight + std::log(options.clutter) -
+               (sets[depth].pairings.empty() ? 0 : 0.5 * sets[depth].pairings[0].feature_count));
     };
     go(go, 0, {}, 0);
     double best = -1e300;

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "localization/hypotheses.hpp"
-#include "localization/particle_weights.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/particle_weights.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
@@ -45,8 +45,8 @@ TEST(LineOfSight, HiddenLandmarksAreThoseOfASearchOfAll) {
   EXPECT_TRUE(hidden_landmarks(sensor, map, 15, {}).empty());
 }
 
-// A landmark 3 m ahead: the one at x = 3 seen from x = 0, or the one at x = 5 seen from x = 2. From there a third
-// one behind the wall would be in view.
+// A landmark 3 m ahead: the one at x = 3 seen from x = 0, or the one at x = 5 seen from x = 2. From there a
+// third one behind the wall would be in view.
 double x_of_estimate(const LineOfSight& visible) {
   std::vector<MapLandmark> all{landmark_at(3, -2, 1), landmark_at(5, -2, 2), landmark_at(9, 5, 3)};
   for (MapLandmark& l : all) l.covariance = Eigen::Matrix2d::Identity() * 1e-4;
@@ -54,8 +54,8 @@ double x_of_estimate(const LineOfSight& visible) {
   view.expect_unseen = true;
   view.detection = 0.95;
   view.view_range = 11;
-  HypothesesFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()}, LandmarkWindow{LandmarkGrid(all)},
-                          FeatureScales{});
+  HypothesesFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()},
+                          LandmarkWindow{LandmarkGrid(all)}, FeatureScales{});
   filter.expect_landmarks(view, visible);
   filter.see({{}, {seen_at(3, 0)}});
   return filter.estimate().pose.x;

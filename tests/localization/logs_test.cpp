@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <gmock/gmock.h>
 #include <unistd.h>
+#include <cmath>
 
 #include <filesystem>
 #include <fstream>
@@ -9,9 +9,9 @@
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/laser_stems.hpp"
-#include "localization/hypotheses.hpp"
-#include "localization/kalman.hpp"
-#include "localization/particle_filter.hpp"
+#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
 #include "localization/play_log.hpp"
 #include "localization/track_score.hpp"
 

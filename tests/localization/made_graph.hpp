@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
-#include "localization/graph.hpp"
+#include "localization/slam/graph.hpp"
 namespace waymark::testing {
 
 /// A drive of two rounds with landmarks on both sides, every measurement with its error.
@@ -13,7 +13,8 @@ struct MadeGraph {
   std::vector<Eigen::Vector2d> landmarks;
 };
 
-inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = SightingKind::place, double noise = 1) {
+inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = SightingKind::place,
+                            double noise = 1) {
   Random random(seed, "graph");
   MadeGraph made;
   for (int i = 0; i < 8; ++i) {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
-#include "localization/constellation.hpp"
+#include "localization/global/constellation.hpp"
 namespace waymark::testing {
 
 /// What a sensor sees of a map from a place, with errors drawn from what it states of itself.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/random.hpp"
-#include "localization/landmark_grid.hpp"
+#include "localization/identification/landmark_grid.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::testing {

@@ -7,14 +7,14 @@
 #include <cstdio>
 
 #include "core/random.hpp"
-#include "localization/hypotheses.hpp"
+#include "localization/filters/hypotheses.hpp"
 #include "localization/motion_model.hpp"
 
 namespace waymark::testing {
 namespace {
 
-// A machine drives slowly through landmarks whose places on the map err by half a metre per axis. Returns the mean
-// of the squared errors over the variances the filter claims.
+// A machine drives slowly through landmarks whose places on the map err by half a metre per axis. Returns the
+// mean of the squared errors over the variances the filter claims.
 double consistency(double same_error) {
   double sum = 0;
   int rows = 0;
@@ -30,7 +30,8 @@ double consistency(double same_error) {
     }
     PoseEstimate start;
     start.covariance = Eigen::Vector3d(0.25, 0.25, 0.01).asDiagonal();
-    HypothesesFilter filter(start, LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999}, {.same_error = same_error});
+    HypothesesFilter filter(start, LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999},
+                            {.same_error = same_error});
     Pose2 truth;
     for (int step = 0; step < 80; ++step) {
       const BodyMotion told = twist_motion(0.5, 0, 0, 1, {});
@@ -63,7 +64,8 @@ double consistency(double same_error) {
 
 TEST(HypothesesFilter, KnowsThatTheMapErrsTheSameWayAgain) {
   const double independent = consistency(0), alike = consistency(15);
-  std::printf("mean squared error over claimed variance: %.1f taken as independent, %.1f as alike\n", independent, alike);
+  std::printf("mean squared error over claimed variance: %.1f taken as independent, %.1f as alike\n",
+              independent, alike);
   EXPECT_GT(independent, 2) << "the test must show what is mended";
   EXPECT_LT(alike, 0.5 * independent);
   EXPECT_LT(alike, 2);

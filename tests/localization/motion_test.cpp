@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/random.hpp"
-#include "localization/measurement.hpp"
+#include "localization/filters/measurement.hpp"
 #include "localization/motion_model.hpp"
 
 namespace waymark {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/particle_weights.hpp"
+#include "localization/filters/particle_weights.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 
-#include "localization/chi_square.hpp"
-#include "localization/resampling.hpp"
+#include "localization/filters/chi_square.hpp"
+#include "localization/filters/resampling.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/repeated_sightings.hpp"
+#include "localization/filters/repeated_sightings.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "localization/kalman.hpp"
+#include "localization/filters/kalman.hpp"
 #include "localization/play_log.hpp"
 #include "localization/track_score.hpp"
 #include "made_world.hpp"
@@ -58,7 +58,8 @@ RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>
   Random random(seed, "alike");
   RobotLog log;
   log.error_memory = {.range = memory, .bearing = memory};
-  log.odometry = OdometryNoise{.along_per_metre = 0.01, .across_per_metre = 1e-3, .yaw_per_metre = 0.002, .yaw_per_radian = 0.01};
+  log.odometry = OdometryNoise{
+      .along_per_metre = 0.01, .across_per_metre = 1e-3, .yaw_per_metre = 0.002, .yaw_per_radian = 0.01};
   const double dt = 0.25, alike = std::exp(-dt / memory);
   std::vector<Eigen::Vector2d> error;
   for (std::size_t i = 0; i < beacons.size(); ++i) error.emplace_back(random.normal(), random.normal());
@@ -68,7 +69,8 @@ RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>
     log.truth.push_back({t, at});
     SightingSet set;
     for (std::size_t l = 0; l < beacons.size(); ++l) {
-      error[l] = alike * error[l] + std::sqrt(1 - alike * alike) * Eigen::Vector2d(random.normal(), random.normal());
+      error[l] =
+          alike * error[l] + std::sqrt(1 - alike * alike) * Eigen::Vector2d(random.normal(), random.normal());
       const Eigen::Vector2d d = beacons[l].at - at.at();
       const double bearing = wrapped(std::atan2(d.y(), d.x()) - at.yaw);
       if (std::abs(bearing) > 0.6) continue;
@@ -90,7 +92,8 @@ RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>
 double anees(bool knows) {
   std::vector<MapLandmark> beacons;
   for (int i = 0; i < 10; ++i)
-    beacons.push_back(landmark_at(6 * std::cos(0.63 * i), 6 * std::sin(0.63 * i), static_cast<LandmarkKey>(i + 1)));
+    beacons.push_back(
+        landmark_at(6 * std::cos(0.63 * i), 6 * std::sin(0.63 * i), static_cast<LandmarkKey>(i + 1)));
   for (MapLandmark& l : beacons) l.covariance = Eigen::Matrix2d::Identity() * 1e-6;
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/random.hpp"
-#include "importers/dem.hpp"
-#include "localization/skyline_index.hpp"
+#include "importers/rasters/dem.hpp"
+#include "localization/global/skyline_index.hpp"
 namespace waymark::testing {
 namespace {
 

@@ -3,10 +3,10 @@
 
 #include <Eigen/Cholesky>
 
-#include "localization/ekf_slam.hpp"
-#include "localization/existence.hpp"
-#include "localization/measurement.hpp"
-#include "localization/signature.hpp"
+#include "localization/filters/measurement.hpp"
+#include "localization/slam/ekf_slam.hpp"
+#include "localization/slam/existence.hpp"
+#include "localization/slam/signature.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
@@ -77,7 +77,8 @@ TEST(SlamState, ANewLandmarkHasTheCovarianceOfItsPlacing) {
   const Pose2 mount{0.5, 0.1, -0.2};
   const auto place = [&](const Eigen::Vector3d& pose, double range, double bearing) -> Eigen::Vector2d {
     const Pose2 sensor = pose_of(pose) * mount;
-    return sensor.at() + range * Eigen::Vector2d(std::cos(sensor.yaw + bearing), std::sin(sensor.yaw + bearing));
+    return sensor.at() +
+           range * Eigen::Vector2d(std::cos(sensor.yaw + bearing), std::sin(sensor.yaw + bearing));
   };
   Eigen::Matrix<double, 2, 5> j;
   for (int i = 0; i < 5; ++i) {
@@ -130,9 +131,10 @@ TEST(SlamState, StaysSymmetricAndPositiveDefiniteForLong) {
     for (const SeenLandmark& s : drive.look().sightings) {
       SlamState::Slot& slot = slot_of[*s.identity];
       if (slot == SlamState::Slot(-1)) {
-        slot = state.add(state.pose().at() + *s.range * Eigen::Vector2d(std::cos(s.bearing + state.pose().yaw),
-                                                                        std::sin(s.bearing + state.pose().yaw)),
-                         Eigen::Matrix2d::Identity() * 25);
+        slot =
+            state.add(state.pose().at() + *s.range * Eigen::Vector2d(std::cos(s.bearing + state.pose().yaw),
+                                                                     std::sin(s.bearing + state.pose().yaw)),
+                      Eigen::Matrix2d::Identity() * 25);
       }
       const ExpectedSighting e = expect(state.pose(), {}, state.at(slot));
       corrections.push_back({slot, innovation(s, e.value), e.by_pose, e.by_landmark, sensor_noise(s)});
@@ -210,9 +212,8 @@ TEST(EkfSlam, WhatTheGroundHidesIsNotExpected) {
   hidden.at = (a.truth() * Pose2{5, 0.5, 0}).at();
   map.push_back(hidden);
   EkfSlam open(surely(a.truth()), grid_of(map), {}, for_made_drive());
-  EkfSlam hilly(surely(b.truth()), grid_of(map), {}, for_made_drive(), [&](const Pose2&, const Eigen::Vector2d& at) {
-    return (at - hidden.at).norm() > 0.1;
-  });
+  EkfSlam hilly(surely(b.truth()), grid_of(map), {}, for_made_drive(),
+                [&](const Pose2&, const Eigen::Vector2d& at) { return (at - hidden.at).norm() > 0.1; });
   for (int i = 0; i < 6; ++i) {
     open.move(a.drive(0.2)), hilly.move(b.drive(0.2));
     open.see(a.look()), hilly.see(b.look());

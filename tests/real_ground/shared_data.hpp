@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "importers/dem.hpp"
+#include "importers/rasters/dem.hpp"
 #include "pipeline/terrain/isolation.hpp"
 #include "tests/pipeline/survey.hpp"
 namespace waymark::testing {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "importers/image.hpp"
+#include "importers/images/image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/sun_angle.hpp"
 namespace waymark::testing {

@@ -9,7 +9,7 @@
 #include "localization/detectors/laser_rocks.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/harvested.hpp"
-#include "testbed/laser_scanner.hpp"
+#include "testbed/drive/laser_scanner.hpp"
 
 namespace waymark {
 namespace {

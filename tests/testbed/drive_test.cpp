@@ -8,9 +8,9 @@
 #include "core/error.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/motion_model.hpp"
-#include "testbed/drive_log.hpp"
-#include "testbed/drive_route.hpp"
-#include "testbed/ray_fan.hpp"
+#include "testbed/drive/drive_log.hpp"
+#include "testbed/drive/drive_route.hpp"
+#include "testbed/drive/ray_fan.hpp"
 #include "testbed/scenario.hpp"
 
 namespace waymark {

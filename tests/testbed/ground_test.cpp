@@ -8,11 +8,11 @@
 #include <set>
 
 #include "core/error.hpp"
-#include "testbed/crater_field.hpp"
-#include "testbed/crater_profile.hpp"
+#include "testbed/landing/crater_field.hpp"
+#include "testbed/landing/crater_profile.hpp"
+#include "testbed/landing/relief.hpp"
+#include "testbed/landing/rock_field.hpp"
 #include "testbed/noise.hpp"
-#include "testbed/relief.hpp"
-#include "testbed/rock_field.hpp"
 #include "testbed/scene.hpp"
 
 namespace waymark {

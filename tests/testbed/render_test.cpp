@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "testbed/lit_ground.hpp"
-#include "testbed/rock_field.hpp"
+#include "testbed/landing/lit_ground.hpp"
+#include "testbed/landing/rock_field.hpp"
 #include "testbed/sensor.hpp"
 
 namespace waymark {

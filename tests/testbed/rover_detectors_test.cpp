@@ -10,10 +10,10 @@
 #include "localization/detectors/depth_rocks.hpp"
 #include "localization/detectors/horizon_summits.hpp"
 #include "localization/detectors/laser_rocks.hpp"
-#include "testbed/laser_scanner.hpp"
-#include "testbed/panorama.hpp"
+#include "testbed/drive/laser_scanner.hpp"
+#include "testbed/drive/panorama.hpp"
+#include "testbed/drive/stereo_camera.hpp"
 #include "testbed/scene.hpp"
-#include "testbed/stereo_camera.hpp"
 
 namespace waymark {
 namespace {
@@ -31,15 +31,15 @@ Scene rocky(std::uint64_t seed) {
 }
 
 struct Tally {
-  int found = 0, right = 0;         // of what was found
-  int in_view = 0, recovered = 0;   // of what could be seen
+  int found = 0, right = 0;        // of what was found
+  int in_view = 0, recovered = 0;  // of what could be seen
   double precision() const { return double(right) / std::max(1, found); }
   double recall() const { return double(recovered) / std::max(1, in_view); }
 };
 
 /// `count[i]`: how many rays of the sensor meet rock i first; from `least` on it can be seen.
-void tally(const Scene& scene, const std::vector<Eigen::Vector2d>& found, const std::map<std::uint32_t, int>& count,
-           int least, double slack, Tally& sum) {
+void tally(const Scene& scene, const std::vector<Eigen::Vector2d>& found,
+           const std::map<std::uint32_t, int>& count, int least, double slack, Tally& sum) {
   const auto from = [&](const TrueRock& r, const Eigen::Vector2d& at) {
     return (r.position.head<2>() - at).norm() - 0.3 * r.width;
   };
@@ -64,7 +64,8 @@ template <class Seen>
 std::vector<Eigen::Vector2d> places(const std::vector<Seen>& seen, const Eigen::Vector3d& eye) {
   std::vector<Eigen::Vector2d> all;
   for (const Seen& rock : seen)
-    all.emplace_back(eye.head<2>() + rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing)));
+    all.emplace_back(eye.head<2>() +
+                     rock.range * Eigen::Vector2d(std::cos(rock.bearing), std::sin(rock.bearing)));
   return all;
 }
 
@@ -79,7 +80,8 @@ std::map<std::uint32_t, int> rocks_in_scan(const RayFan& fan, const LaserScan& s
   return count;
 }
 
-std::map<std::uint32_t, int> rocks_in_image(const RayFan& fan, const DepthImage& image, const Scene& scene, double reach) {
+std::map<std::uint32_t, int> rocks_in_image(const RayFan& fan, const DepthImage& image, const Scene& scene,
+                                            double reach) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(image.tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
   std::map<std::uint32_t, int> count;
   for (std::int64_t r = 0; r < image.rows; ++r)
@@ -105,8 +107,8 @@ TEST(LaserRocks, MostOfWhatIsFoundIsThereAndFewAreMissed) {
       tally(scene, places(find_rocks(scan, {}), eye), rocks_in_scan(fan, scan, 24), 5, 0.4, sum);
     }
   }
-  std::printf("laser: %d of %d found are there, %d of %d met by 5 beams and more are found\n", sum.right, sum.found,
-              sum.recovered, sum.in_view);
+  std::printf("laser: %d of %d found are there, %d of %d met by 5 beams and more are found\n", sum.right,
+              sum.found, sum.recovered, sum.in_view);
   EXPECT_GT(sum.found, 300);
   EXPECT_GE(sum.precision(), 0.95);
   EXPECT_GE(sum.recall(), 0.7);
@@ -126,8 +128,8 @@ TEST(DepthRocks, MostOfWhatIsFoundIsThereAndFewAreMissed) {
       tally(scene, places(find_rocks(image, {}), eye), rocks_in_image(fan, image, scene, 14), 12, 0.5, sum);
     }
   }
-  std::printf("depth: %d of %d found are there, %d of %d of 12 pixels and more are found\n", sum.right, sum.found,
-              sum.recovered, sum.in_view);
+  std::printf("depth: %d of %d found are there, %d of %d of 12 pixels and more are found\n", sum.right,
+              sum.found, sum.recovered, sum.in_view);
   EXPECT_GT(sum.found, 60);
   EXPECT_GE(sum.precision(), 0.95);
   EXPECT_GE(sum.recall(), 0.75);
@@ -165,15 +167,18 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
       found += int(summits.size());
       for (const Eigen::Vector3d& c : cones) {
         const Eigen::Vector2d to = c.head<2>() - at;
-        if (to.norm() < 100 || c.z() < eye.z() + 0.03 * to.norm()) continue;  // not above the plain by 1.7 degrees
+        if (to.norm() < 100 || c.z() < eye.z() + 0.03 * to.norm())
+          continue;  // not above the plain by 1.7 degrees
         // Seen and not merged: its top is higher than all that stands within 6 degrees of it.
         const double elevation = std::atan2(c.z() - eye.z(), to.norm());
         bool free = true;
         for (const Eigen::Vector3d& o : cones) {
           const Eigen::Vector2d other = o.head<2>() - at;
-          const double aside = std::abs(wrapped(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
+          const double aside =
+              std::abs(wrapped(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
           const double wide = std::atan2(o.z() / 0.5, other.norm());
-          free = free && (&o == &c || aside > wide + 0.1 || std::atan2(o.z() - eye.z(), other.norm()) < elevation - 0.1);
+          free = free && (&o == &c || aside > wide + 0.1 ||
+                          std::atan2(o.z() - eye.z(), other.norm()) < elevation - 0.1);
         }
         const bool hit = std::ranges::any_of(summits, [&](const SeenSummit& s) {
           return std::abs(wrapped(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
@@ -188,7 +193,8 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
         });
     }
   }
-  std::printf("summits: %d of %d found are there, %d of %d that stand free are found\n", right, found, recovered, in_view);
+  std::printf("summits: %d of %d found are there, %d of %d that stand free are found\n", right, found,
+              recovered, in_view);
   EXPECT_GT(found, 20);
   EXPECT_GE(right, 0.9 * found);
   EXPECT_GE(recovered, 0.8 * in_view);

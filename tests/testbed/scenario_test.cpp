@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "core/error.hpp"
-#include "testbed/flight.hpp"
+#include "testbed/landing/flight.hpp"
 #include "testbed/scene_files.hpp"
 
 namespace waymark {

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/images/find_images.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "importers/gdal_session.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const std::string& path) {
+  VSIStatBufL status;
+  return VSIStatL(path.c_str(), &status) == 0 && VSI_ISDIR(status.st_mode);
+}
+
+bool exists(const std::string& path) {
+  VSIStatBufL status;
+  return VSIStatL(path.c_str(), &status) == 0;
+}
+
+bool is_pattern(const std::string& path) {
+  return path.find_first_of("*?[") != std::string::npos && !exists(path);
+}
+
+// Where the files of a camera set are looked for.
+std::vector<std::string> folders_of(const std::vector<std::string>& files, const std::string& camera_file) {
+  std::vector<std::string> folders;
+  for (const std::string& file : files)
+    if (is_folder(file))
+      folders.push_back(file);
+    else if (is_pattern(file))
+      folders.push_back(fs::path(file).parent_path().string());
+  if (!files.empty()) return folders;
+  const fs::path folder =
+      is_folder(camera_file) ? fs::path(camera_file) : fs::path(camera_file).parent_path();
+  for (const fs::path& place : {folder, folder / "images", folder.parent_path() / "images",
+                                folder.parent_path().parent_path() / "images"})
+    if (is_folder(place.string())) folders.push_back(place.string());
+  return folders;
+}
+
+// The camera's image in one of the folders, with an extension where the camera file leaves it out.
+std::string locate(const std::string& image, const std::vector<std::string>& folders,
+                   const std::map<std::string, std::string>& by_stem) {
+  for (const std::string& folder : folders)
+    for (const fs::path& path : {fs::path(folder) / image, fs::path(folder) / fs::path(image).filename()})
+      if (exists(path.string()) && !is_folder(path.string())) return path.string();
+  for (const std::string& stem : {fs::path(image).filename().string(), fs::path(image).stem().string()})
+    if (const auto found = by_stem.find(stem); found != by_stem.end()) return found->second;
+  return folders.empty() ? image : (fs::path(folders[0]) / image).string();
+}
+
+// A name with as many folders as it takes to tell the images apart.
+void name_apart(std::vector<FoundImage>& images) {
+  for (int folders = 0; folders < 8; ++folders) {
+    std::map<std::string, int> uses;
+    for (const FoundImage& image : images) ++uses[image.name];
+    bool clear = true;
+    for (FoundImage& image : images) {
+      if (uses[image.name] < 2) continue;
+      clear = false;
+      fs::path parent = fs::path(image.path).parent_path();
+      for (int up = 0; up < folders; ++up) parent = parent.parent_path();
+      if (!parent.filename().empty()) image.name = parent.filename().string() + "/" + image.name;
+    }
+    if (clear) return;
+  }
+}
+
+}  // namespace
+
+bool is_image_name(const std::string& name) {
+  static constexpr std::array kExtensions{".tif", ".tiff", ".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".img",
+                                          ".jp2", ".vrt",  ".cub", ".bmp", ".webp", ".exr", ".jxl"};
+  std::string extension = fs::path(name).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+std::vector<std::string> matching(const std::string& pattern) {
+  if (!is_pattern(pattern)) return {pattern};
+  const fs::path folder = fs::path(pattern).parent_path();
+  const std::string wanted = fs::path(pattern).filename().string();
+  const std::string place = folder.empty() ? "." : folder.string();
+  const std::unique_ptr<char*, decltype(&CSLDestroy)> names(VSIReadDir(place.c_str()), &CSLDestroy);
+  std::vector<std::string> found;
+  for (char** name = names.get(); name && *name; ++name)
+    if (fnmatch(wanted.c_str(), *name, FNM_PERIOD) == 0) found.push_back((folder / *name).string());
+  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<std::string> image_files_in(const std::string& folder) {
+  const std::unique_ptr<char*, decltype(&CSLDestroy)> names(VSIReadDir(folder.c_str()), &CSLDestroy);
+  std::vector<std::string> images;
+  for (char** name = names.get(); name && *name; ++name)
+    if (is_image_name(*name)) images.push_back((fs::path(folder) / *name).string());
+  std::ranges::sort(images);
+  return images;
+}
+
+std::vector<FoundImage> find_images(const std::vector<std::string>& files, const CameraSet* cameras,
+                                    const std::string& camera_file) {
+  const GdalListener quiet;
+  std::vector<std::string> paths;
+  for (const std::string& file : files)
+    if (is_folder(file))
+      for (std::string& image : image_files_in(file)) paths.push_back(std::move(image));
+    else
+      for (std::string& image : matching(file)) paths.push_back(std::move(image));
+  if (cameras) {
+    const std::vector<std::string> folders = folders_of(files, camera_file);
+    std::map<std::string, std::string> by_stem;
+    for (const std::string& folder : folders)
+      for (const std::string& path : image_files_in(folder))
+        by_stem.emplace(fs::path(path).stem().string(), path);
+    if (files.empty() || !folders.empty())
+      for (const ImageCamera& image : cameras->images) paths.push_back(locate(image.image, folders, by_stem));
+  }
+  std::vector<FoundImage> found;
+  std::set<std::string> known;
+  for (const std::string& path : paths)
+    if (known.insert(fs::path(path).lexically_normal().string()).second)
+      found.push_back({.path = path,
+                       .name = fs::path(path).filename().string(),
+                       .camera = cameras ? camera_of(*cameras, path) : nullptr});
+  name_apart(found);
+  std::ranges::sort(found, {}, &FoundImage::name);
+  return found;
+}
+
+}  // namespace waymark

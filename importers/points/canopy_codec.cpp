@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/points/canopy_codec.hpp"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "importers/points/canopy.hpp"
+
+namespace waymark {
+
+std::string Codec<Canopies>::encode(const Canopies& canopies) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const auto& canopy : canopies) {
+    const auto* raster = dynamic_cast<const ImportedCanopy*>(canopy.get());
+    if (!raster) throw std::logic_error("only a canopy that was imported can be kept in a work folder");
+    const CanopyImport& import = raster->import();
+    all.push_back({{"chm", import.chm},
+                   {"dsm", import.dsm},
+                   {"dtm", import.dtm},
+                   {"las", import.las},
+                   {"resolution", import.resolution},
+                   {"forest_type", import.forest_type},
+                   {"crs", import.crs},
+                   {"name", import.name},
+                   {"memory_bytes", import.memory_bytes}});
+  }
+  return all.dump();
+}
+
+Canopies Codec<Canopies>::decode(std::string_view bytes) {
+  Canopies canopies;
+  for (const auto& json : nlohmann::json::parse(bytes))
+    canopies.push_back(import_canopy({.chm = json.at("chm"),
+                                      .dsm = json.at("dsm"),
+                                      .dtm = json.at("dtm"),
+                                      .las = json.at("las"),
+                                      .resolution = json.at("resolution"),
+                                      .forest_type = json.at("forest_type"),
+                                      .crs = json.at("crs"),
+                                      .name = json.at("name"),
+                                      .memory_bytes = json.at("memory_bytes"),
+                                      .inspect = false}));
+  return canopies;
+}
+
+}  // namespace waymark

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <list>
+
+#include "core/error.hpp"
+#include "importers/points/canopy.hpp"
+#include "importers/points/las_catalogue.hpp"
+#include "pipeline/forest/canopy_model.hpp"
+#include "pipeline/forest/ground_filter.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
+constexpr double kAround = 20;        // metres of points around a block
+constexpr double kGroundAround = 60;  // metres of points around a block in which ground is sought
+constexpr double kFewest = 0.25;      // returns per m2, below which ground cannot be told by its shape
+constexpr std::size_t kKeptBlocks = 256;
+
+/// The CRS all files agree on.
+Crs crs_of(const std::vector<LasHeader>& headers, const std::string& asked, const LasBox& box,
+           std::vector<std::string>& warnings) {
+  if (!asked.empty()) return asked == "local" ? Crs::local() : Crs::from_text(asked);
+  for (const LasHeader& header : headers)
+    if (header.crs.has_value() != headers[0].crs.has_value() ||
+        (header.crs && !header.crs->same_as(*headers[0].crs)))
+      throw Error(
+          ErrorCode::input,
+          fmt::format("the files are in different coordinate reference systems: {} and {}",
+                      headers[0].crs ? headers[0].crs->id() : "none", header.crs ? header.crs->id() : "none"),
+          header.path, "pass --crs if one of them is wrong; else reproject them (las2las, pdal)");
+  if (headers[0].crs) return *headers[0].crs;
+  if (std::abs(box.left) <= 360 && std::abs(box.right) <= 360 && std::abs(box.low) <= 90 &&
+      std::abs(box.high) <= 90 && box.right - box.left < 1 && box.high - box.low < 1)
+    throw Error(ErrorCode::input, "the points seem to be in degrees, but trees are found in metres",
+                headers[0].path,
+                "reproject them (las2las -target_utm, pdal); or pass --crs local if they are metres");
+  warnings.push_back(
+      headers[0].path +
+      ": it names no coordinate reference system that is known; its coordinates are taken as metres: "
+      "pass --crs");
+  return Crs::local();
+}
+
+class PointCanopy final : public ImportedCanopy {
+ public:
+  explicit PointCanopy(const CanopyImport& import)
+      : import_(import), catalogue_(import.las, import.memory_bytes / 2) {
+    name_ = import.name.empty() ? std::filesystem::path(import.las[0]).filename().string() : import.name;
+    check_points();
+    grid_.where.crs = crs_of(catalogue_.headers(), import.crs, catalogue_.box(), warnings_);
+    const Crs& crs = grid_.where.crs;
+    if (crs.kind() == CrsKind::geographic)
+      throw Error(ErrorCode::input,
+                  fmt::format("the points are in degrees ({}), but trees are found in metres", crs.id()),
+                  import.las[0], "reproject them into a projected CRS first (las2las -target_utm, pdal)");
+    unit_ = crs.metres_per_unit();
+    set_height_unit();
+    lay_grid();
+    if (catalogue_.ground_points() == 0) check_unclassified();
+  }
+
+  const GridGeometry& geometry() const override { return grid_; }
+  const std::string& name() const override { return name_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  const CanopyImport& import() const override { return import_; }
+  DemHandle terrain() const override { return nullptr; }
+  Grid<std::uint8_t> forest_types(const Window&) const override { return {}; }
+
+  Grid<float> read(const Window& window) const override {
+    Grid<float> heights(window.columns, window.rows, kNoCanopy);
+    const Window all{0, 0, grid_.columns, grid_.rows};
+    for (std::int64_t r = std::max<std::int64_t>(0, window.row); r < std::min(window.end_row(), all.rows);) {
+      const std::int64_t block_row = r / kBlock,
+                         next_row = std::min({(block_row + 1) * kBlock, window.end_row(), all.rows});
+      for (std::int64_t c = std::max<std::int64_t>(0, window.column);
+           c < std::min(window.end_column(), all.columns);) {
+        const std::int64_t block_column = c / kBlock;
+        const std::int64_t next = std::min({(block_column + 1) * kBlock, window.end_column(), all.columns});
+        const auto block = block_at(block_column, block_row);
+        for (std::int64_t j = r; j < next_row; ++j)
+          for (std::int64_t i = c; i < next; ++i) {
+            const float h = block->heights(i - block_column * kBlock, j - block_row * kBlock);
+            if (!std::isnan(h)) heights(i - window.column, j - window.row) = std::max(h, 0.0F);
+          }
+        c = next;
+      }
+      r = next_row;
+    }
+    return heights;
+  }
+
+  double ground(std::int64_t column, std::int64_t row) const override {
+    if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return std::nan("");
+    return static_cast<double>(
+        block_at(column / kBlock, row / kBlock)->ground(column % kBlock, row % kBlock));
+  }
+
+ private:
+  void check_points() {
+    if (catalogue_.points() == 0)
+      throw Error(ErrorCode::input, "the files hold no points", import_.las[0],
+                  "check that they are the right ones");
+    if (const auto out = catalogue_.left_out(); out > 0)
+      warnings_.push_back(
+          fmt::format("{}: {} points are noise or withheld and left out", import_.las[0], out));
+  }
+
+  void check_unclassified() {
+    const LasBox& box = catalogue_.box();
+    const double width = (box.right - box.left) * unit_, height = (box.high - box.low) * unit_;
+    if (!(static_cast<double>(catalogue_.points()) > kFewest * width * height) ||
+        !(std::min(width, height) > 20))
+      throw Error(
+          ErrorCode::input,
+          "no point is classified as ground (class 2), and the points are too few to find it: heights of "
+          "trees need the ground",
+          import_.las[0],
+          "classify it first (pdal ground, lasground), or make rasters and pass --dsm and --dtm");
+    warnings_.push_back(
+        import_.las[0] +
+        ": no point is classified as ground (class 2): the ground is found by its shape (Axelsson "
+        "2000), which takes low dense canopy and steps of the ground for the other");
+  }
+
+  void set_height_unit() {
+    const LasHeader& header = catalogue_.headers()[0];
+    height_unit_ = header.metres_per_height > 0 ? header.metres_per_height : unit_;
+    if (std::abs(height_unit_ - 1) > 1e-9)
+      warnings_.push_back(fmt::format("{}: heights are in feet{}, and are turned into metres", header.path,
+                                      header.metres_per_height > 0 ? "" : ", as the CRS is"));
+  }
+
+  void lay_grid() {
+    const LasBox& box = catalogue_.box();
+    const double area = (box.right - box.left) * (box.high - box.low) * unit_ * unit_;
+    const double density = static_cast<double>(catalogue_.first_returns()) / std::max(area, 1.0);
+    spacing_ = 1 / std::sqrt(std::max(density, 1e-4));
+    double cell = import_.resolution;
+    if (!(cell > 0))
+      for (const double usual : {0.25, 0.5, 1.0, 2.0}) {
+        cell = usual;
+        if (usual >= spacing_) break;
+      }
+    const double step = cell / unit_;
+    grid_.where.dx = step, grid_.where.dy = -step;
+    const double left = std::floor(box.left / step), top = std::ceil(box.high / step);
+    grid_.where.x0 = (left + 0.5) * step, grid_.where.y0 = (top - 0.5) * step;
+    const double columns = std::floor(box.right / step) - left + 1, rows = top - std::floor(box.low / step);
+    if (!(columns * rows < 1e11))
+      throw Error(ErrorCode::input,
+                  fmt::format("the points lie {:.3g} x {:.3g} m apart", columns * cell, rows * cell),
+                  import_.las[0], "a header with a wrong scale, or files of different places?");
+    grid_.columns = std::max<std::int64_t>(1, static_cast<std::int64_t>(columns));
+    grid_.rows = std::max<std::int64_t>(1, static_cast<std::int64_t>(rows));
+    if (spacing_ > 1.5 * cell && import_.resolution > 0)
+      warnings_.push_back(
+          fmt::format("{:.2g} first returns per m2 are few for cells of {:g} m", density, cell));
+  }
+
+  std::shared_ptr<const CanopyBlock> block_at(std::int64_t column, std::int64_t row) const {
+    const std::int64_t key = row * (1 << 24) + column;
+    {
+      const std::scoped_lock lock(mutex_);
+      for (auto it = blocks_.begin(); it != blocks_.end(); ++it)
+        if (it->first == key) {
+          blocks_.splice(blocks_.begin(), blocks_, it);
+          return it->second;
+        }
+    }
+    auto made = std::make_shared<const CanopyBlock>(made_block(column, row));
+    const std::scoped_lock lock(mutex_);
+    blocks_.emplace_front(key, made);
+    if (blocks_.size() > kKeptBlocks) blocks_.pop_back();
+    return made;
+  }
+
+  CanopyBlock made_block(std::int64_t column, std::int64_t row) const {
+    const Georeference& where = grid_.where;
+    const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
+    const CellFrame frame{
+        where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
+    const bool classified = catalogue_.ground_points() > 0;
+    const double around = (classified ? kAround : kGroundAround) / unit_, last = static_cast<double>(kBlock);
+    LaserPoints points;
+    catalogue_.visit({where.x(first) - around, where.y(top + last) - around, where.x(first + last) + around,
+                      where.y(top) + around},
+                     [&](const LasPoint& p) {
+                       const Eigen::Vector3d at(p.x * unit_, p.y * unit_, p.z * height_unit_);
+                       if (p.classification == 2 || !classified) points.ground.push_back(at);
+                       if (is_first(p)) points.surface.push_back(at);
+                     });
+    if (!classified) points.ground = ground_returns(points.ground);
+    return canopy_block(points, frame, spacing_);
+  }
+
+  CanopyImport import_;
+  LasCatalogue catalogue_;
+  GridGeometry grid_;
+  double unit_ = 1, height_unit_ = 1, spacing_ = 1;
+  std::vector<std::string> warnings_;
+  std::string name_;
+  mutable std::mutex mutex_;
+  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const CanopyBlock>>> blocks_;  // used last first
+};
+
+}  // namespace
+
+std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import) {
+  return std::make_shared<const PointCanopy>(import);
+}
+
+}  // namespace waymark

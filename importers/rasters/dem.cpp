@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/rasters/dem.hpp"
+
+#include <gdal.h>
+
+#include "core/error.hpp"
+#include "importers/rasters/fill_voids.hpp"
+#include "importers/rasters/inspect.hpp"
+#include "importers/rasters/mosaic.hpp"
+
+namespace waymark {
+namespace {
+
+std::vector<RasterHeader> read_headers(const DemImport& import) {
+  if (import.files.empty())
+    throw Error(ErrorCode::usage, "no DEM is given", "", "name one or more raster files");
+  std::vector<RasterHeader> headers;
+  for (const std::string& path : import.files)
+    headers.push_back(read_header(*open_raster(path), path, import.crs));
+  return headers;
+}
+
+class MosaicDem : public ImportedDem {
+ public:
+  explicit MosaicDem(const DemImport& import)
+      : import_(import), mosaic_(read_headers(import), cache_bytes()) {
+    GDALSetCacheMax64(import.memory_bytes / 8);  // what VRTs and masks are read through
+    for (const RasterHeader& header : mosaic_.headers())
+      warnings_.insert(warnings_.end(), header.warnings.begin(), header.warnings.end());
+    if (!import.inspect) return;
+    for (std::string& warning : inspect(mosaic_, cache_bytes())) warnings_.push_back(std::move(warning));
+  }
+
+  const GridGeometry& geometry() const override { return mosaic_.grid(); }
+  NodataPolicy nodata_policy() const override { return import_.nodata; }
+  HeightWindow read(const Window& window) const override {
+    return import_.nodata == NodataPolicy::fill ? read_filled(mosaic_, window) : mosaic_.read(window);
+  }
+  double height_sd() const override { return import_.height_sd; }
+  std::vector<std::string> files() const override { return import_.files; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  const DemImport& import() const override { return import_; }
+
+ private:
+  std::size_t cache_bytes() const { return static_cast<std::size_t>(import_.memory_bytes / 8 * 7); }
+
+  DemImport import_;
+  Mosaic mosaic_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
+  return std::make_shared<const MosaicDem>(import);
+}
+
+}  // namespace waymark

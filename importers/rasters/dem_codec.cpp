@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/rasters/dem_codec.hpp"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "geo/plane_dem.hpp"
+#include "importers/rasters/dem.hpp"
+#include "importers/rasters/nodata_policy.hpp"
+
+namespace waymark {
+
+std::string Codec<DemHandle>::encode(const DemHandle& dem) {
+  if (const auto* plane = dynamic_cast<const PlaneDem*>(dem.get())) {
+    const Crs& crs = plane->geometry().where.crs;
+    return nlohmann::json{{"plane", plane->height()},
+                          {"height_sd", plane->height_sd()},
+                          {"crs", crs.kind() == CrsKind::local ? "local" : crs.wkt2()}}
+        .dump();
+  }
+  const auto* imported = dynamic_cast<const ImportedDem*>(dem.get());
+  if (!imported) throw std::logic_error("only a DEM that import_dem opened can be kept in a work folder");
+  const DemImport& import = imported->import();
+  return nlohmann::json{{"files", import.files},
+                        {"nodata", to_string(import.nodata)},
+                        {"crs", import.crs},
+                        {"memory_bytes", import.memory_bytes},
+                        {"height_sd", import.height_sd}}
+      .dump();
+}
+
+DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
+  const auto json = nlohmann::json::parse(bytes);
+  if (json.contains("plane")) {
+    const std::string crs = json.at("crs");
+    return std::make_shared<PlaneDem>(crs == "local" ? Crs::local() : Crs::from_text(crs), json.at("plane"),
+                                      json.at("height_sd"));
+  }
+  return import_dem({.files = json.at("files"),
+                     .nodata = nodata_policy(json.at("nodata").get<std::string>()),
+                     .crs = json.at("crs"),
+                     .memory_bytes = json.at("memory_bytes"),
+                     .height_sd = json.at("height_sd"),
+                     .inspect = false});
+}
+
+}  // namespace waymark

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "importers/rasters/mosaic.hpp"
+namespace waymark {
+
+/// Reads enough of the cells to tell what a header cannot: throws Error for a file whose last block is
+/// damaged (truncation) and for a DEM without any height; warns of a DEM of one height, of seams where
+/// overlapping files disagree by more than 1 mm, and of a block layout that memory is too small for.
+std::vector<std::string> inspect(const Mosaic& mosaic, std::size_t cache_bytes);
+
+}  // namespace waymark

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+#include "core/grid.hpp"
+#include "importers/rasters/raster_header.hpp"
+namespace waymark {
+
+/// One grid for several files.
+struct MosaicLayout {
+  GridGeometry grid;
+  std::vector<Window>
+      files;  ///< where each file lies in the grid; may reach past the last column of a grid that wraps
+};
+
+/// Lays the files out on the grid that the first one begins. Files across the antimeridian are brought
+/// together by whole turns. A grid that goes round the body wraps, and repeated columns are dropped. Throws
+/// Error that names both files, the numbers and the gdalwarp command that mends it, where CRS, cell size or
+/// alignment differ by more than 1/1000 of a cell.
+MosaicLayout lay_out(const std::vector<RasterHeader>& headers);
+
+}  // namespace waymark

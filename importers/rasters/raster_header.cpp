@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/rasters/raster_header.hpp"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "core/error.hpp"
+#include "importers/rasters/height_unit.hpp"
+#include "importers/rasters/radii.hpp"
+
+namespace waymark {
+namespace {
+
+using GeoTransform = std::array<double, 6>;
+
+[[noreturn]] void refuse(const std::string& problem, const std::string& path, const std::string& hint) {
+  throw Error(ErrorCode::input, problem, path, hint);
+}
+
+GDALRasterBand& only_band(GDALDataset& dataset, const std::string& path) {
+  const int bands = dataset.GetRasterCount();
+  if (bands == 0) {
+    const char* first = CSLFetchNameValue(dataset.GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
+    refuse(
+        "the file holds no raster of its own", path,
+        first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows what it holds");
+  }
+  const bool height_and_alpha =
+      bands == 2 && dataset.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
+  if (bands > 1 && !height_and_alpha)
+    refuse(fmt::format("a DEM has one band of heights, this file has {}", bands), path,
+           fmt::format("take out the right one: gdal_translate -b 1 '{}' dem.tif", path));
+  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  if (GDALDataTypeIsComplex(band.GetRasterDataType()))
+    refuse(fmt::format("heights are real numbers, this file holds complex ones ({})",
+                       GDALGetDataTypeName(band.GetRasterDataType())),
+           path, "a DEM made from interferograms is a later product: take that one");
+  return band;
+}
+
+std::optional<GeoTransform> transform_of(GDALDataset& dataset, const std::string& path) {
+  GeoTransform t{};
+  if (dataset.GetGeoTransform(t.data()) != CE_None) {
+    if (dataset.GetGCPCount() > 0)
+      refuse("the file is placed by ground control points, not by a grid", path,
+             fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
+    return std::nullopt;
+  }
+  const double tiny = 1e-6 * std::abs(t[1]);
+  if (std::abs(t[2]) > tiny || std::abs(t[4]) > tiny)
+    refuse("the grid is rotated against the axes of its CRS", path,
+           fmt::format("turn it north up: gdalwarp '{}' dem.tif", path));
+  if (!(t[1] > 0) || t[5] == 0)
+    refuse(fmt::format("the cells measure {} x {}: columns must run from west to east", t[1], t[5]), path,
+           fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
+  return t;
+}
+
+Crs crs_of(const GDALDataset& dataset, const std::string& path, const std::string& replacement,
+           const std::optional<GeoTransform>& t) {
+  if (!replacement.empty()) return Crs::from_text(replacement);
+  char* wkt = nullptr;
+  const OGRSpatialReference* reference = dataset.GetSpatialRef();
+  const char* const wkt2[] = {"FORMAT=WKT2_2019", nullptr};
+  if (reference) reference->exportToWkt(&wkt, wkt2);
+  const std::string definition = wkt ? wkt : "";
+  CPLFree(wkt);
+  if (!definition.empty()) return Crs::from_text(definition);
+  const bool like_degrees = t && std::abs((*t)[0]) <= 360 && std::abs((*t)[3]) <= 90 && (*t)[1] < 0.1;
+  refuse("the file does not say where on which body it lies: it has no coordinate reference system", path,
+         like_degrees ? "its numbers look like degrees: pass --crs EPSG:4326 if this is Earth, --crs "
+                        "IAU_2015:49900 if Mars, --crs IAU_2015:30100 if the Moon"
+                      : "pass --crs, e.g. --crs EPSG:32611, or --crs local for metres on no body");
+}
+
+// The corner-based transform of GDAL becomes centre-based here and nowhere else; a south-up file is turned.
+Georeference place(const Crs& crs, const std::optional<GeoTransform>& transform, std::int64_t rows,
+                   const std::string& path) {
+  if (!transform && crs.kind() != CrsKind::local)
+    refuse("the file does not say where its cells lie: it has no geotransform", path,
+           "add one: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE");
+  const GeoTransform t = transform.value_or(GeoTransform{0, 1, 0, static_cast<double>(rows), 0, -1});
+  const double top = t[5] < 0 ? t[3] : t[3] + t[5] * static_cast<double>(rows);
+  const double dy = -std::abs(t[5]);
+  return {crs, t[0] + t[1] / 2, top + dy / 2, t[1], dy};
+}
+
+void check_coordinates(const RasterHeader& header) {
+  const Georeference& where = header.where;
+  const double east = where.x(static_cast<double>(header.columns)), north = where.y(-1);
+  const double south = where.y(static_cast<double>(header.rows)), west = where.x(-1);
+  const double furthest_x = std::max(std::abs(west), std::abs(east));
+  const double furthest_y = std::max(std::abs(north), std::abs(south));
+  const std::string extent = fmt::format("x {:.6g} to {:.6g}, y {:.6g} to {:.6g}", west, east, south, north);
+  if (where.crs.kind() == CrsKind::geographic && (furthest_y > 90 - 2 * where.dy || furthest_x > 720))
+    refuse(fmt::format("{} is in degrees, but these are none: {}", where.crs.id(), extent), header.path,
+           "pass --crs with the projection these coordinates are in");
+  if (where.crs.kind() == CrsKind::projected && furthest_x <= 360 && furthest_y <= 91 && where.dx < 0.1)
+    refuse(fmt::format("{} is in metres, but these look like degrees: {}", where.crs.id(), extent),
+           header.path,
+           "pass --crs with the geographic CRS, e.g. --crs EPSG:4326, or --crs local if they are metres");
+}
+
+double nodata_of(GDALRasterBand& band) {
+  int known = 0;
+  double value = 0;
+  switch (band.GetRasterDataType()) {
+    case GDT_Int64:
+      value = static_cast<double>(band.GetNoDataValueAsInt64(&known));
+      break;
+    case GDT_UInt64:
+      value = static_cast<double>(band.GetNoDataValueAsUInt64(&known));
+      break;
+    default:
+      value = band.GetNoDataValue(&known);
+  }
+  return known ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+HeightScale height_scale(GDALRasterBand& band, RasterHeader& header) {
+  HeightScale heights;
+  const GDALDataType type = band.GetRasterDataType();
+  heights.void_low = heights.void_high = nodata_of(band);
+  if (type == GDT_Float32) heights.void_low = heights.void_high = static_cast<float>(heights.void_low);
+  if (const double huge = std::abs(heights.void_low); huge > 1e30) {  // often written with a few digits only
+    heights.void_low -= 1e-5 * huge;
+    heights.void_high += 1e-5 * huge;
+  }
+  const HeightUnit unit = height_unit(band.GetUnitType());
+  if (!unit.known)
+    header.warnings.push_back(fmt::format("{}: heights are in '{}', which is no unit we know; read as metres",
+                                          header.path, band.GetUnitType()));
+  heights.scale = band.GetScale() * unit.metres;
+  heights.offset = band.GetOffset() * unit.metres;
+  if (!(std::abs(heights.scale) > 0) || !std::isfinite(heights.scale) || !std::isfinite(heights.offset))
+    refuse(fmt::format("heights would be {} times the cell plus {}", heights.scale, heights.offset),
+           header.path, "correct the band: gdal_edit.py -scale 1 -offset 0 FILE");
+  heights.whole_metres =
+      GDALDataTypeIsInteger(type) && heights.scale == 1 && heights.offset == std::floor(heights.offset);
+  return heights;
+}
+
+CellType cell_type(GDALDataType type, bool masked) {  // a masked cell becomes NaN, which an integer cannot be
+  switch (type) {
+    case GDT_Byte:
+    case GDT_Int16:
+      return masked ? CellType::float32 : CellType::int16;
+    case GDT_UInt16:
+    case GDT_Float32:
+      return CellType::float32;
+    default:
+      return CellType::float64;
+  }
+}
+
+void take_off_radius(GDALDataset& dataset, RasterHeader& header) {
+  const auto [metres, because] = radius_to_take_off(dataset, header);
+  if (metres == 0) return;
+  const Body& body = header.where.crs.body();
+  header.heights.offset -= metres;
+  header.heights.whole_metres = header.heights.whole_metres && metres == std::floor(metres);
+  header.warnings.push_back(
+      fmt::format("{}: heights are distances from the body's centre: {}, the radius of {} is {:.10g} m; "
+                  "{:.10g} m taken off",
+                  header.path, because, body.name, body.equatorial_radius, metres));
+}
+
+}  // namespace
+
+RasterHeader read_header(GDALDataset& dataset, const std::string& path, const std::string& crs) {
+  const GdalListener quiet;
+  GDALRasterBand& band = only_band(dataset, path);
+  const auto transform = transform_of(dataset, path);
+  RasterHeader header;
+  header.path = path;
+  header.columns = dataset.GetRasterXSize();
+  header.rows = dataset.GetRasterYSize();
+  header.where = place(crs_of(dataset, path, crs, transform), transform, header.rows, path);
+  header.south_up = transform && (*transform)[5] > 0;
+  check_coordinates(header);
+  band.GetBlockSize(&header.block_columns, &header.block_rows);
+  header.masked = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
+  header.cells = cell_type(band.GetRasterDataType(), header.masked);
+  header.heights = height_scale(band, header);
+  take_off_radius(dataset, header);
+  return header;
+}
+
+}  // namespace waymark

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/tables/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace waymark {
+namespace {
+
+constexpr std::array kTextEndings = {".csv",    ".tsv",    ".txt",    ".dat",   ".tab",
+                                     ".csv.gz", ".tsv.gz", ".txt.gz", ".dat.gz"};
+
+bool named_like_text(std::string path) {
+  std::ranges::transform(path, path.begin(), [](unsigned char c) { return static_cast<char>(tolower(c)); });
+  return std::ranges::any_of(kTextEndings, [&](const char* ending) { return path.ends_with(ending); });
+}
+
+}  // namespace
+
+std::string TableSource::place_of(const TableRow& row) const {
+  return fmt::format("{}, {} {}", header().path, header().row_word, row.number);
+}
+
+std::unique_ptr<TableSource> open_table(const std::string& path, TableFormat format, const std::string& layer,
+                                        const std::string& type) {
+  const bool text = format == TableFormat::csv || (format == TableFormat::by_name && named_like_text(path));
+  return text ? open_csv_table(path) : open_ogr_table(path, layer, type);
+}
+
+}  // namespace waymark

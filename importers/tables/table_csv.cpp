@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "importers/gdal_session.hpp"
+#include "importers/tables/table.hpp"
+#include "importers/tables/table_number.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr GIntBig kLargest = GIntBig{4} << 30;  // bytes of a text table
+
+std::string read_text(const std::string& path) {
+  const GdalListener quiet;
+  const std::string name = path.ends_with(".gz") && !path.starts_with("/vsi") ? "/vsigzip/" + path : path;
+  VSIStatBufL status;
+  if (VSIStatL(name.c_str(), &status) != 0)
+    throw Error(ErrorCode::input, "there is no such file", path, "check the path");
+  if (VSI_ISDIR(status.st_mode))
+    throw Error(ErrorCode::input, "this is a folder, no table", path, "name a file in it");
+  GByte* bytes = nullptr;
+  vsi_l_offset size = 0;
+  if (!VSIIngestFile(nullptr, name.c_str(), &bytes, &size, kLargest))
+    throw Error(ErrorCode::input, "the table cannot be read: " + quiet.error_about(path), path,
+                "check its permissions; tables beyond 4 GB must be cut, or stored as a GeoPackage");
+  std::string text(bytes, bytes + size);
+  VSIFree(bytes);
+  return text;
+}
+
+/// Tables of other encodings would give nonsense for names, never for numbers: only what cannot be read at
+/// all is refused.
+void check_text(std::string& text, const std::string& path) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw Error(ErrorCode::input, "the table is in UTF-16", path,
+                "turn it: iconv -f UTF-16 -t UTF-8 TABLE > utf8.csv");
+  if (text.find('\0') != std::string::npos)
+    throw Error(ErrorCode::input, "this is no text table: it holds zero bytes", path,
+                "pass --from ogr for a vector layer that GDAL reads");
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    throw Error(ErrorCode::input, "the table is empty", path, "fetch or write it again");
+}
+
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
+
+/// Separator of a line: the first of these it holds outside quotes; blanks where there is none.
+char separator_of(std::string_view line) {
+  bool quoted = false;
+  std::array<int, 256> counts{};
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (!quoted) ++counts[static_cast<unsigned char>(c)];
+  }
+  for (const char c : {'\t', ';', '|', ','})
+    if (counts[static_cast<unsigned char>(c)] > 0) return c;
+  return ' ';
+}
+
+class CsvTable final : public TableSource {
+ public:
+  explicit CsvTable(const std::string& path) : text_(read_text(path)) {
+    header_.path = path;
+    header_.layer = std::filesystem::path(path).stem().string();
+    check_text(text_, path);
+    read_header();
+  }
+
+  const TableHeader& header() const override { return header_; }
+
+  bool next(TableRow& row) override {
+    if (!read_row(row)) return false;
+    const std::size_t wanted = header_.columns.size();
+    if (row.cells.size() == wanted + 1 && row.cells.back().empty()) row.cells.pop_back();
+    if (row.cells.size() != wanted)
+      throw Error(ErrorCode::input,
+                  fmt::format("the row has {} values, the table has {} columns", row.cells.size(), wanted),
+                  place_of(row), "quote values that hold the separator, or correct the row");
+    return true;
+  }
+
+ private:
+  void read_header() {
+    TableRow first;
+    skip_comments();
+    const std::size_t start = at_;
+    const std::int64_t line = line_;
+    separator_ = separator_of(std::string_view(text_).substr(at_, text_.find('\n', at_) - at_));
+    if (!read_row(first))
+      throw Error(ErrorCode::input, "the table has comments, but no row", header_.path,
+                  "fetch or write it again");
+    header_.decimal_comma = separator_ != ',';
+    const bool named = std::ranges::any_of(first.cells, [&](const std::string& cell) {
+      return !is_missing(cell) && !to_real(cell, header_.decimal_comma);
+    });
+    if (named) {
+      while (first.cells.size() > 1 && first.cells.back().empty()) first.cells.pop_back();
+      header_.columns = first.cells;
+      return;
+    }
+    for (std::size_t i = 1; i <= first.cells.size(); ++i) header_.columns.push_back(fmt::format("c{}", i));
+    at_ = start;
+    line_ = line;
+  }
+
+  /// Empty lines and comments between rows.
+  void skip_comments() {
+    while (at_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', at_), text_.size());
+      const std::size_t word = text_.find_first_not_of(" \t\r", at_);
+      if (word < end && text_[word] != '#') return;
+      at_ = std::min(end + 1, text_.size());
+      ++line_;
+    }
+  }
+
+  bool read_row(TableRow& row) {
+    skip_comments();
+    if (at_ >= text_.size()) return false;
+    row.number = line_;
+    row.cells.clear();
+    if (separator_ == ' ') skip_blanks();
+    do row.cells.push_back(read_cell(row));
+    while (!at_end_of_row());
+    ++line_;
+    return true;
+  }
+
+  std::string read_cell(const TableRow& row) {
+    while (at_ < text_.size() && is_blank(text_[at_]) && text_[at_] != separator_) ++at_;
+    if (at_ < text_.size() && text_[at_] == '"') return read_quoted(row);
+    const std::size_t start = at_;
+    while (at_ < text_.size() && text_[at_] != '\n' && text_[at_] != separator_ &&
+           !(separator_ == ' ' && is_blank(text_[at_])))
+      ++at_;
+    std::size_t end = at_;
+    while (end > start && (is_blank(text_[end - 1]) || text_[end - 1] == '\r')) --end;
+    return text_.substr(start, end - start);
+  }
+
+  std::string read_quoted(const TableRow& row) {
+    std::string cell;
+    for (++at_; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '\n') ++line_;
+      if (text_[at_] != '"')
+        cell += text_[at_];
+      else if (at_ + 1 < text_.size() && text_[at_ + 1] == '"')
+        cell += text_[at_++];
+      else
+        break;
+    }
+    if (at_ >= text_.size())
+      throw Error(ErrorCode::input, "a quote is opened and never closed", place_of(row),
+                  "close it, or double the quotes inside a value");
+    ++at_;
+    while (at_ < text_.size() && text_[at_] != separator_ && text_[at_] != '\n') ++at_;
+    return cell;
+  }
+
+  void skip_blanks() {
+    while (at_ < text_.size() && (is_blank(text_[at_]) || text_[at_] == '\r')) ++at_;
+  }
+
+  /// Steps over the separator or the end of the line.
+  bool at_end_of_row() {
+    if (separator_ == ' ') skip_blanks();
+    if (at_ >= text_.size()) return true;
+    if (text_[at_] == '\n') return ++at_, true;
+    if (separator_ != ' ') ++at_;
+    return false;
+  }
+
+  std::string text_;
+  TableHeader header_;
+  char separator_ = ',';
+  std::size_t at_ = 0;
+  std::int64_t line_ = 1;
+};
+
+}  // namespace
+
+std::unique_ptr<TableSource> open_csv_table(const std::string& path) {
+  return std::make_unique<CsvTable>(path);
+}
+
+}  // namespace waymark

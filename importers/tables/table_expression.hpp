@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+#include "importers/tables/table.hpp"
+namespace waymark {
+
+/// Arithmetic on the columns of a table: `diam/2`, `sqrt(geom_area/pi)`, `"Diameter (km)"*500`.
+///   sum = term (+|- term)...   term = power (*|/ power)...   power = [-] value [^ power]
+///   value = number | pi | column | "any column" | function(sum[, sum]) | (sum)
+/// Functions: sqrt abs exp log log10 sin cos tan (radians) deg rad (into that unit) min max. Columns are
+/// found by their name, or else by it in any case; `` ` `` quotes like ".
+class TableExpression {
+ public:
+  /// Throws Error{usage} pointing at the fault; for an unknown column with the nearest name, or all of them.
+  TableExpression(std::string_view text, const std::vector<std::string>& columns);
+  ~TableExpression();
+  TableExpression(TableExpression&&) noexcept;
+  TableExpression& operator=(TableExpression&&) noexcept;
+
+  const std::string& text() const { return text_; }
+  /// NaN where a column it needs has no value, and where the arithmetic has none (1/0, sqrt(-1)).
+  /// Throws Error{input} naming row and column for a cell that is no number.
+  double value(const TableRow& row, const TableSource& table) const;
+  /// The cell as it stands; throws Error{usage} where the expression is more than one column's name.
+  const std::string& word(const TableRow& row) const;
+  bool is_column() const;
+
+  struct Node;
+
+ private:
+  std::string text_;
+  std::unique_ptr<const Node> root_;
+};
+
+/// Index of a column by name, exactly or else in any case; throws Error{usage} where there is none or
+/// several.
+std::size_t column_index(const std::vector<std::string>& columns, std::string_view name);
+
+}  // namespace waymark

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/tables/table_landmarks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_set>
+
+#include "core/error.hpp"
+#include "core/quality.hpp"
+#include "importers/tables/table_columns.hpp"
+#include "importers/tables/table_places.hpp"
+#include "landmarks/uid.hpp"
+
+namespace waymark {
+namespace {
+
+/// What the rows of a table may be: one type, or what their column `type` says.
+class RowTypes {
+ public:
+  RowTypes(const TableHeader& table, const TypeRegistry& types, const std::string& asked) : types_(&types) {
+    if (std::ranges::count(table.columns, "type") == 1) column_ = column_index(table.columns, "type");
+    if (!asked.empty())
+      only_ = types.id(asked);
+    else if (types.find(table.layer) != nullptr)
+      only_ = types.id(table.layer);
+    else if (!column_)
+      throw Error(ErrorCode::usage, "the table does not say what its rows are", table.path,
+                  "pass --type, e.g. --type crater; `waymark types` lists them");
+  }
+
+  std::vector<std::string> names() const {
+    return only_ ? std::vector{(*types_)[*only_].name} : types_->names();
+  }
+
+  /// Nothing for a row of another type, or of none that is known.
+  std::optional<TypeId> of(const TableRow& row) const {
+    const std::string said = column_ ? row.cells[*column_] : "";
+    if (only_) {  // a column `type` with words of its own, such as "standard", says nothing
+      const bool other = types_->find(said) != nullptr && types_->id(said) != *only_;
+      return other ? std::nullopt : only_;
+    }
+    return types_->find(said) != nullptr ? std::optional(types_->id(said)) : std::nullopt;
+  }
+
+ private:
+  const TypeRegistry* types_;
+  std::optional<std::size_t> column_;
+  std::optional<TypeId> only_;
+};
+
+/// Reads the cells of one row after another by what they are bound to.
+class Cells {
+ public:
+  Cells(const TableSource& table, const ColumnBindings& bindings) : table_(table), bindings_(bindings) {}
+
+  double real(const TableRow& row, std::string_view target) const {
+    const auto found = bindings_.find(target);
+    return found == bindings_.end() ? std::nan("") : found->second.value(row, table_);
+  }
+  int count(const TableRow& row, std::string_view target) const {
+    const double value = real(row, target);
+    return value >= 0 && value < 1e9 ? static_cast<int>(std::lround(value)) : 1;
+  }
+  std::string word(const TableRow& row, std::string_view target) const {
+    const auto found = bindings_.find(target);
+    return found == bindings_.end() ? "" : found->second.word(row);
+  }
+  AttributeValue attribute(const TableRow& row, const AttributeSpec& spec) const {
+    if (spec.kind == AttributeSpec::Kind::text) {
+      const std::string text = word(row, spec.name);
+      return text.empty() ? AttributeValue() : AttributeValue(text);
+    }
+    const double value = real(row, spec.name);
+    if (std::isnan(value)) return {};
+    if (spec.kind == AttributeSpec::Kind::integer) return static_cast<std::int64_t>(std::llround(value));
+    return value;
+  }
+
+ private:
+  const TableSource& table_;
+  const ColumnBindings& bindings_;
+};
+
+double or_zero(double value) {
+  return std::isnan(value) ? 0 : value;
+}
+
+void read_covariance(const Cells& cells, const TableRow& row, Eigen::Matrix3d& covariance) {
+  const double both = or_zero(cells.real(row, "position_sd"));
+  const auto variance = [&](const char* as_variance, const char* as_sd, double otherwise) {
+    const double given = cells.real(row, as_variance), sd = cells.real(row, as_sd);
+    return !std::isnan(given) ? given : !std::isnan(sd) ? sd * std::abs(sd) : otherwise * std::abs(otherwise);
+  };
+  covariance(0, 0) = variance("var_x", "x_sd", both);
+  covariance(1, 1) = variance("var_y", "y_sd", both);
+  covariance(2, 2) = variance("var_z", "z_sd", 0);
+  covariance(0, 1) = covariance(1, 0) = or_zero(cells.real(row, "cov_xy"));
+}
+
+void read_features(const Cells& cells, const TableRow& row, const LandmarkType& type, Landmark& landmark) {
+  landmark.features.resize(type.features.size());
+  landmark.quality.of_feature.resize(type.features.size());
+  for (std::size_t i = 0; i < type.features.size(); ++i) {
+    const FeatureSpec& feature = type.features[i];
+    const double value = cells.real(row, feature.name), sd = cells.real(row, feature.name + "_sd");
+    if (std::isnan(value)) continue;
+    const bool spread = !std::isnan(sd);
+    landmark.features[i] = {value, spread ? sd * std::abs(sd) : 0, spread ? landmark.observations : 1};
+    landmark.quality.of_feature[i] =
+        spread ? spread_confidence(landmark.features[i], feature.scale, feature.reference) : std::nullopt;
+  }
+}
+
+Landmark read_landmark(const Cells& cells, const TableRow& row, const LandmarkType& type, TypeId id) {
+  Landmark landmark;
+  landmark.type = id;
+  landmark.uid = cells.word(row, "uid");
+  landmark.position.xyz = {cells.real(row, "x"), cells.real(row, "y"), or_zero(cells.real(row, "z"))};
+  const double confidence = cells.real(row, "confidence");
+  landmark.confidence = std::isnan(confidence) ? 1 : confidence;
+  landmark.observations = std::max(1, cells.count(row, "observations"));
+  landmark.quality.seen = cells.count(row, "seen");
+  landmark.quality.visible = std::max(landmark.quality.seen, cells.count(row, "visible"));
+  read_covariance(cells, row, landmark.covariance);
+  read_features(cells, row, type, landmark);
+  for (const AttributeSpec& attribute : type.attributes)
+    landmark.attributes.push_back(cells.attribute(row, attribute));
+  return landmark;
+}
+
+/// Why a landmark cannot be; empty if it can.
+std::string implausible(const LandmarkType& type, const Landmark& landmark) {
+  for (std::size_t i = 0; i < type.features.size(); ++i) {
+    const FeatureSpec& feature = type.features[i];
+    const FeatureValue& value = landmark.features[i];
+    if (!value.known()) continue;
+    const std::string unit = feature.unit.empty() ? "" : " " + feature.unit;
+    if (value.value < feature.lowest)
+      return fmt::format("{} {} below {:g}{}", type.name, feature.name, feature.lowest, unit);
+    if (value.value > feature.highest)
+      return fmt::format("{} {} above {:g}{}", type.name, feature.name, feature.highest, unit);
+    if (value.variance < 0) return fmt::format("negative deviation of {}", feature.name);
+  }
+  const auto& c = landmark.covariance;
+  if (c.diagonal().minCoeff() < 0 || c(0, 1) * c(0, 1) > c(0, 0) * c(1, 1) * (1 + 1e-9))
+    return "its position deviations are no covariance";
+  if (!(landmark.confidence >= 0 && landmark.confidence <= 1)) return "confidence outside 0 to 1";
+  return {};
+}
+
+/// Counts rejections and keeps what can be kept of them.
+class Rejections {
+ public:
+  Rejections(ImportedTable& into, const TableSource& table) : into_(into), table_(table) {}
+
+  void add(const TableRow& row, const std::string& reason) {
+    ++into_.rejected_by_reason[reason];
+    if (into_.first_rejection.empty())
+      into_.first_rejection = fmt::format("{}: {}", table_.place_of(row), reason);
+  }
+
+  void add(const TableRow& row, const Landmark& landmark, const std::string& reason) {
+    add(row, reason);
+    Observation seen;
+    seen.type = landmark.type;
+    seen.source = table_.place_of(row);
+    seen.position = landmark.position;
+    seen.features = landmark.features;
+    seen.confidence = landmark.confidence > 0 && landmark.confidence <= 1 ? landmark.confidence : 1;
+    if (landmark.covariance.diagonal().minCoeff() >= 0) seen.covariance = landmark.covariance;
+    for (FeatureValue& feature : seen.features) feature.variance = std::max(0.0, feature.variance);
+    seen.rejected = reason;
+    into_.rejected.push_back(std::move(seen));
+  }
+
+ private:
+  ImportedTable& into_;
+  const TableSource& table_;
+};
+
+bool before(const Landmark& a, const Landmark& b) {
+  if (a.type != b.type) return a.type < b.type;
+  const auto& p = a.position.xyz;
+  const auto& q = b.position.xyz;
+  if (p != q) return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
+  for (std::size_t i = 0; i < std::min(a.features.size(), b.features.size()); ++i)
+    if (const double x = a.features[i].value, y = b.features[i].value; x < y || y < x) return x > y;
+  return a.uid < b.uid;
+}
+
+/// Names the nameless; a name of the table's own must be one landmark's only.
+void name_landmarks(const TypeRegistry& types, ImportedTable& result, const std::string& path) {
+  std::ranges::stable_sort(result.landmarks, before);
+  std::vector<Landmark> named = result.landmarks;
+  assign_uids(types, result.crs, named);
+  std::unordered_set<std::string> taken;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    std::string& uid = result.landmarks[i].uid;
+    if (uid.empty()) uid = named[i].uid;
+    if (!taken.insert(types[named[i].type].name + '/' + uid).second)
+      throw Error(ErrorCode::input, fmt::format("two rows have the uid '{}'", uid), path,
+                  "correct the column, or leave it out: --columns uid=");
+  }
+}
+
+void refuse_if_none_is_left(const ImportedTable& result, const std::string& path) {
+  if (!result.landmarks.empty() || result.rows == 0) return;
+  std::string reasons;
+  for (const auto& [reason, count] : result.rejected_by_reason)
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+  throw Error(ErrorCode::input, fmt::format("none of the {} rows is plausible: {}", result.rows, reasons),
+              path,
+              "lengths are metres and angles radians: give the unit, e.g. --columns radius=diam_km*500; "
+              "`waymark types` shows the ranges");
+}
+
+}  // namespace
+
+ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how) {
+  const TableHeader& header = table.header();
+  const RowTypes row_types(header, types, how.type);
+  ImportedTable result;
+  result.types = row_types.names();
+  const ColumnBindings bindings = bind_columns(how.columns, header, types, result.types);
+  for (const auto& [target, expression] : bindings)
+    result.bindings.push_back(
+        target == expression.text() ? target : fmt::format("{} = {}", target, expression.text()));
+  TablePlaces places(header, how.table_crs, how.map_crs, names_say_degrees(bindings));
+  result.crs = places.map_crs();
+
+  const Cells cells(table, bindings);
+  Rejections rejections(result, table);
+  TableRow row;
+  for (;;) {
+    ++result.rows;
+    try {
+      if (!table.next(row)) {
+        --result.rows;
+        break;
+      }
+      const auto type = row_types.of(row);
+      if (!type) {
+        rejections.add(row, "of another type");
+        continue;
+      }
+      Landmark landmark = read_landmark(cells, row, types[*type], *type);
+      if (const std::string nowhere = places.move_to_map(landmark.position); !nowhere.empty())
+        rejections.add(row, nowhere);
+      else if (const std::string reason = implausible(types[*type], landmark); !reason.empty())
+        rejections.add(row, landmark, reason);
+      else
+        result.landmarks.push_back(std::move(landmark));
+    } catch (const Error& error) {
+      if (!how.skip_bad_rows || error.code() != ErrorCode::input) throw;
+      rejections.add(row, "cannot be read");
+    }
+  }
+  result.warnings = places.warnings();
+  refuse_if_none_is_left(result, header.path);
+  name_landmarks(types, result, header.path);
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/tables/vector_layer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include "core/error.hpp"
+
+namespace waymark {
+
+GdalDataset open_vector(const std::string& path, const std::string& thing, const std::string& hint) {
+  const GdalListener gdal;
+  GdalDataset dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (dataset) return dataset;
+  VSIStatBufL status;
+  if (path.find(':') == std::string::npos && VSIStatL(path.c_str(), &status) != 0)
+    throw Error(ErrorCode::input, "there is no such " + thing, path, "check the path");
+  const std::string said = gdal.error_about(path);
+  throw Error(ErrorCode::input, "this is no vector layer that GDAL reads" + (said.empty() ? "" : ": " + said),
+              path, hint);
+}
+
+OGRLayer& layer_named(GDALDataset& dataset, const std::string& path, const std::string& name,
+                      const std::vector<std::string>& all) {
+  if (OGRLayer* layer = dataset.GetLayerByName(name.c_str())) return *layer;
+  const std::string nearest = nearest_name(name, all);
+  throw Error(
+      ErrorCode::usage, fmt::format("the file has no layer '{}'", name), path,
+      nearest.empty() ? fmt::format("it has {}", fmt::join(all, ", ")) : "did you mean '" + nearest + "'?");
+}
+
+std::optional<Crs> crs_of(OGRLayer& layer) {
+  const OGRSpatialReference* reference = layer.GetSpatialRef();
+  if (reference == nullptr) return {};
+  char* wkt = nullptr;
+  const char* const wkt2[] = {"FORMAT=WKT2_2019", nullptr};
+  reference->exportToWkt(&wkt, wkt2);
+  const std::string definition = wkt ? wkt : "";
+  CPLFree(wkt);
+  try {
+    return definition.empty() ? std::optional<Crs>{} : Crs::from_text(definition);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace waymark

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/absolute_fix.hpp"
+
+#include <Eigen/LU>
+#include <numbers>
+
+#include "localization/filters/chi_square.hpp"
+
+namespace waymark {
+namespace {
+
+template <int Rows>
+FixUpdate linear_update(const PoseEstimate& e, const Eigen::Matrix<double, Rows, 3>& h,
+                        const Eigen::Matrix<double, Rows, 1>& v, double variance) {
+  using Square = Eigen::Matrix<double, Rows, Rows>;
+  const Eigen::Matrix3d& p = e.covariance;
+  const Square r = Square::Identity() * variance, s = h * p * h.transpose() + r;
+  const Square inverse = s.inverse();
+  const Eigen::Matrix<double, 3, Rows> gain = p * h.transpose() * inverse;
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * h;
+  const Eigen::Matrix3d after = a * p * a.transpose() + gain * r * gain.transpose();
+  const double squares = v.dot(inverse * v);
+  return {{pose_of(e.pose.vector() + gain * v), (after + after.transpose()) / 2},
+          squares,
+          -(squares + std::log(s.determinant()) + Rows * std::log(2 * std::numbers::pi)) / 2};
+}
+
+}  // namespace
+
+FixUpdate updated(const PoseEstimate& estimate, const GnssFix& fix) {
+  Eigen::Matrix<double, 2, 3> h = Eigen::Matrix<double, 2, 3>::Zero();
+  h(0, 0) = h(1, 1) = 1;
+  return linear_update<2>(estimate, h, fix.at - estimate.pose.at(), fix.sd * fix.sd);
+}
+
+FixUpdate updated(const PoseEstimate& estimate, const HeadingFix& fix) {
+  const Eigen::Matrix<double, 1, 1> v(wrapped(fix.yaw - estimate.pose.yaw));
+  return linear_update<1>(estimate, {0, 0, 1}, v, fix.sd * fix.sd);
+}
+
+bool FixGate::pass(double squares, int rows) {
+  static const double kGates[] = {chi_square_quantile(0.9999, 1), chi_square_quantile(0.9999, 2)};
+  overruled_ = false;
+  if (squares <= kGates[rows - 1]) {
+    rejected_ = 0;
+    return true;
+  }
+  if (++rejected_ < kPatience) return false;
+  overruled_ = true;
+  rejected_ = 0;
+  return true;
+}
+
+}  // namespace waymark

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/particle_filter.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+#include "localization/filters/resampling.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kNearEnough = 2;  // m: what the mean cannot see, no particle can
+constexpr double kCluster = 1.5;   // m: particles nearer than this are one hypothesis
+
+/// Calls work(i) for all i, on several threads where it pays. Results must not depend on the order.
+template <class Work>
+void for_each_particle(std::size_t count, std::int64_t threads, Work&& work) {
+  if (count < 2048 || threads == 1) {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+    return;
+  }
+  const auto all = [&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 512), [&](const auto& some) {
+      for (std::size_t i = some.begin(); i < some.end(); ++i) work(i);
+    });
+  };
+  if (threads == 0) return all();
+  tbb::task_arena(static_cast<int>(threads)).execute(all);
+}
+
+Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& random) {
+  const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
+  return pose_of(about.pose.vector() + root * noise);
+}
+
+}  // namespace
+
+void ParticleOptions::describe(OptionVisitor& option) {
+  option("particles", particles, {.help = "Particles while the place is known", .min = 10, .max = 1e7});
+  option("search_particles", search_particles,
+         {.help = "Particles while the place is not known", .min = 10, .max = 1e7});
+  option("adaptive", adaptive, {.help = "Use as many particles as their spread needs (KLD sampling)"});
+  option("kld_error", kld_error, {.help = "Error the adaptive number allows", .min = 0.001, .max = 0.5});
+  option("resample_below", resample_below,
+         {.help = "Draw again when fewer than this part of the particles count", .min = 0, .max = 1});
+  option("recovery", recovery, {.help = "Try new places when sightings fit ever less"});
+  option("recovery_slow", recovery_slow,
+         {.help = "How fast the long memory of the fit fades, per set", .min = 1e-6, .max = 1});
+  option("recovery_fast", recovery_fast,
+         {.help = "How fast the short memory of the fit fades, per set", .min = 1e-6, .max = 1});
+  weight.describe(option);
+}
+
+ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
+                               IdentificationOptions identification, ParticleOptions options,
+                               PoseFinder finder)
+    : map_(std::move(map)),
+      scales_(std::move(scales)),
+      identification_(std::move(identification)),
+      options_(std::move(options)),
+      finder_(std::move(finder)) {
+  // What both say is said once, for the identification.
+  options_.weight.clutter = identification_.clutter;
+  options_.weight.quality_floor = identification_.quality_floor;
+  options_.weight.feature_tolerance = identification_.feature_tolerance;
+  options_.weight.feature_limit = identification_.feature_limit;
+  options_.weight.bearing_reach = identification_.bearing_reach;
+  if (!start) {
+    searching_ = true;
+    const Eigen::AlignedBox2d box = map_.around({0, 0}, 0).bounds();
+    if (!box.isEmpty()) {
+      summary_.pose = {box.center().x(), box.center().y(), 0};
+      summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
+          box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
+    }
+    return;
+  }
+  if (!start->pose.finite() || !start->covariance.allFinite())
+    throw std::invalid_argument("the start of a filter must be finite");
+  summary_ = *start;
+  const auto count = static_cast<std::size_t>(options_.particles);
+  const Eigen::Matrix3d root = square_root(start->covariance);
+  Random random(static_cast<std::uint64_t>(options_.seed), "start");
+  for (std::size_t i = 0; i < count; ++i) poses_.push_back(sample(*start, root, random));
+  weights_.assign(count, 1 / static_cast<double>(count));
+}
+
+Trust ParticleFilter::trust() const {
+  if (poses_.empty()) return Trust::unset;
+  return searching_ ? Trust::lost : Trust::sure;
+}
+
+void ParticleFilter::move(const BodyMotion& motion) {
+  pending_ = then(pending_, motion);
+  if (finder_) memory_.move(motion);
+  if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) spread();
+}
+
+void ParticleFilter::spread() {
+  summary_ = moved(summary_, pending_);
+  const Eigen::Matrix3d root = square_root(pending_.covariance);
+  const PoseEstimate step{pending_.step, {}};
+  const std::uint64_t stream = named_seed(static_cast<std::uint64_t>(options_.seed), "motion") + ++step_;
+  for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) {
+    Random random(mixed(stream) + i);
+    poses_[i] = poses_[i] * sample(step, root, random);
+  });
+  pending_ = {};
+}
+
+std::optional<Pose2> ParticleFilter::pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
+                                                        Random& random) const {
+  if (!hints_.empty() && random.chance(0.5)) return hints_[random.below(hints_.size())];
+  const SeenLandmark& s = seen.sightings[random.below(seen.sightings.size())];
+  if (!s.sound() || map.empty()) return {};
+  const auto known = identification_.use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
+  const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.below(map.size()));
+  if (!known && s.type && *s.type != map[l].type) return {};
+  const double range = s.range ? std::max(0.0, *s.range + s.range_sd * random.normal())
+                               : identification_.bearing_reach * std::sqrt(random.uniform());
+  const double from = random.uniform(-std::numbers::pi, std::numbers::pi);  // landmark to sensor
+  const double yaw = wrapped(from + std::numbers::pi - s.bearing + s.bearing_sd * random.normal());
+  const Pose2 sensor{map[l].at.x() + range * std::cos(from), map[l].at.y() + range * std::sin(from), yaw};
+  return sensor * inverse(seen.robot_from_sensor);
+}
+
+// At most every fifth set: the finder looks at the whole map.
+void ParticleFilter::ask_finder(const SightingSet& seen) {
+  if (asked_ != 0 && sets_ < asked_ + 5) return;
+  asked_ = sets_;
+  hints_.clear();
+  FoundPoses found = finder_(with_bearings(memory_.recall(), seen));
+  if (found.sure) found.possible = {*found.sure};
+  Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "hints");
+  for (const PoseEstimate& e : found.possible) {
+    const Eigen::Matrix3d root = square_root(e.covariance);
+    for (int i = 0; i < 50; ++i) hints_.push_back(sample(e, root, random));
+  }
+  // It is somewhere else than all particles: begin again.
+  if (found.sure && searching_) {
+    poses_.clear();
+    found_sd_ = std::sqrt(found.sure->covariance(0, 0) + found.sure->covariance(1, 1));
+  }
+}
+
+void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count) {
+  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "search");
+  poses_.clear();
+  for (std::size_t tries = 0; poses_.size() < count && tries < 50 * count; ++tries)
+    if (const auto pose = pose_that_explains(seen, map, random)) poses_.push_back(*pose);
+  weights_.assign(poses_.size(), poses_.empty() ? 0 : 1 / static_cast<double>(poses_.size()));
+}
+
+void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
+  SightingScore score(seen, map, scales_, options_.weight, identification_.use_identities);
+  if (score.sightings() == 0) return;
+  // Seen from the mean: a search has no such place, and expects all.
+  const double spread = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
+  if (visible_ && options_.weight.expect_unseen && spread < kNearEnough)
+    score.hide(hidden_landmarks(summary_.pose * seen.robot_from_sensor, map,
+                                options_.weight.view_range + spread, visible_));
+  std::vector<double> fit(poses_.size());
+  for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) { fit[i] = score(poses_[i]); });
+  if (options_.weight.weights == "paper") {
+    const std::vector<double> factor = paper_weights(fit);
+    for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = std::log(weights_[i]) + std::log(factor[i]);
+    weights_ = normalised(fit);
+    return;
+  }
+  double mean = 0;  // of the probability of one sighting
+  for (std::size_t i = 0; i < fit.size(); ++i)
+    mean += weights_[i] * std::exp(fit[i] / static_cast<double>(score.sightings()));
+  slow_ += (slow_ == 0 ? 1 : options_.recovery_slow) * (mean - slow_);
+  fast_ += (fast_ == 0 ? 1 : options_.recovery_fast) * (mean - fast_);
+  for (std::size_t i = 0; i < fit.size(); ++i) fit[i] += std::log(weights_[i]);
+  weights_ = normalised(fit);
+}
+
+std::size_t ParticleFilter::wanted() const {
+  const auto most = static_cast<std::size_t>(searching_ ? options_.search_particles : options_.particles);
+  if (!options_.adaptive) return most;
+  const std::size_t needed = kld_count(occupied_bins(poses_, 0.25, 0.17), options_.kld_error);
+  return std::clamp<std::size_t>(needed, 50, static_cast<std::size_t>(options_.search_particles));
+}
+
+void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map) {
+  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw");
+  const std::size_t count = wanted();
+  const auto drawn = resample(weights_, count, random.uniform());
+  std::vector<Pose2> next;
+  next.reserve(count);
+  const double fresh = options_.recovery && slow_ > 0 ? std::clamp(1 - fast_ / slow_, 0.0, 0.2) : 0;
+  // A pose that explains one sighting is right once in as many as there are landmarks.
+  const bool sensible = !hints_.empty() || map.size() <= count;
+  for (const std::uint32_t i : drawn) {
+    std::optional<Pose2> other;
+    if (fresh > 0.02 && sensible && random.chance(fresh)) other = pose_that_explains(seen, map, random);
+    next.push_back(other ? *other : poses_[i]);
+  }
+  poses_ = std::move(next);
+  weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+}
+
+template <class Fit>
+bool ParticleFilter::weigh_by(Fit&& fit) {
+  for (std::size_t i = 0; i < poses_.size(); ++i) weights_[i] = std::log(weights_[i]) + fit(poses_[i]);
+  weights_ = normalised(weights_);
+  summary_ = summary(poses_, weights_, kCluster);
+  if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
+    Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw by fix");
+    std::vector<Pose2> next;
+    for (const std::uint32_t i : resample(weights_, poses_.size(), random.uniform()))
+      next.push_back(poses_[i]);
+    poses_ = std::move(next);
+    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+  }
+  return true;
+}
+
+bool ParticleFilter::fix(const GnssFix& gnss) {
+  spread();
+  const double squares = updated(summary_, gnss).squares;
+  const bool scattered = searching_ && !poses_.empty();
+  if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
+  double nearest = 1e300;
+  for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
+  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there: all anew, any heading
+    Random random(static_cast<std::uint64_t>(options_.seed) + ++step_, "fix");
+    poses_.clear();
+    for (std::int64_t i = 0; i < options_.search_particles; ++i)
+      poses_.push_back({gnss.at.x() + gnss.sd * random.normal(), gnss.at.y() + gnss.sd * random.normal(),
+                        random.uniform(-std::numbers::pi, std::numbers::pi)});
+    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+    summary_ = summary(poses_, weights_, kCluster);
+    return true;
+  }
+  return weigh_by(
+      [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
+}
+
+bool ParticleFilter::fix(const HeadingFix& heading) {
+  spread();
+  if (poses_.empty()) return false;
+  // A floor for wild readings: they cannot kill the particles that are right.
+  return weigh_by([&](const Pose2& p) {
+    const double v = wrapped(heading.yaw - p.yaw) / heading.sd;
+    return std::log(std::exp(-v * v / 2) + 1e-4);
+  });
+}
+
+std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
+  spread();
+  double farthest = 0;
+  for (const SeenLandmark& s : seen.sightings)
+    if (s.sound())
+      farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
+  if (options_.weight.expect_unseen) farthest = std::max(farthest, options_.weight.view_range);
+  const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
+  const LandmarkGrid& map = map_.around(summary_.pose.at(), farthest + 6 * width);
+  ++sets_;
+  if (finder_) {
+    memory_.add(seen);
+    if (searching_ || (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
+      ask_finder(seen);
+    else
+      hints_.clear();
+  }
+  if (poses_.empty() && !seen.sightings.empty())
+    search(seen, map, static_cast<std::size_t>(options_.search_particles));
+  if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
+
+  weigh(seen, map);
+  summary_ = summary(poses_, weights_, kCluster);
+  const double sd = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
+  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kCluster, 3 * found_sd_));
+  if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
+    draw_again(seen, map);
+
+  std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
+  for (Match& match : matches)
+    if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
+  return matches;
+}
+
+}  // namespace waymark

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <stdexcept>
+
+#include "localization/filters/kalman.hpp"
+
+namespace waymark {
+namespace {
+
+/// Lower triangular L with L L' = m m', without forming the product: modified Gram-Schmidt over the rows
+/// (Golub and Van Loan 2013, 5.2.8), whose triangular factor is as exact as Householder's.
+template <int Columns>
+Eigen::Matrix3d lower_root(Eigen::Matrix<double, 3, Columns> m) {
+  Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    root(i, i) = m.row(i).norm();
+    if (!(root(i, i) > 0)) continue;
+    m.row(i) /= root(i, i);
+    for (int j = i + 1; j < 3; ++j) {
+      root(j, i) = m.row(j).dot(m.row(i));
+      m.row(j) -= root(j, i) * m.row(i);
+    }
+  }
+  return root;
+}
+
+double circular_mean(const double* angles, int count) {
+  double c = 0, s = 0;
+  for (int i = 0; i < count; ++i) c += std::cos(angles[i]), s += std::sin(angles[i]);
+  return std::atan2(s, c);
+}
+
+/// A Gaussian by its mean and a lower triangular root of its covariance.
+struct RootedPose {
+  Pose2 pose;
+  Eigen::Matrix3d root;
+};
+
+// Points of pose and step together: 6 dimensions, 12 points of equal weight.
+RootedPose root_moved(const RootedPose& before, const BodyMotion& motion) {
+  constexpr int kPoints = 12;
+  const Eigen::Matrix3d noise = square_root(motion.covariance);
+  const double reach = std::sqrt(6.0);
+  Eigen::Matrix<double, 3, kPoints> points;
+  double yaws[kPoints];
+  for (int i = 0; i < 3; ++i)
+    for (int sign = 0; sign < 2; ++sign) {
+      const double k = sign ? -reach : reach;
+      const Pose2 by_pose = pose_of(before.pose.vector() + k * before.root.col(i)) * motion.step;
+      const Pose2 by_step = before.pose * pose_of(motion.step.vector() + k * noise.col(i));
+      points.col(4 * i + 2 * sign) = by_pose.vector();
+      points.col(4 * i + 2 * sign + 1) = by_step.vector();
+    }
+  for (int i = 0; i < kPoints; ++i) yaws[i] = points(2, i);
+  Eigen::Vector3d mean = points.rowwise().mean();
+  mean.z() = circular_mean(yaws, kPoints);
+  points.colwise() -= mean;
+  for (int i = 0; i < kPoints; ++i) points(2, i) = wrapped(points(2, i));
+  return {pose_of(mean), lower_root<kPoints>(points / std::sqrt(double{kPoints}))};
+}
+
+RootedPose root_updated(const RootedPose& before, const SeenLandmark& seen_landmark,
+                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+  constexpr int kPoints = 6;
+  const double reach = std::sqrt(3.0);
+  Eigen::Matrix<double, 3, kPoints> points;
+  Eigen::Matrix<double, 2, kPoints> seen;
+  double bearings[kPoints];
+  for (int i = 0; i < kPoints; ++i) {
+    points.col(i) = (i % 2 ? -reach : reach) * before.root.col(i / 2);
+    seen.col(i) = expect(pose_of(before.pose.vector() + points.col(i)), robot_from_sensor, landmark.at).value;
+    bearings[i] = seen(1, i);
+    if (!seen_landmark.range) seen(0, i) = 0;
+  }
+  Eigen::Vector2d mean = seen.rowwise().mean();
+  mean[1] = circular_mean(bearings, kPoints);
+  seen.colwise() -= mean;
+  for (int i = 0; i < kPoints; ++i) seen(1, i) = wrapped(seen(1, i));
+  points /= std::sqrt(double{kPoints});
+  seen /= std::sqrt(double{kPoints});
+
+  const Eigen::Matrix2d by_landmark = expect(before.pose, robot_from_sensor, landmark.at).by_landmark;
+  Eigen::Matrix2d noise =
+      (sensor_noise(seen_landmark) + by_landmark * landmark.covariance * by_landmark.transpose()) / trust;
+  if (!seen_landmark.range) noise(0, 1) = noise(1, 0) = 0;
+  const Eigen::Matrix2d noise_root = noise.llt().matrixL();
+  const Eigen::Matrix2d s = seen * seen.transpose() + noise;
+  const Eigen::Matrix<double, 3, 2> gain = points * seen.transpose() * s.inverse();
+  Eigen::Matrix<double, 3, kPoints + 2> after;
+  after << points - gain * seen, gain * noise_root;
+  return {pose_of(before.pose.vector() + gain * innovation(seen_landmark, mean)),
+          lower_root<kPoints + 2>(after)};
+}
+
+}  // namespace
+
+PoseEstimate unscented_moved(const PoseEstimate& estimate, const BodyMotion& motion) {
+  const RootedPose after = root_moved({estimate.pose, square_root(estimate.covariance)}, motion);
+  return {after.pose, after.root * after.root.transpose()};
+}
+
+PoseEstimate unscented_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
+                               const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+  const RootedPose after = root_updated({estimate.pose, square_root(estimate.covariance)}, seen,
+                                        robot_from_sensor, landmark, trust);
+  return {after.pose, after.root * after.root.transpose()};
+}
+
+UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
+                                 IdentificationOptions identification, KalmanOptions options)
+    : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),
+      pose_(start.pose),
+      root_(square_root(start.covariance)) {
+  if (!start.pose.finite() || !start.covariance.allFinite())
+    throw std::invalid_argument("the start of a filter must be finite");
+}
+
+void UnscentedKalman::move(const BodyMotion& motion) {
+  const RootedPose after = root_moved({pose_, root_}, motion);
+  pose_ = after.pose, root_ = after.root;
+}
+
+void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
+  for (const Use& use : uses) {
+    const RootedPose after =
+        root_updated({pose_, root_}, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+    pose_ = after.pose, root_ = after.root;
+  }
+}
+
+void UnscentedKalman::replace(const PoseEstimate& estimate) {
+  pose_ = estimate.pose;
+  root_ = square_root(estimate.covariance);
+}
+
+void UnscentedKalman::widen(double factor) {
+  const Eigen::Vector3d sd = (root_ * root_.transpose()).diagonal().cwiseSqrt();
+  root_ = widest(sd * factor).asDiagonal();
+}
+
+}  // namespace waymark

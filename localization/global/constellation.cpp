@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/global/constellation.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <bit>
+#include <numeric>
+#include <stdexcept>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kSample = 400;  // landmarks asked how rare a feature is
+
+double largest_sd(const Eigen::Matrix2d& c) {
+  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
+}
+
+std::vector<PlacedLandmark> on_plane(const std::vector<MapLandmark>& landmarks) {
+  std::vector<PlacedLandmark> places;
+  places.reserve(landmarks.size());
+  for (const MapLandmark& l : landmarks)
+    places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
+  return places;
+}
+
+}  // namespace
+
+void ConstellationOptions::describe(OptionVisitor& option) {
+  option("neighbours", neighbours,
+         {.help = "Neighbours of each landmark that make triangles with it", .min = 2, .max = 30});
+  option("constellation_sigmas", sigmas,
+         {.help = "Standard deviations by which lengths and places may differ", .min = 1, .max = 10});
+  option("false_alarms", false_alarms,
+         {.help = "Poses of the whole map that may fit as well by chance for a fix to be believed",
+          .min = 1e-12,
+          .max = 1});
+  option("lead", lead,
+         {.help = "By how much the best pose must be less probable by chance than the next", .min = 1});
+  option("least_matches", least_matches,
+         {.help = "Sightings that must have a landmark for a fix", .min = 3, .max = 100});
+  option("most_tried", most_tried, {.help = "Poses examined closely", .min = 1, .max = 1e5});
+}
+
+PoseEstimate ConstellationFix::pose() const {
+  const Eigen::Vector3d at = plane.place(on_plane.pose.at());
+  return {{at.x(), at.y(), on_plane.pose.yaw}, on_plane.covariance};
+}
+
+ConstellationIndex::ConstellationIndex(std::vector<MapLandmark> landmarks, FeatureScales scales,
+                                       ConstellationOptions options)
+    : landmarks_(std::move(landmarks)), scales_(std::move(scales)), options_(options) {
+  std::erase_if(landmarks_, [](const MapLandmark& l) { return !l.at.allFinite(); });
+  places_ = on_plane(landmarks_);
+  build();
+}
+
+ConstellationIndex::ConstellationIndex(std::vector<MapLandmark> landmarks, std::vector<PlacedLandmark> places,
+                                       FeatureScales scales, ConstellationOptions options)
+    : landmarks_(std::move(landmarks)),
+      places_(std::move(places)),
+      scales_(std::move(scales)),
+      options_(options) {
+  if (places_.size() != landmarks_.size()) throw std::invalid_argument("each landmark needs one place");
+  for (const PlacedLandmark& p : places_)
+    if (!p.at.allFinite() || !(std::abs(p.up.norm() - 1) < 1e-6))
+      throw std::invalid_argument("a landmark's place must be finite and its up a unit vector");
+  build();
+}
+
+std::uint64_t ConstellationIndex::key(std::array<TypeId, 3> types, double longest, double middle,
+                                      bool left) const {
+  std::uint64_t k = left;
+  for (const TypeId type : types) k = mixed(k ^ type);
+  k = mixed(k ^ static_cast<std::uint64_t>(longest));
+  return mixed(k ^ static_cast<std::uint64_t>(middle));
+}
+
+bool ConstellationIndex::turns_left(const Corners& c) const {
+  const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return places_[c[i]].at; };
+  return (at(1) - at(0)).cross(at(2) - at(0)).dot(places_[c[0]].up) > 0;
+}
+
+std::optional<ConstellationIndex::Corners> ConstellationIndex::ordered(Corners c) const {
+  std::array<double, 3> opposite;
+  for (std::size_t i = 0; i < 3; ++i)
+    opposite[i] = (places_[c[(i + 1) % 3]].at - places_[c[(i + 2) % 3]].at).squaredNorm();
+  std::array<std::size_t, 3> order{0, 1, 2};
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return opposite[a] > opposite[b]; });
+  const Eigen::Vector3d &a = places_[c[0]].at, &b = places_[c[1]].at, &d = places_[c[2]].at;
+  const double longest = std::sqrt(opposite[order[0]]);
+  if (!((b - a).cross(d - a).norm() > 0.02 * longest * longest)) return {};
+  return Corners{c[order[0]], c[order[1]], c[order[2]]};
+}
+
+std::vector<ConstellationIndex::Corners> ConstellationIndex::neighbouring() const {
+  const auto wanted = static_cast<std::size_t>(options_.neighbours);
+  std::vector<Corners> all;
+  std::vector<std::pair<double, std::uint32_t>> found;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    // Discs of growing size until they hold enough, or the whole map.
+    for (double radius = 1.5 * cells_.cell();; radius *= 1.6) {
+      found.clear();
+      cells_.near(places_[i].at, radius, [&](std::uint32_t j, double d) {
+        if (j != i && d > 0) found.emplace_back(d, j);
+      });
+      if (found.size() >= wanted || found.size() + 1 >= places_.size() || radius > 64 * cells_.cell()) break;
+    }
+    const std::size_t count = std::min(wanted, found.size());
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count), found.end());
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = a + 1; b < count; ++b) {
+        Corners c{static_cast<std::uint32_t>(i), found[a].second, found[b].second};
+        std::ranges::sort(c);
+        all.push_back(c);
+      }
+  }
+  std::ranges::sort(all);
+  all.erase(std::ranges::unique(all).begin(), all.end());
+  return all;
+}
+
+void ConstellationIndex::build() {
+  if (landmarks_.empty()) return;
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(places_.size());
+  for (const PlacedLandmark& p : places_) points.push_back(p.at);
+  cells_ = PointCells(points);
+  area_ = static_cast<double>(cells_.occupied()) * cells_.cell() * cells_.cell();
+  std::vector<double> sds;
+  for (std::uint32_t i = 0; i < landmarks_.size(); ++i) {
+    types_.push_back(landmarks_[i].type);
+    sds.push_back(largest_sd(landmarks_[i].covariance));
+    by_key_.emplace(landmarks_[i].key, i);
+  }
+  std::ranges::sort(types_);
+  types_.erase(std::ranges::unique(types_).begin(), types_.end());
+  std::ranges::nth_element(sds, sds.begin() + static_cast<std::ptrdiff_t>(sds.size() * 9 / 10));
+  typical_sd_ = sds[sds.size() * 9 / 10];
+  for (std::size_t k = 0; k < std::min(kSample, landmarks_.size()); ++k)
+    sample_.push_back(
+        static_cast<std::uint32_t>(k * landmarks_.size() / std::min(kSample, landmarks_.size())));
+
+  std::vector<Corners> triangles = neighbouring();
+  std::vector<double> lengths;
+  std::size_t kept = 0;
+  for (const Corners& c : triangles)
+    if (const auto in_order = ordered(c)) {
+      triangles[kept++] = *in_order;
+      lengths.push_back((places_[(*in_order)[1]].at - places_[(*in_order)[2]].at).norm());
+    }
+  triangles.resize(kept);
+  if (triangles.empty()) return;
+  std::ranges::nth_element(lengths, lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2));
+  length_cell_ = std::max(0.05 * lengths[lengths.size() / 2], 1e-9);
+
+  first_.assign(std::bit_ceil(triangles.size()) + 1, 0);
+  std::vector<std::uint32_t> buckets(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Corners& c = triangles[i];
+    const double longest = (places_[c[1]].at - places_[c[2]].at).norm();
+    const double middle = (places_[c[0]].at - places_[c[2]].at).norm();
+    const std::array<TypeId, 3> types{landmarks_[c[0]].type, landmarks_[c[1]].type, landmarks_[c[2]].type};
+    buckets[i] = static_cast<std::uint32_t>(bucket(
+        key(types, std::floor(longest / length_cell_), std::floor(middle / length_cell_), turns_left(c))));
+    ++first_[buckets[i] + 1];
+  }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  corners_.resize(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) corners_[next[buckets[i]]++] = triangles[i];
+}
+
+std::size_t ConstellationIndex::bytes() const {
+  return corners_.size() * sizeof(Corners) + first_.size() * sizeof(std::uint32_t) + cells_.bytes() +
+         landmarks_.size() * (sizeof(MapLandmark) + sizeof(PlacedLandmark) + 32);
+}
+
+}  // namespace waymark

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <numbers>
+#include <unordered_map>
+
+#include "localization/global/constellation_search.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kKept = 10;
+
+}  // namespace
+
+Eigen::Matrix2d turned(double yaw) {
+  return Eigen::Rotation2Dd(yaw).toRotationMatrix();
+}
+
+std::vector<ConstellationFix> ConstellationSearch::fitted() {
+  double sd = index_.typical_sd_;
+  for (const Seen& s : points_) sd = std::max(sd, s.sd);
+  const double cell = std::max(3 * sd, 1e-6), turn = 0.15;
+  struct Crowd {
+    double weight = 0;
+    std::size_t first = 0;
+  };
+  std::unordered_map<std::uint64_t, Crowd> crowds;
+  const auto key = [&](const Guess& g) {
+    const Eigen::Vector3d at = plane_at(index_.places_[g.anchor]).place(g.middle) / cell;
+    std::uint64_t k = mixed(static_cast<std::uint64_t>(std::llround(wrapped(g.yaw) / turn)));
+    for (int i = 0; i < 3; ++i) k = mixed(k ^ static_cast<std::uint64_t>(std::llround(at[i])));
+    return k;
+  };
+  for (std::size_t i = 0; i < guesses_.size(); ++i) {
+    auto [crowd, fresh] = crowds.try_emplace(key(guesses_[i]), Crowd{0, i});
+    crowd->second.weight += guesses_[i].weight;
+  }
+  std::vector<Crowd> ranked;
+  for (const auto& [k, crowd] : crowds) ranked.push_back(crowd);
+  const auto best = std::min(ranked.size(), static_cast<std::size_t>(o_.most_tried));
+  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(best), ranked.end(),
+                    [](const Crowd& a, const Crowd& b) {
+                      return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
+                    });
+  std::vector<ConstellationFix> fixes;
+  for (std::size_t i = 0; i < best; ++i)
+    if (auto fix = fit(guesses_[ranked[i].first])) keep(fixes, std::move(*fix));
+  std::ranges::stable_sort(fixes, {}, badness);
+  if (fixes.size() > kKept) fixes.resize(kKept);
+  return fixes;
+}
+
+void ConstellationSearch::keep(std::vector<ConstellationFix>& fixes, ConstellationFix fix) const {
+  for (ConstellationFix& other : fixes) {
+    const Eigen::Vector3d apart =
+        other.plane.place(other.on_plane.pose.at()) - fix.plane.place(fix.on_plane.pose.at());
+    std::size_t shared = 0;
+    for (std::size_t i = 0; i < fix.landmarks.size(); ++i)
+      shared += fix.landmarks[i] && fix.landmarks[i] == other.landmarks[i];
+    if (2 * shared < static_cast<std::size_t>(fix.matched) && apart.norm() > 3 * near_enough(fix, other))
+      continue;
+    if (2 * shared < static_cast<std::size_t>(fix.matched)) continue;
+    if (badness(fix) < badness(other)) other = std::move(fix);
+    return;
+  }
+  fixes.push_back(std::move(fix));
+}
+
+double ConstellationSearch::near_enough(const ConstellationFix& a, const ConstellationFix& b) {
+  return std::sqrt(a.on_plane.covariance.diagonal().head<2>().sum() +
+                   b.on_plane.covariance.diagonal().head<2>().sum());
+}
+
+std::optional<ConstellationFix> ConstellationSearch::fit(const Guess& g) const {
+  // The plane touches where the middle of the sightings is thought to be: distances are true there.
+  PlacedLandmark middle = index_.places_[g.anchor];
+  const TangentPlane first = plane_at(middle);
+  TangentPlane plane = first;
+  Eigen::Vector2d offset = g.middle;
+  std::vector<Local> locals;
+  const double reach = 1.3 * extent_ + 3 * o_.sigmas * index_.typical_sd_ + 1e-9;
+  index_.cells_.near(first.place(offset), reach, [&](std::uint32_t i, double) {
+    locals.push_back({i, flattened(plane, index_.places_[i].at)});
+  });
+  if (locals.size() < 2) return {};
+  std::ranges::sort(locals, {}, &Local::landmark);
+
+  // From the pose of the middle to that of the robot.
+  const Eigen::Vector2d robot = offset - turned(g.yaw) * middle_;
+  PoseEstimate e{{robot.x(), robot.y(), wrapped(g.yaw)}, Eigen::Matrix3d::Zero()};
+  double slack = 2;  // the guess is of three sightings only; tightened as all of them join
+  Matches matches, last;
+  for (int round = 0; round < 6; ++round) {
+    matches = match(e.pose, locals, slack);
+    if (round > 1 && matches == last) break;
+    last = matches;
+    if (!adjust(e, matches, locals)) return {};
+    slack = std::max(1.0, slack * 0.7);
+  }
+  matches = match(e.pose, locals, 1);
+  if (!adjust(e, matches, locals)) return {};
+  return judged(e, plane, matches, locals);
+}
+
+Eigen::Matrix2d ConstellationSearch::spread(const Seen& s, const Pose2& pose, std::uint32_t landmark) const {
+  const Eigen::Matrix2d r = turned(pose.yaw);
+  return r * s.covariance * r.transpose() + index_.landmarks_[landmark].covariance;
+}
+
+ConstellationSearch::Matches ConstellationSearch::match(const Pose2& pose, const std::vector<Local>& locals,
+                                                        double slack) const {
+  struct Pair {
+    double squares;
+    std::size_t seen;
+    std::uint32_t local;
+  };
+  std::vector<Pair> pairs;
+  const double gate = o_.sigmas * o_.sigmas * slack * slack;
+  const Eigen::Matrix2d r = turned(pose.yaw);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Eigen::Vector2d at = pose.at() + r * points_[i].at;
+    const Eigen::Matrix2d seen = r * points_[i].covariance * r.transpose();
+    for (std::uint32_t k = 0; k < locals.size(); ++k) {
+      const double dx = locals[k].at.x() - at.x(), dy = locals[k].at.y() - at.y(), square = dx * dx + dy * dy;
+      const Eigen::Matrix2d& mapped = index_.landmarks_[locals[k].landmark].covariance;
+      const double a = seen(0, 0) + mapped(0, 0), d = seen(1, 1) + mapped(1, 1);
+      if (square > gate * (a + d)) continue;
+      const double b = seen(0, 1) + mapped(0, 1);
+      const double squares = (d * dx * dx - 2 * b * dx * dy + a * dy * dy) / (a * d - b * b);
+      if (squares <= gate && alike(points_[i], locals[k].landmark)) pairs.push_back({squares, i, k});
+    }
+  }
+  std::ranges::stable_sort(pairs, {}, &Pair::squares);
+  Matches matches(points_.size());
+  std::vector<bool> taken(locals.size(), false);
+  for (const Pair& p : pairs)
+    if (!matches[p.seen] && !taken[p.local]) {
+      matches[p.seen] = p.local;
+      taken[p.local] = true;
+    }
+  return matches;
+}
+
+bool ConstellationSearch::adjust(PoseEstimate& e, const Matches& matches,
+                                 const std::vector<Local>& locals) const {
+  for (int step = 0; step < 2; ++step) {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+    const Eigen::Matrix2d r = turned(e.pose.yaw);
+    int count = 0;
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      if (!matches[i]) continue;
+      const Local& l = locals[*matches[i]];
+      const Eigen::Vector2d seen = r * points_[i].at;
+      Eigen::Matrix<double, 2, 3> j;
+      j << 1, 0, -seen.y(), 0, 1, seen.x();
+      const Eigen::Matrix2d weight = spread(points_[i], e.pose, l.landmark).inverse();
+      information += j.transpose() * weight * j;
+      pull += j.transpose() * weight * (l.at - e.pose.at() - seen);
+      ++count;
+    }
+    if (count < 2) return false;
+    const Eigen::LDLT<Eigen::Matrix3d> solver(information);
+    if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
+    const Eigen::Vector3d change = solver.solve(pull);
+    if (!change.allFinite()) return false;
+    e.pose = pose_of(e.pose.vector() + change);
+    e.covariance = solver.solve(Eigen::Matrix3d::Identity());
+  }
+  return e.covariance.allFinite();
+}
+
+ConstellationFix ConstellationSearch::judged(const PoseEstimate& e, const TangentPlane& plane,
+                                             const Matches& matches, const std::vector<Local>& locals) const {
+  ConstellationFix fix{
+      .plane = plane, .on_plane = e, .landmarks = {}, .matched = 0, .squares = 0, .log_false_alarms = 0};
+  fix.landmarks.resize(total_);
+  const double reach = 1.3 * extent_ + 1e-9;
+  const double density = static_cast<double>(locals.size()) / (std::numbers::pi * reach * reach);
+  std::vector<double> tail{1};  // tail[m]: probability of exactly m chance matches so far
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const std::uint32_t typical = matches[i] ? locals[*matches[i]].landmark : locals[0].landmark;
+    const double area = std::numbers::pi * o_.sigmas * o_.sigmas *
+                        std::sqrt(spread(points_[i], e.pose, typical).determinant());
+    const double p = std::clamp(1 - std::exp(-density * area * points_[i].rarity), 1e-12, 1 - 1e-9);
+    tail.push_back(0);
+    for (std::size_t m = tail.size() - 1; m > 0; --m) tail[m] = tail[m] * (1 - p) + tail[m - 1] * p;
+    tail[0] *= 1 - p;
+    if (!matches[i]) continue;
+    const Local& l = locals[*matches[i]];
+    const Eigen::Vector2d d = l.at - e.pose.at() - turned(e.pose.yaw) * points_[i].at;
+    fix.squares += d.dot(spread(points_[i], e.pose, l.landmark).inverse() * d);
+    fix.landmarks[points_[i].index] = l.landmark;
+    ++fix.matched;
+  }
+  double chance = 0;
+  for (std::size_t m = tail.size(); m-- > static_cast<std::size_t>(fix.matched);) chance += tail[m];
+  // Poses that can be told apart: the volume of all over the volume of one.
+  const double one =
+      std::pow(2 * std::numbers::pi, 1.5) * std::sqrt(std::max(e.covariance.determinant(), 1e-300));
+  fix.log_false_alarms =
+      std::log(std::max(chance, 1e-300)) + std::log(std::max(1.0, index_.area_ * 2 * std::numbers::pi / one));
+  return fix;
+}
+
+}  // namespace waymark

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/global/constellation_search.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <set>
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kMostSightings = 40;  // the nearest ones; more add time and nothing else
+constexpr std::size_t kSeenNeighbours = 7;
+constexpr double kMostCells = 3000;  // of one triangle: beyond, its lengths are too uncertain to look up
+constexpr std::size_t kMostGuesses = 30000;  // from the triangles that fit the fewest places
+
+}  // namespace
+
+TangentPlane plane_at(const PlacedLandmark& place) {
+  const Eigen::Vector3d pole = Eigen::Vector3d::UnitZ();
+  if (place.up.dot(pole) > 1 - 1e-12) return {.origin = place.at};
+  const Eigen::Vector3d east = pole.cross(place.up).normalized();
+  return {.origin = place.at, .east = east, .north = place.up.cross(east)};
+}
+
+/// On the plane, at the true distance from its origin.
+Eigen::Vector2d flattened(const TangentPlane& plane, const Eigen::Vector3d& at) {
+  const Eigen::Vector3d d = at - plane.origin;
+  const Eigen::Vector2d p(plane.east.dot(d), plane.north.dot(d));
+  const double flat = p.norm();
+  return flat > 0 ? Eigen::Vector2d(p * (d.norm() / flat)) : p;
+}
+
+ConstellationSearch::ConstellationSearch(const ConstellationIndex& index, const SightingSet& seen)
+    : index_(index), o_(index.options_) {
+  for (std::size_t i = 0; i < seen.sightings.size(); ++i) add(seen, i);
+  std::ranges::stable_sort(points_, {}, [](const Seen& s) { return s.range; });
+  if (points_.size() > kMostSightings) points_.resize(kMostSightings);
+  for (Seen& s : points_) s.rarity = rarity(s);
+  for (const Seen& s : points_) middle_ += s.at / static_cast<double>(points_.size());
+  for (const Seen& s : points_) extent_ = std::max(extent_, (s.at - middle_).norm());
+  total_ = seen.sightings.size();
+}
+
+ConstellationAnswer ConstellationSearch::find() {
+  if (index_.size() == 0) return {.fix = {}, .reason = "the map is empty", .candidates = {}};
+  std::size_t named = 0;
+  for (const Seen& s : points_) named += s.named.has_value();
+  if (named < 2 && points_.size() < static_cast<std::size_t>(o_.least_matches))
+    return {.fix = {}, .reason = "too few sightings with a range", .candidates = {}};
+  if (named >= 2) guess_by_names();
+  if (named < 2) guess_by_triangles();
+  if (guesses_.empty()) return {.fix = {}, .reason = "no such constellation in the map", .candidates = {}};
+  ConstellationAnswer answer{.fix = {}, .reason = {}, .candidates = fitted()};
+  answer.reason = verdict(answer.candidates, named);
+  if (answer.reason.empty()) answer.fix = answer.candidates[0];
+  return answer;
+}
+
+void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
+  const SeenLandmark& s = seen.sightings[i];
+  if (!s.sound() || !s.range || s.type == kNoSuchType) return;
+  Seen p{.index = i,
+         .sighting = &s,
+         .at = {},
+         .covariance = {},
+         .range = *s.range,
+         .sd = 0,
+         .rarity = 1,
+         .named = {}};
+  const Pose2& mount = seen.robot_from_sensor;
+  const double along = mount.yaw + s.bearing;
+  p.at = mount.at() + *s.range * Eigen::Vector2d(std::cos(along), std::sin(along));
+  const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
+  const Eigen::Matrix2d r = turned(along);
+  p.covariance = r * sd.cwiseAbs2().asDiagonal() * r.transpose();
+  p.sd = sd.maxCoeff();
+  if (o_.use_identities && s.identity) {
+    const auto found = index_.by_key_.find(*s.identity);
+    if (found == index_.by_key_.end()) return;
+    p.named = found->second;
+  }
+  points_.push_back(p);
+}
+
+bool ConstellationSearch::alike(const Seen& s, std::uint32_t landmark) const {
+  if (s.named) return *s.named == landmark;
+  const MapLandmark& l = index_.landmarks_[landmark];
+  if (!s.sighting->type) return true;
+  if (*s.sighting->type != l.type) return false;
+  return compare_features(index_.scales_, l.type, s.sighting->features, l.features, o_.feature_tolerance)
+             .largest <= o_.feature_limit;
+}
+
+double ConstellationSearch::rarity(const Seen& s) const {
+  if (s.named) return 1 / static_cast<double>(index_.size());
+  std::size_t alike_count = 0;
+  for (const std::uint32_t i : index_.sample_) alike_count += alike(s, i);
+  return (static_cast<double>(alike_count) + 0.5) / (static_cast<double>(index_.sample_.size()) + 0.5);
+}
+
+void ConstellationSearch::guess(std::uint32_t anchor, const std::array<const Seen*, 3>& seen,
+                                const std::array<std::uint32_t, 3>& landmarks, std::size_t count,
+                                double weight) {
+  const TangentPlane plane = plane_at(index_.places_[anchor]);
+  Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = from;
+  std::array<Eigen::Vector2d, 3> flat;
+  for (std::size_t i = 0; i < count; ++i) {
+    flat[i] = flattened(plane, index_.places_[landmarks[i]].at);
+    from += seen[i]->at / static_cast<double>(count), to += flat[i] / static_cast<double>(count);
+  }
+  double cosine = 0, sine = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2d a = seen[i]->at - from, b = flat[i] - to;
+    cosine += a.dot(b), sine += a.x() * b.y() - a.y() * b.x();
+  }
+  const double yaw = std::atan2(sine, cosine);
+  guesses_.push_back({anchor, to + turned(yaw) * (middle_ - from), yaw, weight});
+}
+
+void ConstellationSearch::guess_by_names() {
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    for (std::size_t j = i + 1; j < points_.size(); ++j) {
+      const Seen &a = points_[i], &b = points_[j];
+      if (!a.named || !b.named || *a.named == *b.named) continue;
+      const double seen = (a.at - b.at).norm();
+      const double real = (index_.places_[*a.named].at - index_.places_[*b.named].at).norm();
+      const double sd = std::sqrt(a.sd * a.sd + b.sd * b.sd + 2 * index_.typical_sd_ * index_.typical_sd_);
+      if (std::abs(seen - real) <= o_.sigmas * sd && seen > 2 * sd)
+        guess(*a.named, {&a, &b, nullptr}, {*a.named, *b.named, 0}, 2, 1);
+    }
+}
+
+void ConstellationSearch::guess_by_triangles() {
+  std::set<std::array<std::size_t, 3>> triples;
+  std::vector<std::pair<double, std::size_t>> near;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    near.clear();
+    for (std::size_t j = 0; j < points_.size(); ++j)
+      if (j != i) near.emplace_back((points_[i].at - points_[j].at).squaredNorm(), j);
+    std::ranges::sort(near);
+    const std::size_t count = std::min(near.size(), kSeenNeighbours);
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = a + 1; b < count; ++b) {
+        std::array<std::size_t, 3> t{i, near[a].second, near[b].second};
+        std::ranges::sort(t);
+        triples.insert(t);
+      }
+  }
+  std::vector<std::vector<Hit>> all;
+  for (const auto& t : triples)
+    if (look_up(t); !hits_.empty()) all.push_back(std::move(hits_));
+  // What fits few places says most.
+  std::ranges::stable_sort(all, {}, &std::vector<Hit>::size);
+  for (const auto& hits : all) {
+    const double weight = 1 / static_cast<double>(hits.size());
+    for (const auto& [seen, corners] : hits) guess(corners[0], seen, corners, 3, weight);
+    if (guesses_.size() > kMostGuesses) break;
+  }
+}
+
+void ConstellationSearch::look_up(const std::array<std::size_t, 3>& triple) {
+  std::array<std::size_t, 3> order{0, 1, 2};
+  hits_.clear();
+  do look_up({&points_[triple[order[0]]], &points_[triple[order[1]]], &points_[triple[order[2]]]});
+  while (std::ranges::next_permutation(order).found);
+}
+
+void ConstellationSearch::look_up(const std::array<const Seen*, 3>& c) {
+  std::array<double, 3> side, slack;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Seen &a = *c[(i + 1) % 3], &b = *c[(i + 2) % 3];
+    const Eigen::Vector2d d = a.at - b.at;
+    side[i] = d.norm();
+    if (!(side[i] > 0)) return;
+    const double variance = d.dot((a.covariance + b.covariance) * d) / (side[i] * side[i]);
+    slack[i] = o_.sigmas * std::sqrt(variance + 2 * index_.typical_sd_ * index_.typical_sd_);
+  }
+  if (side[0] + slack[0] < side[1] - slack[1] || side[1] + slack[1] < side[2] - slack[2]) return;
+  const Eigen::Vector2d ab = c[1]->at - c[0]->at, ac = c[2]->at - c[0]->at;
+  const double area = ab.x() * ac.y() - ab.y() * ac.x();
+  // Too flat to say how it turns: the height over the longest side is within the error.
+  if (!(std::abs(area) > side[0] * std::max(slack[0], slack[2]) / 2)) return;
+  const double cell = index_.length_cell_;
+  const auto low = [&](std::size_t i) { return std::floor(std::max(0.0, side[i] - slack[i]) / cell); };
+  const auto high = [&](std::size_t i) { return std::floor((side[i] + slack[i]) / cell); };
+  if ((high(0) - low(0) + 1) * (high(1) - low(1) + 1) > kMostCells || index_.corners_.empty()) return;
+  for (const auto& types : types_of(c))
+    for (double x = low(0); x <= high(0); ++x)
+      for (double y = low(1); y <= std::min(high(1), x); ++y) {
+        const std::size_t bucket = index_.bucket(index_.key(types, x, y, area > 0));
+        for (std::uint32_t k = index_.first_[bucket]; k < index_.first_[bucket + 1]; ++k)
+          compare(c, index_.corners_[k], side, slack, x, y, area > 0);
+      }
+}
+
+void ConstellationSearch::compare(const std::array<const Seen*, 3>& c,
+                                  const std::array<std::uint32_t, 3>& corners,
+                                  const std::array<double, 3>& side, const std::array<double, 3>& slack,
+                                  double x, double y, bool left) {
+  const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return index_.places_[corners[i]].at; };
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double real = (at((i + 1) % 3) - at((i + 2) % 3)).norm();
+    if (!(std::abs(real - side[i]) <= slack[i])) return;
+    // Another key in the same bucket would be met again in its own cell.
+    if (i < 2 && std::floor(real / index_.length_cell_) != (i == 0 ? x : y)) return;
+  }
+  if (index_.turns_left(corners) != left) return;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!alike(*c[i], corners[i])) return;
+  hits_.push_back({c, corners});
+}
+
+std::vector<std::array<TypeId, 3>> ConstellationSearch::types_of(const std::array<const Seen*, 3>& c) const {
+  std::vector<std::array<TypeId, 3>> all{{}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::vector<std::array<TypeId, 3>> next;
+    for (auto types : all) {
+      if (c[i]->sighting->type) {
+        types[i] = *c[i]->sighting->type;
+        next.push_back(types);
+        continue;
+      }
+      for (const TypeId type : index_.types_) {
+        types[i] = type;
+        next.push_back(types);
+      }
+    }
+    all = std::move(next);
+  }
+  return all;
+}
+
+std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix>& fixes,
+                                              std::size_t named) const {
+  if (fixes.empty()) return "no such constellation in the map";
+  const ConstellationFix& best = fixes[0];
+  if (named >= 2) {
+    const double least = std::max(2.0, 0.6 * static_cast<double>(named));
+    return best.matched >= least ? "" : "the names contradict the distances";
+  }
+  if (best.matched < o_.least_matches) return "too few sightings fit one place";
+  if (2 * best.matched < static_cast<int>(points_.size()) && best.matched < 8)
+    return "most sightings do not fit the best place";
+  if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best place may fit by chance";
+  if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
+    return "two places fit alike";
+  return "";
+}
+
+ConstellationAnswer ConstellationIndex::find(const SightingSet& seen) const {
+  return ConstellationSearch(*this, seen).find();
+}
+
+}  // namespace waymark

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification/identification.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "localization/filters/chi_square.hpp"
+#include "localization/identification/assignment.hpp"
+#include "localization/identification/joint_search.hpp"
+
+namespace waymark {
+namespace {
+
+/// Quantiles of the gate by degrees of freedom, computed once per gate.
+double gate_of(const IdentificationOptions& options, int freedom) {
+  constexpr int kMost = 2 + static_cast<int>(kMaxFeatures);
+  thread_local double last = -1;
+  thread_local std::array<double, kMost + 1> gates;
+  if (last != options.gate) {
+    for (int i = 1; i <= kMost; ++i)
+      gates[static_cast<std::size_t>(i)] = chi_square_quantile(options.gate, i);
+    last = options.gate;
+  }
+  return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMost))];
+}
+
+double largest_sd(const Eigen::Matrix2d& c) {
+  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
+}
+
+/// Where the landmark of a sighting may be: landmarks outside cannot pass the gate.
+std::vector<std::uint32_t> within_reach(const SeenLandmark& seen, const Pose2& sensor,
+                                        const PoseEstimate& robot, const LandmarkGrid& map,
+                                        const IdentificationOptions& options) {
+  std::vector<std::uint32_t> found;
+  const double sigmas = std::sqrt(gate_of(options, 2 + static_cast<int>(kMaxFeatures)));
+  const double place = largest_sd(robot.covariance.topLeftCorner<2, 2>());
+  const double turn = std::sqrt(std::max(0.0, robot.covariance(2, 2)));
+  const double apex = sigmas * std::hypot(place, map.largest_sd());
+  const double half = std::min(sigmas * std::hypot(turn, seen.bearing_sd), 3.2);
+  const double along = sensor.yaw + seen.bearing;
+  const auto keep = [&](std::uint32_t i) { found.push_back(i); };
+  const auto at = [&](double range) -> Eigen::Vector2d {
+    return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
+  };
+  if (seen.range) {
+    const double chord = 2 * *seen.range * std::sin(std::min(half, 3.14) / 2);
+    map.near(at(*seen.range), apex + sigmas * seen.range_sd + chord, keep);
+    return found;
+  }
+  if (half > 0.7) {
+    map.near(sensor.at(), apex + options.bearing_reach, keep);
+  } else {
+    // Discs along the wedge, each 1.6 times as wide as the wedge is there and half as far from the next.
+    for (double t = 0; t <= options.bearing_reach + apex;) {
+      const double wide = std::max(apex + t * std::tan(half), 0.02 * options.bearing_reach);
+      map.near(at(t), 1.6 * wide, keep);
+      t += wide;
+    }
+  }
+  std::ranges::sort(found);
+  found.erase(std::ranges::unique(found).begin(), found.end());
+  return found;
+}
+
+double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
+  const double range = seen.range ? v[0] / seen.range_sd : 0, bearing = v[1] / seen.bearing_sd;
+  return range * range + bearing * bearing + features.squares;
+}
+
+Match from(const Candidates& c, std::optional<std::size_t> chosen, Verdict otherwise) {
+  if (c.pairings.empty()) return {.verdict = c.verdict, .pairing = {}};
+  if (!chosen) return {.verdict = otherwise, .pairing = {}};
+  return {.verdict = Verdict::matched, .pairing = c.pairings[*chosen]};
+}
+
+std::vector<Match> one_by_one(const std::vector<Candidates>& all, const IdentificationOptions& options) {
+  const bool exclusive = options.association != "nearest";
+  ChosenColumns chosen(all.size());
+  std::vector<std::vector<Choice>> rows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    auto& row = rows.emplace_back();
+    for (const CandidatePair& p : all[i].pairings) row.push_back({static_cast<int>(p.landmark), p.score});
+    if (!row.empty()) chosen[i] = 0;  // best first
+  }
+  if (options.association == "greedy") chosen = assign_greedily(rows);
+  if (exclusive && options.association != "greedy") chosen = assign_cheapest(rows, 1e6);
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    matches.push_back(from(all[i], chosen[i], Verdict::taken));
+    if (matches[i].verdict != Verdict::matched || !(options.ambiguity > 0)) continue;
+    for (const CandidatePair& p : all[i].pairings)
+      if (p.landmark != matches[i].pairing.landmark && p.score < matches[i].pairing.score + options.ambiguity)
+        matches[i].verdict = Verdict::ambiguous;
+  }
+  return matches;
+}
+
+std::vector<Match> by_probability(const std::vector<Candidates>& all,
+                                  const std::vector<JointHypothesis>& hypotheses,
+                                  const IdentificationOptions& options) {
+  std::vector<Match> matches;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<double> probability(all[i].pairings.size(), 0);
+    double none = 0;
+    for (const JointHypothesis& h : hypotheses)
+      (h.choice[i] < 0 ? none : probability[static_cast<std::size_t>(h.choice[i])]) += h.probability;
+    std::optional<std::size_t> best;
+    for (std::size_t c = 0; c < probability.size(); ++c)
+      if (!best || probability[c] > probability[*best]) best = c;
+    Match match = from(all[i], best, Verdict::too_far);
+    if (match.verdict == Verdict::matched) {
+      match.probability = probability[*best];
+      if (none > 0.5)
+        match.verdict = Verdict::too_far;
+      else if (match.probability < options.certainty)
+        match.verdict = Verdict::ambiguous;
+    }
+    matches.push_back(match);
+  }
+  return matches;
+}
+
+PoseEstimate mixture(const PoseEstimate& before, const std::vector<JointHypothesis>& hypotheses) {
+  std::vector<PoseEstimate> after;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // relative to the pose before
+  const auto off = [](const Pose2& from, const Pose2& to) {
+    return Eigen::Vector3d(to.x - from.x, to.y - from.y, wrapped(to.yaw - from.yaw));
+  };
+  for (const JointHypothesis& h : hypotheses) {
+    after.push_back(updated(before, h.evidence));
+    mean += h.probability * off(before.pose, after.back().pose);
+  }
+  PoseEstimate mixed{pose_of(before.pose.vector() + mean), Eigen::Matrix3d::Zero()};
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const Eigen::Vector3d d = off(mixed.pose, after[i].pose);
+    mixed.covariance += hypotheses[i].probability * (after[i].covariance + d * d.transpose());
+  }
+  return mixed;
+}
+
+}  // namespace
+
+void IdentificationOptions::describe(OptionVisitor& option) {
+  option("distance", distance,
+         {.help = "How a sighting is compared with a landmark: by all covariances, or by eq. 11 literally",
+          .choices = {"mahalanobis", "paper"}});
+  option("association", association,
+         {.help = "How sightings of one moment share the landmarks",
+          .choices = {"nearest", "greedy", "hungarian", "jcbb", "joint"}});
+  option("gate", gate, {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.999999});
+  option("certainty", certainty,
+         {.help = "joint: pairings less probable are rejected as ambiguous", .min = 0, .max = 1});
+  option("ambiguity", ambiguity,
+         {.help = "Other associations: lead in squared distance a landmark needs over the next", .min = 0});
+  option("feature_tolerance", feature_tolerance,
+         {.help = "Part of a feature's value two sensors may disagree by", .min = 0, .max = 10});
+  option("feature_limit", feature_limit,
+         {.help = "Squared standard deviations one feature may differ", .min = 0});
+  option("clutter", clutter,
+         {.help = "False sightings per metre of range and radian of bearing", .min = 1e-12, .max = 1e3});
+  option("bearing_reach", bearing_reach,
+         {.help = "How far, in metres, a sighting without range may be", .min = 0.1, .max = 1e6});
+  option("node_limit", node_limit, {.help = "Steps of a joint search", .min = 1, .max = 1e9});
+  option("quality_floor", quality_floor,
+         {.help = "The noise of a landmark is divided by its quality, but by no less than this; 1 turns "
+                  "quality off",
+          .min = 1e-3,
+          .max = 1});
+  option("use_identities", use_identities, {.help = "Believe landmarks that say who they are"});
+}
+
+std::string_view wording(Verdict verdict) {
+  constexpr std::array<std::string_view, kVerdicts> kWords{
+      "matched",          "not a usable number", "no such landmark in the map",
+      "no landmark near", "features differ",     "outside the gate",
+      "ambiguous",        "landmark taken"};
+  return kWords[static_cast<std::size_t>(verdict)];
+}
+
+Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
+                      const LandmarkGrid& map, const FeatureScales& scales,
+                      const IdentificationOptions& options) {
+  Candidates result;
+  if (!seen.sound()) return {Verdict::unsound, {}};
+  const bool paper = options.distance == "paper";
+  const Pose2 sensor = robot.pose * robot_from_sensor;
+  std::vector<std::uint32_t> reach;
+  if (seen.type == kNoSuchType) return {Verdict::unknown_type, {}};
+  const bool known = options.use_identities && seen.identity;
+  if (known) {
+    const auto found = map.find(*seen.identity);
+    if (!found) return {Verdict::unknown_type, {}};
+    reach = {*found};
+  } else {
+    reach = within_reach(seen, sensor, robot, map, options);
+  }
+  result.verdict = Verdict::nothing_near;
+  for (const std::uint32_t i : reach) {
+    const MapLandmark& landmark = map[i];
+    if (!known && seen.type && *seen.type != landmark.type) continue;
+    FeatureComparison features;
+    if (seen.type && *seen.type == landmark.type)
+      features = compare_features(scales, landmark.type, seen.features, landmark.features,
+                                  options.feature_tolerance);
+    if (!known && features.largest > options.feature_limit) {
+      if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
+      continue;
+    }
+    const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
+    const double trust = options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
+    CandidatePair p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance, trust)};
+    const JointDistance d = joint_distance(p.evidence, robot.covariance);
+    p.features = features.squares + features.missing;
+    p.feature_count = features.used + features.missing;
+    if (paper) {
+      p.squares = p.score = paper_distance(seen, innovation(seen, expected.value), features);
+    } else {
+      p.squares = d.squares + features.squares;
+      p.score = d.squares + d.log_det + p.features;
+    }
+    if (!(p.squares <= gate_of(options, p.evidence.rows + features.used)))
+      result.verdict = Verdict::too_far;
+    else
+      result.pairings.push_back(p);
+  }
+  std::ranges::stable_sort(result.pairings, {}, &CandidatePair::score);
+  return result;
+}
+
+Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
+                        const FeatureScales& scales, const IdentificationOptions& options) {
+  std::vector<Candidates> all;
+  for (const SeenLandmark& sighting : seen.sightings)
+    all.push_back(candidates(sighting, seen.robot_from_sensor, robot, map, scales, options));
+  if (options.association == "joint") {
+    if (const auto hypotheses = joint_hypotheses(all, seen, map, robot.covariance, options))
+      return {by_probability(all, *hypotheses, options), mixture(robot, *hypotheses)};
+  } else if (options.association == "jcbb") {
+    if (const auto choice = most_compatible(all, robot.covariance, options)) {
+      std::vector<Match> matches;
+      for (std::size_t i = 0; i < all.size(); ++i) {
+        const int c = (*choice)[i];
+        matches.push_back(
+            from(all[i], c < 0 ? std::nullopt : std::optional<std::size_t>(c), Verdict::too_far));
+      }
+      return {std::move(matches), {}};
+    }
+  }
+  return {one_by_one(all, options), {}};
+}
+
+}  // namespace waymark

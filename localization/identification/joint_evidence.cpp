@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification/joint_evidence.hpp"
+
+#include <Eigen/LU>
+
+namespace waymark {
+
+JointEvidence& JointEvidence::operator+=(const JointEvidence& more) {
+  information += more.information;
+  pull += more.pull;
+  squares += more.squares;
+  log_det += more.log_det;
+  rows += more.rows;
+  return *this;
+}
+
+JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expected,
+                          const Eigen::Matrix2d& landmark_covariance, double trust) {
+  const Eigen::Vector2d v = innovation(seen, expected.value);
+  const Eigen::Matrix2d r =
+      (sensor_noise(seen) + expected.by_landmark * landmark_covariance * expected.by_landmark.transpose()) /
+      trust;
+  JointEvidence e;
+  if (seen.range) {
+    const Eigen::Matrix2d inverse = r.inverse();
+    const Eigen::Matrix<double, 3, 2> weighted = expected.by_pose.transpose() * inverse;
+    e.information = weighted * expected.by_pose;
+    e.pull = weighted * v;
+    e.squares = v.dot(inverse * v);
+    e.log_det = std::log(r.determinant());
+    e.rows = 2;
+  } else {
+    const Eigen::Vector3d h = expected.by_pose.row(1).transpose();
+    e.information = h * h.transpose() / r(1, 1);
+    e.pull = h * v[1] / r(1, 1);
+    e.squares = v[1] * v[1] / r(1, 1);
+    e.log_det = std::log(r(1, 1));
+    e.rows = 1;
+  }
+  return e;
+}
+
+// (P^-1 + L)^-1 = P (I + L P)^-1 holds for singular P too; |S| = |R| |I + L P|.
+JointDistance joint_distance(const JointEvidence& evidence, const Eigen::Matrix3d& p) {
+  const Eigen::Matrix3d m = Eigen::Matrix3d::Identity() + evidence.information * p;
+  const double det = m.determinant();
+  const double squares = evidence.squares - evidence.pull.dot(p * (m.inverse() * evidence.pull));
+  return {std::max(0.0, squares), evidence.log_det + std::log(std::max(det, 1e-300))};
+}
+
+PoseEstimate updated(const PoseEstimate& estimate, const JointEvidence& evidence) {
+  const Eigen::Matrix3d& p = estimate.covariance;
+  const Eigen::Matrix3d m = (Eigen::Matrix3d::Identity() + evidence.information * p).inverse();
+  const Eigen::Matrix3d gain = p * m;  // posterior covariance
+  // Joseph form in information terms: A P A' + G L G' with A = I - G L stays symmetric and positive.
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * evidence.information;
+  const Eigen::Matrix3d after = a * p * a.transpose() + gain * evidence.information * gain.transpose();
+  return {pose_of(estimate.pose.vector() + gain * evidence.pull), (after + after.transpose()) / 2};
+}
+
+}  // namespace waymark

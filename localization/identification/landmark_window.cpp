@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification/landmark_window.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace waymark {
+
+LandmarkWindow::LandmarkWindow(LandmarkGrid whole) : grid_(std::move(whole)) {}
+
+LandmarkWindow::LandmarkWindow(LandmarkSource source, double margin)
+    : source_(std::move(source)), margin_(margin) {
+  assert(source_ && margin > 0);
+}
+
+const LandmarkGrid& LandmarkWindow::around(const Eigen::Vector2d& at, double reach) {
+  if (whole()) return grid_;
+  const Eigen::Vector2d half = Eigen::Vector2d::Constant(reach);
+  const Eigen::AlignedBox2d asked(at - half, at + half);
+  if (loaded_.isEmpty() || !loaded_.contains(asked)) {
+    const Eigen::Vector2d more = Eigen::Vector2d::Constant(std::max(margin_, reach / 4));
+    loaded_ = Eigen::AlignedBox2d(asked.min() - more, asked.max() + more);
+    grid_ = LandmarkGrid(source_(loaded_));
+  }
+  return grid_;
+}
+
+}  // namespace waymark

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification/map_landmark.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+
+namespace waymark {
+namespace {
+
+// An unknown or unusable covariance must not make a landmark perfect or turn a filter's numbers into NaN.
+Eigen::Matrix2d usable(const Eigen::Matrix3d& covariance) {
+  constexpr double kUnknown = 1e-4;  // 1 cm: a map that says nothing of its errors is taken as good
+  const Eigen::Matrix2d c = covariance.topLeftCorner<2, 2>();
+  if (!c.allFinite() || !(c(0, 0) > 0) || !(c(1, 1) > 0)) return Eigen::Matrix2d::Identity() * kUnknown;
+  const double limit = 0.999999 * std::sqrt(c(0, 0) * c(1, 1));  // a correlation beyond 1 is not one
+  const double both = std::clamp((c(0, 1) + c(1, 0)) / 2, -limit, limit);
+  Eigen::Matrix2d sound;
+  sound << c(0, 0), both, both, c(1, 1);
+  return sound;
+}
+
+}  // namespace
+
+LandmarkKey landmark_key(std::string_view uid) {
+  return named_seed(0, uid);
+}
+
+KnownFeatures known_features(const FeatureSet& features) {
+  KnownFeatures known;
+  for (std::size_t i = 0; i < std::min(features.size(), kMaxFeatures); ++i)
+    if (features[i].known() && std::isfinite(features[i].value)) {
+      known.value[i] = features[i].value;
+      known.variance[i] = std::isfinite(features[i].variance) ? std::max(0.0, features[i].variance) : 0;
+    }
+  return known;
+}
+
+MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, const LocalFrame& frame,
+                         const SensorProfile* sensor) {
+  MapLandmark robots;
+  robots.key = landmark_key(landmark.uid);
+  Point<MapCrs> ground = landmark.position;
+  if (!std::isfinite(ground.xyz.z())) ground.xyz.z() = 0;
+  robots.at = frame.map_frame_from_crs(ground).xyz.head<2>();
+  robots.covariance = usable(landmark.covariance);
+  robots.type = landmark.type;
+  const double there = std::isfinite(landmark.confidence) ? landmark.confidence : 1;
+  const double quality = sensor ? quality_for(*sensor, type, landmark).value_or(1) : 1;
+  robots.quality = std::clamp(there * quality, 1e-3, 1.0);
+  robots.features = known_features(landmark.features);
+  return robots;
+}
+
+std::vector<MapLandmark> landmarks_of(const SemanticMap& map, const SensorProfile* sensor) {
+  std::vector<MapLandmark> all;
+  all.reserve(map.size());
+  for (const Landmark& landmark : map.landmarks())
+    if (landmark.position.xyz.head<2>().allFinite())
+      all.push_back(map_landmark(landmark, map.types()[landmark.type], map.frame(), sensor));
+  return all;
+}
+
+}  // namespace waymark

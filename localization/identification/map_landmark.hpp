@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+#include "landmarks/semantic_map.hpp"
+#include "localization/identification/known_features.hpp"
+namespace waymark {
+
+/// A landmark by 64 bits of a hash of its uid.
+using LandmarkKey = std::uint64_t;
+LandmarkKey landmark_key(std::string_view uid);
+
+/// A landmark as a robot uses it: on the plane of the map frame, metres.
+struct MapLandmark {
+  LandmarkKey key = 0;
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of `at`, m^2
+  TypeId type = 0;
+  /// Probability that it is there and can be seen, (0, 1]: the map's confidence times its quality for the
+  /// sensor (eq. 8). 1 where the map has neither.
+  double quality = 1;
+  KnownFeatures features;
+};
+
+/// All landmarks of a map. `sensor`: whose quality; null: the confidence alone counts.
+std::vector<MapLandmark> landmarks_of(const SemanticMap& map, const SensorProfile* sensor = nullptr);
+
+/// One of them.
+MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, const LocalFrame& frame,
+                         const SensorProfile* sensor = nullptr);
+
+}  // namespace waymark

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/slam/graph.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <stdexcept>
+
+#include "localization/filters/measurement.hpp"
+
+namespace waymark {
+namespace {
+
+/// What lies at `at` in the map, seen from the pose, and the derivatives by pose and by `at`.
+struct Seen {
+  Eigen::Vector2d value;
+  Eigen::Matrix<double, 2, 3> by_pose;
+  Eigen::Matrix2d by_place;
+};
+
+Seen seen_from(const Pose2& pose, const Eigen::Vector2d& at) {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  Seen seen;
+  seen.by_place << c, s, -s, c;
+  seen.value = seen.by_place * (at - pose.at());
+  seen.by_pose.leftCols<2>() = -seen.by_place;
+  seen.by_pose.col(2) << seen.value.y(), -seen.value.x();
+  return seen;
+}
+
+template <class Matrix>
+Matrix root_of(const Matrix& information) {
+  const Eigen::LLT<Matrix> cholesky(information);
+  if (!information.allFinite() || cholesky.info() != Eigen::Success ||
+      !(information - information.transpose()).isZero(1e-6 * information.norm()))
+    throw std::invalid_argument("an information matrix is not positive definite");
+  return cholesky.matrixU();
+}
+
+}  // namespace
+
+StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to) {
+  const Seen seen = seen_from(from, to.at());
+  StepError e;
+  e.value << seen.value.x() - edge.step.x, seen.value.y() - edge.step.y,
+      wrapped(to.yaw - from.yaw - edge.step.yaw);
+  e.by_from << seen.by_pose, 0, 0, -1;
+  e.by_to << seen.by_place, Eigen::Vector2d::Zero(), 0, 0, 1;
+  return {edge.root * e.value, edge.root * e.by_from, edge.root * e.by_to};
+}
+
+SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark) {
+  SightingError e;
+  if (edge.kind == SightingKind::place) {
+    const Pose2& mount = edge.robot_from_sensor;
+    const Seen by_robot = seen_from(pose, landmark), by_sensor = seen_from(mount, by_robot.value);
+    e = {by_sensor.value - edge.value, by_sensor.by_place * by_robot.by_pose,
+         by_sensor.by_place * by_robot.by_place};
+  } else {
+    const ExpectedSighting expected = expect(pose, edge.robot_from_sensor, landmark);
+    e = {expected.value - edge.value, expected.by_pose, expected.by_landmark};
+    e.value[1] = wrapped(e.value[1]);
+  }
+  if (edge.kind == SightingKind::bearing) {
+    e.value[0] = 0;
+    e.by_pose.row(0).setZero();
+    e.by_landmark.row(0).setZero();
+    const double root = edge.root(1, 1);
+    return {root * e.value, root * e.by_pose, root * e.by_landmark};
+  }
+  return {edge.root * e.value, edge.root * e.by_pose, edge.root * e.by_landmark};
+}
+
+Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose) {
+  return prior.root *
+         Eigen::Vector3d(pose.x - prior.at.x, pose.y - prior.at.y, wrapped(pose.yaw - prior.at.yaw));
+}
+
+Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& landmark) {
+  return prior.root * (landmark - prior.at);
+}
+
+double chi2(const PoseGraph& graph) {
+  double sum = 0;
+  for (const StepEdge& e : graph.steps)
+    sum += step_error(e, graph.poses[e.from].at, graph.poses[e.to].at).value.squaredNorm();
+  for (const SightingEdge& e : graph.sightings)
+    sum += sighting_error(e, graph.poses[e.pose].at, graph.landmarks[e.landmark].at).value.squaredNorm();
+  for (const PosePrior& p : graph.pose_priors) sum += prior_error(p, graph.poses[p.pose].at).squaredNorm();
+  for (const LandmarkPrior& p : graph.landmark_priors)
+    sum += prior_error(p, graph.landmarks[p.landmark].at).squaredNorm();
+  return sum;
+}
+
+Eigen::Matrix3d information_root(const Eigen::Matrix3d& information) {
+  return root_of(information);
+}
+Eigen::Matrix2d information_root(const Eigen::Matrix2d& information) {
+  return root_of(information);
+}
+
+std::size_t residual_count(const PoseGraph& graph) {
+  std::size_t count = 3 * (graph.steps.size() + graph.pose_priors.size()) + 2 * graph.landmark_priors.size();
+  for (const SightingEdge& e : graph.sightings) count += e.kind == SightingKind::bearing ? 1 : 2;
+  return count;
+}
+
+bool has_gauge(const PoseGraph& graph) {
+  return !graph.pose_priors.empty() || graph.landmark_priors.size() >= 2 ||
+         std::ranges::count(graph.poses, true, &GraphPose::fixed) > 0;
+}
+
+std::size_t unknown_count(const PoseGraph& graph) {
+  const auto fixed = has_gauge(graph) ? std::ranges::count(graph.poses, true, &GraphPose::fixed) : 1;
+  return 3 * (graph.poses.size() - static_cast<std::size_t>(fixed)) + 2 * graph.landmarks.size();
+}
+
+}  // namespace waymark

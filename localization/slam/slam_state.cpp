@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/slam/slam_state.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace waymark {
+namespace {
+
+using Eigen::Index;
+
+void mirror(Eigen::MatrixXd& p) {
+  p.triangularView<Eigen::StrictlyUpper>() = p.transpose();
+}
+
+}  // namespace
+
+SlamState::SlamState(const PoseEstimate& start)
+    : pose_(start.pose),
+      paa_(start.covariance),
+      pab_(3, 0),
+      pbb_(0, 0),
+      phi_(Eigen::Matrix3d::Identity()),
+      psi_(Eigen::Matrix3d::Zero()),
+      theta_(Eigen::Vector3d::Zero()) {}
+
+Eigen::Matrix2d SlamState::covariance(Slot slot) const {
+  if (place_[slot] < active_.size() && active_[place_[slot]] == slot)
+    return paa_.block<2, 2>(row(slot), row(slot));
+  const Index i = 2 * static_cast<Index>(place_[slot]);
+  return pbb_.block<2, 2>(i, i);
+}
+
+Eigen::Matrix<double, 2, 3> SlamState::cross(Slot slot) const {
+  return paa_.block<2, 3>(row(slot), 0);
+}
+
+void SlamState::move(const BodyMotion& motion) {
+  const MotionJacobians j = motion_jacobians(pose_, motion.step);
+  const PoseEstimate robot = moved({pose_, covariance()}, motion);
+  const Index rest = paa_.rows() - 3;
+  const Eigen::MatrixXd turned = j.by_pose * paa_.topRightCorner(3, rest);
+  paa_.topRightCorner(3, rest) = turned;
+  paa_.bottomLeftCorner(rest, 3) = turned.transpose();
+  paa_.topLeftCorner<3, 3>() = robot.covariance;
+  phi_.topRows<3>() = (j.by_pose * phi_.topRows<3>()).eval();
+  pose_ = robot.pose;
+}
+
+void SlamState::update(std::span<const Correction> corrections) {
+  if (corrections.empty()) return;
+  const Index n = paa_.rows(), m = 2 * static_cast<Index>(corrections.size());
+  Eigen::MatrixXd ph(n, m), h_phi(m, phi_.cols()), s = Eigen::MatrixXd::Zero(m, m);
+  Eigen::VectorXd v(m);
+  for (Index k = 0; k < m; k += 2) {
+    const Correction& c = corrections[static_cast<std::size_t>(k / 2)];
+    const Index l = row(c.slot);
+    ph.middleCols<2>(k).noalias() = paa_.leftCols<3>() * c.by_pose.transpose();
+    ph.middleCols<2>(k).noalias() += paa_.middleCols<2>(l) * c.by_landmark.transpose();
+    h_phi.middleRows<2>(k).noalias() = c.by_pose * phi_.topRows<3>();
+    h_phi.middleRows<2>(k).noalias() += c.by_landmark * phi_.middleRows<2>(l);
+    s.block<2, 2>(k, k) = c.noise;
+    v.segment<2>(k) = c.innovation;
+  }
+  for (Index k = 0; k < m; k += 2) {
+    const Correction& c = corrections[static_cast<std::size_t>(k / 2)];
+    s.middleRows<2>(k) += c.by_pose * ph.topRows<3>() + c.by_landmark * ph.middleRows<2>(row(c.slot));
+  }
+  const Eigen::LLT<Eigen::MatrixXd> root((s + s.transpose()) / 2);
+  if (root.info() != Eigen::Success) return;  // nothing sound can be learnt from these
+  const Eigen::MatrixXd gain = root.solve(ph.transpose()).transpose();
+  const Eigen::VectorXd step = gain * v;
+  if (!step.allFinite()) return;
+  pose_ = pose_of(pose_.vector() + step.head<3>());
+  for (std::size_t i = 0; i < active_.size(); ++i)
+    at_[active_[i]] += step.segment<2>(3 + 2 * static_cast<Index>(i));
+  if (psi_.rows() > 0 && pbb_.rows() > 0) {
+    const Eigen::MatrixXd weighed = root.solve(h_phi);
+    theta_.noalias() += h_phi.transpose() * root.solve(v);
+    psi_.noalias() += h_phi.transpose() * weighed;
+    phi_.noalias() -= gain * h_phi;
+  }
+  // Joseph: (I - KH) P (I - KH)' + KRK' = P - K (2 PH' - KS)' for P symmetric.
+  const Eigen::MatrixXd rest = 2 * ph - gain * s;
+  paa_.triangularView<Eigen::Lower>() -= gain * rest.transpose();
+  mirror(paa_);
+}
+
+SlamState::Slot SlamState::append(const Eigen::Vector2d& at) {
+  at_.push_back(at);
+  place_.push_back(active_.size());
+  active_.push_back(at_.size() - 1);
+  return at_.size() - 1;
+}
+
+SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose,
+                               const Eigen::Matrix2d& own) {
+  const Index n = paa_.rows();
+  const Eigen::MatrixXd cross = by_pose * paa_.topRows<3>();
+  const Eigen::MatrixXd passive = by_pose * phi_.topRows<3>();
+  const Eigen::Matrix2d both = by_pose * covariance() * by_pose.transpose() + own;
+  paa_.conservativeResize(n + 2, n + 2);
+  paa_.block(n, 0, 2, n) = cross;
+  paa_.block(0, n, n, 2) = cross.transpose();
+  paa_.bottomRightCorner<2, 2>() = (both + both.transpose()) / 2;
+  phi_.conservativeResize(n + 2, Eigen::NoChange);
+  phi_.bottomRows<2>() = passive;
+  return append(at);
+}
+
+SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance) {
+  return add(at, Eigen::Matrix<double, 2, 3>::Zero(), covariance);
+}
+
+void SlamState::remove(Slot slot) {
+  const Index l = row(slot), n = paa_.rows(), rest = n - l - 2;
+  paa_.middleRows(l, rest) = paa_.bottomRows(rest).eval();
+  paa_.middleCols(l, rest) = paa_.rightCols(rest).eval();
+  paa_.conservativeResize(n - 2, n - 2);
+  phi_.middleRows(l, rest) = phi_.bottomRows(rest).eval();
+  phi_.conservativeResize(n - 2, Eigen::NoChange);
+  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(place_[slot]));
+  for (std::size_t i = place_[slot]; i < active_.size(); ++i) place_[active_[i]] = i;
+}
+
+Eigen::MatrixXd SlamState::whole(std::vector<Slot>& order) const {
+  order = active_;
+  order.insert(order.end(), passive_.begin(), passive_.end());
+  const Index a = paa_.rows(), b = pbb_.rows();
+  Eigen::MatrixXd all(a + b, a + b);
+  all.topLeftCorner(a, a) = paa_;
+  if (b > 0) {
+    all.topRightCorner(a, b).noalias() = phi_ * pab_;
+    all.bottomLeftCorner(b, a) = all.topRightCorner(a, b).transpose();
+    const Eigen::MatrixXd lost = psi_ * pab_;
+    all.bottomRightCorner(b, b) = pbb_;
+    all.bottomRightCorner(b, b).triangularView<Eigen::Lower>() -= pab_.transpose() * lost;
+    for (Index j = 1; j < b; ++j)
+      for (Index i = 0; i < j; ++i) all(a + i, a + j) = all(a + j, a + i);
+  }
+  return all;
+}
+
+void SlamState::focus(double radius) {
+  std::vector<Slot> order;
+  const Eigen::MatrixXd all = whole(order);
+  if (pbb_.rows() > 0) {
+    const Eigen::VectorXd step = pab_.transpose() * theta_;
+    for (std::size_t i = 0; i < passive_.size(); ++i)
+      at_[passive_[i]] += step.segment<2>(2 * static_cast<Index>(i));
+  }
+  std::vector<Index> near{0, 1, 2}, far;
+  active_.clear(), passive_.clear();
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Slot slot = order[i];
+    const bool is_near = (at_[slot] - pose_.at()).norm() <= radius;
+    std::vector<Slot>& part = is_near ? active_ : passive_;
+    place_[slot] = part.size();
+    part.push_back(slot);
+    const Index r = 3 + 2 * static_cast<Index>(i);
+    std::vector<Index>& rows = is_near ? near : far;
+    rows.push_back(r);
+    rows.push_back(r + 1);
+  }
+  paa_ = all(near, near);
+  pab_ = all(near, far);
+  pbb_ = all(far, far);
+  const Index a = paa_.rows();
+  phi_ = Eigen::MatrixXd::Identity(a, a);
+  psi_ = Eigen::MatrixXd::Zero(a, a);
+  theta_ = Eigen::VectorXd::Zero(a);
+}
+
+}  // namespace waymark

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/drive/drive_settings.hpp"
+
+namespace waymark {
+namespace {
+
+void describe_drive(DriveSettings& d, OptionVisitor& field) {
+  field("vehicle", d.vehicle, {.help = "What drives", .choices = {"rover", "harvester"}});
+  field("route", d.route,
+        {.help = "The given waypoints, or made: a ring, to and fro, or random places",
+         .choices = {"waypoints", "loop", "lanes", "wander"}});
+  field("length", d.length, {.help = "Of a made route, metres", .min = 1, .max = 1e6});
+  field("lane_spacing", d.lane_spacing, {.help = "Metres between lanes", .min = 2, .max = 1e4});
+  field("margin", d.margin, {.help = "Metres kept from the edge of the ground", .min = 2, .max = 1e5});
+  field("speed", d.speed, {.help = "Metres per second", .min = 0.01, .max = 20});
+  field("clearance", d.clearance,
+        {.help = "Metres kept between the vehicle's middle and the edge of rocks", .min = 0, .max = 50});
+  field("steepest", d.steepest, {.help = "Slope it drives on, metres per metre", .min = 0.01, .max = 2});
+  field("start_sd", d.start_sd,
+        {.help = "Error of the start that the log tells, metres", .min = 0, .max = 1e4});
+  field("start_yaw_sd", d.start_yaw_sd, {.help = "Error of its heading", .min = 0, .max = 180});
+  field("seed", d.seed,
+        {.help = "Another seed, another drive on the same site; -1: the scenario's", .min = -1});
+  field("truth_in_log", d.truth_in_log, {.help = "Write true poses into the log too"});
+  field("wheel_base", d.wheels.base, {.help = "Front to rear axle, metres", .min = 0.1, .max = 20});
+  field("wheel_track", d.wheels.track, {.help = "Left to right wheels, metres", .min = 0.1, .max = 20});
+  field("trees", d.trees,
+        {.help = "CSV of real trees (x or x_coord, y or y_coord, dbh in cm or diameter in m, height) instead "
+                 "of the scenario's forest"});
+  field("stand", d.stand, {.help = "Only rows of that table with this stand_id"});
+  field("undergrowth", d.clutter.undergrowth, {.help = "Bushes per hectare of forest", .min = 0, .max = 1e5});
+  field("branchy", d.clutter.branchy,
+        {.help = "Share of trees with dead branches about the scanner's height", .min = 0, .max = 1});
+}
+
+void describe_odometry(DriveSettings& d, OptionVisitor& field) {
+  OdometryModel& o = d.odometry;
+  field("rate", o.rate, {.help = "Readings per second", .min = 2.5, .max = 200});
+  field("slip", o.slip, {.help = "Share of the way lost on level ground", .min = 0, .max = 0.9});
+  field("slip_per_slope", o.slip_per_slope,
+        {.help = "More share lost per metre risen per metre", .min = 0, .max = 5});
+  field("slip_sd", o.slip_sd, {.help = "Of the share lost, over some metres", .min = 0, .max = 0.5});
+  field("side_slip", o.side_slip,
+        {.help = "Sideways speed per forward speed and sine of the roll", .min = 0, .max = 5});
+  field("scale_sd", o.scale_sd, {.help = "Of the size of the wheels, per drive", .min = 0, .max = 0.5});
+  field("speed_sd", o.speed_sd, {.help = "Noise of a speed, share of it", .min = 0, .max = 1});
+  field("yaw_bias_sd", o.yaw_bias_sd, {.help = "Per second, of the gyro, per drive", .min = 0, .max = 5});
+  field("yaw_sd", o.yaw_sd, {.help = "Noise of the yaw per square root of a metre", .min = 0, .max = 20});
+  field("perfect", o.perfect, {.help = "No slip and no noise"});
+}
+
+void describe_drive_laser(DriveSettings& d, OptionVisitor& field) {
+  describe_laser(d.laser, field);
+  field("height", d.laser_height,
+        {.help = "Metres above the ground; 0: 0.35 of a rover, 2 of a harvester", .min = 0, .max = 50});
+}
+
+void describe_drive_stereo(DriveSettings& d, OptionVisitor& field) {
+  describe_stereo(d.stereo, field);
+}
+void describe_drive_camera(DriveSettings& d, OptionVisitor& field) {
+  describe_bearing(d.camera, field);
+}
+void describe_drive_panorama(DriveSettings& d, OptionVisitor& field) {
+  describe_panorama(d.panorama, field);
+}
+
+void describe_gnss(DriveSettings& d, OptionVisitor& field) {
+  GnssModel& g = d.gnss;
+  field("on", g.on, {.help = "Whether there are satellite positions"});
+  field("every", g.every, {.help = "Seconds between fixes", .min = 0.01, .max = 1e4});
+  field("sd", g.sd, {.help = "Noise of a coordinate, metres", .min = 0, .max = 1e3});
+  field("bias_sd", g.bias_sd, {.help = "Wandering error, metres", .min = 0, .max = 1e3});
+  field("bias_time", g.bias_time, {.help = "Seconds over which that changes", .min = 0.1, .max = 1e6});
+  field("dropouts", g.dropouts, {.help = "Share of fixes missed", .min = 0, .max = 1});
+  field("perfect", g.perfect, {.help = "No error and no dropouts"});
+}
+
+void describe_crane(DriveSettings& d, OptionVisitor& field) {
+  CraneModel& c = d.crane;
+  field("reach", c.reach, {.help = "Metres", .min = 0, .max = 50});
+  field("corridor", c.corridor,
+        {.help = "Metres to each side of the route where all trees are felled", .min = 0, .max = 20});
+  field("thinning", c.thinning,
+        {.help = "Share of the other trees within reach that are felled", .min = 0, .max = 1});
+  field("range_sd", c.range_sd, {.help = "Error of the crane's reach, metres", .min = 0, .max = 10});
+  field("bearing_sd", c.bearing_sd, {.help = "Error of its direction", .min = 0, .max = 45});
+  field("diameter_sd", c.diameter_sd, {.help = "Error of the head, metres", .min = 0, .max = 1});
+  field("height_sd", c.height_sd, {.help = "Error of the length, metres", .min = 0, .max = 10});
+}
+
+}  // namespace
+
+const std::vector<DrivePart>& drive_parts() {
+  static const std::vector<DrivePart> parts{
+      {"", "A vehicle that drives over the site and measures", describe_drive},
+      {"odometry", "What wheels and gyro get wrong", describe_odometry},
+      {"laser", "Line scanner: one of a rover, two of a harvester", describe_drive_laser},
+      {"stereo", "Depth camera: a stereo pair or time of flight", describe_drive_stereo},
+      {"camera", "Camera that measures directions to landmarks", describe_drive_camera},
+      {"panorama", "Horizon all round", describe_drive_panorama},
+      {"gnss", "Satellite positions", describe_gnss},
+      {"crane", "What a harvester fells", describe_crane},
+  };
+  return parts;
+}
+
+}  // namespace waymark

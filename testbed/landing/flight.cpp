@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/landing/flight.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+
+namespace waymark {
+namespace {
+
+Eigen::Vector3d wavering(Random& random, double sd) {
+  const double x = random.normal(), y = random.normal(), z = random.normal();
+  return sd * Eigen::Vector3d(x, y, z);
+}
+
+Eigen::Matrix3d turned(const Eigen::Vector3d& angles) {
+  const double angle = angles.norm();
+  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, angles / angle).toRotationMatrix();
+}
+
+// Straight down with the upper edge towards the heading, then tilted forwards.
+Eigen::Matrix3d attitude(const Eigen::Vector2d& forward, double tilt) {
+  const Eigen::Vector3d ahead(forward.x(), forward.y(), 0), right(forward.y(), -forward.x(), 0),
+      up = Eigen::Vector3d::UnitZ();
+  Eigen::Matrix3d axes;
+  axes.col(0) = right;
+  axes.col(1) = -std::cos(tilt) * ahead - std::sin(tilt) * up;
+  axes.col(2) = std::sin(tilt) * ahead - std::cos(tilt) * up;
+  return axes;
+}
+
+// Pixels along the border of the image, corners included.
+std::vector<Eigen::Vector2d> border(const Camera& camera) {
+  constexpr int kSteps = 16;
+  const double right = double(camera.columns) - 0.5, bottom = double(camera.rows) - 0.5;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double x = std::lerp(-0.5, right, double(i) / kSteps),
+                 y = std::lerp(-0.5, bottom, double(i) / kSteps);
+    pixels.insert(pixels.end(), {{x, -0.5}, {x, bottom}, {-0.5, y}, {right, y}});
+  }
+  return pixels;
+}
+
+}  // namespace
+
+Camera camera_of(const Lens& lens) {
+  Camera camera;
+  camera.columns = lens.columns;
+  camera.rows = lens.rows;
+  camera.fx = camera.fy = double(lens.columns) / 2 / std::tan(to_radians(lens.field_of_view).value / 2);
+  camera.cx = double(lens.columns - 1) / 2;
+  camera.cy = double(lens.rows - 1) / 2;
+  camera.distortion = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  return camera;
+}
+
+std::vector<Shot> plan_shots(const Scenario& scenario) {
+  const Camera camera = camera_of(scenario.lens);
+  const MadeGround& ground = scenario.ground;
+  const double position_sd = scenario.pose_errors.position_sd;
+  const double attitude_sd = to_radians(scenario.pose_errors.attitude_sd).value;
+  std::vector<Shot> shots;
+  for (const Flight& f : scenario.flights) {
+    Random random(static_cast<std::uint64_t>(scenario.seed), "flight " + f.name);
+    Random errors(static_cast<std::uint64_t>(scenario.seed), "pose errors " + f.name);
+    const Eigen::Vector2d from(f.from_east, f.from_north), to(f.to_east, f.to_north);
+    const Eigen::Vector2d ahead =
+        (to - from).norm() > 0.01 ? Eigen::Vector2d((to - from).normalized()) : Eigen::Vector2d(0, 1);
+    const Eigen::Vector2d right(ahead.y(), -ahead.x());
+    for (std::int64_t line = 0; line < f.lines; ++line)
+      for (std::int64_t i = 0; i < f.images; ++i) {
+        const double forth = f.images > 1 ? double(i) / double(f.images - 1) : 0;
+        const bool back = line % 2 == 1;
+        const double along = back ? 1 - forth : forth;
+        const Eigen::Vector2d place = (1 - along) * from + along * to + double(line) * f.line_spacing * right;
+        Shot shot;
+        shot.name = fmt::format("{}_{:04}.png", f.name, line * f.images + i + 1);
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.linear() = attitude(back ? Eigen::Vector2d(-ahead) : ahead, to_radians(f.tilt).value) *
+                        turned(wavering(random, to_radians(f.attitude_sd).value));
+        const Eigen::Vector3d off = wavering(random, f.track_sd);
+        const double altitude = f.from_altitude * std::pow(f.to_altitude / f.from_altitude, along);
+        pose.translation() =
+            Eigen::Vector3d(ground.east + place.x(), ground.north + place.y(), ground.up + altitude) + off;
+        shot.view = {.camera = camera, .grid_from_camera = {pose}};
+        shot.view.covariance.diagonal() << Eigen::Vector3d::Constant(attitude_sd * attitude_sd),
+            Eigen::Vector3d::Constant(position_sd * position_sd);
+        shot.told.transform = pose;
+        shot.told.transform.linear() = pose.linear() * turned(wavering(errors, attitude_sd));
+        shot.told.transform.translation() += wavering(errors, position_sd);
+        shots.push_back(std::move(shot));
+      }
+  }
+  return shots;
+}
+
+MadeGround sized_for(const Scenario& scenario, const std::vector<Shot>& shots) {
+  MadeGround ground = scenario.ground;
+  if (ground.width > 0 && ground.height > 0) return ground;
+  double half_width = 0, half_height = 0;
+  for (const Shot& shot : shots)
+    for (const Eigen::Vector2d& pixel : border(shot.view.camera)) {
+      const auto line = ray(shot.view, pixel);
+      if (!line || line->along.unit.z() > -0.02)
+        throw Error(ErrorCode::usage,
+                    fmt::format("image {} sees the sky: its footprint has no end", shot.name), "",
+                    "tilt the flight less, narrow the field of view, or give ground.width and ground.height");
+      const double range = (ground.up - line->origin.xyz.z()) / line->along.unit.z();
+      const Eigen::Vector3d spot = line->origin.xyz + range * line->along.unit;
+      half_width = std::max(half_width, std::abs(spot.x() - ground.east));
+      half_height = std::max(half_height, std::abs(spot.y() - ground.north));
+    }
+  const double margin = 3 * ground.relief.rms + 0.1 * std::max(half_width, half_height) + 20 * ground.cell;
+  if (!(ground.width > 0)) ground.width = 2 * (half_width + margin);
+  if (!(ground.height > 0)) ground.height = 2 * (half_height + margin);
+  return ground;
+}
+
+void check_footprints(const Scene& scene, const std::vector<Shot>& shots) {
+  for (const Shot& shot : shots)
+    for (const Eigen::Vector2d& pixel : border(shot.view.camera)) {
+      const auto line = ray(shot.view, pixel);
+      if (!line)
+        throw Error(ErrorCode::usage,
+                    fmt::format("the lens of {} cannot be inverted at its border", shot.name),
+                    "camera.k1 ... k3", "use weaker distortion or a narrower field of view");
+      const RayEnd end = scene.terrain.cast(*line).end;
+      if (end == RayEnd::ground) continue;
+      throw Error(ErrorCode::usage,
+                  fmt::format("image {} {}", shot.name,
+                              end == RayEnd::underground ? "is taken from below the ground"
+                                                         : "looks past the ground"),
+                  fmt::format("the ground is {} x {} m", scene.ground.width, scene.ground.height),
+                  "raise the flight or its altitude, or leave ground.width and ground.height out");
+    }
+}
+
+}  // namespace waymark
