@@ -6,6 +6,12 @@
 
 namespace waymark {
 
+ExistenceRules existence_rules(std::string_view type) {
+  if (type == "rock") return {.further_detection = 0.2, .missed_image = 0.5, .doubt = 1.5, .least = 0.3};
+  if (type == "crater") return {.further_detection = 0.45, .missed_image = 0.3};
+  return {};
+}
+
 double existence_probability(std::span<const double> confidences, int missed, const ExistenceRules& rules) {
   if (confidences.empty()) return 0;
   double best = -1e30, sum = 0;
@@ -16,7 +22,7 @@ double existence_probability(std::span<const double> confidences, int missed, co
     sum += odds;
   }
   const double logit =
-      best + rules.further_detection * (sum - best) - rules.missed_image * std::max(missed, 0);
+      best + rules.further_detection * (sum - best) - rules.missed_image * std::max(missed, 0) - rules.doubt;
   return 1 / (1 + std::exp(-logit));
 }
 

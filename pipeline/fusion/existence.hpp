@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
+#include <string_view>
 namespace waymark {
 
 /// How evidence adds up to a probability. Images share what deceives a detector (light, shape, albedo), so
@@ -9,10 +10,17 @@ namespace waymark {
 struct ExistenceRules {
   double further_detection = 0.3;  ///< share of the log odds of a detection beyond the best
   double missed_image = 0.7;       ///< log odds taken away by an image that should have shown it
+  double doubt = 0;                ///< log odds taken away from all: what deceives every image alike
+  double least = 0;                ///< a landmark less probable than this is none
 };
 
+/// By likelihood on testbed landings 303 and 304 (docs/qualities.md): what is mistaken for a rock is mistaken
+/// in every image, and hardly ever is one below 0.3; craters are often missed. Other types: the defaults.
+ExistenceRules existence_rules(std::string_view type);
+
 /// Probability that a landmark exists, from the confidences of its observations, each in (0, 1], and the
-/// number of images that covered it in vain: logit p = best + share x sum of the others - missed x misses.
+/// number of images that covered it in vain: logit p = best + share x sum of the others - missed x misses -
+/// doubt.
 double existence_probability(std::span<const double> confidences, int missed,
                              const ExistenceRules& rules = {});
 

@@ -129,9 +129,21 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
     for (std::size_t f = 0; f < type.features.size() && f < landmark.features.size(); ++f)
       landmark.quality.of_feature[f] = spread_confidence(landmark.features[f], type.features[f].scale,
                                                          type.features[f].reference, rules.spread);
-    landmark.confidence =
-        existence_probability(confidences, landmark.quality.visible - landmark.quality.seen, rules.existence);
+    landmark.confidence = existence_probability(confidences, landmark.quality.visible - landmark.quality.seen,
+                                                rules.existence.value_or(existence_rules(type.name)));
   });
+}
+
+std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Observation>& evidence,
+                               const TypeRegistry& types) {
+  std::set<std::string> none;
+  for (const Landmark& landmark : landmarks)
+    if (landmark.confidence < existence_rules(types[landmark.type].name).least) none.insert(landmark.uid);
+  std::erase_if(landmarks, [&](const Landmark& landmark) { return none.contains(landmark.uid); });
+  for (Observation& o : evidence)
+    if (!o.landmark_uid.empty() && none.contains(o.landmark_uid))
+      o.rejected = "landmark improbable", o.landmark_uid.clear();
+  return static_cast<std::int64_t>(none.size());
 }
 
 }  // namespace waymark

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <span>
 #include <vector>
 #include "core/landmark.hpp"
@@ -24,7 +25,7 @@ struct ValuationRules {
   CoverRule cover = CoverRule::sound;
   SpreadRule spread = SpreadRule::sound;
   CoveringRules covering = {};
-  ExistenceRules existence = {};
+  std::optional<ExistenceRules> existence = {};  ///< absent: those of each type
 };
 
 /// Values landmarks (Rossmann et al. 3.3): #I that detected and #I that cover each (eqs. 4-5), q_f per
@@ -38,5 +39,10 @@ struct ValuationRules {
 void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation> evidence,
                      std::span<const ImageView> images, const Terrain* terrain, const TypeRegistry& types,
                      double metres_per_unit, const ValuationRules& rules = {});
+
+/// Takes out the landmarks that are less probable than their type's `least`; their evidence is kept as
+/// rejected for that. Returns how many.
+std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Observation>& evidence,
+                               const TypeRegistry& types);
 
 }  // namespace waymark

@@ -16,6 +16,7 @@ struct ValueLandmarks {
     std::string covers = "sound";
     std::string spread = "sound";
     double least_diameter = 0;
+    bool keep_improbable = false;
     void describe(OptionVisitor& option) {
       option("covers", covers,
              {.help = "When an image could have shown a landmark: sound (whole, unhidden, at least as sharp "
@@ -29,6 +30,8 @@ struct ValueLandmarks {
              {.help = "Images that show a landmark smaller than this, in pixels, could not have detected it",
               .min = 0,
               .max = 1000});
+      option("keep_improbable", keep_improbable,
+             {.help = "Keep landmarks that most probably are none (rocks below 0.3)"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -42,7 +45,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
-            .version = 1,
+            .version = 2,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};
@@ -62,6 +65,8 @@ struct ValueLandmarks {
     rules.covering.least_diameter = options.least_diameter;
     value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
                     rules);
+    unit.count_in(static_cast<std::int64_t>(all.size()));
+    if (!options.keep_improbable) unit.reject("landmark improbable", remove_improbable(all, seen, types));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
     unit.write(evidence, std::move(seen));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "pipeline/fusion/merging.hpp"
 #include "pipeline/fusion/rejections.hpp"
 #include "pipeline/fusion/valuing.hpp"
@@ -183,6 +185,33 @@ TEST(Existence, FurtherImagesHelpAndMissesHurt) {
   EXPECT_NEAR(existence_probability(doubt, 0), 0.8, 1e-12);
   EXPECT_LT(existence_probability(one, 1), 0.8);
   EXPECT_EQ(existence_probability({}, 0), 0);
+}
+
+TEST(Existence, RocksAreDoubtedMoreThanCraters) {
+  const double one[] = {0.9};
+  EXPECT_NEAR(existence_probability(one, 0, existence_rules("rock")), 9 / (9 + std::exp(1.5)), 1e-12);
+  EXPECT_NEAR(existence_probability(one, 0, existence_rules("crater")), 0.9, 1e-12);
+  EXPECT_NEAR(existence_probability(one, 0, existence_rules("mountain_top")), 0.9, 1e-12);
+}
+
+TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {
+  std::vector<Landmark> all(3);
+  for (std::size_t i = 0; i < 3; ++i)
+    all[i].type = kTypes.id("rock"), all[i].uid = std::string(1, char('a' + i));
+  all[0].confidence = 0.29, all[1].confidence = 0.3, all[2].confidence = 0.1;
+  all[2].type = kTypes.id("crater");
+  std::vector<Observation> seen{rock(0, 0, 1), rock(1, 0, 1), rock(2, 0, 1), rock(3, 0, 1)};
+  seen[0].landmark_uid = "a", seen[1].landmark_uid = "b", seen[2].landmark_uid = "c";
+  seen[3].rejected = "too tall";
+  EXPECT_EQ(remove_improbable(all, seen, kTypes), 1);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].uid, "b");
+  EXPECT_EQ(all[1].uid, "c");
+  EXPECT_EQ(seen[0].rejected, "landmark improbable");
+  EXPECT_EQ(seen[0].landmark_uid, "");
+  EXPECT_EQ(seen[1].rejected, "");
+  EXPECT_EQ(seen[1].landmark_uid, "b");
+  EXPECT_EQ(seen[3].rejected, "too tall");
 }
 
 }  // namespace
