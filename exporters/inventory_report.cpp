@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "exporters/aside_folder.hpp"
+#include "exporters/report/map_view.hpp"
 #include "exporters/report/page_style.hpp"
 #include "exporters/wording.hpp"
 
@@ -25,7 +26,7 @@ constexpr const char* kStyle = R"css(
 .stands table { border-collapse: collapse; font-size: .88rem; font-variant-numeric: tabular-nums; }
 .stands th, .stands td { padding: .3rem .6rem; text-align: right; border-bottom: 1px solid var(--line); white-space: normal; vertical-align: top; }
 .stands th:first-child, .stands td:first-child { text-align: left; }
-.stands td small { display: block; }
+.stands td small { display: block; white-space: nowrap; }
 .bars rect { fill: #558b2f; } .bars line { stroke: var(--ink); } .bars text { fill: var(--soft); font-size: 11px; }
 .warnings { padding: .6rem 1rem; background: var(--warn); border-left: 4px solid var(--warn-line); }
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .histogram, tr { break-inside: avoid; } }
@@ -87,12 +88,6 @@ std::string path_of(const Drawing& drawing, const Shape& row) {
   return d;
 }
 
-/// 1, 2 or 5 times a power of ten, at most `most`.
-double round_length(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  return most / power >= 5 ? 5 * power : most / power >= 2 ? 2 * power : power;
-}
-
 std::string map_figure(const InventoryPage& page) {
   const Drawing drawing(page);
   std::string svg = fmt::format(
@@ -143,8 +138,11 @@ struct TableColumn {
   int decimals;
 };
 constexpr TableColumn kTable[] = {{"stems_per_ha", "stems / ha", 0},
+                                  {"stems_per_ha_all", "all stems / ha", 0},
                                   {"basal_area_m2_per_ha", "basal area m²/ha", 1},
+                                  {"basal_area_m2_per_ha_all", "all basal area m²/ha", 1},
                                   {"volume_m3_per_ha", "volume m³/ha", 0},
+                                  {"volume_m3_per_ha_all", "all volume m³/ha", 0},
                                   {"lorey_height_m", "Lorey height m", 1},
                                   {"dominant_height_m", "dominant height m", 1},
                                   {"quadratic_mean_diameter_cm", "quadratic mean diameter cm", 1},
@@ -250,8 +248,10 @@ std::string inventory_html(const InventoryPage& page) {
     html += "</ul></div>\n";
   }
   html +=
-      "<h2>Stands</h2>\n<p>Standard errors (±) come from the errors of the single trees; trees nobody found "
-      "are in the columns marked “all”, and elsewhere only where a recall was given.</p>\n";
+      "<h2>Stands</h2>\n<p>Standard errors (±) come from the errors of the single trees. Columns marked "
+      "“all” "
+      "count the trees nobody found, too, by how many of each height are found from the air; the others only "
+      "where a recall was given.</p>\n";
   html += table_of(page);
   html += "<h2>Map</h2>\n" + map_figure(page);
   html += "<h2>Diameters</h2>\n" + charts_of(page.stands);

@@ -11,6 +11,8 @@
 #include <numbers>
 
 #include "core/principal_axes.hpp"
+#include "exporters/report/map_view.hpp"
+#include "exporters/wording.hpp"
 
 namespace waymark {
 namespace {
@@ -21,27 +23,6 @@ constexpr double kLargestEllipse = 90;                      // pixels; larger on
 constexpr double kSmallestError = 0.01;                     // metres, foot of the chart
 constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "#1b9e77",
                                               "#c51b7d", "#8c6d31", "#444444"};
-
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
-// 1, 2 or 5 times a power of ten, at most `most`.
-double round_length(double most) {
-  const double power = std::pow(10, std::floor(std::log10(most)));
-  return most / power >= 5 ? 5 * power : most / power >= 2 ? 2 * power : power;
-}
 
 class Drawing {
  public:
@@ -142,10 +123,10 @@ class Drawing {
   }
 
   void legend() {
-    const double left = kWidth - kBorder - 226;
+    const double left = kWidth - kBorder - 242;
     const auto rows = static_cast<double>(picture_.tracks.size() + 2);
     svg_ += fmt::format(
-        "<rect x=\"{}\" y=\"36\" width=\"220\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
+        "<rect x=\"{}\" y=\"36\" width=\"236\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
         "stroke=\"#bbb\"/>\n",
         left, rows * 17 + 6);
     double at = 52;

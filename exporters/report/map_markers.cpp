@@ -15,7 +15,8 @@ constexpr std::size_t kMostMarkers = 2500;  // of a type; more are a carpet, and
 constexpr std::size_t kMostLabels = 40;
 constexpr double kSmallest = 2, kLargest = 13;  // radius of a marker, drawing units
 constexpr double kModest = 4;  // smaller markers have a fainter rim: thousands must not hide the relief
-constexpr double kLetter = 7.2, kLine = 13;  // of a label's text
+constexpr double kLeast = 1.2, kCover = 0.06;  // crowded markers shrink until they cover this part of the map
+constexpr double kLetter = 7.2, kLine = 13;    // of a label's text
 
 struct Box {
   double left, top, right, bottom;
@@ -64,6 +65,12 @@ std::vector<Marker> markers_of(const LandmarkSection& section, const MapView& vi
     if (x >= 0 && x <= view.width && y >= 0 && y <= view.height)
       markers.push_back({&landmark, x, y, radius_of(landmark, section, view)});
   }
+  if (section.type.drawn_as == Solid::bowl) return markers;  // those are as large as they are
+  double covered = 0;
+  for (const Marker& m : markers) covered += 4 * m.radius * m.radius;
+  const double shrink = std::sqrt(kCover * view.width * view.height / std::max(covered, 1.0));
+  if (shrink < 1)
+    for (Marker& m : markers) m.radius = std::max(kLeast, shrink * m.radius);
   return markers;
 }
 
