@@ -83,6 +83,9 @@ double search_growth(const LocalizeTask& task, double wished);
 std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::optional<PoseEstimate>& start,
                                                const SearchOptions& search);
 
+/// An extended or unscented Kalman filter with that finder; without identities a sum of Gaussians.
+std::unique_ptr<Localizer> searching_kalman(LocalizeTask& task, const SearchOptions& search, bool unscented);
+
 /// What the DEM, if there is one, lets the robot see.
 LineOfSight sight_of(const LocalizeTask& task);
 

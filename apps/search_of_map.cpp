@@ -110,4 +110,27 @@ std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::op
       *start, [particles](const PoseEstimate& from) { return particles(from, {}); }, std::move(finder));
 }
 
+std::unique_ptr<Localizer> searching_kalman(LocalizeTask& task, const SearchOptions& search, bool unscented) {
+  const auto begin = [unscented, window = std::move(task.map.window),
+                      scales = FeatureScales(task.map.map.types()), &settings = task.settings,
+                      visible = sight_of(task),
+                      growth = search_growth(task, task.settings.kalman.search_growth)](
+                         const PoseEstimate& start) -> std::unique_ptr<Localizer> {
+    const IdentificationOptions& id = settings.identification;
+    if (id.use_identities || id.association != "joint") {
+      KalmanOptions options = settings.kalman;
+      options.search_growth = growth;
+      if (unscented) return std::make_unique<UnscentedKalman>(start, window, scales, id, options);
+      return std::make_unique<ExtendedKalman>(start, window, scales, id, options);
+    }
+    HypothesesOptions options = settings.hypotheses;
+    options.unscented = unscented;
+    options.search_growth = growth;
+    auto filter = std::make_unique<HypothesesFilter>(start, window, scales, id, options);
+    filter->expect_landmarks(settings.particles.weight, visible);
+    return filter;
+  };
+  return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search));
+}
+
 }  // namespace waymark

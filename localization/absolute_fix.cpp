@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/filters/absolute_fix.hpp"
+#include "localization/absolute_fix.hpp"
 
 #include <Eigen/LU>
 #include <numbers>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 
 namespace waymark {
 namespace {

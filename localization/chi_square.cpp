@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 
 #include <cassert>
 #include <cmath>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
+#include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
-#include "localization/filters/absolute_fix.hpp"
 #include "localization/identification/identification.hpp"
 namespace waymark {
 

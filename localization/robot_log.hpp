@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 #include "geo/local_frame.hpp"
-#include "localization/filters/absolute_fix.hpp"
+#include "localization/absolute_fix.hpp"
 #include "localization/filters/repeated_sightings.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/localize_method.hpp"
-#include "localization/filters/restarting.hpp"
 
 namespace waymark {
 namespace {
@@ -17,23 +16,7 @@ class Ekf final : public FilterMethod {
 
  protected:
   std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    const auto begin = [window = std::move(task.map.window), scales = FeatureScales(task.map.map.types()),
-                        &settings = task.settings, visible = sight_of(task),
-                        growth = search_growth(task, task.settings.kalman.search_growth)](
-                           const PoseEstimate& start) -> std::unique_ptr<Localizer> {
-      const IdentificationOptions& id = settings.identification;
-      if (id.use_identities || id.association != "joint") {
-        KalmanOptions options = settings.kalman;
-        options.search_growth = growth;
-        return std::make_unique<ExtendedKalman>(start, window, scales, id, options);
-      }
-      HypothesesOptions options = settings.hypotheses;
-      options.search_growth = growth;
-      auto filter = std::make_unique<HypothesesFilter>(start, window, scales, id, options);
-      filter->expect_landmarks(settings.particles.weight, visible);
-      return filter;
-    };
-    return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search_));
+    return searching_kalman(task, search_, false);
   }
 
  private:

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -18,6 +19,8 @@ namespace waymark {
 namespace {
 
 using nlohmann::json;
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 /// One line of a log; every message names it.
 class Line {
@@ -48,17 +51,21 @@ class Line {
   }
   /// Radians; what is more than two turns was meant in degrees.
   double angle(const char* key, std::optional<double> otherwise = {}) const {
-    const double value = otherwise ? number(key, *otherwise) : number(key);
-    if (!(std::abs(value) <= 4 * std::numbers::pi))
-      fail(fmt::format("\"{}\" is {}: angles are radians", key, value));
-    return value;
+    return within_two_turns(key, otherwise ? number(key, *otherwise) : number(key), "angles are radians");
   }
   /// rad/s; two turns in a second were meant in degrees.
   double turn(const char* key) const {
-    const double value = number(key);
-    if (!(std::abs(value) <= 4 * std::numbers::pi))
-      fail(fmt::format("\"{}\" is {}: turns are radians per second", key, value));
-    return value;
+    return within_two_turns(key, number(key), "turns are radians per second");
+  }
+  const json& list(const char* key) const {
+    if (!has(key) || !object_[key].is_array()) fail(fmt::format("\"{}\" must be a list", key));
+    return object_[key];
+  }
+  /// `otherwise` stands for what is no number.
+  std::vector<float> numbers(const char* key, float otherwise) const {
+    std::vector<float> all;
+    for (const json& value : list(key)) all.push_back(value.is_number() ? value.get<float>() : otherwise);
+    return all;
   }
   std::string text(const char* key) const {
     if (!has(key) || !object_[key].is_string()) fail(fmt::format("\"{}\" must be a text", key));
@@ -73,6 +80,11 @@ class Line {
   }
 
  private:
+  double within_two_turns(const char* key, double value, const char* rule) const {
+    if (!(std::abs(value) <= 4 * std::numbers::pi)) fail(fmt::format("\"{}\" is {}: {}", key, value, rule));
+    return value;
+  }
+
   const std::filesystem::path& file_;
   std::size_t number_;
   const json& object_;
@@ -155,8 +167,7 @@ class Reader {
   SightingSet sightings(const Line& line) {
     SightingSet set;
     set.robot_from_sensor = line.mount();
-    if (!line.has("items") || !line.object()["items"].is_array()) line.fail("\"items\" must be a list");
-    for (const json& item : line.object()["items"]) set.sightings.push_back(sighting(line.part(item)));
+    for (const json& item : line.list("items")) set.sightings.push_back(sighting(line.part(item)));
     return set;
   }
 
@@ -217,29 +228,17 @@ class Reader {
     LaserScan scan{.robot_from_sensor = line.mount(),
                    .first_angle = line.angle("first_angle"),
                    .angle_step = line.angle("angle_step"),
-                   .ranges = {},
+                   .ranges = line.numbers("ranges", 0),
                    .most_range = line.positive("most_range", 80),
                    .roll = line.angle("roll", 0),
                    .pitch = line.angle("pitch", 0),
                    .beam_width = {}};
     if (line.has("beam_width")) scan.beam_width = std::max(0.0, line.angle("beam_width"));
-    if (!line.has("ranges") || !line.object()["ranges"].is_array()) line.fail("\"ranges\" must be a list");
-    for (const json& range : line.object()["ranges"])
-      scan.ranges.push_back(range.is_number() ? range.get<float>() : 0.0F);
     return scan;
   }
 
   std::optional<TypeId> type(const char* name) const {
     return types_.find(name) ? std::optional<TypeId>(types_.id(name)) : std::nullopt;
-  }
-
-  static std::vector<float> numbers(const Line& line, const char* key) {
-    if (!line.has(key) || !line.object()[key].is_array())
-      line.fail(fmt::format("\"{}\" must be a list", key));
-    std::vector<float> all;
-    for (const json& value : line.object()[key])
-      all.push_back(value.is_number() ? value.get<float>() : std::numeric_limits<float>::quiet_NaN());
-    return all;
   }
 
   static DepthImage depth(const Line& line) {
@@ -251,7 +250,7 @@ class Reader {
                      .columns = static_cast<std::int64_t>(line.positive("columns", 1)),
                      .rows = static_cast<std::int64_t>(line.positive("rows", 1)),
                      .focal = line.positive("focal", 1),
-                     .depths = numbers(line, "depths")};
+                     .depths = line.numbers("depths", kMissing)};
     if (static_cast<std::int64_t>(image.depths.size()) != image.columns * image.rows)
       line.fail(
           fmt::format("has {} depths for {} x {} pixels", image.depths.size(), image.columns, image.rows));
@@ -262,7 +261,7 @@ class Reader {
     const HorizonProfile profile{.first_angle = line.angle("first_angle"),
                                  .angle_step = line.angle("angle_step"),
                                  .elevation_sd = line.positive("elevation_sd", 0.001),
-                                 .elevations = numbers(line, "elevations")};
+                                 .elevations = line.numbers("elevations", kMissing)};
     return sightings_of_summits(profile, {.type = type("mountain_top")});
   }
 

@@ -4,10 +4,10 @@
 #include "core/random.hpp"
 #include "localization/filters/particle_weights.hpp"
 #include "localization/global/pose_finder.hpp"
+#include "localization/global/sighting_memory.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
-#include "localization/slam/sighting_memory.hpp"
 namespace waymark {
 
 struct ParticleOptions {

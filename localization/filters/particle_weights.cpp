@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 
 namespace waymark {
 namespace {

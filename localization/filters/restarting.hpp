@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 #include "localization/global/pose_finder.hpp"
+#include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
-#include "localization/slam/sighting_memory.hpp"
 namespace waymark {
 
 /// A filter that follows one place and finds back when it has lost it: kidnapped, misled, or returned from

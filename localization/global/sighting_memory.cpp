@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/slam/sighting_memory.hpp"
+#include "localization/global/sighting_memory.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <functional>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 #include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/particle_filter.hpp"

@@ -7,7 +7,7 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/particle_filter.hpp"
 #include "localization/global/constellation.hpp"
-#include "localization/slam/sighting_memory.hpp"
+#include "localization/global/sighting_memory.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 #include "localization/filters/particle_weights.hpp"
 #include "localization/filters/resampling.hpp"
 #include "localization/identification/assignment.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "localization/filters/chi_square.hpp"
+#include "localization/chi_square.hpp"
 #include "localization/filters/resampling.hpp"
 #include "made_world.hpp"
 
