@@ -91,10 +91,11 @@ RunOptions run_options(const Session& session) {
 int make_map(const Job& job, const MapRequest& request, RunOptions options, const Session& session) {
   options.work = request.work;
   options.rerun_from = request.rerun_from;
+  options.results = artifacts_of_a_map();
   check_request(job, request, options);
   if (request.check) return check(job, options);
   const auto started = std::chrono::system_clock::now();
-  const RunResult result = run(job.pipeline, options);
+  RunResult result = run(job.pipeline, options);
   for (const InputFile& input : result.inputs) log_detail(fmt::format("{}  {}", input.sha256, input.path));
   tell(result.report);
   if (request.map.empty()) return result.report.exit_code();

@@ -57,8 +57,8 @@ ShapeLayer crown_layer() {
           .style = {.colour = "#1b5e20", .fill = "#66bb6a", .fill_opacity = 0.3, .width = 0.2}};
 }
 
-Shape shape_of(const CrownShape& crown) {
-  return {.parts = {{.outer = crown.ring}},
+Shape shape_of(CrownShape crown) {
+  return {.parts = {{.outer = std::move(crown.ring)}},
           .values = {crown.uid.empty() ? AttributeValue() : AttributeValue(crown.uid), crown.source,
                      crown.height, crown.area, crown.diameter}};
 }
@@ -93,6 +93,19 @@ std::optional<ShapeLayer> survey_layer(const Canopies& canopies) {
   return layer;
 }
 
+/// What several stages made, one after the other.
+template <class T>
+std::vector<T> joined(std::vector<std::vector<T>> parts) {
+  std::vector<T> all;
+  for (auto& part : parts) {
+    if (all.empty())
+      all = std::move(part);
+    else
+      std::ranges::move(part, std::back_inserter(all));
+  }
+  return all;
+}
+
 }  // namespace
 
 bool makes_map(const Pipeline& pipeline, const RunResult& result) {
@@ -103,23 +116,25 @@ bool makes_map(const Pipeline& pipeline, const RunResult& result) {
   return static_cast<std::ptrdiff_t>(made) == std::ranges::count_if(pipeline.steps(), writes_landmarks);
 }
 
-MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem) {
+std::vector<std::string> artifacts_of_a_map() {
+  return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views"};
+}
+
+MapContents map_of_run(RunResult& result, RunRecord run, bool with_dem) {
   const auto& dem = result.artifact<DemHandle>("dem");
   MapContents contents;
   contents.types = all_types();
   contents.crs = dem->geometry().where.crs;
   contents.run = std::move(run);
   if (with_dem) contents.dem_coverage = dem;
-  for (const auto& made : result.artifacts<std::vector<Landmark>>("landmarks"))
-    contents.landmarks.insert(contents.landmarks.end(), made->begin(), made->end());
-  for (const auto& made : result.artifacts<std::vector<Observation>>("evidence"))
-    contents.observations.insert(contents.observations.end(), made->begin(), made->end());
+  contents.landmarks = joined(result.take<std::vector<Landmark>>("landmarks"));
+  contents.observations = joined(result.take<std::vector<Observation>>("evidence"));
   ShapeLayer crowns = crown_layer();
   bool drawn = false;
-  for (const auto& made : result.artifacts<std::vector<CrownShape>>("crowns")) {
+  for (auto& made : result.take<std::vector<CrownShape>>("crowns")) {
     drawn = true;
-    for (const CrownShape& crown : *made)
-      if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(crown));
+    for (CrownShape& crown : made)
+      if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(std::move(crown)));
   }
   for (const auto& surveys : result.artifacts<Canopies>("canopies"))
     if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));

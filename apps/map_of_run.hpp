@@ -10,8 +10,12 @@ namespace waymark {
 bool makes_map(const Pipeline& pipeline, const RunResult& result);
 
 /// All that the stages of a run made for a map: `landmarks`, and where there are images, `evidence` and
-/// `image_views`; `crowns` become the layer crown. Stage by stage.
-MapContents map_of_run(const RunResult& result, RunRecord run, bool with_dem);
+/// `image_views`; `crowns` become the layer crown. Stage by stage. Landmarks, evidence and crowns are taken out
+/// of the result.
+MapContents map_of_run(RunResult& result, RunRecord run, bool with_dem);
+
+/// What map_of_run and summary_of_run ask a run for (RunOptions::results).
+std::vector<std::string> artifacts_of_a_map();
 
 /// Landmark types the stages find, whether any is there or not.
 std::vector<std::string> types_found(const Pipeline& pipeline);

@@ -9,4 +9,11 @@ Artifact::Value Artifact::value() {
   return value_;
 }
 
+Artifact::Value Artifact::hand_over() {
+  Value last = value();
+  const std::lock_guard lock(mutex_);
+  value_.reset();
+  return last;
+}
+
 }  // namespace waymark

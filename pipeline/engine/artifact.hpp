@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <utility>
 namespace waymark {
 
 /// What a unit wrote to one port: in memory, or fetched from the work folder when first read. Thread-safe.
@@ -15,6 +16,8 @@ class Artifact {
 
   /// Throws what `load` throws, and tries again at the next call.
   Value value();
+  /// The same, without keeping it: for the last one who reads it.
+  Value hand_over();
 
  private:
   std::mutex mutex_;
@@ -23,5 +26,14 @@ class Artifact {
 };
 
 using ArtifactPtr = std::shared_ptr<Artifact>;
+
+/// What it points to: moved out where nobody else holds it, else copied. Artifacts are made as plain T, so
+/// that the last owner may do with them as he likes.
+template <class T>
+T own(Artifact::Value value) {
+  const T* const held = static_cast<const T*>(value.get());
+  if (value.use_count() == 1) return std::move(*const_cast<T*>(held));
+  return *held;
+}
 
 }  // namespace waymark

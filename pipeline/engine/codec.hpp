@@ -23,7 +23,7 @@ const ErasedCodec& erased_codec() {
   static constexpr ErasedCodec codec{
       [](const void* value) { return Codec<T>::encode(*static_cast<const T*>(value)); },
       [](std::string_view bytes) -> std::shared_ptr<const void> {
-        return std::make_shared<const T>(Codec<T>::decode(bytes));
+        return std::make_shared<T>(Codec<T>::decode(bytes));
       }};
   return codec;
 }

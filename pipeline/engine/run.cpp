@@ -145,11 +145,17 @@ void Run::run_stage(std::size_t stage) {
   seconds_[stage] = seconds_since(begin);
 }
 
-/// Lets go of the artifacts of tiles and images that no later stage reads, unless nobody reads them at all:
-/// those are results.
+/// Whether the caller may ask for what this stage reads. What nobody reads is a result of any scope, and is
+/// not asked about here.
+bool Run::wanted(const Wire& wire) const {
+  if (step(wire.writer).spec().scope != Scope::map) return false;
+  return options_.results.empty() || std::ranges::count(options_.results, wire.port) > 0;
+}
+
+/// Lets go of the artifacts that no later stage reads, unless they are results.
 void Run::release_read(std::size_t stage) {
   for (const Wire& wire : wires_[stage]) {
-    if (step(wire.writer).spec().scope == Scope::map) continue;
+    if (wanted(wire)) continue;
     const auto reads_it = [&](const std::vector<Wire>& later) {
       return std::ranges::any_of(
           later, [&](const Wire& other) { return other.port == wire.port && other.writer == wire.writer; });

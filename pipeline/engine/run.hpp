@@ -42,6 +42,7 @@ class Run {
   UnitInputs inputs_of(std::size_t stage, std::size_t unit) const;
   void expect_wanted_unit() const;
   void release_read(std::size_t stage);
+  bool wanted(const Wire& wire) const;
   const Step& step(std::size_t stage) const { return *pipeline_.steps()[stage]; }
 
   const Pipeline& pipeline_;

@@ -80,6 +80,8 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   const StageSpec& spec = step(stage).spec();
   UnitProgress progress(meter);
   UnitInputs inputs = inputs_of(stage, unit);
+  // The only unit of its stage may be the last to hold what it reads, and take it.
+  if (spec.scope == Scope::map) release_read(stage);
   if (options_.progress) inputs.progress = [&](double done) { progress.reach(done); };
   StageContext context(spec, inputs);
   try {

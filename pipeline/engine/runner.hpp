@@ -36,6 +36,9 @@ struct RunOptions {
   std::optional<Shard> shard = {};
   std::string unit = {};        ///< do this unit only, "find_mountain_tops/tile_000003"
   std::string rerun_from = {};  ///< make this stage and what depends on it anew
+  /// Artifacts of the map that the caller will ask for. The others are let go of after the last stage that
+  /// reads them; empty: none are.
+  std::vector<std::string> results = {};
   bool check_only = false;      ///< stop after planning: options, wiring, files
   std::function<void(const Progress&)> progress = {};
   FileHasher hash_file = hash_plain_file;
@@ -61,6 +64,15 @@ class RunResult {
   std::vector<std::shared_ptr<const T>> artifacts(std::string_view name) const {
     std::vector<std::shared_ptr<const T>> all;
     for (auto& value : find_all(name, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
+    return all;
+  }
+  /// The same, out of the result: without a copy where nobody else holds them.
+  template <class T>
+  std::vector<T> take(std::string_view name) {
+    std::vector<Artifact::Value> values = find_all(name, typeid(T));
+    std::erase_if(artifacts_, [&](const Kept& kept) { return kept.name == name; });
+    std::vector<T> all;
+    for (auto& value : values) all.push_back(own<T>(std::move(value)));
     return all;
   }
 

@@ -54,6 +54,21 @@ std::vector<Artifact::Value> StageContext::read_each(std::string_view port, std:
   return values;
 }
 
+Artifact::Value StageContext::take_one(std::string_view port, std::type_index type) {
+  Artifact::Value value = read_one(port, type);
+  const ArtifactPtr& item = declared_input(port, type).items.front();
+  if (item.use_count() > 1) return value;  // the run keeps it for others
+  value.reset();
+  return item->hand_over();
+}
+
+std::vector<Artifact::Value> StageContext::take_each(std::string_view port, std::type_index type) {
+  std::vector<Artifact::Value> values;
+  for (const ArtifactPtr& item : declared_input(port, type).items)
+    values.push_back(item.use_count() > 1 ? item->value() : item->hand_over());
+  return values;
+}
+
 void StageContext::write_one(std::string_view port, std::type_index type, Artifact::Value value) {
   expect_declared(spec_, spec_.outputs, port, type, "writes");
   const std::lock_guard lock(mutex_);

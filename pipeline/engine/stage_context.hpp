@@ -71,10 +71,24 @@ class StageContext {
   std::vector<std::shared_ptr<const T>> read_all(Gather<T> port) {
     return all_of<T>(port.name);
   }
+  /// The same for a stage that changes what it reads: without a copy where nobody reads it later. A port is
+  /// taken once, and not read after.
+  template <class T>
+  T take(In<T> port) {
+    return own<T>(take_one(port.name, typeid(T)));
+  }
+  template <class T>
+  std::vector<T> take_all(In<T> port) {
+    return taken_of<T>(port.name);
+  }
+  template <class T>
+  std::vector<T> take_all(Gather<T> port) {
+    return taken_of<T>(port.name);
+  }
   /// Once per port; every declared output must be written.
   template <class T>
   void write(Out<T> port, T value) {
-    write_one(port.name, typeid(T), std::make_shared<const T>(std::move(value)));
+    write_one(port.name, typeid(T), std::make_shared<T>(std::move(value)));
   }
 
   /// Throws std::logic_error in a stage of another scope.
@@ -109,8 +123,16 @@ class StageContext {
     for (auto& value : read_each(port, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
     return all;
   }
+  template <class T>
+  std::vector<T> taken_of(std::string_view port) {
+    std::vector<T> all;
+    for (auto& value : take_each(port, typeid(T))) all.push_back(own<T>(std::move(value)));
+    return all;
+  }
   Artifact::Value read_one(std::string_view port, std::type_index type);
   std::vector<Artifact::Value> read_each(std::string_view port, std::type_index type);
+  Artifact::Value take_one(std::string_view port, std::type_index type);
+  std::vector<Artifact::Value> take_each(std::string_view port, std::type_index type);
   void write_one(std::string_view port, std::type_index type, Artifact::Value value);
   const PortInput& declared_input(std::string_view port, std::type_index type) const;
 

@@ -61,7 +61,7 @@ struct MergeObservations {
     TypeRegistry types;
     register_landmark_types(types);
     std::vector<Observation> all;
-    for (const auto& part : unit.read_all(observations)) all.insert(all.end(), part->begin(), part->end());
+    for (auto& part : unit.take_all(observations)) std::ranges::move(part, std::back_inserter(all));
     MergeRules rules;
     rules.identity.position_gate = options.position_gate;
     rules.identity.size_gate = options.size_gate;

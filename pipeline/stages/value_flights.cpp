@@ -42,8 +42,8 @@ struct ValueFlights {
   static void run(const Options&, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
-    std::vector<Landmark> all = unit.read(merged);
-    const auto& seen = unit.read(merged_evidence);
+    std::vector<Landmark> all = unit.take(merged);
+    std::vector<Observation> seen = unit.take(merged_evidence);
     value_landmarks(all, seen, {}, nullptr, types, 1);
     const Canopies& surveys = unit.read(canopies);
     if (surveys.size() > 1) {
@@ -56,10 +56,10 @@ struct ValueFlights {
     std::vector<ImageView> views;
     for (const auto& canopy : surveys) views.push_back(view_of(*canopy));
     unit.write(image_views, std::move(views));
-    unit.write(crowns, named(unit.read_all(seen_crowns), seen, all));
+    unit.write(crowns, named(unit.take_all(seen_crowns), seen, all));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
-    unit.write(evidence, seen);
+    unit.write(evidence, std::move(seen));
   }
 
   // A survey that should show a tree and does not takes this share of its confidence.
@@ -95,14 +95,14 @@ struct ValueFlights {
   }
 
   // One crown per tree: of the first survey by name that shows it.
-  static std::vector<CrownShape> named(
-      const std::vector<std::shared_ptr<const std::vector<CrownShape>>>& parts,
-      const std::vector<Observation>& seen, const std::vector<Landmark>& all) {
+  static std::vector<CrownShape> named(std::vector<std::vector<CrownShape>> parts,
+                                       const std::vector<Observation>& seen,
+                                       const std::vector<Landmark>& all) {
     using Key = std::tuple<std::string_view, double, double>;
-    std::map<Key, const CrownShape*> at;
-    for (const auto& part : parts)
-      for (const CrownShape& crown : *part) at[{crown.source, crown.top.x(), crown.top.y()}] = &crown;
-    std::map<std::string_view, const CrownShape*> of_tree;
+    std::map<Key, CrownShape*> at;
+    for (auto& part : parts)
+      for (CrownShape& crown : part) at[{crown.source, crown.top.x(), crown.top.y()}] = &crown;
+    std::map<std::string_view, CrownShape*> of_tree;
     for (const Observation& o : seen) {  // by source, then place: the first survey by name comes first
       if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
       const auto found = at.find({o.source, o.position.xyz.x(), o.position.xyz.y()});
@@ -111,7 +111,7 @@ struct ValueFlights {
     std::vector<CrownShape> crowns;
     for (const Landmark& tree : all)
       if (const auto found = of_tree.find(tree.uid); found != of_tree.end()) {
-        crowns.push_back(*found->second);
+        crowns.push_back(std::move(*found->second));  // one survey's find is of one tree
         crowns.back().uid = tree.uid;
       }
     return crowns;

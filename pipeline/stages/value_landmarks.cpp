@@ -55,8 +55,8 @@ struct ValueLandmarks {
     TypeRegistry types;
     register_landmark_types(types);
     const std::vector<ImageView>& images = unit.read(aligned_views);
-    std::vector<Landmark> all = unit.read(merged);
-    std::vector<Observation> seen = unit.read(merged_evidence);
+    std::vector<Landmark> all = unit.take(merged);
+    std::vector<Observation> seen = unit.take(merged_evidence);
     const DemHandle& ground = unit.read(dem);
     const Terrain terrain = terrain_of(ground);
     ValuationRules rules;

@@ -31,12 +31,12 @@ struct ValueSurveys {
   static void run(const Options&, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
-    std::vector<Landmark> all = unit.read(merged);
-    const auto& seen = unit.read(merged_evidence);
+    std::vector<Landmark> all = unit.take(merged);
+    std::vector<Observation> seen = unit.take(merged_evidence);
     value_landmarks(all, seen, {}, nullptr, types, 1);
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
-    unit.write(evidence, seen);
+    unit.write(evidence, std::move(seen));
   }
 };
 

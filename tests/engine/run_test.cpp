@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs in memory: results, threads, failures, progress.
 #include <cmath>
+#include <condition_variable>
 #include <fstream>
 #include <set>
 #include <thread>
@@ -75,15 +76,20 @@ TEST_F(RunTest, DoesNotDependOnThreads) {
 TEST_F(RunTest, UsesTheThreadsItIsGiven) {
   pipeline.set("list_numbers.tiles=100");
   std::mutex mutex;
+  std::condition_variable another;
   std::set<std::thread::id> seen;
+  std::size_t awaited = 1;
   toy::watch().in_square = [&](const StageContext& unit) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    const std::lock_guard lock(mutex);
-    seen.insert(std::this_thread::get_id());
     EXPECT_GE(unit.threads(), 1);
+    std::unique_lock lock(mutex);
+    seen.insert(std::this_thread::get_id());
+    another.notify_all();
+    // On a busy machine the second thread may take its time.
+    another.wait_for(lock, std::chrono::seconds(60), [&] { return seen.size() >= awaited; });
   };
   run(pipeline, {.threads = 1});
   EXPECT_EQ(seen, std::set{std::this_thread::get_id()});
+  awaited = 2;
   run(pipeline, {.threads = 4});
   EXPECT_GT(seen.size(), 1U);
   EXPECT_LE(seen.size(), 4U);
@@ -139,6 +145,14 @@ TEST_F(RunTest, KeepsWhatNobodyReadsAndReleasesTheRest) {
   Pipeline part(registry);
   part.add("list_numbers").add("square_number");
   EXPECT_EQ(run(part).artifacts<Number>("square").at(3)->value, 36);
+}
+
+TEST_F(RunTest, ResultsAreTakenOnce) {
+  RunResult result = run(pipeline);
+  const auto sums = result.take<std::string>("sum");
+  ASSERT_EQ(sums.size(), 1U);
+  EXPECT_EQ(sums[0], sum_of(run(pipeline)));
+  EXPECT_THAT(result.artifacts<std::string>("sum"), testing::IsEmpty());
 }
 
 TEST_F(RunTest, ArtifactsAreAskedForByTheirType) {
