@@ -73,5 +73,41 @@ TEST(DrawMarkers, ForemostComesLastAndLabelled) {
   EXPECT_THAT(markers.svg, HasSubstr(">3000</text>"));
 }
 
+/// Many landmarks of one type in rows of 100 over a kilometre.
+MapContents crowd_of(const std::string& type, std::size_t count) {
+  MapContents map = test::three_summits("EPSG:32719", 0, 0, 1);
+  const TypeId id = map.types.id(type);
+  Landmark one = map.landmarks[0];
+  one.type = id;
+  one.features.assign(map.types[id].features.size(),
+                      FeatureValue{.value = 5, .variance = 1, .observations = 1});
+  map.landmarks.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    one.uid = type + "-" + std::to_string(i);
+    one.position.xyz << 10.0 * static_cast<double>(i % 100), 10.0 * static_cast<double>(i / 100), 0;
+    map.landmarks.push_back(one);
+  }
+  return map;
+}
+
+/// "scale(1.23)" of the last marker.
+double last_scale(const MapContents& map) {
+  const MapView view = view_of(map.crs, {0, 0, 1000, 1000});
+  const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
+  const std::string svg = draw_markers(view, {section}).svg;
+  return std::stod(svg.substr(svg.rfind(" scale(") + 7));
+}
+
+TEST(DrawMarkers, ShrinkWhereTheyAreCrowded) {
+  const double alone = last_scale(crowd_of("tree", 10)), crowded = last_scale(crowd_of("tree", 2500));
+  EXPECT_LT(crowded, alone / 2);
+  EXPECT_LE(2500 * 4 * crowded * crowded, 0.062 * 1000 * 1000) << "their squares cover 6 % of the map";
+  EXPECT_GE(crowded, 1.2) << "still to be seen";
+}
+
+TEST(DrawMarkers, BowlsStayTrueToScale) {
+  EXPECT_EQ(last_scale(crowd_of("crater", 10)), last_scale(crowd_of("crater", 2500)));
+}
+
 }  // namespace
 }  // namespace waymark
