@@ -9,10 +9,12 @@
 #include <cmath>
 #include <tuple>
 
+#include "apps/crowns_in_image.hpp"
 #include "apps/image_canopy.hpp"
 #include "apps/registries.hpp"
 #include "core/error.hpp"
 #include "importers/tiling.hpp"
+#include "pipeline/forest/crown_network.hpp"
 #include "pipeline/forest/tree_observations.hpp"
 
 namespace waymark {
@@ -20,6 +22,11 @@ namespace {
 
 constexpr double kUsualPixel = 0.6;  // metres: of public orthophotos
 constexpr double kLeastGreen = 0.2;
+/// Finer colour images without infrared are searched by darkness: the networks learnt from pixels of 0.6 m,
+/// and trees of plots photographed with 0.1 m look otherwise.
+constexpr double kFineColour = 0.25;
+constexpr double kPlaceSd = 1.5;     // metres: of marked trees about finds
+constexpr double kCrownShare = 0.4;  // of a crown's diameter in colour images
 
 // Chosen on every second of the NAIP crops of Eureka (docs/trees.md).
 TreeSearch imagery_search() {
@@ -78,11 +85,59 @@ Detection detection_of(const FoundTree& tree, TypeId type, double metres, bool i
   one.outline = {static_cast<double>(tree.top.column), static_cast<double>(tree.top.row), diameter, diameter,
                  0};
   const TreeErrors errors;
-  const double sd = imagery ? 1.5 : errors.place_base + errors.place_slope * tree.height;
+  const double sd = imagery ? kPlaceSd : errors.place_base + errors.place_slope * tree.height;
   one.covariance = Eigen::Matrix2d::Identity() * (sd * sd / (metres * metres) + 1.0 / 12);
   one.diameter_sd = errors.crown_share * diameter;
   one.confidence = imagery ? 1 - 0.5 * std::exp(1 - tree.height / kLeastGreen) : 0.9;
   return one;
+}
+
+struct Kept {
+  Detection detection;
+  FeatureSet features;
+};
+
+/// Tops of a canopy: of heights, or of what is green and dark in a colour image.
+std::vector<Kept> by_canopy(const DetectPlan& plan, double metres, const std::string& method, TypeId type,
+                            int threads) {
+  const bool imagery = method == "imagery";
+  const LandmarkType& tree_type = all_types()[type];
+  const auto canopy =
+      image_canopy(plan.image->info(), imagery ? CanopySign::greenness : CanopySign::height, metres);
+  const TreeSearch search = imagery ? imagery_search() : height_search(method);
+  std::vector<Kept> kept;
+  for (const FoundTree& tree :
+       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads)) {
+    Kept one{detection_of(tree, type, metres, imagery), {}};
+    one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
+    if (imagery)
+      one.features[feature_index(tree_type, "height")] =
+          one.features[feature_index(tree_type, "diameter")] = {};
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+/// Crowns of a colour image by what a network has learnt.
+std::vector<Kept> by_network(const ImageInfo& info, double metres, TypeId type, int threads) {
+  const ColourImage image(info, metres);
+  const LandmarkType& tree_type = all_types()[type];
+  const DenseNetwork& network = image.infrared() ? crown_network_infrared() : crown_network_colour();
+  std::vector<Kept> kept;
+  for (const CrownInImage& crown : crowns_in_image(image, network, threads)) {
+    Kept one;
+    one.detection.type = type;
+    const double diameter = crown.diameter / metres;
+    one.detection.outline = {crown.x, crown.y, diameter, diameter, 0};
+    one.detection.covariance = Eigen::Matrix2d::Identity() * std::pow(kPlaceSd / metres, 2);
+    one.detection.diameter_sd = kCrownShare * diameter;
+    one.detection.confidence = crown.confidence;
+    one.features.resize(tree_type.features.size());
+    one.features[feature_index(tree_type, "crown_diameter")] = {crown.diameter,
+                                                                std::pow(kCrownShare * crown.diameter, 2), 1};
+    kept.push_back(std::move(one));
+  }
+  return kept;
 }
 
 }  // namespace
@@ -113,28 +168,14 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads) {
                       .gsd = plan.gsd,
                       .sun_elevation = plan.sun_elevation,
                       .sun_azimuth = plan.sun_azimuth};
-  const auto canopy = image_canopy(info, imagery ? CanopySign::greenness : CanopySign::height, metres);
-  const TreeSearch search = imagery ? imagery_search() : height_search(method);
-  const LandmarkType& tree_type = all_types()[type];
-  struct Kept {
-    Detection detection;
-    FeatureSet features;
-  };
-  std::vector<Kept> kept;
-  for (const FoundTree& tree :
-       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads)) {
-    Kept one{detection_of(tree, type, metres, imagery), {}};
-    if (one.detection.confidence < plan.min_confidence) continue;
+  std::vector<Kept> kept = imagery && (bands > 3 || metres >= kFineColour)
+                               ? by_network(info, metres, type, threads)
+                               : by_canopy(plan, metres, method, type, threads);
+  std::erase_if(kept, [&](const Kept& one) {
     const double diameter = one.detection.outline.diameter();
-    if (diameter < plan.search.min_diameter ||
-        (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter))
-      continue;
-    one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
-    if (imagery)
-      one.features[feature_index(tree_type, "height")] =
-          one.features[feature_index(tree_type, "diameter")] = {};
-    kept.push_back(std::move(one));
-  }
+    return one.detection.confidence < plan.min_confidence || diameter < plan.search.min_diameter ||
+           (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter);
+  });
   std::stable_sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) {
     const auto key = [](const Detection& d) { return std::tuple(-d.confidence, d.outline.y, d.outline.x); };
     return key(a.detection) < key(b.detection);

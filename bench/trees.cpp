@@ -10,6 +10,7 @@
 #include "core/random.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/points/las_catalogue.hpp"
+#include "pipeline/forest/crown_network.hpp"
 #include "pipeline/forest/find_trees.hpp"
 
 namespace {
@@ -148,6 +149,21 @@ void CatalogueLas(benchmark::State& state) {
   state.counters["points"] = benchmark::Counter(2e6, benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(CatalogueLas)->Unit(benchmark::kMillisecond);
+
+void CrownsOfColour(benchmark::State& state) {
+  constexpr std::int64_t side = 768;
+  const std::int64_t reach = crown_probability_reach(0.6);
+  Random random(2, "bench colours");
+  ColourWindow image{{-reach, -reach, side + 2 * reach, side + 2 * reach}, 0.6, {}};
+  image.bands.assign(4, Grid<float>(side + 2 * reach, side + 2 * reach));
+  for (auto& band : image.bands)
+    for (float& value : band.cells()) value = static_cast<float>(random.uniform());
+  for (auto _ : state)
+    benchmark::DoNotOptimize(crown_probability(image, {0, 0, side, side}, crown_network_infrared()));
+  state.counters["pixels"] =
+      benchmark::Counter(double(side * side), benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(CrownsOfColour)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

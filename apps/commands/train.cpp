@@ -1,38 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "apps/command.hpp"
 #include "apps/crater_lessons.hpp"
 #include "apps/log.hpp"
+#include "apps/model_source.hpp"
 #include "apps/session.hpp"
+#include "apps/tree_lessons.hpp"
 #include "core/error.hpp"
 #include "pipeline/craters/crater_training.hpp"
 
 namespace waymark {
 namespace {
-
-constexpr std::size_t kLine = 140;  // characters of the model per line of source: below 300 lines
-
-// The file that is compiled into the program; a text file otherwise.
-std::string as_source(const std::string& text) {
-  std::string source =
-      "// SPDX-License-Identifier: Apache-2.0\n"
-      "// Made by `waymark train craters -o pipeline/craters/built_in_model.cpp`; do not edit.\n"
-      "// clang-format off\n"
-      "#include \"pipeline/craters/crater_model.hpp\"\n\nnamespace waymark {\n\n"
-      "const CraterModel& built_in_crater_model() {\n"
-      "  static const CraterModel model = parse_crater_model(\n";
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t line = text.find('\n', begin);
-    const std::size_t end = std::min(begin + kLine, line == std::string::npos ? text.size() : line);
-    const bool ends_line = end == line;
-    source += fmt::format("      \"{}{}\"\n", text.substr(begin, end - begin), ends_line ? "\\n" : "");
-    begin = ends_line ? end + 1 : end;
-  }
-  return source + "      , \"the built-in crater model\");\n  return model;\n}\n\n}  // namespace waymark\n";
-}
 
 class Train final : public Command {
  public:
@@ -40,30 +19,44 @@ class Train final : public Command {
     return {
         .name = "train",
         .group = Group::make,
-        .summary = "Train the model that verifies craters",
+        .summary = "Train the models that tell craters and, in colour images, trees",
         .about =
-            "Makes scenes with known craters, half of them with the testbed of `waymark simulate`, finds "
-            "bowls "
-            "in them and learns which are craters and where their rims are. No image that anyone else owns "
-            "goes in. The same "
-            "scenes and seed give the same model. A name that ends in .cpp gives the source file that "
-            "is compiled into waymark.",
-        .arguments = {Argument{"", "WHAT", &what_, "What to train"}.needed().one_of({"craters"}),
-                      Argument{"-o,--output", "MODEL", &output_, "Model to write, .txt or .cpp"}
-                          .needed()
-                          .offering(Offer::file),
-                      {"--scenes", "N", &scenes_, "Scenes to learn from; each takes about two seconds"},
-                      {"--rounds", "N", &rounds_, "Times through all examples"},
-                      {"--seed", "N", &seed_, "Another seed gives other first weights and another order"}},
+            "craters: makes scenes with known craters, half of them with the testbed of `waymark simulate`, "
+            "finds bowls in them and learns which are craters and where their rims are. No image that anyone "
+            "else owns goes in.\n\n"
+            "trees: learns from orthophotos whose trees are all marked, in a table beside each (a.csv beside "
+            "a.tif: x, y in pixels), and tells how well images that were left out are searched.\n\n"
+            "The same scenes, images and seed give the same model. A name that ends in .cpp gives the source "
+            "file that is compiled into waymark.",
+        .arguments =
+            {Argument{"", "WHAT", &what_, "What to train"}.needed().one_of({"craters", "trees"}),
+             Argument{"", "IMAGE...", &images_, "trees: orthophotos to learn from"}.offering(Offer::file),
+             Argument{"-o,--output", "MODEL", &output_, "Model to write, .txt or .cpp"}.needed().offering(
+                 Offer::file),
+             {"--scenes", "N", &scenes_, "craters: scenes to learn from; each takes about two seconds"},
+             {"--colour", "", &colour_, "trees: learn from red, green and blue alone"},
+             {"--rounds", "N", &rounds_, "Times through all examples; 0: as usual"},
+             {"--seed", "N", &seed_, "Another seed gives other first weights and another order"}},
         .examples = {{"waymark train craters -o pipeline/craters/built_in_model.cpp", "The model we ship"},
-                     {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"}}};
+                     {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
+                     {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
+                      "Trees in images with near infrared"}}};
   }
 
   int run(const Session& session) override {
-    if (scenes_ < 1 || rounds_ < 1)
+    if (scenes_ < 1 || rounds_ < 0)
       throw Error(ErrorCode::usage, "there must be at least one scene and one round", "",
                   "leave out --scenes and --rounds for the usual");
-    const bool source = output_.ends_with(".cpp");
+    if (what_ == "trees") return train_trees(session);
+    if (!images_.empty())
+      throw Error(ErrorCode::usage, "craters are learnt from made scenes, not from images", images_[0]);
+    return train_craters(session);
+  }
+
+ private:
+  static constexpr int kSide = 640;  // pixels
+
+  int train_craters(const Session& session) const {
     std::vector<CraterExample> examples;
     for (std::int64_t i = 0; i < scenes_; ++i) {
       // By turns plain shading of relief no testbed makes, and what the testbed renders.
@@ -74,26 +67,58 @@ class Train final : public Command {
       if ((i + 1) % 20 == 0 && !session.quiet)
         say(fmt::format("{} of {} scenes, {} examples\n", i + 1, scenes_, examples.size()));
     }
-    CraterTraining training{.rounds = static_cast<int>(rounds_), .seed = static_cast<std::uint64_t>(seed_)};
+    CraterTraining training{.seed = static_cast<std::uint64_t>(seed_)};
+    if (rounds_ > 0) training.rounds = static_cast<int>(rounds_);
     CraterModel model = train_crater_model(examples, training, [&](int round, double loss) {
       if (!session.quiet) say(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
     });
     model.trained_on =
         fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes_ - 1,
-                    kSide, examples.size(), rounds_, seed_);
-    std::ofstream file(output_, std::ios::binary);
-    file << (source ? as_source(as_text(model)) : as_text(model));
-    file.close();
-    if (!file)
-      throw Error(ErrorCode::output, "cannot write the model", output_,
-                  "check the folder and the space left");
+                    kSide, examples.size(), training.rounds, seed_);
+    write_model(
+        output_, as_text(model),
+        {"waymark train craters -o pipeline/craters/built_in_model.cpp", "pipeline/craters/crater_model.hpp",
+         "CraterModel", "built_in_crater_model", "parse_crater_model", "the built-in crater model"});
     return 0;
   }
 
- private:
-  static constexpr int kSide = 640;  // pixels
+  int train_trees(const Session& session) const {
+    if (images_.empty()) throw Error(ErrorCode::usage, "trees are learnt from images, and none is given");
+    std::vector<TreeLesson> lessons;
+    std::size_t trees = 0;
+    for (const std::string& image : images_) {
+      lessons.push_back(tree_lesson(image, !colour_));
+      trees += lessons.back().trees.size();
+    }
+    NetworkTraining training{.seed = static_cast<std::uint64_t>(seed_)};
+    if (rounds_ > 0) training.rounds = static_cast<int>(rounds_);
+    std::string held_out;
+    if (lessons.size() >= kParts) {
+      const Score score = held_out_score(lessons, kParts, training, static_cast<int>(session.threads));
+      held_out = fmt::format("; left out in turn, {} parts: precision {:.3f}, recall {:.3f}, F1 {:.3f}",
+                             kParts, score.all.precision(), score.all.recall(), score.all.f1());
+      for (const CalibrationBin& bin : score.by_confidence)
+        say(fmt::format("told {:.2f} to {:.2f}: {} of {} are trees\n", bin.from, bin.to, bin.right,
+                        bin.found));
+    }
+    DenseNetwork network = crown_network_of(lessons, training);
+    network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", lessons.size(), trees,
+                                     training.rounds, seed_, held_out);
+    say(network.trained_on + "\n");
+    const std::string name = colour_ ? "crown_network_colour" : "crown_network_infrared";
+    write_model(output_, as_text(network),
+                {fmt::format("waymark train trees IMAGE...{} -o pipeline/forest/{}.cpp",
+                             colour_ ? " --colour" : "", name),
+                 "pipeline/forest/crown_network.hpp", "DenseNetwork", name, "parse_dense_network",
+                 "a built-in crown network"});
+    return 0;
+  }
+
+  static constexpr int kParts = 3;
   std::string what_, output_;
-  std::int64_t scenes_ = 120, rounds_ = CraterTraining{}.rounds, seed_ = 1;
+  std::vector<std::string> images_;
+  bool colour_ = false;
+  std::int64_t scenes_ = 120, rounds_ = 0, seed_ = 1;
 };
 
 }  // namespace

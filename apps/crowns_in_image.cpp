@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/crowns_in_image.hpp"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "importers/tiling.hpp"
+#include "pipeline/forest/crown_network.hpp"
+#include "pipeline/forest/crown_width.hpp"
+#include "pipeline/forest/find_trees.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kSide = 768;  // cells worked on at once: 30 planes of them are in memory
+constexpr double kLeast = 0.15;      // probability that a crown's middle is here; less is not told
+constexpr double kIsolation = 3;     // metres
+
+/// The probability of crowns as if it were a canopy.
+class CrownCanopy final : public CanopySource {
+ public:
+  CrownCanopy(const ColourImage& image, const DenseNetwork& network) : image_(image), network_(network) {
+    grid_.columns = image.columns(), grid_.rows = image.rows();
+    grid_.where = {Crs::local(), 0, 0, image.cell(), -image.cell()};
+  }
+  const GridGeometry& geometry() const override { return grid_; }
+  const std::string& name() const override { return name_; }
+  double ground(std::int64_t, std::int64_t) const override { return std::nan(""); }
+  Grid<std::uint8_t> forest_types(const Window&) const override { return {}; }
+  Grid<float> read(const Window& window) const override {
+    const std::int64_t reach = crown_probability_reach(image_.cell());
+    const ColourWindow seen = image_.read(
+        {window.column - reach, window.row - reach, window.columns + 2 * reach, window.rows + 2 * reach});
+    Grid<float> canopy = crown_probability(seen, window, network_);
+    for (float& value : canopy.cells())
+      if (std::isnan(value)) value = kNoCanopy;
+    return canopy;
+  }
+
+ private:
+  const ColourImage& image_;
+  const DenseNetwork& network_;
+  GridGeometry grid_;
+  std::string name_ = "crowns";
+};
+
+TreeSearch crown_search() {
+  TreeSearch search;
+  search.forest.name = "imagery";
+  search.forest.smoothing = 0;  // the probability is smooth
+  search.forest.tops = {
+      .min_height = kLeast, .isolation_base = kIsolation, .isolation_slope = 0, .prominence = 0};
+  search.crowns = false;
+  return search;
+}
+
+/// The probability is that of a bell about the middle, smoothed: lower than that of a tree. Fitted to finds
+/// in images that the network had not seen (`waymark train trees`).
+double calibrated(double probability) {
+  const double p = std::clamp(probability, 1e-6, 1 - 1e-6);
+  return 1 / (1 + std::exp(-(1.25 + 1.15 * std::log(p / (1 - p)))));
+}
+
+}  // namespace
+
+std::vector<CrownInImage> crowns_in_image(const ColourImage& image, const DenseNetwork& network,
+                                          int threads) {
+  const CrownCanopy canopy(image, network);
+  const TreeSearch search = crown_search();
+  const std::vector<Tile> tiles = tiles_of(image.columns(), image.rows(), kSide);
+  std::vector<std::vector<CrownInImage>> parts(tiles.size());
+  const auto reach = static_cast<std::int64_t>(std::ceil(kWidestCrown / image.cell())) + 1;
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      const std::vector<FoundTree> found = find_trees(canopy, tiles[i].cells, search);
+      if (found.empty()) return;
+      const ColourWindow seen = image.read(grown(tiles[i].cells, reach));
+      for (const FoundTree& tree : found)
+        parts[i].push_back({image.pixel(tree.top.column), image.pixel(tree.top.row),
+                            crown_width(seen, tree.top), calibrated(tree.height)});
+    });
+  });
+  std::vector<CrownInImage> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+}  // namespace waymark

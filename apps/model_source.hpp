@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+namespace waymark {
+
+/// How a trained model becomes a source file of waymark.
+struct ModelSource {
+  std::string made_by;  ///< the command, for people
+  std::string header;   ///< that declares the function
+  std::string type;     ///< what the function returns a reference to
+  std::string name;     ///< of the function
+  std::string parse;    ///< reads the model's text
+  std::string where;    ///< what an error of the text would name
+};
+
+/// A function that parses `text` once; lines of 140 characters.
+std::string as_source(const std::string& text, const ModelSource& source);
+
+/// Writes a model, as source where the name ends in .cpp. Throws Error{output}.
+void write_model(const std::string& path, const std::string& text, const ModelSource& source);
+
+}  // namespace waymark
