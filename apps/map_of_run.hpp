@@ -10,8 +10,8 @@ namespace waymark {
 bool makes_map(const Pipeline& pipeline, const RunResult& result);
 
 /// All that the stages of a run made for a map: `landmarks`, and where there are images, `evidence` and
-/// `image_views`; `crowns` become the layer crown. Stage by stage. Landmarks, evidence and crowns are taken out
-/// of the result.
+/// `image_views`; `crowns` become the layer crown. Stage by stage. Landmarks, evidence and crowns are taken
+/// out of the result.
 MapContents map_of_run(RunResult& result, RunRecord run, bool with_dem);
 
 /// What map_of_run and summary_of_run ask a run for (RunOptions::results).

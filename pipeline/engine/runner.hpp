@@ -39,7 +39,7 @@ struct RunOptions {
   /// Artifacts of the map that the caller will ask for. The others are let go of after the last stage that
   /// reads them; empty: none are.
   std::vector<std::string> results = {};
-  bool check_only = false;      ///< stop after planning: options, wiring, files
+  bool check_only = false;  ///< stop after planning: options, wiring, files
   std::function<void(const Progress&)> progress = {};
   FileHasher hash_file = hash_plain_file;
 };
