@@ -75,7 +75,10 @@ std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopyS
 }
 
 int band_count(const std::string& path) {
-  return open_raster(path)->GetRasterCount();
+  const auto file = open_raster(path);
+  const int bands = file->GetRasterCount();
+  const bool alpha = bands > 1 && file->GetRasterBand(bands)->GetColorInterpretation() == GCI_AlphaBand;
+  return alpha ? bands - 1 : bands;
 }
 
 }  // namespace waymark

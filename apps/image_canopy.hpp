@@ -16,7 +16,7 @@ enum class CanopySign {
 /// size of a pixel. Throws Error{input} where the bands cannot be read.
 std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopySign sign, double metres);
 
-/// Bands of an image file. Throws Error{input}.
+/// Bands of an image file, a last one of transparency not counted. Throws Error{input}.
 int band_count(const std::string& path);
 
 }  // namespace waymark

@@ -90,6 +90,31 @@ TEST_F(ImageryTrees, AreFoundWithAndWithoutInfrared) {
   }
 }
 
+TEST_F(ImageryTrees, TransparencyIsNoInfrared) {
+  make_dem(folder_ / "park.tif", park(3));
+  ASSERT_EQ(
+      bash("gdalwarp -q -dstalpha '" + (folder_ / "park.tif") + "' '" + (folder_ / "alpha.tif") + "'").code,
+      0);
+  ASSERT_EQ(detect("park.tif", "plain.csv").code, 0);
+  ASSERT_EQ(detect("alpha.tif", "alpha.csv").code, 0);
+  EXPECT_EQ(text_of(folder_ / "alpha.csv"), text_of(folder_ / "plain.csv"));
+}
+
+TEST_F(ImageryTrees, OddImagesAreNoTrouble) {
+  MadeDem tiny = park(4);
+  tiny.columns = tiny.rows = 1;
+  make_dem(folder_ / "tiny.tif", tiny);
+  EXPECT_EQ(detect("tiny.tif", "tiny.csv").code, 0);
+  for (const double grey : {0.0, 1.0, 255.0}) {  // 0 is no data
+    MadeDem flat = park(4);
+    flat.height = [grey](int, int) { return grey; };
+    make_dem(folder_ / "flat.tif", flat);
+    const Outcome made = detect("flat.tif", "flat.csv");
+    EXPECT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(text_of(folder_ / "flat.csv").find("nan"), std::string::npos);
+  }
+}
+
 TEST_F(ImageryTrees, AreTheSameForAnyThreads) {
   MadeDem wide = park(4);
   make_dem(folder_ / "park.tif", wide);
