@@ -14,7 +14,7 @@ namespace {
 constexpr double kCell = 0.6;  // metres: of the images that crowns were learnt from
 
 /// Means of squares of `across` pixels, without those that are not known.
-Grid<float> averaged(const Pixels& pixels, std::int64_t across, float full) {
+Grid<float> averaged(const Pixels& pixels, std::int64_t across, float white) {
   Grid<float> out(pixels.columns() / across, pixels.rows() / across);
   for (std::int64_t r = 0; r < out.rows(); ++r)
     for (std::int64_t c = 0; c < out.columns(); ++c) {
@@ -23,9 +23,26 @@ Grid<float> averaged(const Pixels& pixels, std::int64_t across, float full) {
       for (std::int64_t y = r * across; y < (r + 1) * across; ++y)
         for (std::int64_t x = c * across; x < (c + 1) * across; ++x)
           if (const float value = pixels(x, y); !std::isnan(value)) sum += value, ++count;
-      out(c, r) = count > 0 ? sum / (static_cast<float>(count) * full) : std::nanf("");
+      out(c, r) = count > 0 ? sum / (static_cast<float>(count) * white) : std::nanf("");
     }
   return out;
+}
+
+/// What stands for white. Eight bits are used whole; deeper pixels rarely are, so there it is told by the
+/// brightest two hundredth of 64 rows.
+float white_of(const std::vector<std::shared_ptr<const ImageSource>>& bands, const ImageInfo& image) {
+  if (!(image.saturated > 255)) return 255;
+  std::vector<float> values;
+  const std::int64_t step = std::max<std::int64_t>(1, image.rows / 64);
+  for (const auto& band : bands)
+    for (std::int64_t row = 0; row < image.rows; row += step)
+      for (const float value : band->read({0, row, image.columns, 1}).cells())
+        if (!std::isnan(value)) values.push_back(value);
+  if (values.empty()) return static_cast<float>(image.saturated);
+  const auto bright = values.begin() + static_cast<std::ptrdiff_t>(0.995 * double(values.size() - 1));
+  std::nth_element(values.begin(), bright, values.end());
+  constexpr float kUsualShare = 0.9F;  // of white, in pictures of eight bits
+  return std::max(*bright / kUsualShare, 1e-6F);
 }
 
 }  // namespace
@@ -34,13 +51,13 @@ ColourImage::ColourImage(const ImageInfo& image, double metres, int most_bands)
     : across_(std::max<std::int64_t>(1, std::llround(kCell / metres))),
       columns_((image.columns + across_ - 1) / across_),
       rows_((image.rows + across_ - 1) / across_),
-      cell_(metres * static_cast<double>(across_)),
-      full_(image.saturated > 0 ? static_cast<float>(image.saturated) : 255.0F) {
+      cell_(metres * static_cast<double>(across_)) {
   const int bands = std::min(most_bands, band_count(image.path));
   if (bands < 3)
     throw Error(ErrorCode::input, "not a colour image: it has fewer than three bands", image.path);
   for (int band = 1; band <= bands; ++band)
     bands_.push_back(import_image(image.path, {.georeference = false, .band = band}));
+  white_ = white_of(bands_, image);
 }
 
 ColourImage::~ColourImage() = default;
@@ -50,7 +67,7 @@ ColourWindow ColourImage::read(const Window& cells) const {
   for (const auto& band : bands_)
     window.bands.push_back(averaged(band->read({cells.column * across_, cells.row * across_,
                                                 cells.columns * across_, cells.rows * across_}),
-                                    across_, full_));
+                                    across_, white_));
   for (std::size_t i = 0; i < window.bands[0].cells().size(); ++i) {
     const bool unknown = std::ranges::any_of(
         window.bands, [&](const Grid<float>& band) { return std::isnan(band.cells()[i]); });

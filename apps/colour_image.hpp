@@ -29,7 +29,7 @@ class ColourImage {
   std::vector<std::shared_ptr<const ImageSource>> bands_;
   std::int64_t across_ = 1, columns_ = 0, rows_ = 0;
   double cell_ = 0.6;
-  float full_ = 255;
+  float white_ = 255;
 };
 
 }  // namespace waymark

@@ -68,6 +68,23 @@ class ImageCanopy final : public CanopySource {
   float full_ = 255;
 };
 
+/// Whether a band that the file calls transparency is any: many files with near infrared (NAIP) call it so.
+/// Transparency is all or nothing but for seams; 64 rows are looked at.
+bool is_transparency(GDALRasterBand& band) {
+  if (band.GetColorInterpretation() != GCI_AlphaBand) return false;
+  const int columns = band.GetXSize(), rows = band.GetYSize();
+  std::vector<double> row(static_cast<std::size_t>(columns));
+  const double full = band.GetRasterDataType() == GDT_Byte ? 255 : 65535;
+  double seen = 0, between = 0;
+  for (int r = 0; r < rows; r += std::max(1, rows / 64)) {
+    if (band.RasterIO(GF_Read, 0, r, columns, 1, row.data(), columns, 1, GDT_Float64, 0, 0) != CE_None)
+      return true;  // reading its pixels will tell what is wrong
+    seen += columns;
+    between += static_cast<double>(std::ranges::count_if(row, [&](double v) { return v > 0 && v < full; }));
+  }
+  return between < 0.05 * seen;
+}
+
 }  // namespace
 
 std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopySign sign, double metres) {
@@ -77,8 +94,7 @@ std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopyS
 int band_count(const std::string& path) {
   const auto file = open_raster(path);
   const int bands = file->GetRasterCount();
-  const bool alpha = bands > 1 && file->GetRasterBand(bands)->GetColorInterpretation() == GCI_AlphaBand;
-  return alpha ? bands - 1 : bands;
+  return bands > 1 && is_transparency(*file->GetRasterBand(bands)) ? bands - 1 : bands;
 }
 
 }  // namespace waymark

@@ -100,6 +100,16 @@ TEST_F(ImageryTrees, TransparencyIsNoInfrared) {
   EXPECT_EQ(text_of(folder_ / "alpha.csv"), text_of(folder_ / "plain.csv"));
 }
 
+TEST_F(ImageryTrees, SixteenBitsAreRarelyUsedWhole) {
+  MadeDem deep = park(4);
+  const auto grey = deep.height;
+  deep.cell_type = GDT_UInt16;
+  deep.height = [grey](int column, int row) { return 12 * grey(column, row); };
+  make_dem(folder_ / "deep.tif", deep);
+  ASSERT_EQ(detect("deep.tif", "trees.csv").code, 0);
+  EXPECT_GT(score("trees.csv")["f1"], 0.9);
+}
+
 TEST_F(ImageryTrees, OddImagesAreNoTrouble) {
   MadeDem tiny = park(4);
   tiny.columns = tiny.rows = 1;
