@@ -27,15 +27,15 @@ struct SkylineOptions {
   double refraction = 0;   ///< part of the curvature the air takes away: 0.13 on Earth
   double eye = 2;          ///< m above the ground
   double reach = 60000;    ///< m: summits further away are not seen
-  double step = 500;       ///< m between the places tried first
+  double step = 1000;      ///< m between the places tried first; less for small maps, more for very large
   double sigmas = 3;
   double height_sd = 15;  ///< m: error of summits and ground, also of a coarse DEM that cuts tops off
   double place_sd = 60;   ///< m: error of a summit's place, about a cell of the DEM
   std::int64_t least_matches = 5;
-  double false_alarms =
-      1e-5;           ///< poses of the map that may fit as well by chance; summits repeat their looks
-  double lead = 100;  ///< by which the best pose must be less probable by chance than the next
-  std::int64_t most_tried = 150;
+  double least_share = 0.8;    ///< part of the tops that must fit
+  double false_alarms = 1e-3;  ///< poses of the map that may fit as well by chance
+  double lead = 100;           ///< by which the best pose must be less probable by chance than the next
+  std::int64_t most_tried = 60;
   std::optional<double> heading = {};  ///< rad, of a compass
   double heading_sd = 0.05;
 
@@ -44,8 +44,8 @@ struct SkylineOptions {
 
 struct SkylineFix {
   PoseEstimate at;
-  std::vector<std::optional<std::uint32_t>> summits;  ///< of each top: index of the summit
-  int matched = 0;
+  std::vector<std::optional<std::uint32_t>> summits;  ///< of each top: which summit it is, if it is one
+  int matched = 0;                                    ///< tops that fit, summits or not
   double squares = 0, log_false_alarms = 0;
 };
 
@@ -55,12 +55,14 @@ struct SkylineAnswer {
   std::vector<SkylineFix> candidates;  ///< best first
 };
 
-/// Where a robot stands that sees these tops on its horizon (for the idea: Cozman & Krotkov 1996; Baboud et
-/// al. 2011). Places of a regular grid vote by bearing differences and elevations; a summit counts by how
-/// likely it stands on a horizon: one whose isolation exceeds its distance is higher than all between. The
-/// best places are fitted (resection: at least 3 bearings, 2 with a compass), summits hidden by the ground
-/// are left out, and a fix must be too good for chance. Tops of ridges that are no summits are expected.
-/// About a second for 100 km x 100 km and 500 summits.
+/// Where a robot stands that sees these tops on its horizon (for the idea: Baatz et al. 2012; Saurer et al.
+/// 2016; Tzeng et al. 2013). The whole horizon of each place of a grid is computed from the DEM; a place and
+/// heading count by how many tops lie on that horizon, each within what half a step of the grid changes
+/// there. The best places are divided and looked at again until they are about two cells of the DEM wide,
+/// the best of these fitted: each top is a local maximum of the horizon by rays, or a summit that stands free
+/// before higher ground. A fix must be too good for chance, explain four fifths of the tops, and have no
+/// rival. Tops without elevation are not used. Summits give the area and the names of tops. Deterministic for
+/// any number of threads. 5 s of one core for 110 km x 80 km after 4 s for the index.
 SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const SkylineSummit> summits,
                               const GroundHeight& ground, const SkylineOptions& options = {});
 

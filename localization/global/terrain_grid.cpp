@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/global/terrain_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace waymark {
+namespace {
+
+constexpr int kProbes = 64;
+
+/// Whether any ground is known between two places.
+bool known_between(const GroundHeight& ground, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  for (int i = 0; i <= kProbes; ++i)
+    if (ground(a + (b - a) * i / kProbes)) return true;
+  return false;
+}
+
+void widen(const GroundHeight& ground, Eigen::AlignedBox2d& box, double beyond) {
+  const Eigen::AlignedBox2d first = box;
+  const double step = std::max(beyond / 50, 1e-3);
+  for (int axis = 0; axis < 2; ++axis)
+    for (const int way : {-1, 1})
+      for (double far = step; far <= beyond; far += step) {
+        Eigen::Vector2d a = box.min(), b = box.max();
+        a[axis] = b[axis] = way < 0 ? first.min()[axis] - far : first.max()[axis] + far;
+        if (!known_between(ground, a, b)) break;
+        (way < 0 ? box.min() : box.max())[axis] = a[axis];
+      }
+}
+
+}  // namespace
+
+TerrainGrid::TerrainGrid(const GroundHeight& ground, Eigen::AlignedBox2d box, double beyond,
+                         std::int64_t most)
+    : area_(box) {
+  if (area_.isEmpty()) return;
+  widen(ground, area_, beyond);
+  cell_ = std::max(area_.sizes().maxCoeff() / static_cast<double>(most), 1e-3);
+  const auto columns = static_cast<std::int64_t>(area_.sizes().x() / cell_) + 2,
+             rows = static_cast<std::int64_t>(area_.sizes().y() / cell_) + 2;
+  columns_ = static_cast<double>(columns - 1), rows_ = static_cast<double>(rows - 1);
+  heights_ = Grid<float>(columns, rows, std::numeric_limits<float>::quiet_NaN());
+  for (std::int64_t r = 0; r < rows; ++r)
+    for (std::int64_t c = 0; c < columns; ++c)
+      if (const auto h = ground(area_.min() + cell_ * Eigen::Vector2d(double(c), double(r))))
+        heights_(c, r) = static_cast<float>(*h);
+  blocks_.push_back(heights_);
+  for (float& h : blocks_[0].cells())
+    if (!std::isfinite(h)) h = kNone;
+  while (blocks_.back().columns() > 1 || blocks_.back().rows() > 1) {
+    const Grid<float>& fine = blocks_.back();
+    Grid<float> coarse((fine.columns() + 1) / 2, (fine.rows() + 1) / 2, kNone);
+    for (std::int64_t r = 0; r < fine.rows(); ++r)
+      for (std::int64_t c = 0; c < fine.columns(); ++c)
+        coarse(c / 2, r / 2) = std::max(coarse(c / 2, r / 2), fine(c, r));
+    blocks_.push_back(std::move(coarse));
+  }
+  summit_ = static_cast<double>(blocks_.back()(0, 0));
+}
+
+}  // namespace waymark

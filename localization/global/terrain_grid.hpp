@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+#include "core/grid.hpp"
+#include "localization/ground.hpp"
+namespace waymark {
+
+/// Heights of the ground on a regular grid, with the highest of blocks of 2, 4, 8, ... cells: a ray that has
+/// come far looks at blocks as wide as the sector it stands for. Memory 6 bytes per cell.
+class TerrainGrid {
+ public:
+  /// Samples the ground in and around a box: each side is moved outwards by at most `beyond` metres while
+  /// ground is known there. At most `most` cells on the longer side.
+  TerrainGrid(const GroundHeight& ground, Eigen::AlignedBox2d box, double beyond, std::int64_t most = 1400);
+
+  /// Bilinear; NaN where one of the four cells is not known.
+  double height(double x, double y) const {
+    const double c = (x - area_.min().x()) / cell_, r = (y - area_.min().y()) / cell_;
+    if (!(c >= 0 && r >= 0 && c < columns_ && r < rows_)) return std::nan("");
+    const auto c0 = static_cast<std::int64_t>(c), r0 = static_cast<std::int64_t>(r);
+    const double u = c - static_cast<double>(c0), v = r - static_cast<double>(r0);
+    const float *low = &heights_(c0, r0), *high = low + heights_.columns();
+    return (1 - v) * ((1 - u) * low[0] + u * low[1]) + v * ((1 - u) * high[0] + u * high[1]);
+  }
+  /// Highest known cell of the block of 2^level cells that holds the nearest cell of a place; lower than all
+  /// ground if none is.
+  float highest(double x, double y, int level) const {
+    const double c_of = (x - area_.min().x()) / cell_ + 0.5, r_of = (y - area_.min().y()) / cell_ + 0.5;
+    if (!(c_of >= 0 && r_of >= 0)) return kNone;
+    const std::int64_t c = static_cast<std::int64_t>(c_of) >> level,
+                       r = static_cast<std::int64_t>(r_of) >> level;
+    const Grid<float>& grid = blocks_[static_cast<std::size_t>(level)];
+    return grid.contains(c, r) ? grid(c, r) : kNone;
+  }
+  double cell() const { return cell_; }
+  int levels() const { return static_cast<int>(blocks_.size()); }
+  double summit() const { return summit_; }  ///< highest of all; kNone without any ground
+  const Eigen::AlignedBox2d& area() const { return area_; }
+
+  static constexpr float kNone = -1e30F;
+
+ private:
+  Eigen::AlignedBox2d area_;
+  double cell_ = 1, columns_ = 0, rows_ = 0, summit_ = kNone;
+  Grid<float> heights_;  // NaN: not known; rows from south to north
+  std::vector<Grid<float>> blocks_;
+};
+
+}  // namespace waymark
