@@ -44,6 +44,7 @@ class Graph final : public LocalizeMethod {
   void describe(OptionVisitor& option) override {
     options_.describe(option);
     slam_.describe(option);
+    search_.describe(option);
   }
 
   Track run(LocalizeTask& task) override {
@@ -82,6 +83,7 @@ class Graph final : public LocalizeMethod {
     const SlamRun run = slam_run(task, slam_);
     EkfSlam slam(run.start, task.map.window.around(run.start.pose.at(), kAround),
                  FeatureScales(task.map.map.types()), run.options, sight_of(task));
+    if (task.map.map.landmarks > 0) slam.search_with(finder_for(task, search_));
     GraphOfDrive drive(run.start, slam);
     Track track = play_with(task, run, drive);
     std::vector<SlamLandmark> landmarks;
@@ -107,6 +109,7 @@ class Graph final : public LocalizeMethod {
 
   GraphOptions options_;
   SlamOptions slam_;
+  SearchOptions search_;
 };
 
 }  // namespace

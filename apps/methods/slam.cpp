@@ -21,12 +21,16 @@ class Slam final : public LocalizeMethod {
   StartNeed start() const override { return StartNeed::found; }
   bool needs_map() const override { return false; }
   bool makes_map() const override { return true; }
-  void describe(OptionVisitor& option) override { options_.describe(option); }
+  void describe(OptionVisitor& option) override {
+    options_.describe(option);
+    search_.describe(option);
+  }
 
   Track run(LocalizeTask& task) override {
     const SlamRun run = slam_run(task, options_);
     EkfSlam slam(run.start, task.map.window.around(run.start.pose.at(), kAround),
                  FeatureScales(task.map.map.types()), run.options, sight_of(task));
+    if (task.map.map.landmarks > 0) slam.search_with(finder_for(task, search_));
     Track track = play_with(task, run, slam);
     const std::vector<SlamLandmark> landmarks = slam.landmarks();
     tell(landmarks, run.options);
@@ -58,6 +62,7 @@ class Slam final : public LocalizeMethod {
   }
 
   SlamOptions options_;
+  SearchOptions search_;
 };
 
 }  // namespace

@@ -17,4 +17,9 @@ struct FoundPoses {
 /// Answers "where am I?" without knowing anything but the map.
 using PoseFinder = std::function<FoundPoses(const SightingSet&)>;
 
+/// Whether a pose that was found is not the other one: more than a metre off, and more than both covariances
+/// explain. That of the found one counts four times, as the finder does not know how odometry blurred what
+/// is remembered.
+bool are_apart(const PoseEstimate& found, const PoseEstimate& other);
+
 }  // namespace waymark

@@ -202,6 +202,7 @@ std::vector<Match> EkfSlam::see(const SightingSet& seen) {
       matches[k].verdict = named(s) ? Verdict::too_far : Verdict::ambiguous;
     }
   }
+  if (search_) look_for_place(seen, near, found);
   return matches;
 }
 

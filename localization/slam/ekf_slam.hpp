@@ -8,6 +8,7 @@
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
+#include "localization/slam/slam_search.hpp"
 #include "localization/slam/slam_state.hpp"
 namespace waymark {
 
@@ -58,8 +59,17 @@ class EkfSlam final : public Localizer {
   explicit EkfSlam(const PoseEstimate& start, SlamOptions options = {});
   EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scales, SlamOptions options = {},
           LineOfSight visible = {});
-  void move(const BodyMotion& motion) override { pending_ = then(pending_, motion); }
+  void move(const BodyMotion& motion) override {
+    pending_ = then(pending_, motion);
+    if (search_) search_->move(motion);
+  }
   std::vector<Match> see(const SightingSet& seen) override;
+  Trust trust() const override;
+
+  /// From now on it asks where it is when it does not find the landmarks of its map (SlamSearch), and begins
+  /// anew there: landmarks of the map as the map has them, new ones of before it was lost as they are.
+  void search_with(PoseFinder finder);
+  int restarts() const { return restarts_; }
   PoseEstimate estimate() const override;
 
   /// Everything brought up to date: landmarks with places and covariances, those of the map that were not
@@ -88,6 +98,8 @@ class EkfSlam final : public Localizer {
   void add(const SeenLandmark& seen, const Pose2& mount);
   void count(const std::vector<Near>& near, const std::vector<bool>& found);
   Eigen::Vector2d place(std::size_t landmark) const;
+  void look_for_place(const SightingSet& seen, const std::vector<Near>& near, const std::vector<bool>& found);
+  void begin_anew(const PoseEstimate& at);
 
   SlamOptions options_;
   SlamState state_;
@@ -102,6 +114,9 @@ class EkfSlam final : public Localizer {
   Eigen::Vector2d centre_;       ///< where the neighbourhood was last chosen
   double reach_ = 0, view_ = 0;  ///< farthest range and widest bearing seen so far
   double hits_ = 0, chances_ = 0;
+  std::optional<SlamSearch> search_;
+  std::size_t trusted_ = 0;  ///< landmarks there were when the map was last seen
+  int restarts_ = 0;
 };
 
 }  // namespace waymark

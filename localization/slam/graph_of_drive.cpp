@@ -11,6 +11,7 @@
 namespace waymark {
 namespace {
 
+constexpr double kNothing = 1e-4;  // root of the information of a step that is not believed
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 /// Of a covariance that may be only semidefinite: a robot that cannot slip has no error sideways.
@@ -33,6 +34,7 @@ void GraphOfDrive::move(const BodyMotion& motion) {
 }
 
 std::vector<Match> GraphOfDrive::see(const SightingSet& seen) {
+  const int restarts = slam_.restarts();
   std::vector<Match> matches = slam_.see(seen);
   const std::size_t pose = graph_.poses.size();
   graph_.poses.push_back({.id = static_cast<std::int64_t>(pose),
@@ -44,6 +46,12 @@ std::vector<Match> GraphOfDrive::see(const SightingSet& seen) {
   graph_.steps.push_back(
       {.from = pose - 1, .to = pose, .step = pending_.step, .root = root_of_covariance(covariance)});
   pending_ = {};
+  if (slam_.restarts() > restarts) {  // found elsewhere: the way there says nothing, the finder does
+    graph_.steps.back().root = Eigen::Matrix3d::Identity() * kNothing;
+    graph_.pose_priors.push_back(
+        {.pose = pose, .at = slam_.estimate().pose, .root = root_of_covariance(slam_.estimate().covariance)});
+    return matches;
+  }
   for (std::size_t k = 0; k < matches.size(); ++k) {
     if (!slam_.last()[k]) continue;
     const SeenLandmark& s = seen.sightings[k];

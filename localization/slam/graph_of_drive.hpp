@@ -12,6 +12,7 @@ class GraphOfDrive final : public Localizer {
   void move(const BodyMotion& motion) override;
   std::vector<Match> see(const SightingSet& seen) override;
   PoseEstimate estimate() const override { return slam_.estimate(); }
+  Trust trust() const override { return slam_.trust(); }
 
   /// The graph, with the map's landmarks and the start as priors and SLAM's result as first guess. Landmarks
   /// that probably do not exist (log odds below 0) are left out. `landmarks`: SLAM's, in the order of the

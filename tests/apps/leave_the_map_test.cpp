@@ -16,14 +16,15 @@ class LeaveTheMap : public Localize {
     std::string csv = "uid,x,y,radius,position_sd\n", log;
   };
 
-  static Site site(std::uint64_t seed) {
+  /// `edge`: where the map ends, m; `carried`: after 200 s the robot is set down elsewhere, unknown to it.
+  static Site site(std::uint64_t seed, double edge = kEdge, bool carried = false) {
     Site made;
     Random random(seed, "off the map");
     for (int i = 0; i < 520; ++i) {
       const Rock rock{random.uniform(-30, 180), random.uniform(-30, 30), random.log_uniform(0.2, 1)};
       if (std::abs(rock.y) < 1.5) continue;
       made.rocks.push_back(rock);
-      if (rock.x < kEdge)
+      if (rock.x < edge)
         made.csv += "r" + std::to_string(i) + "," + std::to_string(rock.x) + "," + std::to_string(rock.y) +
                     "," + std::to_string(rock.radius) + ",0.05\n";
     }
@@ -32,8 +33,9 @@ class LeaveTheMap : public Localize {
     std::string& log = made.log;
     log = R"({"kind":"header","version":1,"start":{"x":-20,"y":0,"yaw":0}})"
           "\n";
-    for (int i = 0; i < 620; ++i) {
+    for (int i = 0; i < (carried ? 290 : 620); ++i) {
       const double t = i;
+      if (carried && i == 200) at = {at.x - 55, 8, 0.6};
       // There, a half turn of 6 m radius, and back.
       const double speed = 0.5, turn = i >= 290 && i < 328 ? speed / 6 : 0;
       log += nlohmann::json{{"kind", "truth"}, {"t", t}, {"x", at.x}, {"y", at.y}, {"yaw", at.yaw}}.dump() +
@@ -91,6 +93,36 @@ TEST_F(LeaveTheMap, EveryMethodFindsBack) {
       EXPECT_THAT(said.err, testing::HasSubstr("lost in")) << "it must say so: " << method << seed;
       const auto [off, lost] = end(made);
       std::cout << "seed " << seed << ' ' << method << ": " << off << " m off at the end\n";
+      EXPECT_LT(off, 0.5) << method << seed;
+      EXPECT_FALSE(lost) << method << seed;
+    }
+  }
+}
+
+// SLAM maps what it meets outside, so it is not lost there; its way back must still end in the map.
+TEST_F(LeaveTheMap, SlamFindsBackToo) {
+  const Site made = site(1);
+  import_rocks(made.csv, "local");
+  for (const std::string method : {"slam", "graph"}) {
+    const Outcome said = localize(made.log, {"--method", method, "--ids", "unknown"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const auto [off, lost] = end(made);
+    std::cout << method << ": " << off << " m off at the end\n";
+    EXPECT_LT(off, 0.5) << method;
+    EXPECT_FALSE(lost) << method;
+  }
+}
+
+TEST_F(LeaveTheMap, WhoIsCarriedElsewhereSaysSoAndFindsItself) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const Site made = site(seed, 1000, true);
+    import_rocks(made.csv, "local");
+    for (const std::string method : {"ekf", "slam", "graph"}) {
+      const Outcome said = localize(made.log, {"--method", method, "--ids", "unknown"});
+      ASSERT_EQ(said.code, 0) << said.err;
+      EXPECT_THAT(said.err, testing::HasSubstr("lost in")) << "it must say so: " << method << seed;
+      const auto [off, lost] = end(made);
+      std::cout << "carried, seed " << seed << ' ' << method << ": " << off << " m off at the end\n";
       EXPECT_LT(off, 0.5) << method << seed;
       EXPECT_FALSE(lost) << method << seed;
     }
