@@ -111,6 +111,9 @@ std::unique_ptr<Localizer> searching_particles(LocalizeTask& task, const std::op
 }
 
 std::unique_ptr<Localizer> searching_kalman(LocalizeTask& task, const SearchOptions& search, bool unscented) {
+  const IdentificationOptions& how = task.settings.identification;
+  ChanceShare chance;
+  if (!how.use_identities) chance = chance_share(task.map.window, FeatureScales(task.map.map.types()), how);
   const auto begin = [unscented, window = std::move(task.map.window),
                       scales = FeatureScales(task.map.map.types()), &settings = task.settings,
                       visible = sight_of(task),
@@ -130,7 +133,7 @@ std::unique_ptr<Localizer> searching_kalman(LocalizeTask& task, const SearchOpti
     filter->expect_landmarks(settings.particles.weight, visible);
     return filter;
   };
-  return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search));
+  return std::make_unique<Restarting>(*task.start, begin, finder_for(task, search), std::move(chance));
 }
 
 }  // namespace waymark

@@ -78,6 +78,8 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow
       summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
           box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
     }
+    doubt_.emplace(summary_);
+    if (!identification_.use_identities) chance_ = chance_share(map_, scales_, identification_);
     return;
   }
   if (!start->pose.finite() || !start->covariance.allFinite())
@@ -92,12 +94,13 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow
 
 Trust ParticleFilter::trust() const {
   if (poses_.empty()) return Trust::unset;
-  return searching_ ? Trust::lost : Trust::sure;
+  return searching_ || (doubt_ && !doubt_->found()) ? Trust::lost : Trust::sure;
 }
 
 void ParticleFilter::move(const BodyMotion& motion) {
   pending_ = then(pending_, motion);
   if (finder_) memory_.move(motion);
+  if (doubt_) doubt_->move(motion);
   if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) spread();
 }
 
@@ -142,6 +145,10 @@ void ParticleFilter::ask_finder(const SightingSet& seen) {
     for (int i = 0; i < 50; ++i) hints_.push_back(sample(e, root, random));
   }
   // It is somewhere else than all particles: begin again.
+  if (found.sure && doubt_ && !searching_) {
+    doubt_->confirm(*found.sure, summary_);
+    searching_ = !doubt_->found();
+  }
   if (found.sure && searching_) {
     poses_.clear();
     found_sd_ = std::sqrt(found.sure->covariance(0, 0) + found.sure->covariance(1, 1));
@@ -225,7 +232,7 @@ bool ParticleFilter::weigh_by(Fit&& fit) {
 bool ParticleFilter::fix(const GnssFix& gnss) {
   spread();
   const double squares = updated(summary_, gnss).squares;
-  const bool scattered = searching_ && !poses_.empty();
+  const bool scattered = trust() == Trust::lost;
   if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
   double nearest = 1e300;
   for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
@@ -237,8 +244,10 @@ bool ParticleFilter::fix(const GnssFix& gnss) {
                         random.uniform(-std::numbers::pi, std::numbers::pi)});
     weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
     summary_ = summary(poses_, weights_, kCluster);
+    if (doubt_) doubt_->lose(), doubt_->fix(gnss);
     return true;
   }
+  if (doubt_) doubt_->fix(gnss);
   return weigh_by(
       [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
 }
@@ -265,7 +274,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   ++sets_;
   if (finder_) {
     memory_.add(seen);
-    if (searching_ || (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
+    if (searching_ || (doubt_ && !doubt_->found()) || (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
       ask_finder(seen);
     else
       hints_.clear();
@@ -284,6 +293,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
   for (Match& match : matches)
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
+  if (doubt_) doubt_->count(fitting_share(matches), chance_ ? chance_(seen, summary_) : 0, !searching_);
   return matches;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include "core/random.hpp"
+#include "localization/filters/convergence.hpp"
 #include "localization/filters/particle_weights.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
@@ -41,7 +42,9 @@ class ParticleFilter final : public Localizer {
   std::vector<Match> see(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override;
   bool fix(const HeadingFix& heading) override;
-  PoseEstimate estimate() const override { return moved(summary_, pending_); }
+  PoseEstimate estimate() const override {
+    return doubt_ ? doubt_->honest(moved(summary_, pending_)) : moved(summary_, pending_);
+  }
   Trust trust() const override;
 
   /// With `expect_unseen`: what the ground hides is not expected.
@@ -79,6 +82,8 @@ class ParticleFilter final : public Localizer {
   std::uint64_t sets_ = 0;
   double found_sd_ = 0;  // m, of the last pose the finder was sure of: no search gets nearer by itself
   FixGate gnss_;
+  std::optional<Convergence> doubt_;  // where no start was given
+  ChanceShare chance_;
   LineOfSight visible_;
 };
 
