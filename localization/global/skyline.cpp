@@ -44,28 +44,22 @@ class SkylineSearch {
       return {.fix = {}, .reason = "the map has too few summits", .candidates = {}};
     if (usable < (o_.heading ? 2 : 3))
       return {.fix = {}, .reason = "too few tops on the horizon", .candidates = {}};
-    const std::vector<HorizonGuess> all = best_headings(index_.places_, tops_, 1, o_);
-    SkylineAnswer answer;
-    // Most horizons are found among few places; the others are looked for among more.
-    for (const std::size_t wide : {std::size_t{1}, std::size_t{3}}) {
-      answer = look_at(all, wide);
-      answer.reason = verdict(answer.candidates, usable);
-      if (answer.reason.empty()) answer.fix = answer.candidates[0];
-      if (answer.fix) break;
-    }
+    SkylineAnswer answer = look_at(best_headings(index_.places_, tops_, 1, o_));
+    answer.reason = verdict(answer.candidates, usable);
+    if (answer.reason.empty()) answer.fix = answer.candidates[0];
     return answer;
   }
 
  private:
-  SkylineAnswer look_at(std::vector<HorizonGuess> guesses, std::size_t wide) const {
+  SkylineAnswer look_at(std::vector<HorizonGuess> guesses) const {
     double step = index_.options_.step;
     for (std::size_t level = 0; step > 2.5 * index_.terrain_.cell(); ++level) {
-      keep_best(guesses, std::min(wide * kBeam[std::min(level, std::size(kBeam) - 1)],
-                                  wide * index_.places_.size() / 4 + 1));
+      keep_best(guesses,
+                std::min(kBeam[std::min(level, std::size(kBeam) - 1)], index_.places_.size() / 4 + 1));
       guesses = closer(guesses, step);
       step /= 2;
     }
-    keep_best(guesses, wide * static_cast<std::size_t>(o_.most_tried));
+    keep_best(guesses, static_cast<std::size_t>(o_.most_tried));
     std::vector<std::optional<SkylineFix>> fits(guesses.size());
     const SkylineScene scene{index_.terrain_, index_.summits_, o_};
     tbb::parallel_for(std::size_t{0}, guesses.size(),
@@ -101,6 +95,7 @@ class SkylineSearch {
     const SkylineFix& best = fixes[0];
     const auto least = o_.heading ? std::min<std::int64_t>(o_.least_matches, 3) : o_.least_matches;
     if (best.matched < least || best.matched < o_.least_share * usable) return "too few tops fit one place";
+    if (!(best.squares < o_.most_squares * best.matched)) return "the best place fits badly";
     if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best place may fit by chance";
     if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
       return "two places fit alike";

@@ -33,6 +33,7 @@ struct SkylineOptions {
   double place_sd = 60;   ///< m: error of a summit's place, about a cell of the DEM
   std::int64_t least_matches = 5;
   double least_share = 0.8;    ///< part of the tops that must fit
+  double most_squares = 2;     ///< squared distance per top that fits; matches by chance are farther off
   double false_alarms = 1e-3;  ///< poses of the map that may fit as well by chance
   double lead = 100;           ///< by which the best pose must be less probable by chance than the next
   std::int64_t most_tried = 60;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <vector>
 #include "core/grid.hpp"
 #include "localization/ground.hpp"
@@ -32,6 +33,14 @@ class TerrainGrid {
                        r = static_cast<std::int64_t>(r_of) >> level;
     const Grid<float>& grid = blocks_[static_cast<std::size_t>(level)];
     return grid.contains(c, r) ? grid(c, r) : kNone;
+  }
+  /// How far a ray from a place inside goes, m; `along`: of length 1.
+  double way_out(const Eigen::Vector2d& from, const Eigen::Vector2d& along) const {
+    double way = 1e300;
+    for (int axis = 0; axis < 2; ++axis)
+      if (along[axis] != 0)
+        way = std::min(way, ((along[axis] > 0 ? area_.max() : area_.min())[axis] - from[axis]) / along[axis]);
+    return way + 2 * cell_;
   }
   double cell() const { return cell_; }
   int levels() const { return static_cast<int>(blocks_.size()); }
