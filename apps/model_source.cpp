@@ -9,12 +9,6 @@
 #include "core/error.hpp"
 
 namespace waymark {
-namespace {
-
-constexpr std::size_t kLine = 140;  // characters of the model per line of source: below 300 lines
-
-}  // namespace
-
 std::string as_source(const std::string& text, const ModelSource& source) {
   std::string code = fmt::format(
       "// SPDX-License-Identifier: Apache-2.0\n"
@@ -26,7 +20,7 @@ std::string as_source(const std::string& text, const ModelSource& source) {
       source.made_by, source.header, source.type, source.name, source.type, source.parse);
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t line = text.find('\n', begin);
-    const std::size_t end = std::min(begin + kLine, line == std::string::npos ? text.size() : line);
+    const std::size_t end = std::min(begin + source.line, line == std::string::npos ? text.size() : line);
     const bool ends_line = end == line;
     code += fmt::format("      \"{}{}\"\n", text.substr(begin, end - begin), ends_line ? "\\n" : "");
     begin = ends_line ? end + 1 : end;

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstddef>
 #include <string>
 namespace waymark {
 
 /// How a trained model becomes a source file of waymark.
 struct ModelSource {
-  std::string made_by;  ///< the command, for people
-  std::string header;   ///< that declares the function
-  std::string type;     ///< what the function returns a reference to
-  std::string name;     ///< of the function
-  std::string parse;    ///< reads the model's text
-  std::string where;    ///< what an error of the text would name
+  std::string made_by;     ///< the command, for people
+  std::string header;      ///< that declares the function
+  std::string type;        ///< what the function returns a reference to
+  std::string name;        ///< of the function
+  std::string parse;       ///< reads the model's text
+  std::string where;       ///< what an error of the text would name
+  std::size_t line = 140;  ///< characters of the text per line: a source file has at most 300 lines
 };
 
-/// A function that parses `text` once; lines of 140 characters.
+/// A function that parses `text` once.
 std::string as_source(const std::string& text, const ModelSource& source);
 
 /// Writes a model, as source where the name ends in .cpp. Throws Error{output}.

@@ -9,6 +9,7 @@
 #include "apps/tree_lessons.hpp"
 #include "core/error.hpp"
 #include "pipeline/craters/crater_training.hpp"
+#include "pipeline/craters/look_training.hpp"
 
 namespace waymark {
 namespace {
@@ -58,12 +59,15 @@ class Train final : public Command {
 
   int train_craters(const Session& session) const {
     std::vector<CraterExample> examples;
+    std::vector<LookExample> looks;
     for (std::int64_t i = 0; i < scenes_; ++i) {
       // By turns plain shading of relief no testbed makes, and what the testbed renders.
       const auto index = static_cast<std::uint64_t>(i / 2);
-      const auto more =
-          examples_of(i % 2 == 0 ? shaded_scene(index, kSide) : testbed_lesson(index, kSide), index);
+      const KnownScene scene = i % 2 == 0 ? shaded_scene(index, kSide) : testbed_lesson(index, kSide);
+      const auto more = examples_of(scene, index);
       examples.insert(examples.end(), more.begin(), more.end());
+      const auto more_looks = looks_of(scene, static_cast<std::uint64_t>(i));
+      looks.insert(looks.end(), more_looks.begin(), more_looks.end());
       if ((i + 1) % 20 == 0 && !session.quiet)
         say(fmt::format("{} of {} scenes, {} examples\n", i + 1, scenes_, examples.size()));
     }
@@ -72,13 +76,16 @@ class Train final : public Command {
     CraterModel model = train_crater_model(examples, training, [&](int round, double loss) {
       if (!session.quiet) say(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
     });
+    model.looks = train_looks(looks, training.rounds, training.seed, [&](int round, double loss) {
+      if (!session.quiet) say(fmt::format("looks, round {}: loss {:.4f}\n", round + 1, loss));
+    });
     model.trained_on =
         fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes_ - 1,
                     kSide, examples.size(), training.rounds, seed_);
     write_model(
         output_, as_text(model),
         {"waymark train craters -o pipeline/craters/built_in_model.cpp", "pipeline/craters/crater_model.hpp",
-         "CraterModel", "built_in_crater_model", "parse_crater_model", "the built-in crater model"});
+         "CraterModel", "built_in_crater_model", "parse_crater_model", "the built-in crater model", 480});
     return 0;
   }
 

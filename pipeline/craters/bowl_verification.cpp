@@ -16,9 +16,11 @@ namespace {
 constexpr double kTemperature = 0.5;  // of all evidence: its parts are not independent
 constexpr double kPerCorrelation = 20;
 constexpr double kEven = 0.59;            // correlation that tells nothing
-constexpr double kModelSize = 0.4;        // weight of the model's diameter against the edges'
+constexpr double kModelSize = 0.35;       // weight of the model's diameter against the edges'
 constexpr double kEvenUntrained = 0.645;  // without a model, which then decides alone
 constexpr double kPriorTrust = 0.45;      // how far towards the image's own share of craters
+
+constexpr double kHopeless = 0.12;  // probability at first sight that nothing makes up for
 
 double logistic(double x) {
   return 1 / (1 + std::exp(-x));
@@ -30,15 +32,28 @@ struct Opinion {
   double diameter = 0;  // of that circle; 0: none
 };
 
+double log_odds(double p) {
+  return std::log(std::max(1e-6, p) / std::max(1e-6, 1 - p));
+}
+
+// Corrected twice, judged at the place that gives. Where there are looks they lead: what they see is cheaper
+// to sample than gradients, and both judge that place; they err on different candidates.
 Opinion opinion_of(const CraterModel& model, const PatchSource& patches, const CraterCandidate& candidate) {
+  const auto judge_at = [&](const CraterCandidate& at) {
+    return model.looks.empty() ? judge(model, patches.features(at, candidate.score))
+                               : judge(model.looks, patches.look(at, candidate.score));
+  };
+  const double hopeless = model.looks.empty() ? 0.01 : kHopeless;
   CraterCandidate at = candidate;
   for (int i = 0; i < 2; ++i) {
-    const CraterVerdict verdict = judge(model, patches.features(at, candidate.score));
-    if (i == 0 && verdict.probability < 0.01) return {-4.6, 0};
+    const CraterVerdict verdict = judge_at(at);
+    if (i == 0 && verdict.probability < hopeless) return {log_odds(verdict.probability), 0};
     at = corrected(at, verdict, patches.sun_angle());
   }
-  const double p = judge(model, patches.features(at, candidate.score)).probability;
-  return {std::log(std::max(1e-6, p) / std::max(1e-6, 1 - p)), at.diameter};
+  const double first = log_odds(judge_at(at).probability);
+  if (model.looks.empty()) return {first, at.diameter};
+  const CraterVerdict second = judge(model, patches.features(at, candidate.score));
+  return {(first + log_odds(second.probability)) / 2, at.diameter * std::exp(second.log_size / 2)};
 }
 
 // The steepest change of brightness lies inside the crest of a worn rim; the model has learnt by how much.
@@ -73,8 +88,8 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     const CraterCandidate& c = candidates[i];
     const double correlation = (patches.slope_correlation(c) + c.score) / 2;
-    // What correlates this little stays below one in a hundred whatever the model says.
-    const bool hopeless = correlation < kEven - 0.14;
+    // What correlates this little is never seen to pass, whatever the model says.
+    const bool hopeless = correlation < kEven - 0.09;
     if (model) opinions[i] = hopeless ? Opinion{-4.6, 0} : opinion_of(*model, patches, c);
     evidence[i] = model ? kTemperature * (opinions[i].log_odds + kPerCorrelation * (correlation - kEven))
                         : kPerCorrelation * (correlation - kEvenUntrained);

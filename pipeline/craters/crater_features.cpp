@@ -82,6 +82,25 @@ std::vector<BowlSample> slope_bowl() {
 
 }  // namespace
 
+double normalise(std::array<float, kLookSide * kLookSide>& patch) {
+  // The whole samples within 1.6 radii of the middle.
+  constexpr int margin = 3, inner = kLookSide - 2 * margin;
+  static_assert(2 * 1.6 / (2 * kLookReach / kLookSide) < inner &&
+                inner - 2 < 2 * 1.6 / (2 * kLookReach / kLookSide));
+  double sum = 0, squares = 0;
+  const auto over_inner = [&](const auto& add) {
+    for (int j = margin; j < kLookSide - margin; ++j)
+      for (int i = margin; i < kLookSide - margin; ++i)
+        add(double(patch[static_cast<std::size_t>(j * kLookSide + i)]));
+  };
+  over_inner([&](double v) { sum += v; });
+  const double mean = sum / (inner * inner);
+  over_inner([&](double v) { squares += (v - mean) * (v - mean); });
+  const double deviation = std::sqrt(squares / (inner * inner)), scale = deviation > 0 ? 1 / deviation : 0;
+  for (float& v : patch) v = static_cast<float>(std::clamp((v - mean) * scale, -3.0, 3.0));
+  return deviation;
+}
+
 PatchSource::PatchSource(const Pixels& image, Radians sun_angle) : sun_angle_(sun_angle) {
   auto levels = std::make_shared<std::vector<Level>>();
   levels->push_back({image, 1, 1});
@@ -101,21 +120,31 @@ PatchSource::PatchSource(const Pixels& image, Radians sun_angle) : sun_angle_(su
   levels_ = std::move(levels);
 }
 
-std::array<float, kPatchSide * kPatchSide> PatchSource::patch(const CraterCandidate& c, bool mirrored) const {
-  const double step = kPatchReach * c.diameter / kPatchSide;  // pixels of the image between samples
+template <int kSide>
+void PatchSource::read(const CraterCandidate& c, double reach, bool mirrored, float* samples) const {
+  const double step = reach * c.diameter / kSide;  // pixels of the image between samples
   const auto wanted = static_cast<int>(std::floor(std::log2(std::max(1.0, step / 0.75))));
   const Level& level = (*levels_)[std::min(static_cast<std::size_t>(wanted), levels_->size() - 1)];
   const double towards_x = std::cos(sun_angle_.value), towards_y = std::sin(sun_angle_.value);
-  Patch patch{};
-  for (int j = 0; j < kPatchSide; ++j)
-    for (int i = 0; i < kPatchSide; ++i) {
-      const double u = (i - (kPatchSide - 1) / 2.0) * step,
-                   v = (mirrored ? -1 : 1) * (j - (kPatchSide - 1) / 2.0) * step;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) {
+      const double u = (i - (kSide - 1) / 2.0) * step,
+                   v = (mirrored ? -1 : 1) * (j - (kSide - 1) / 2.0) * step;
       const double x = c.x + u * towards_x - v * towards_y, y = c.y + u * towards_y + v * towards_x;
-      patch[static_cast<std::size_t>(j * kPatchSide + i)] =
-          sample(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
+      *samples++ = sample(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
     }
+}
+
+std::array<float, kPatchSide * kPatchSide> PatchSource::patch(const CraterCandidate& c, bool mirrored) const {
+  Patch patch{};
+  read<kPatchSide>(c, kPatchReach, mirrored, patch.data());
   return patch;
+}
+
+std::array<float, 3> PatchSource::facts(double correlation, double deviation, double diameter) const {
+  return {static_cast<float>(4 * correlation - 2),
+          static_cast<float>(std::clamp(std::log2((deviation + 1e-12) / noise_) / 3, -1.0, 2.0)),
+          static_cast<float>(std::clamp(std::log2(diameter / 12), -1.0, 1.0))};
 }
 
 CraterFeatures PatchSource::features(const CraterCandidate& c, double correlation, bool mirrored) const {
@@ -124,11 +153,16 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
   const double deviation = normalise(seen);
   thumbnail(seen, result.data());
   gradients(seen, result.data() + kThumbSide * kThumbSide);
-  float* rest = result.data() + kCraterFeatures - 3;
-  rest[0] = static_cast<float>(4 * correlation - 2);
-  rest[1] = static_cast<float>(std::clamp(std::log2((deviation + 1e-12) / noise_) / 3, -1.0, 2.0));
-  rest[2] = static_cast<float>(std::clamp(std::log2(c.diameter / 12), -1.0, 1.0));
+  const auto rest = facts(correlation, deviation, c.diameter);
+  std::copy(rest.begin(), rest.end(), result.end() - 3);
   return result;
+}
+
+CraterLook PatchSource::look(const CraterCandidate& c, double correlation) const {
+  CraterLook look;
+  read<kLookSide>(c, kLookReach, false, look.patch.data());
+  look.facts = facts(correlation, waymark::normalise(look.patch), c.diameter);
+  return look;
 }
 
 double PatchSource::slope_correlation(const CraterCandidate& c) const {

@@ -26,6 +26,12 @@ void add_products(const CraterModel::Layer& layer, const std::vector<float>& in,
   }
 }
 
+CraterVerdict verdict_of(const std::vector<float>& out) {
+  assert(out.size() == 4);
+  return {1 / (1 + std::exp(-double(out[0]))), std::clamp(0.1 * out[1], -0.5, 0.5),
+          std::clamp(0.1 * out[2], -0.5, 0.5), std::clamp(0.1 * out[3], -0.7, 0.7)};
+}
+
 }  // namespace
 
 CraterVerdict judge(const CraterModel& model, const CraterFeatures& features) {
@@ -38,9 +44,11 @@ CraterVerdict judge(const CraterModel& model, const CraterFeatures& features) {
       for (float& value : out) value = value > 0 ? value : 0.1F * value;
     in.swap(out);
   }
-  assert(in.size() == 4);
-  return {1 / (1 + std::exp(-double(in[0]))), std::clamp(0.1 * in[1], -0.5, 0.5),
-          std::clamp(0.1 * in[2], -0.5, 0.5), std::clamp(0.1 * in[3], -0.7, 0.7)};
+  return verdict_of(in);
+}
+
+CraterVerdict judge(const ConvolutionNet& looks, const CraterLook& look) {
+  return verdict_of(answer(looks, look.patch, look.facts));
 }
 
 CraterCandidate corrected(const CraterCandidate& c, const CraterVerdict& verdict, Radians sun_angle) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "pipeline/craters/convolution_net.hpp"
 #include "pipeline/craters/crater_features.hpp"
 namespace waymark {
 
@@ -15,8 +16,9 @@ struct CraterVerdict {
   double along = 0, across = 0, log_size = 0;
 };
 
-/// A network of two hidden layers (rectified, leak 0.1), four outputs. Small on purpose: some ten thousand
-/// weights, trained on made-up scenes.
+/// Two networks of four outputs each, small on purpose, trained on made-up scenes: one of two hidden layers
+/// (rectified, leak 0.1) on gradients and a thumbnail, and a convolutional one on brightness over a wider
+/// patch, which may be missing. They err on different candidates.
 struct CraterModel {
   struct Layer {
     int inputs = 0, outputs = 0;
@@ -24,17 +26,21 @@ struct CraterModel {
     std::vector<float> biases;
   };
   std::vector<Layer> layers;
+  ConvolutionNet looks;    ///< empty: the layers alone
   std::string trained_on;  ///< one line for people
 };
 
 /// O(weights), about 5 us.
 CraterVerdict judge(const CraterModel& model, const CraterFeatures& features);
+/// O(weights x places), about 40 us. The network is not empty.
+CraterVerdict judge(const ConvolutionNet& looks, const CraterLook& look);
 
 /// The circle the verdict speaks of.
 CraterCandidate corrected(const CraterCandidate& candidate, const CraterVerdict& verdict, Radians sun_angle);
 
 /// Text: a line `waymark crater model 1`, a line of provenance, then per layer its sizes and per output a
-/// line: bias, largest weight, and the weights as sixteen-bit shares of it in three base-64 digits each.
+/// line: bias, largest weight, and the weights as sixteen-bit shares of it in three base-64 digits each. A
+/// convolution's line is `convolution SIDE CHANNELS FACTS KERNEL STRIDE OUTPUTS`; they follow the layers.
 /// parse throws Error{input} naming the line that does not fit.
 std::string as_text(const CraterModel& model);
 CraterModel parse_crater_model(std::string_view text, const std::string& where);

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -58,15 +57,22 @@ Number number(std::string_view& words, const Lines& lines) {
   return value;
 }
 
-void read_output(CraterModel::Layer& layer, Lines& lines) {
+// The weights of one output.
+struct Output {
+  float bias = 0;
+  std::vector<float> weights;
+};
+
+Output read_output(int inputs, Lines& lines) {
   std::string_view line = lines.next();
-  const auto bias = number<float>(line, lines), largest = number<float>(line, lines);
-  if (!std::isfinite(bias) || !std::isfinite(largest)) lines.fail("a number is not finite");
+  Output output;
+  output.bias = number<float>(line, lines);
+  const auto largest = number<float>(line, lines);
+  if (!std::isfinite(output.bias) || !std::isfinite(largest)) lines.fail("a number is not finite");
   if (line.empty() || line.front() != ' ') lines.fail("weights are missing");
   line.remove_prefix(1);
-  if (line.size() != 3 * static_cast<std::size_t>(layer.inputs))
-    lines.fail(fmt::format("{} weights where {} belong", line.size() / 3, layer.inputs));
-  layer.biases.push_back(bias);
+  if (line.size() != 3 * static_cast<std::size_t>(inputs))
+    lines.fail(fmt::format("{} weights where {} belong", line.size() / 3, inputs));
   for (std::size_t i = 0; i < line.size(); i += 3) {
     unsigned bits = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -75,8 +81,56 @@ void read_output(CraterModel::Layer& layer, Lines& lines) {
         lines.fail(fmt::format("'{}' is no digit of a weight", line[i + k]));
       bits = bits << 6U | static_cast<unsigned>(digit);
     }
-    layer.weights.push_back(largest * static_cast<float>(static_cast<int>(bits) - 32768) / kLevels);
+    output.weights.push_back(largest * static_cast<float>(static_cast<int>(bits) - 32768) / kLevels);
   }
+  return output;
+}
+
+void write_output(std::string& text, const Output& output) {
+  float largest = 1e-30F;
+  for (const float weight : output.weights) largest = std::max(largest, std::abs(weight));
+  text += fmt::format("{} {} ", output.bias, largest);
+  for (const float weight : output.weights)
+    append(text, static_cast<int>(std::lround(weight / largest * kLevels)));
+  text += '\n';
+}
+
+void write_convolution(std::string& text, const Convolution& c) {
+  text += fmt::format("convolution {} {} {} {} {} {}\n", c.side, c.channels, c.facts, c.kernel, c.stride,
+                      c.outputs);
+  const auto outputs = static_cast<std::size_t>(c.outputs);
+  for (std::size_t o = 0; o < outputs; ++o) {
+    Output output{c.biases[o], {}};
+    for (std::size_t i = o; i < c.weights.size(); i += outputs) output.weights.push_back(c.weights[i]);
+    write_output(text, output);
+  }
+}
+
+// `words`: the line after its name. What comes in must be what the layer before gives.
+Convolution read_convolution(std::string_view words, const ConvolutionNet& before, Lines& lines) {
+  Convolution c;
+  for (int* value : {&c.side, &c.channels, &c.facts, &c.kernel, &c.stride, &c.outputs})
+    *value = number<int>(words, lines);
+  const int side = before.empty() ? kLookSide : before.back().out_side(),
+            channels = before.empty() ? 1 : before.back().outputs;
+  if (c.side != side || c.channels != channels)
+    lines.fail(fmt::format("a convolution of {0} x {0} x {1} follows {2} x {2} x {3}", c.side, c.channels,
+                           side, channels));
+  if (c.kernel < 1 || c.kernel > c.side || c.stride < 1)
+    lines.fail("a kernel is 1 to SIDE wide, a stride 1 or more");
+  if (c.facts != 0 && (c.facts != kLookFacts || c.kernel != c.side))
+    lines.fail(fmt::format("{} facts go into a convolution as wide as its input, or none", kLookFacts));
+  if (std::find(kConvolutionOutputs.begin(), kConvolutionOutputs.end(), c.outputs) ==
+      kConvolutionOutputs.end())
+    lines.fail("a convolution has 4, 8, 16 or 32 outputs");
+  const auto inputs = static_cast<std::size_t>(c.inputs()), outputs = static_cast<std::size_t>(c.outputs);
+  c.weights.resize(inputs * outputs);
+  for (std::size_t o = 0; o < outputs; ++o) {
+    const Output output = read_output(c.inputs(), lines);
+    c.biases.push_back(output.bias);
+    for (std::size_t i = 0; i < inputs; ++i) c.weights[i * outputs + o] = output.weights[i];
+  }
+  return c;
 }
 
 }  // namespace
@@ -86,15 +140,11 @@ std::string as_text(const CraterModel& model) {
   for (const CraterModel::Layer& layer : model.layers) {
     text += fmt::format("layer {} {}\n", layer.inputs, layer.outputs);
     for (int o = 0; o < layer.outputs; ++o) {
-      const float* weights = layer.weights.data() + static_cast<std::ptrdiff_t>(o) * layer.inputs;
-      float largest = 1e-30F;
-      for (int i = 0; i < layer.inputs; ++i) largest = std::max(largest, std::abs(weights[i]));
-      text += fmt::format("{} {} ", layer.biases[static_cast<std::size_t>(o)], largest);
-      for (int i = 0; i < layer.inputs; ++i)
-        append(text, static_cast<int>(std::lround(weights[i] / largest * kLevels)));
-      text += '\n';
+      const auto weights = layer.weights.begin() + static_cast<std::ptrdiff_t>(o) * layer.inputs;
+      write_output(text, {layer.biases[static_cast<std::size_t>(o)], {weights, weights + layer.inputs}});
     }
   }
+  for (const Convolution& convolution : model.looks) write_convolution(text, convolution);
   return text;
 }
 
@@ -106,18 +156,30 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
   int inputs = kCraterFeatures;
   while (!lines.at_end()) {
     std::string_view line = lines.next();
-    if (!line.starts_with("layer ")) lines.fail("'layer INPUTS OUTPUTS' belongs here");
+    if (line.starts_with("convolution ")) {
+      line.remove_prefix(12);
+      model.looks.push_back(read_convolution(line, model.looks, lines));
+      continue;
+    }
+    if (!line.starts_with("layer ") || !model.looks.empty())
+      lines.fail("'layer INPUTS OUTPUTS' belongs here");
     line.remove_prefix(6);
     CraterModel::Layer layer;
     layer.inputs = number<int>(line, lines), layer.outputs = number<int>(line, lines);
     if (layer.inputs != inputs)
       lines.fail(fmt::format("a layer of {} inputs follows {} outputs", layer.inputs, inputs));
     if (layer.outputs < 1 || layer.outputs > 4096) lines.fail("a layer has 1 to 4096 outputs");
-    for (int o = 0; o < layer.outputs; ++o) read_output(layer, lines);
+    for (int o = 0; o < layer.outputs; ++o) {
+      const Output output = read_output(layer.inputs, lines);
+      layer.biases.push_back(output.bias);
+      layer.weights.insert(layer.weights.end(), output.weights.begin(), output.weights.end());
+    }
     inputs = layer.outputs;
     model.layers.push_back(std::move(layer));
   }
   if (model.layers.empty() || inputs != 4) lines.fail("the last layer must have 4 outputs");
+  if (!model.looks.empty() && (model.looks.back().outputs != 4 || model.looks.back().out_side() != 1))
+    lines.fail("the last convolution must give 4 outputs at one place");
   return model;
 }
 
