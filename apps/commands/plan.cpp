@@ -3,6 +3,7 @@
 
 #include <iostream>
 
+#include "apps/level_ground.hpp"
 #include "apps/make_map.hpp"
 #include "apps/registries.hpp"
 #include "core/error.hpp"
@@ -41,6 +42,7 @@ class PlanJob final : public Command {
                   "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
                   "write the options into " + job_);
     Job job = read_job(job_, all_stages());
+    ask_for_metres(job.pipeline);
     for (const std::string& setting : settings_) job.pipeline.set(setting);
     RunOptions options = run_options(session);
     options.work = work_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
+#include "apps/level_ground.hpp"
 #include "apps/make_map.hpp"
 #include "apps/registries.hpp"
 #include "core/error.hpp"
@@ -48,6 +49,7 @@ class Run final : public Command {
 
   int run(const Session& session) override {
     Job job = read_job(job_, all_stages());
+    ask_for_metres(job.pipeline);
     for (const std::string& setting : settings_) job.pipeline.set(setting);
     RunOptions options = run_options(session);
     if (!shard_.empty()) options.shard = shard_of(shard_);

@@ -6,6 +6,7 @@
 #include "core/error.hpp"
 #include "importers/rasters/fill_voids.hpp"
 #include "importers/rasters/inspect.hpp"
+#include "importers/rasters/metric_dem.hpp"
 #include "importers/rasters/mosaic.hpp"
 
 namespace waymark {
@@ -52,7 +53,8 @@ class MosaicDem : public ImportedDem {
 }  // namespace
 
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
-  return std::make_shared<const MosaicDem>(import);
+  std::shared_ptr<const ImportedDem> dem = std::make_shared<const MosaicDem>(import);
+  return import.metric ? in_metres(std::move(dem)) : dem;
 }
 
 }  // namespace waymark

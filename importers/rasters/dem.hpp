@@ -14,6 +14,7 @@ struct DemImport {
   std::string crs = {};  ///< instead of the files' own; "local": metres on no body; empty: as the files say
   std::int64_t memory_bytes = std::int64_t{512} << 20;  ///< for decoded blocks, all threads together
   double height_sd = 0;                                 ///< of a height, metres; 0: not known
+  bool metric = false;  ///< a DEM in degrees is laid on a plane in metres (metric_dem.hpp)
   bool inspect = true;  ///< compare seams, refuse a DEM without heights; false: open the headers only
 };
 

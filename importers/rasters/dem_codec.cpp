@@ -25,7 +25,8 @@ std::string Codec<DemHandle>::encode(const DemHandle& dem) {
                         {"nodata", to_string(import.nodata)},
                         {"crs", import.crs},
                         {"memory_bytes", import.memory_bytes},
-                        {"height_sd", import.height_sd}}
+                        {"height_sd", import.height_sd},
+                        {"metric", import.metric}}
       .dump();
 }
 
@@ -41,6 +42,7 @@ DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
                      .crs = json.at("crs"),
                      .memory_bytes = json.at("memory_bytes"),
                      .height_sd = json.at("height_sd"),
+                     .metric = json.value("metric", false),
                      .inspect = false});
 }
 

@@ -16,6 +16,7 @@ struct LoadDem {
     std::string nodata = to_string(NodataPolicy::ocean);
     std::string crs;
     Meters height_sd{0};
+    bool metric = false;
     std::int64_t tile_cells = 512;
     std::int64_t memory = 512;
 
@@ -34,6 +35,9 @@ struct LoadDem {
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
       option("height_sd", height_sd,
              {.help = "Standard deviation of a height; 0: not known", .min = 0, .max = 1000});
+      option("metric", metric,
+             {.help = "true: a DEM in degrees is laid on a plane in metres about its middle, as images need "
+                      "it; jobs that load images ask for it themselves"});
       option("tile_cells", tile_cells,
              {.help = "Side of the squares the DEM is worked on in; the map does not depend on it",
               .min = 64,
@@ -52,7 +56,7 @@ struct LoadDem {
   static StageSpec spec() {
     return {.name = "load_dem",
             .summary = "Opens elevation rasters as one grid and cuts it into tiles",
-            .version = 2,
+            .version = 3,
             .scope = Scope::map,
             .lists = Scope::tile,
             .outputs = {dem, tiles}};
@@ -64,7 +68,8 @@ struct LoadDem {
     DemImport import{.nodata = nodata_policy(options.nodata),
                      .crs = options.crs,
                      .memory_bytes = options.memory * kMegabyte,
-                     .height_sd = options.height_sd.value};
+                     .height_sd = options.height_sd.value,
+                     .metric = options.metric};
     for (const std::string& file : options.files) import.files.push_back(unit.path(file));
     const auto opened = import_dem(import);
     for (const std::string& warning : opened->warnings()) unit.warn(warning);
