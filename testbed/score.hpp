@@ -69,7 +69,8 @@ struct Score {
   int with_covariance = 0;
   double inside_90 = 0;  ///< share of errors inside the 90 % ellipse of the covariance told
   double nees = 0;       ///< mean squared Mahalanobis distance; 2 where covariances are honest
-  int doubled = 0;       ///< false finds inside the match radius of a true thing another find has taken
+  int doubled =
+      0;  ///< false finds inside the match radius of a true thing of like size that another has taken
   std::map<std::string, ErrorSummary> features;  ///< "diameter" too
   std::vector<CalibrationBin> by_confidence, by_quality;
   double confidence_error = 0, quality_error = 0;  ///< expected calibration error of the bins

@@ -44,8 +44,9 @@ Pairing by_distance(std::span<const ScoredThing> found, std::span<const ScoredTh
     int best = -1;
     double nearest = radius;
     for (const std::size_t f : index.within({thing.at.x(), thing.at.y(), 0}, radius)) {
+      if (!alike(found[f].diameter, thing.diameter, rules.size_ratio)) continue;
       pairing.near[f] = true;
-      if (pairing.truth_of[f] >= 0 || !alike(found[f].diameter, thing.diameter, rules.size_ratio)) continue;
+      if (pairing.truth_of[f] >= 0) continue;
       const double distance = (found[f].at - thing.at).norm();
       if (distance < nearest || best < 0) best = static_cast<int>(f), nearest = distance;
     }

@@ -17,6 +17,13 @@ ScoredThing thing(double x, double y, double diameter) {
   return t;
 }
 
+// A small false crater on the floor of a large one is no second find of the large one.
+TEST(Score, OnlyThingsOfLikeSizeAreFoundTwice) {
+  const std::vector<ScoredThing> truth{thing(0, 0, 80)};
+  const std::vector<ScoredThing> found{thing(1, 0, 78), thing(20, 5, 3), thing(10, 0, 60)};
+  EXPECT_EQ(score(found, truth, {}).doubled, 1);
+}
+
 TEST(Score, CountsByHand) {
   const std::vector<ScoredThing> truth{thing(0, 0, 4), thing(10, 0, 4), thing(20, 0, 2)};
   const std::vector<ScoredThing> found{thing(1, 0, 4.4), thing(0.5, 0.5, 4), thing(30, 0, 4)};
