@@ -6,6 +6,7 @@
 #include "core/detection.hpp"
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
+#include "pipeline/rocks/image_lean.hpp"
 namespace waymark {
 
 enum class RockMethod {
@@ -23,6 +24,8 @@ struct RockSearch {
   /// Above the ground. Unknown: 40 degrees are assumed; outlines and `shadow_reach` depend on it weakly, and
   /// their standard deviations allow for that. Heights need the true one.
   std::optional<Radians> sun_elevation = {};
+  /// How rocks lean where the camera looks aslant. Unknown: seen from straight above.
+  std::optional<ImageLean> lean = {};
   double blur = 0;              ///< standard deviation of the point spread, pixels; 0: unknown (0.6)
   double min_diameter = 1.5;    ///< pixels; smaller rocks are left out
   double max_diameter = 100;    ///< pixels

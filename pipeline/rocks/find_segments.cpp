@@ -43,6 +43,13 @@ template <class Visit>
 void for_neighbours(const DarkPixels& dark, std::int32_t cell, Visit visit) {
   const auto columns = static_cast<std::int32_t>(dark.number.columns());
   const std::int32_t x = cell % columns, y = cell / columns;
+  if (x > 0 && y > 0 && x + 1 < columns && y + 1 < dark.number.rows()) {
+    const std::int32_t* here = &dark.number.cells()[static_cast<std::size_t>(cell)];
+    for (const std::int32_t* row : {here - columns, here, here + columns})
+      for (std::int32_t dx = -1; dx <= 1; ++dx)
+        if (row[dx] >= 0 && row + dx != here) visit(row[dx]);
+    return;
+  }
   for (std::int32_t dy = -1; dy <= 1; ++dy)
     for (std::int32_t dx = -1; dx <= 1; ++dx) {
       if ((dx == 0 && dy == 0) || !dark.number.contains(x + dx, y + dy)) continue;

@@ -17,14 +17,10 @@ constexpr Radians kUsualElevation = to_radians(Degrees{40});
 constexpr int kTile = 32;
 constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of the scale, diameter
 
-// What a correction of a width is lessened by: at most a share of it, and no more than this logarithm. The
-// network cannot tell shapes apart, and takes ellipsoids, for which the table's widths are right, for the
-// mean.
-constexpr double kMostLessened = 0.06, kLessenedShare = 0.4;
-
-double width_correction(double told) {
-  return told - std::copysign(std::min(kMostLessened, kLessenedShare * std::abs(told)), told);
-}
+// A rock that leans across the light hides one side of its shadow's root: it stands further that way than the
+// middle of what is seen, by this share of the way its top is moved where the sun stands above 45 degrees,
+// and less the longer the shadow is (regression on the lessons, docs/rocks.md).
+constexpr double kAside = 0.35;
 
 // Share of rocks among the dark spots the confidence was fitted on, and how far towards the image's own share
 // the confidences are moved (chosen on landings 301 and 302, docs/rocks.md).
@@ -60,8 +56,9 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   Detection found;
   found.type = search.type;
   const double diameter = 2 * scale * judged.radius();
-  found.outline = {.x = place(rock.x + unit * say.along * light.ux),
-                   .y = place(rock.y + unit * say.along * light.uy),
+  const Eigen::Vector2d foot = judged.place();
+  found.outline = {.x = place(foot.x() + unit * say.along * light.ux),
+                   .y = place(foot.y() + unit * say.along * light.uy),
                    .major = diameter,
                    .minor = diameter,
                    .angle = 0};
@@ -70,8 +67,7 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   turn << light.ux, -light.uy, light.uy, light.ux;
   found.covariance =
       turn * Eigen::Vector2d{along_sd * along_sd, across_sd * across_sd}.asDiagonal() * turn.transpose();
-  found.diameter_sd =
-      diameter * std::hypot(say.log_radius_sd, say.log_radius - width_correction(say.log_radius));
+  found.diameter_sd = diameter * say.log_radius_sd;
   const double reach = scale * rock.size.reach * std::exp(say.log_reach);
   found.shadow_reach = Measured{reach, reach * say.log_reach_sd};
   found.confidence = judged.confidence;
@@ -125,10 +121,15 @@ std::vector<Detection> without_repeats(std::vector<Detection> all, const LightFr
 }  // namespace
 
 double JudgedRock::radius() const {
-  return rock.size.radius * std::exp(width_correction(judgement.log_radius));
+  return rock.size.radius * std::exp(judgement.log_radius);
 }
 
-std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table) {
+Eigen::Vector2d JudgedRock::place() const {
+  return {rock.x + aside.x(), rock.y + aside.y()};
+}
+
+std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table,
+                                      const std::optional<ImageLean>& lean) {
   const float smooth_noise = 0.5F * map.noise;  // under the mask
   const SegmentLimits limits{.grow = std::max(0.04F, 2.5F * smooth_noise),
                              .seed = std::max(0.06F, 4.5F * smooth_noise),
@@ -148,6 +149,15 @@ std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& li
     rock.y = rock.shadow.y - light.uy * rock.size.offset;
     rock.log_ratio_excess = std::log(rock.size.reach / rock.size.radius) - table.usual_log_ratio();
     one.rock = rock;
+    if (lean) {
+      const Eigen::Vector2d leans = lean->at(rock.x, rock.y);
+      const double tan_elevation = std::exp(table.log_tan_elevation());
+      one.rock.seen = seen_shadow(leans, light, tan_elevation);
+      const double height = std::min(rock.size.reach * tan_elevation, 2 * rock.size.radius);
+      const double across =
+          kAside * std::min(1.0, tan_elevation * tan_elevation) * height * light.across(leans.x(), leans.y());
+      one.aside = {-light.uy * across, light.ux * across};
+    }
     judged.push_back(one);
   }
   std::vector<DarkSpot> spots;
@@ -179,8 +189,11 @@ std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& sear
     const auto map = map_shadows(pixels, kTile, umbra);
     if (!map) break;
     umbra = map->umbra;
+    // A coarser pixel's centre lies amid the finer ones it covers.
+    std::optional<ImageLean> lean = search.lean;
+    if (lean) lean = ImageLean{lean->at(0.5 * (scale - 1), 0.5 * (scale - 1)), scale * lean->per_pixel};
     if (scale <= 2) table = RockTable(elevation, search.sun_elevation.has_value(), blur);
-    for (JudgedRock& one : judge_shadows(*map, light, *table)) {
+    for (JudgedRock& one : judge_shadows(*map, light, *table, lean)) {
       const double diameter = 2 * one.rock.size.radius;
       one.scale = scale;
       if (scale == 1 || diameter > kSmallestAtCoarse) all.push_back(std::move(one));

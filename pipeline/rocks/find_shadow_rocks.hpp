@@ -17,10 +17,15 @@ struct JudgedRock {
   double scale = 1;               ///< side of its map's pixels, image pixels
 
   double radius() const;  ///< as judged, pixels of its scale
+  /// Of the rock by the table, moved by what its lean hides of the shadow; the judgement is about this.
+  Eigen::Vector2d place() const;
+  Eigen::Vector2d aside = Eigen::Vector2d::Zero();  ///< that move, pixels of the scale
 };
 
 /// Every dark spot that could be a rock's shadow, at one scale: rocks up to about half a tile.
-std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table);
+/// `lean`: of the image at this scale; nothing: seen from straight above.
+std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table,
+                                      const std::optional<ImageLean>& lean = {});
 
 /// The same at every scale of the image, each half as fine as the one before, until `max_diameter` or the
 /// size of the image; larger rocks are seen against a wider background. Positions are still those of each

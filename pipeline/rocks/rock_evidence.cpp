@@ -97,7 +97,10 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
       table.knows_elevation() ? 1.0 : 0.0,
       shape.log_area,
       shape.log_across,
-      shape.log_along};
+      shape.log_along,
+      std::log(rock.seen.along),
+      rock.seen.aside,
+      rock.seen.lean};
   add_net(around, rock, evidence);
   return evidence;
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "pipeline/rocks/image_lean.hpp"
 #include "pipeline/rocks/rock_table.hpp"
 #include "pipeline/rocks/shadow_shape.hpp"
 #include "pipeline/rocks/spot_context.hpp"
@@ -15,6 +16,7 @@ struct RockCandidate {
   RockSize size;
   std::size_t segment_cells = 0;
   double log_ratio_excess = 0;  ///< log(reach / radius), less what is usual under this sun
+  SeenShadow seen;              ///< how the camera's slant changes the shadow
 };
 
 /// What speaks for and against a candidate, on comparable scales: size, depth and form of the shadow, and the
@@ -22,7 +24,7 @@ struct RockCandidate {
 /// the shadow; hollows have it the other way round; dunes go on to the sides. `context`: what else is dark
 /// about it. The last 45 are the shadow fractions of a net of 5 x 9 places about the shadow, as far apart as
 /// the shadow's extents ask; of a place left of the light and its mirror the mean and the difference enter.
-inline constexpr std::size_t kEvidenceCount = 21 + 6 + 45;
+inline constexpr std::size_t kEvidenceCount = 21 + 6 + 3 + 45;
 using RockEvidence = std::array<double, kEvidenceCount>;
 RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& candidate, const LightFrame& light,
                              const SpotContext& context, const RockTable& table);

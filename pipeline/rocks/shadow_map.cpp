@@ -129,9 +129,9 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
   for (std::int64_t r = 0; r < map.texture.rows(); ++r)
     for (std::int64_t c = 0; c < map.texture.columns(); ++c)
       map.texture(c, r) /= std::max(least_depth, ground.level(c, r) - *umbra);
-  std::vector<float> level(static_cast<std::size_t>(image.columns())), spread(level.size());
+  std::vector<float> level(static_cast<std::size_t>(image.columns()));
   for (std::int64_t y = 0; y < image.rows(); ++y) {
-    ground.read_row(y, level, spread);
+    ground.read_row(y, level, {});
     const auto in = image.row(y);
     const auto out = map.alpha.row(y);
     for (std::size_t x = 0; x < level.size(); ++x) {

@@ -40,7 +40,7 @@ struct RocksFromShadows {
   static StageSpec spec() {
     return {.name = "rocks_from_shadows",
             .summary = "Finds rocks in an image by their shadows, with widths, heights and confidence",
-            .version = 3,
+            .version = 4,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};
@@ -57,6 +57,7 @@ struct RocksFromShadows {
                       .min_diameter = options.min_diameter,
                       .max_diameter = options.max_diameter,
                       .min_confidence = options.min_confidence};
+    if (image.info().view) search.lean = lean_of(*image.info().view);
     if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);

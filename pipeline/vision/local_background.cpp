@@ -89,18 +89,37 @@ void LocalBackground::read_row(std::int64_t row, std::span<float> level_out,
   const auto r0 = static_cast<std::int64_t>(v);
   const auto r1 = std::min(r0 + 1, level.rows() - 1);
   const float fv = v - static_cast<float>(r0);
-  for (std::int64_t x = 0; x < columns; ++x) {
-    const float u =
-        std::clamp((static_cast<float>(x) - half) / step, 0.0F, static_cast<float>(level.columns() - 1));
-    const auto c0 = static_cast<std::int64_t>(u);
+  const auto last = static_cast<float>(level.columns() - 1);
+  const auto place = [&](std::int64_t x) {
+    return std::clamp((static_cast<float>(x) - half) / step, 0.0F, last);
+  };
+  constexpr std::int64_t kAtOnce = 8;
+  // Run by run of pixels between the same two tile centres, several at a time: the compiler takes them
+  // together.
+  for (std::int64_t x = 0; x < columns;) {
+    const auto c0 = static_cast<std::int64_t>(place(x));
     const auto c1 = std::min(c0 + 1, level.columns() - 1);
-    const float fu = u - static_cast<float>(c0);
-    const auto mix = [&](const Grid<float>& g) {
-      return (1 - fv) * ((1 - fu) * g(c0, r0) + fu * g(c1, r0)) +
-             fv * ((1 - fu) * g(c0, r1) + fu * g(c1, r1));
+    std::int64_t end = std::min(columns, x + 1);
+    while (end < columns && static_cast<std::int64_t>(place(end)) == c0) ++end;
+    const auto mix = [&](const Grid<float>& g, std::span<float> out) {
+      const float a = g(c0, r0), b = g(c1, r0), c = g(c0, r1), d = g(c1, r1);
+      const auto from = static_cast<float>(c0);
+      float* to = out.data();
+      const auto blend = [=](float fu) {
+        return (1 - fv) * ((1 - fu) * a + fu * b) + fv * ((1 - fu) * c + fu * d);
+      };
+      std::int64_t k = x;
+      for (; k + kAtOnce <= end; k += kAtOnce) {
+        float at[kAtOnce];
+        for (std::int64_t i = 0; i < kAtOnce; ++i)
+          at[i] = std::min(std::max((static_cast<float>(k + i) - half) / step, 0.0F), last) - from;
+        for (std::int64_t i = 0; i < kAtOnce; ++i) to[k + i] = blend(at[i]);
+      }
+      for (; k < end; ++k) to[k] = blend(place(k) - from);
     };
-    level_out[static_cast<std::size_t>(x)] = mix(level);
-    spread_out[static_cast<std::size_t>(x)] = mix(spread);
+    mix(level, level_out);
+    if (!spread_out.empty()) mix(spread, spread_out);
+    x = end;
   }
 }
 

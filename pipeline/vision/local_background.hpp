@@ -12,7 +12,8 @@ struct LocalBackground {
   Grid<float> spread;  ///< robust standard deviation (1.4826 x median absolute deviation) about that level
   std::int64_t columns = 0, rows = 0;  ///< of the image
 
-  /// Level and spread of one image row, interpolated between tile centres.
+  /// Level and spread of one image row, interpolated between tile centres; the spread only where there is
+  /// room for it.
   void read_row(std::int64_t row, std::span<float> level_out, std::span<float> spread_out) const;
 };
 

@@ -13,7 +13,7 @@
 namespace waymark::testing {
 namespace {
 
-constexpr Eigen::Index kUnits = 32, kInputs = kEvidenceCount, kOutputs = 8;
+constexpr Eigen::Index kUnits = 48, kInputs = kEvidenceCount, kOutputs = 8;
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -54,14 +54,14 @@ void slope_of(const NetworkSample& sample, const float* out, float* slope) {
   }
 }
 
-void append_numbers(std::string& text, const char* name, const float* values, std::size_t count) {
+void append_numbers(std::string& text, const char* name, const std::vector<float>& values) {
   std::string line = std::string("inline constexpr float ") + name + "[] = {";
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.4g", static_cast<double>(values[i]));
     std::string number = buffer;
     if (number.find_first_of(".e") == std::string::npos) number += ".0";
-    number += i + 1 < count ? "F, " : "F};\n";
+    number += i + 1 < values.size() ? "F, " : "F};\n";
     if (line.size() + number.size() > 110) {
       text += line.substr(0, line.size() - 1) + "\n";
       line = "    ";
@@ -106,8 +106,21 @@ RockScene random_scene(int number) {
   return scene;
 }
 
-MadeView drawn_view(int number) {
-  const RockScene scene = random_scene(number);
+RockScene low_sun_scene(int number) {
+  Random random(static_cast<std::uint64_t>(number), "low sun");
+  RockScene scene = random_scene(number + 10000);
+  using Shape = RockScene::Shape;
+  constexpr Shape kShapes[] = {Shape::ellipsoid, Shape::irregular, Shape::cylinder, Shape::mixed};
+  scene.shape = kShapes[number % 4];
+  scene.incidence = {random.uniform(62, 77)};
+  scene.cover = random.uniform(0.02, 0.08);
+  scene.min_diameter = random.log_uniform(1.5, 6);
+  scene.max_diameter = random.uniform(12, 40);
+  scene.log_uniform = true;
+  return scene;
+}
+
+MadeView drawn_view(const RockScene& scene) {
   return {render(scene), to_radians(scene.sun_angle).value, to_radians(Degrees{90 - scene.incidence.value})};
 }
 
@@ -115,6 +128,7 @@ std::vector<NetworkSample> network_samples(const MadeView& view, int number, std
   const RockImage& image = view.image;
   Random random(static_cast<std::uint64_t>(number), "what the detector is told");
   RockSearch search;
+  search.lean = view.lean;
   const double sun = view.sun_angle;
   const double told = sun + (random.chance(0.5) ? random.normal(0, 0.06) : 0);
   if (random.chance(0.6)) search.sun_elevation = view.elevation;
@@ -123,8 +137,8 @@ std::vector<NetworkSample> network_samples(const MadeView& view, int number, std
   std::vector<Detection> spots;
   for (const JudgedRock& one : judged) {
     Detection spot;
-    spot.outline.x = one.scale * (one.rock.x + 0.5) - 0.5;
-    spot.outline.y = one.scale * (one.rock.y + 0.5) - 0.5;
+    spot.outline.x = one.scale * (one.place().x() + 0.5) - 0.5;
+    spot.outline.y = one.scale * (one.place().y() + 0.5) - 0.5;
     spot.outline.major = spot.outline.minor = 2 * one.scale * one.rock.size.radius;
     spot.shadow_reach = Measured{one.scale * one.rock.size.reach, 1};
     spots.push_back(spot);
@@ -170,7 +184,7 @@ std::vector<NetworkSample> network_samples(const MadeView& view, int number, std
   return samples;
 }
 
-std::string fit_network(const std::vector<NetworkSample>& samples) {
+FittedNetwork fit_network(const std::vector<NetworkSample>& samples) {
   const auto count = static_cast<Eigen::Index>(samples.size());
   Matrix in(count, kInputs + 1);
   double rocks = 0;
@@ -216,6 +230,42 @@ std::string fit_network(const std::vector<NetworkSample>& samples) {
       out.step(step, rate, 1e-4F);
     }
   }
+  FittedNetwork fitted{
+      .share_of_rocks = rocks / static_cast<double>(count), .mean = {}, .sd = {}, .hidden = {}, .out = {}};
+  fitted.mean.assign(mean.data(), mean.data() + kInputs);
+  fitted.sd.assign(sd.data(), sd.data() + kInputs);
+  fitted.hidden.assign(hidden.w.data(), hidden.w.data() + hidden.w.size());
+  fitted.out.assign(out.w.data(), out.w.data() + out.w.size());
+  return fitted;
+}
+
+FittedNetwork joined(const FittedNetwork& a, const FittedNetwork& b) {
+  constexpr auto inputs = static_cast<std::size_t>(kInputs), outputs = static_cast<std::size_t>(kOutputs);
+  const std::size_t units_a = a.hidden.size() / (inputs + 1), units_b = b.hidden.size() / (inputs + 1);
+  FittedNetwork both{.share_of_rocks = (a.share_of_rocks + b.share_of_rocks) / 2,
+                     .mean = a.mean,
+                     .sd = a.sd,
+                     .hidden = {},
+                     .out = {}};
+  std::vector<float> biases(b.hidden.end() - static_cast<std::ptrdiff_t>(units_b), b.hidden.end());
+  for (std::size_t i = 0; i < inputs; ++i) {
+    for (std::size_t h = 0; h < units_a; ++h) both.hidden.push_back(a.hidden[units_a * i + h]);
+    for (std::size_t h = 0; h < units_b; ++h) {
+      const float weight = b.hidden[units_b * i + h] / b.sd[i];
+      both.hidden.push_back(weight * a.sd[i]);
+      biases[h] += weight * (a.mean[i] - b.mean[i]);
+    }
+  }
+  for (std::size_t h = 0; h < units_a; ++h) both.hidden.push_back(a.hidden[units_a * inputs + h]);
+  both.hidden.insert(both.hidden.end(), biases.begin(), biases.end());
+  for (std::size_t k = 0; k < outputs * units_a; ++k) both.out.push_back(a.out[k] / 2);
+  for (std::size_t k = 0; k < outputs * units_b; ++k) both.out.push_back(b.out[k] / 2);
+  for (std::size_t o = 0; o < outputs; ++o)
+    both.out.push_back((a.out[outputs * units_a + o] + b.out[outputs * units_b + o]) / 2);
+  return both;
+}
+
+std::string source_of(const FittedNetwork& network) {
   std::string text =
       "// SPDX-License-Identifier: Apache-2.0\n"
       "// Made by tests/rocks (test RockNetwork.DISABLED_Fit); do not edit.\n"
@@ -226,17 +276,16 @@ std::string fit_network(const std::vector<NetworkSample>& samples) {
       "inline constexpr std::size_t kOutputs = 8;\n"
       "// Share of rocks among the dark spots it was fitted on.\n";
   char line[80];
-  std::snprintf(line, sizeof line, "inline constexpr float kShareOfRocks = %.4fF;\n",
-                rocks / static_cast<double>(count));
+  std::snprintf(line, sizeof line, "inline constexpr float kShareOfRocks = %.4fF;\n", network.share_of_rocks);
   text += line;
   text +=
       "// Mean and deviation of each evidence; weights of the hidden units by input, their biases last; of "
       "the "
       "outputs by unit.\n";
-  append_numbers(text, "kMean", mean.data(), kInputs);
-  append_numbers(text, "kSd", sd.data(), kInputs);
-  append_numbers(text, "kHidden", hidden.w.data(), static_cast<std::size_t>(hidden.w.size()));
-  append_numbers(text, "kOut", out.w.data(), static_cast<std::size_t>(out.w.size()));
+  append_numbers(text, "kMean", network.mean);
+  append_numbers(text, "kSd", network.sd);
+  append_numbers(text, "kHidden", network.hidden);
+  append_numbers(text, "kOut", network.out);
   return text + "\n}  // namespace waymark::rock_network\n";
 }
 
