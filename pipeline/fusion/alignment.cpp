@@ -248,7 +248,6 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
   bundle.solve();
   aligned.pairs = bundle.pairs();
   const Eigen::Matrix2d common = positive(bundle.common(), 0);
-  const Eigen::Matrix2d told_common = rules.common_growth * common;
   const Eigen::MatrixXd cross = bundle.middle_posterior();
   std::vector<Eigen::Vector2d> mean(aligned.images.size(), Eigen::Vector2d::Zero());
   std::vector<int> count(aligned.images.size(), 0);
@@ -264,7 +263,7 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
     if (count[i]) aligned.moved[i] = (mean[i] / count[i]).norm();
     correct(aligned.images[i], bundle.correction(static_cast<int>(i)),
             bundle.covariance(static_cast<int>(i)));
-    aligned.images[i].common = told_common;
+    aligned.images[i].common = rules.common_growth * common;
   }
   return aligned;
 }

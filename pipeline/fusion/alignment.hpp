@@ -18,7 +18,7 @@ struct AlignmentRules {
   double independent_pairs = 100;
   /// The common covariance is multiplied by this: light that falls from one side in all images shifts what
   /// detectors see in all of them alike, which comparing images cannot tell from a shift of the poses.
-  double common_growth = 2.5;
+  double common_growth = 1.3;
   int most_images = 250;  ///< more are left as they are: 6 n unknowns are solved densely
 };
 

@@ -20,8 +20,8 @@ struct MergeRules {
   double least_sd = 0.01, least_sd_of_radius = 0.03;
   /// Share of a position's variance that all images of a landmark have in common (shape, light, DEM), so that
   /// more images do not reduce it, [0, 1]. 0.15 is enough for made detectors whose errors are independent;
-  /// real ones see a rock under the same sun in every image (two landings, docs/qualities.md).
-  double common_share = 0.6;
+  /// real ones see a rock under the same sun in every image (landings 401 and 402, docs/qualities.md).
+  double common_share = 0.45;
 };
 
 struct MergedObservations {

@@ -14,7 +14,7 @@ struct PlacingRules {
   double slope_sd = 0.03;     ///< of the ground under a rock against the terrain's, metres per metre
   /// Standard deviation of a centre from the shape of the thing, as a share of its diameter: along the sun
   /// for things told by their shadow (how far under its top a rock begins), all round for rims.
-  double shadow_shape = 0.1, rim_shape = 0.02;
+  double shadow_shape = 0.1, rim_shape = 0.035;
 };
 
 /// A detection on the ground: the line of sight of its centre meets the terrain, its outline is laid on the

@@ -48,7 +48,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 1,
+            .version = 2,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
