@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/slam/slam_search.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "localization/slam/ekf_slam.hpp"
@@ -10,7 +11,8 @@ namespace waymark {
 namespace {
 
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // of the fit and the usual fit, per set
-constexpr double kNoDoubt = 0.75;                // part of the usual fit above which nobody is asked
+constexpr double kLostFade = 0.002;              // of the usual fit while lost
+constexpr double kNoDoubt = 0.6;                 // part of the usual fit above which nobody is asked
 constexpr int kWait = 5, kDoubt = 10, kStrayed = 10;
 
 }  // namespace
@@ -24,8 +26,10 @@ std::optional<PoseEstimate> SlamSearch::see(const SightingSet& seen, int expecte
                                             const PoseEstimate& here) {
   memory_.add(seen);
   if (expected > 0) {
-    fit_ += kFade * (static_cast<double>(found) / expected - fit_);
-    if (!lost()) usual_ += kSlowFade * (fit_ - usual_);
+    ++sets_;  // at first it is where it was told, and learns how much a sensor sees
+    const double share = static_cast<double>(found) / expected;
+    fit_ += std::max(kFade, 1.0 / sets_) * (share - fit_);
+    usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (share - usual_);
   }
   if (seen.sightings.empty()) return {};
   strayed_ = matched > 0 ? 0 : strayed_ + 1;
