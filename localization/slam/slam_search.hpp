@@ -7,7 +7,7 @@
 namespace waymark {
 
 /// Tells SLAM in a map whether it still is where it believes to be. Lost is who finds less than 0.4 of the
-/// the landmarks of the map that he usually finds of those he should see; ground without landmarks says
+/// landmarks of the map that he usually finds of those he should see; ground without landmarks says
 /// nothing. A PoseFinder is asked about what was seen lately: every fifth set while lost or while no landmark
 /// of the map was seen for ten sets (returning to the map closes the loop), every tenth in doubt. Two answers
 /// in a row that agree with each other and not with SLAM are where it is.
