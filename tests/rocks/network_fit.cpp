@@ -62,7 +62,7 @@ void append_numbers(std::string& text, const char* name, const std::vector<float
     std::string number = buffer;
     if (number.find_first_of(".e") == std::string::npos) number += ".0";
     number += i + 1 < values.size() ? "F, " : "F};\n";
-    if (line.size() + number.size() > 110) {
+    if (line.size() + number.size() > 330) {  // below 300 lines
       text += line.substr(0, line.size() - 1) + "\n";
       line = "    ";
     }
