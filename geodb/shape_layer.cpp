@@ -158,8 +158,8 @@ void describe(const sqlite::Database& database, const ShapeLayer& layer, std::st
   sqlite::Statement column =
       database.prepare("INSERT INTO gpkg_data_columns VALUES (?, ?, ?, ?, ?, NULL, NULL)");
   for (const AttributeSpec& c : layer.columns) {
-    column.bind_all(layer.name, c.name, c.name, c.unit.empty() ? c.name : c.name + " (" + c.unit + ")",
-                    c.summary);
+    const std::string title = c.unit.empty() ? c.name : c.name + " (" + c.unit + ")";  // bound, not copied
+    column.bind_all(layer.name, c.name, c.name, title, c.summary);
     column.run();
   }
   store_style(database, layer.name, qml_shape_style(layer), sld_shape_style(layer), layer.summary, changed);

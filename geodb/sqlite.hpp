@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 struct sqlite3;
 struct sqlite3_stmt;
 namespace waymark::sqlite {
@@ -22,15 +24,18 @@ class Statement {
   void bind(int parameter, int value) { bind(parameter, std::int64_t{value}); }
   /// The bytes must live until the statement is reset or bound anew.
   void bind(int parameter, std::string_view text);
+  /// A string that nobody keeps would be gone before the statement runs.
+  template <std::same_as<std::string> T>
+  void bind(int parameter, T&& gone) = delete;
   void bind(int parameter, std::span<const std::byte> blob);
   void bind(int parameter, std::nullptr_t);
   template <class T>
   void bind(int parameter, const std::optional<T>& value) {
     value ? bind(parameter, *value) : bind(parameter, nullptr);
   }
-  void bind_all(const auto&... values) {
+  void bind_all(auto&&... values) {
     int parameter = 0;
-    (bind(++parameter, values), ...);
+    (bind(++parameter, std::forward<decltype(values)>(values)), ...);
   }
 
   bool step();  ///< true: there is a row to read; false: done, and the statement is reset
