@@ -28,7 +28,7 @@ constexpr double kFineColour = 0.25;
 constexpr double kPlaceSd = 1.5;     // metres: of marked trees about finds
 constexpr double kCrownShare = 0.4;  // of a crown's diameter in colour images
 
-// Chosen on every second of the NAIP crops of Eureka (docs/trees.md).
+// For fine colour images without infrared (docs/trees.md).
 TreeSearch imagery_search() {
   TreeSearch search;
   search.forest.name = "imagery";

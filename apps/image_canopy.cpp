@@ -19,7 +19,7 @@ class ImageCanopy final : public CanopySource {
   ImageCanopy(const ImageInfo& image, CanopySign sign, double metres) : name_(image.name), sign_(sign) {
     grid_.columns = image.columns, grid_.rows = image.rows;
     grid_.where = {Crs::local(), 0, 0, metres, -metres};
-    const int bands = sign == CanopySign::height ? 1 : std::min(4, band_count(image.path));
+    const int bands = sign == CanopySign::height ? 1 : 3;
     for (int band = 1; band <= bands; ++band)
       bands_.push_back(import_image(image.path, {.georeference = false, .band = band}));
     full_ = image.saturated > 0 ? static_cast<float>(image.saturated) : 255.0F;
@@ -36,9 +36,7 @@ class ImageCanopy final : public CanopySource {
     Grid<float> canopy(window.columns, window.rows, kNoCanopy);
     for (std::size_t i = 0; i < canopy.cells().size(); ++i) {
       const auto at = [&](std::size_t band) { return pixels[band].cells()[i]; };
-      const float sign = sign_ == CanopySign::height ? height(at(0))
-                         : bands_.size() == 4        ? greenness(at(0), at(1), at(2), at(3))
-                                                     : greenness(at(0), at(1), at(2));
+      const float sign = sign_ == CanopySign::height ? height(at(0)) : greenness(at(0), at(1), at(2));
       if (!std::isnan(sign)) canopy.cells()[i] = sign;
     }
     return canopy;
@@ -51,11 +49,7 @@ class ImageCanopy final : public CanopySource {
     const float dark = std::clamp(1 - (red + green + blue) / (3 * full_), 0.0F, 1.0F);
     return dark * dark;
   }
-  float greenness(float red, float green, float blue, float infrared) const {
-    const float index = (infrared - red) / std::max(infrared + red, 1.0F);
-    return std::max(index, 0.0F) * darkness(red, green, blue);
-  }
-  // Twelve times the excess green, so that crowns have about the numbers they have with infrared.
+  // Twelve times the excess green: about the numbers a vegetation index of infrared would have.
   float greenness(float red, float green, float blue) const {
     const float index = 12 * (2 * green - red - blue) / std::max(red + green + blue, 1.0F);
     return std::max(index, 0.0F) * darkness(red, green, blue);

@@ -7,8 +7,7 @@ namespace waymark {
 /// What of an image stands for the canopy.
 enum class CanopySign {
   height,     ///< the first band holds heights above ground, metres
-  greenness,  ///< (near infrared - red) / their sum, or excess green where there is no infrared; times
-              ///< darkness squared
+  greenness,  ///< excess green times darkness squared
 };
 
 /// An image whose pixels are taken for a canopy, so that trees are sought in it as in a height model. With

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/body_motion.hpp"
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 namespace waymark {
 
 MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
@@ -25,6 +28,16 @@ PoseEstimate moved(const PoseEstimate& estimate, const BodyMotion& motion) {
 BodyMotion then(const BodyMotion& first, const BodyMotion& second) {
   const PoseEstimate both = moved({first.step, first.covariance}, second);
   return {both.pose, both.covariance};
+}
+
+SeenAfter::SeenAfter(const BodyMotion& motion)
+    : motion_(motion), back_(Eigen::Rotation2Dd(-motion.step.yaw).toRotationMatrix()) {}
+
+void SeenAfter::move(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const {
+  at = back_ * (at - motion_.step.at());
+  Eigen::Matrix<double, 2, 3> by_step;
+  by_step << -back_, Eigen::Vector2d(at.y(), -at.x());
+  covariance = back_ * covariance * back_.transpose() + by_step * motion_.covariance * by_step.transpose();
 }
 
 Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance) {

@@ -20,6 +20,19 @@ MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step);
 /// First one, then the other, to first order in the errors, which are taken as independent.
 BodyMotion then(const BodyMotion& first, const BodyMotion& second);
 
+/// What was seen from the old place, as it is seen from the new one.
+class SeenAfter {
+ public:
+  /// `motion` must outlive it.
+  explicit SeenAfter(const BodyMotion& motion);
+  /// A point in the robot's frame and its covariance, which grows by that of the motion.
+  void move(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const;
+
+ private:
+  const BodyMotion& motion_;
+  Eigen::Matrix2d back_;
+};
+
 /// Prediction step of an extended Kalman filter.
 PoseEstimate moved(const PoseEstimate& estimate, const BodyMotion& motion);
 

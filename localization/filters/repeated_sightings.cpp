@@ -21,13 +21,8 @@ double widening(double seconds, double memory) {
 }  // namespace
 
 void RepeatedSightings::move(const BodyMotion& motion) {
-  const Eigen::Matrix2d back = Eigen::Rotation2Dd(-motion.step.yaw).toRotationMatrix();
-  for (Last& p : last_) {
-    p.at = back * (p.at - motion.step.at());
-    Eigen::Matrix<double, 2, 3> by_step;
-    by_step << -back, Eigen::Vector2d(p.at.y(), -p.at.x());
-    p.covariance = back * p.covariance * back.transpose() + by_step * motion.covariance * by_step.transpose();
-  }
+  const SeenAfter after(motion);
+  for (Last& p : last_) after.move(p.at, p.covariance);
 }
 
 void RepeatedSightings::widen(SightingSet& seen, double t) {

@@ -28,13 +28,8 @@ bool alike(const SeenLandmark& a, const SeenLandmark& b) {
 }  // namespace
 
 void SightingMemory::move(const BodyMotion& motion) {
-  const Eigen::Matrix2d back = Eigen::Rotation2Dd(-motion.step.yaw).toRotationMatrix();
-  for (Point& p : points_) {
-    p.at = back * (p.at - motion.step.at());
-    Eigen::Matrix<double, 2, 3> by_step;
-    by_step << -back, Eigen::Vector2d(p.at.y(), -p.at.x());
-    p.covariance = back * p.covariance * back.transpose() + by_step * motion.covariance * by_step.transpose();
-  }
+  const SeenAfter after(motion);
+  for (Point& p : points_) after.move(p.at, p.covariance);
   std::erase_if(points_, [](const Point& p) {
     return !(p.covariance.trace() < kBlurred * kBlurred * std::max(1.0, p.at.squaredNorm()));
   });

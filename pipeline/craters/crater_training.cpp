@@ -88,6 +88,16 @@ double slopes(const std::vector<float>& out, const CraterExample& example, std::
 
 }  // namespace
 
+CoveredCrater covered_crater(const KnownScene& scene, const CraterCandidate& circle) {
+  CoveredCrater best;
+  for (const KnownCrater& k : scene.craters) {
+    if (std::hypot(k.x - circle.x, k.y - circle.y) > (k.diameter + circle.diameter) / 2) continue;
+    const double common = overlap(circle, {k.x, k.y, k.diameter, 0});
+    if (common > best.overlap) best = {&k, common};
+  }
+  return best;
+}
+
 std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t seed) {
   Random random(seed, "crater examples");
   const double side = double(std::min(scene.image.columns(), scene.image.rows()));
@@ -104,13 +114,7 @@ std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t se
     if (random.chance(0.5))
       c.x += random.normal(0, 0.04) * c.diameter, c.y += random.normal(0, 0.04) * c.diameter,
           c.diameter *= std::exp(random.normal(0, 0.08));
-    const KnownCrater* best = nullptr;
-    double most = 0;
-    for (const KnownCrater& k : scene.craters) {
-      if (std::hypot(k.x - c.x, k.y - c.y) > (k.diameter + c.diameter) / 2) continue;
-      const double common = overlap(c, {k.x, k.y, k.diameter, 0});
-      if (common > most) most = common, best = &k;
-    }
+    const auto [best, most] = covered_crater(scene, c);
     const bool crater = most >= 0.45 && best->clarity >= kClear;
     if (!crater && most > 0.25) continue;
     if (!crater && random.chance(0.5)) continue;

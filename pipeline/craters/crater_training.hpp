@@ -8,6 +8,14 @@
 #include "pipeline/craters/shaded_scene.hpp"
 namespace waymark {
 
+/// The known crater that a circle covers best, and their common area over the area they cover together;
+/// null and 0 where none is met.
+struct CoveredCrater {
+  const KnownCrater* crater = nullptr;
+  double overlap = 0;
+};
+CoveredCrater covered_crater(const KnownScene& scene, const CraterCandidate& circle);
+
 /// One thing to learn.
 struct CraterExample {
   CraterFeatures features{};

@@ -9,6 +9,7 @@
 #include "core/random.hpp"
 #include "pipeline/craters/bowl_candidates.hpp"
 #include "pipeline/craters/convolution_training.hpp"
+#include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/published_image.hpp"
 
 namespace waymark {
@@ -95,13 +96,7 @@ std::vector<LookExample> looks_of(const KnownScene& scene, std::uint64_t seed) {
       c.x += random.normal(0, 0.05) * c.diameter, c.y += random.normal(0, 0.05) * c.diameter;
       c.diameter *= std::exp(random.normal(0, 0.09));
     }
-    const KnownCrater* best = nullptr;
-    double most = 0;
-    for (const KnownCrater& k : scene.craters) {
-      if (std::hypot(k.x - c.x, k.y - c.y) > (k.diameter + c.diameter) / 2) continue;
-      const double common = overlap(c, {k.x, k.y, k.diameter, 0});
-      if (common > most) most = common, best = &k;
-    }
+    const auto [best, most] = covered_crater(scene, c);
     LookExample e;
     e.crater = most >= 0.5 && best->clarity >= kClear;
     if (!e.crater && most > 0.3 && !(most >= 0.5 && best->clarity < kClear / 2)) continue;

@@ -8,6 +8,22 @@
 #include "core/random.hpp"
 #include "testbed/render.hpp"
 namespace waymark::testing {
+namespace {
+
+/// Outcrops, dunes, how many craters there are, and relief.
+void draw_terrain(MadeGround& ground, Random& random) {
+  if (random.chance(0.2)) ground.outcrops.cover = random.uniform(0, 0.03);
+  ground.dunes.cover = random.uniform(0, 0.4);
+  ground.dunes.wavelength = random.log_uniform(4, 20);
+  ground.dunes.height = ground.dunes.wavelength * random.uniform(0.03, 0.09);
+  ground.craters.density = random.uniform(0, 0.6);
+  ground.relief.slope = std::tan(random.uniform(0, 0.2));
+  ground.relief.slope_azimuth = {random.uniform(0, 360)};
+  ground.relief.rms = random.log_uniform(0.3, 5);
+  ground.relief.longest = 300;
+}
+
+}  // namespace
 
 MadeView made_view(int number) {
   Random random(static_cast<std::uint64_t>(number), "made view of rocks");
@@ -20,17 +36,9 @@ MadeView made_view(int number) {
   ground.rocks.min_diameter = 1.2 * gsd;
   ground.rocks.max_diameter = random.uniform(8, 25) * gsd;
   ground.relief.roughness = random.log_uniform(0.3, 1.5);
-  if (random.chance(0.2)) ground.outcrops.cover = random.uniform(0, 0.03);
-  ground.dunes.cover = random.uniform(0, 0.4);
-  ground.dunes.wavelength = random.log_uniform(4, 20);
-  ground.dunes.height = ground.dunes.wavelength * random.uniform(0.03, 0.09);
-  ground.craters.density = random.uniform(0, 0.6);
+  draw_terrain(ground, random);
   ground.craters.min_diameter = 3;
   ground.craters.max_diameter = 80;
-  ground.relief.slope = std::tan(random.uniform(0, 0.2));
-  ground.relief.slope_azimuth = {random.uniform(0, 360)};
-  ground.relief.rms = random.log_uniform(0.3, 5);
-  ground.relief.longest = 300;
   // Every third view: ground whose texture is strong and whose small rocks are few, as landings meet.
   Random other(static_cast<std::uint64_t>(number), "rough views without gravel");
   const bool bare = number % 3 == 2;
@@ -74,17 +82,9 @@ MadeView leaning_view(int number) {
   ground.rocks.min_diameter = gsd * (random.chance(0.5) ? random.log_uniform(1.5, 6) : 1.2);
   ground.rocks.max_diameter = std::max(4 * ground.rocks.min_diameter, random.uniform(8, 40) * gsd);
   ground.relief.roughness = random.log_uniform(0.3, 2);
-  if (random.chance(0.2)) ground.outcrops.cover = random.uniform(0, 0.03);
-  ground.dunes.cover = random.uniform(0, 0.4);
-  ground.dunes.wavelength = random.log_uniform(4, 20);
-  ground.dunes.height = ground.dunes.wavelength * random.uniform(0.03, 0.09);
-  ground.craters.density = random.uniform(0, 0.6);
+  draw_terrain(ground, random);
   ground.craters.min_diameter = std::max(2.0, 8 * gsd);
   ground.craters.max_diameter = 80;
-  ground.relief.slope = std::tan(random.uniform(0, 0.2));
-  ground.relief.slope_azimuth = {random.uniform(0, 360)};
-  ground.relief.rms = random.log_uniform(0.3, 5);
-  ground.relief.longest = 300;
   const Scene scene = make_scene(ground, static_cast<std::uint64_t>(number) + 50000);
 
   PosedCamera camera;
