@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
+#include "importers/logs/log_line.hpp"
 #include "importers/logs/number_table.hpp"
 #include "localization/detectors/depth_rocks.hpp"
 #include "localization/detectors/horizon_summits.hpp"
@@ -18,83 +18,13 @@
 namespace waymark {
 namespace {
 
-using nlohmann::json;
-
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-
-/// One line of a log; every message names it.
-class Line {
- public:
-  Line(const std::filesystem::path& file, std::size_t number, const json& object)
-      : file_(file), number_(number), object_(object) {}
-
-  const json& object() const { return object_; }
-  Line part(const json& object) const { return {file_, number_, object}; }
-  bool has(const char* key) const { return object_.contains(key) && !object_[key].is_null(); }
-
-  double number(const char* key) const {
-    if (!has(key)) fail(fmt::format("has no \"{}\"", key));
-    if (!object_[key].is_number())
-      fail(fmt::format("\"{}\" must be a number, is {}", key, object_[key].dump()));
-    return object_[key];
-  }
-  double number(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
-  double positive(const char* key, double otherwise) const {
-    const double value = number(key, otherwise);
-    if (!(value > 0)) fail(fmt::format("\"{}\" must be above 0, is {}", key, value));
-    return value;
-  }
-  double not_negative(const char* key) const {
-    const double value = number(key, 0);
-    if (!(value >= 0)) fail(fmt::format("\"{}\" must not be below 0, is {}", key, value));
-    return value;
-  }
-  /// Radians; what is more than two turns was meant in degrees.
-  double angle(const char* key, std::optional<double> otherwise = {}) const {
-    return within_two_turns(key, otherwise ? number(key, *otherwise) : number(key), "angles are radians");
-  }
-  /// rad/s; two turns in a second were meant in degrees.
-  double turn(const char* key) const {
-    return within_two_turns(key, number(key), "turns are radians per second");
-  }
-  const json& list(const char* key) const {
-    if (!has(key) || !object_[key].is_array()) fail(fmt::format("\"{}\" must be a list", key));
-    return object_[key];
-  }
-  /// `otherwise` stands for what is no number.
-  std::vector<float> numbers(const char* key, float otherwise) const {
-    std::vector<float> all;
-    for (const json& value : list(key)) all.push_back(value.is_number() ? value.get<float>() : otherwise);
-    return all;
-  }
-  std::string text(const char* key) const {
-    if (!has(key) || !object_[key].is_string()) fail(fmt::format("\"{}\" must be a text", key));
-    return object_[key];
-  }
-  Pose2 pose() const { return {number("x"), number("y"), angle("yaw", 0)}; }
-  Pose2 mount() const { return has("mount") ? part(object_["mount"]).pose() : Pose2{}; }
-
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorCode::input, "the log " + problem, fmt::format("{}, line {}", file_.string(), number_),
-                "docs/log_format.md describes each record");
-  }
-
- private:
-  double within_two_turns(const char* key, double value, const char* rule) const {
-    if (!(std::abs(value) <= 4 * std::numbers::pi)) fail(fmt::format("\"{}\" is {}: {}", key, value, rule));
-    return value;
-  }
-
-  const std::filesystem::path& file_;
-  std::size_t number_;
-  const json& object_;
-};
 
 class Reader {
  public:
   explicit Reader(const TypeRegistry& types) : types_(types) {}
 
-  void read(const Line& line) {
+  void read(const LogLine& line) {
     const std::string kind = line.text("kind");
     if (kind == "header") return header(line);
     const double t = line.number("t");
@@ -139,14 +69,14 @@ class Reader {
 
   // A yaw that was never wrapped grows turn by turn. One that begins beyond two turns, or jumps, was meant in
   // degrees.
-  Pose2 truth(const Line& line) {
+  Pose2 truth(const LogLine& line) {
     const double yaw = line.number("yaw", 0);
     if (!(std::abs(yaw - last_truth_yaw_) <= std::numbers::pi)) line.angle("yaw", 0);
     last_truth_yaw_ = yaw;
     return {line.number("x"), line.number("y"), wrapped(yaw)};
   }
 
-  void header(const Line& line) {
+  void header(const LogLine& line) {
     if (line.has("version") && line.number("version") > 1)
       line.fail(fmt::format("is of version {}, this program reads version 1", line.number("version")));
     const std::string frame = line.has("frame") ? line.text("frame") : "map";
@@ -157,21 +87,21 @@ class Reader {
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
     log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
     log_.error_memory = {line.not_negative("range_memory"), line.not_negative("bearing_memory")};
-    if (line.has("start")) start(line.part(line.object()["start"]));
+    if (line.has("start")) start(line.part("start"));
   }
-  void start(const Line& line) {
+  void start(const LogLine& line) {
     log_.start = line.pose(), log_.start_sd = line.has("sd") ? line.positive("sd", 1) : 0;
     log_.start_yaw_sd = line.positive("yaw_sd", log_.start_yaw_sd);
   }
 
-  SightingSet sightings(const Line& line) {
+  SightingSet sightings(const LogLine& line) {
     SightingSet set;
     set.robot_from_sensor = line.mount();
-    for (const json& item : line.list("items")) set.sightings.push_back(sighting(line.part(item)));
+    for (const LogLine& item : line.parts("items")) set.sightings.push_back(sighting(item));
     return set;
   }
 
-  SeenLandmark sighting(const Line& line) {
+  SeenLandmark sighting(const LogLine& line) {
     SeenLandmark s;
     s.bearing = line.angle("bearing");
     if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
@@ -202,29 +132,28 @@ class Reader {
       return s;
     }
     s.type = types_.id(name);
-    if (line.has("features")) features(line.part(line.object()["features"]), *type, s.features);
+    if (line.has("features")) features(line.part("features"), *type, s.features);
     return s;
   }
 
-  static void features(const Line& line, const LandmarkType& type, KnownFeatures& into) {
+  static void features(const LogLine& line, const LandmarkType& type, KnownFeatures& into) {
     for (std::size_t i = 0; i < std::min(type.features.size(), kMaxFeatures); ++i) {
       const FeatureSpec& spec = type.features[i];
       if (!line.has(spec.name.c_str())) continue;
-      const json& value = line.object()[spec.name];
-      const bool with_sd = value.is_object();
-      const Line both = with_sd ? line.part(value) : line;
+      const bool with_sd = line.is_object(spec.name.c_str());
+      const LogLine both = with_sd ? line.part(spec.name.c_str()) : line;
       into.value[i] = with_sd ? both.number("value") : line.number(spec.name.c_str());
       const double sd = with_sd ? both.positive("sd", 1) : 0;
       into.variance[i] = sd * sd;
       if (spec.scale == Scale::ratio && !(into.value[i] > 0))
         line.fail(fmt::format("\"{}\" must be above 0, is {}", spec.name, into.value[i]));
     }
-    for (const auto& [name, value] : line.object().items())
+    for (const std::string& name : line.keys())
       if (std::ranges::find(type.features, name, &FeatureSpec::name) == type.features.end())
         line.fail(fmt::format("has the feature \"{}\", which the type {} has not", name, type.name));
   }
 
-  static LaserScan scan(const Line& line) {
+  static LaserScan scan(const LogLine& line) {
     LaserScan scan{.robot_from_sensor = line.mount(),
                    .first_angle = line.angle("first_angle"),
                    .angle_step = line.angle("angle_step"),
@@ -241,7 +170,7 @@ class Reader {
     return types_.find(name) ? std::optional<TypeId>(types_.id(name)) : std::nullopt;
   }
 
-  static DepthImage depth(const Line& line) {
+  static DepthImage depth(const LogLine& line) {
     DepthImage image{.robot_from_sensor = line.mount(),
                      .height = line.positive("height", 1.5),
                      .tilt = line.angle("tilt", 0),
@@ -257,7 +186,7 @@ class Reader {
     return image;
   }
 
-  SightingSet panorama(const Line& line) const {
+  SightingSet panorama(const LogLine& line) const {
     const HorizonProfile profile{.first_angle = line.angle("first_angle"),
                                  .angle_step = line.angle("angle_step"),
                                  .elevation_sd = line.positive("elevation_sd", 0.001),
@@ -265,23 +194,23 @@ class Reader {
     return sightings_of_summits(profile, {.type = type("mountain_top")});
   }
 
-  static FelledReading felled(const Line& line, double t) {
+  static FelledReading felled(const LogLine& line, double t) {
     FelledReading f{.t = t,
                     .range = line.positive("range", 1),
                     .bearing = line.angle("bearing"),
                     .range_sd = line.positive("range_sd", 0.1),
                     .bearing_sd = line.positive("bearing_sd", 0.01)};
     if (line.has("features")) {
-      const Line features = line.part(line.object()["features"]);
+      const LogLine features = line.part("features");
       f.diameter = features.has("diameter") ? features.positive("diameter", 1) : 0;
       f.height = features.has("height") ? features.positive("height", 1) : 0;
     }
     return f;
   }
 
-  static HeadingFix heading(const Line& line) { return {line.angle("yaw"), line.positive("sd", 0.1)}; }
+  static HeadingFix heading(const LogLine& line) { return {line.angle("yaw"), line.positive("sd", 0.1)}; }
 
-  static GnssFix fix(const Line& line) {
+  static GnssFix fix(const LogLine& line) {
     GnssFix fix;
     fix.at = {line.number("x"), line.number("y")};
     fix.sd = line.positive("sd", 3);
@@ -303,12 +232,7 @@ RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistr
   for (std::string line; std::getline(text, line);) {
     ++number;
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const json object = json::parse(line, nullptr, false);
-    if (!object.is_object())
-      throw Error(ErrorCode::input, "this line is no JSON object",
-                  fmt::format("{}, line {}", file.string(), number),
-                  "a log has one object per line (docs/log_format.md); not a number is written null");
-    reader.read({file, number, object});
+    reader.read({file, number, line});
     ++records;
   }
   if (records == 0) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
