@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/sqlite.hpp"
+
+#include <gtest/gtest.h>
+
+namespace waymark::sqlite {
+namespace {
+
+template <class Text>
+concept Bindable = requires(Statement& statement, Text&& text) {
+  statement.bind(1, std::forward<Text>(text));
+};
+
+// SQLite reads the bytes when the statement runs, not when they are bound.
+TEST(Sqlite, OnlyTextThatSomebodyKeepsIsBound) {
+  EXPECT_TRUE(Bindable<std::string&>);
+  EXPECT_TRUE(Bindable<const std::string&>);
+  EXPECT_TRUE(Bindable<std::string_view>);
+  EXPECT_TRUE(Bindable<const char*>);
+  EXPECT_FALSE(Bindable<std::string>) << "it would be gone before the statement runs";
+}
+
+}  // namespace
+}  // namespace waymark::sqlite
