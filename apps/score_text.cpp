@@ -42,8 +42,11 @@ std::string as_text(const Score& s) {
     text += fmt::format("inside the 90 % ellipse {} of {}; NEES {} (2 is honest)\n", percent(s.inside_90),
                         s.with_covariance, number(s.nees, 2));
   for (const auto& [name, e] : s.features)
-    text += fmt::format("{}: bias {} ({}), spread {}, median error {}, n = {}\n", name, number(e.bias),
-                        percent(e.relative_bias), percent(e.relative_sd), number(e.absolute), e.count);
+    text += std::isfinite(e.relative_bias)
+                ? fmt::format("{}: bias {} ({}), spread {}, median error {}, n = {}\n", name, number(e.bias),
+                              percent(e.relative_bias), percent(e.relative_sd), number(e.absolute), e.count)
+                : fmt::format("{}: bias {}, median error {}, n = {}\n", name, number(e.bias),
+                              number(e.absolute), e.count);
   const auto calibration = [&](const char* what, const std::vector<CalibrationBin>& bins, double error) {
     if (bins.empty()) return;
     text += fmt::format("{}: calibration error {}\n", what, number(error));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <numbers>
 
 #include "testbed/score_match.hpp"
 
@@ -27,12 +29,13 @@ double quantile(std::vector<double> values, double share) {
   return std::lerp(values[below], values[above], place - static_cast<double>(below));
 }
 
-ErrorSummary summary(const std::vector<double>& found, const std::vector<double>& truth) {
+ErrorSummary summary(const std::vector<double>& found, const std::vector<double>& truth, Scale scale) {
   std::vector<double> error, magnitude, relative, deviation;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    error.push_back(found[i] - truth[i]);
+    const double off = found[i] - truth[i];
+    error.push_back(scale == Scale::axis ? std::remainder(off, std::numbers::pi) : off);
     magnitude.push_back(std::abs(error.back()));
-    if (truth[i] != 0) relative.push_back(found[i] / truth[i] - 1);
+    if (scale == Scale::ratio && truth[i] != 0) relative.push_back(found[i] / truth[i] - 1);
   }
   ErrorSummary s;
   s.count = static_cast<int>(found.size());
@@ -137,7 +140,8 @@ void measure_places(Score& s, std::span<const ScoredThing> found, std::span<cons
   s.nees = s.with_covariance ? nees / s.with_covariance : kNan;
 }
 
-void measure_features(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth) {
+void measure_features(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
+                      const std::map<std::string, Scale>& scales) {
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> values;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] < 0) continue;
@@ -151,7 +155,10 @@ void measure_features(Score& s, std::span<const ScoredThing> found, std::span<co
       if (const auto other = t.features.find(name); other != t.features.end())
         add(name, value, other->second);
   }
-  for (const auto& [name, pair] : values) s.features[name] = summary(pair.first, pair.second);
+  for (const auto& [name, pair] : values) {
+    const auto scale = scales.find(name);
+    s.features[name] = summary(pair.first, pair.second, scale == scales.end() ? Scale::ratio : scale->second);
+  }
 }
 
 }  // namespace
@@ -184,7 +191,7 @@ Score score(std::span<const ScoredThing> found, std::span<const ScoredThing> tru
   count(s, found, things, size_edges);
   s.average_precision = average_precision(found, s.match, s.all.truth);
   measure_places(s, found, things);
-  measure_features(s, found, things);
+  measure_features(s, found, things, rules.scales);
   std::tie(s.by_confidence, s.confidence_error) =
       calibration(found, s.match, [](const ScoredThing& f) { return f.confidence; });
   std::tie(s.by_quality, s.quality_error) =

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "core/feature.hpp"
 namespace waymark {
 
 /// A thing found, or a true one. Lengths in one unit (metres, or pixels).
@@ -33,15 +34,17 @@ struct MatchRules {
   double share = 0.75, least = 0;  ///< the least in the unit of the places
   double size_ratio = 2.5;         ///< 0: sizes do not matter
   double least_overlap = 0.5;
+  std::map<std::string, Scale> scales = {};  ///< of features, for their errors; ratio where not named
   double min_diameter = 0;  ///< smaller true things are ignored, smaller finds without a match too
 };
 
 /// Errors of a number over the matched pairs.
 struct ErrorSummary {
   int count = 0;
-  double bias = 0;                            ///< median of found - true
+  double bias = 0;                            ///< median of found - true; an axis errs by pi/2 at most
   double absolute = 0;                        ///< median of |found - true|
-  double relative_bias = 0, relative_sd = 0;  ///< of found / true - 1: median; 1.4826 x median deviation
+  double relative_bias = 0, relative_sd = 0;  ///< of found / true - 1: median; 1.4826 x median
+                                              ///< deviation; NaN where no zero is true
 };
 
 struct ScoreCounts {

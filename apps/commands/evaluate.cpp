@@ -3,6 +3,7 @@
 
 #include "apps/command.hpp"
 #include "apps/evaluate_track.hpp"
+#include "apps/registries.hpp"
 #include "apps/score_text.hpp"
 #include "apps/scored_table.hpp"
 #include "core/error.hpp"
@@ -78,12 +79,16 @@ class Evaluate final : public Command {
           truth[type].push_back(thing);
         }
     std::map<std::string, Score> scores;
-    const MatchRules rules{.by = by_ == "overlap" ? MatchRules::By::overlap : MatchRules::By::distance,
-                           .share = share_,
-                           .least = least_,
-                           .min_diameter = min_diameter_};
-    for (const auto& [type, things] : paired_types(found, truth, type_))
+    MatchRules rules{.by = by_ == "overlap" ? MatchRules::By::overlap : MatchRules::By::distance,
+                     .share = share_,
+                     .least = least_,
+                     .min_diameter = min_diameter_};
+    for (const auto& [type, things] : paired_types(found, truth, type_)) {
+      rules.scales.clear();
+      if (const LandmarkType* known = all_types().find(type))
+        for (const FeatureSpec& feature : known->features) rules.scales[feature.name] = feature.scale;
       scores[type] = score(things.first, things.second, rules, edges_);
+    }
     std::cout << (format_ == "json" ? scores_as_json(scores) : scores_as_text(scores));
     return 0;
   }

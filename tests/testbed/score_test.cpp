@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "testbed/score_match.hpp"
 
@@ -100,6 +101,18 @@ TEST(Score, FeaturesAreComparedByName) {
   EXPECT_NEAR(s.features.at("height").relative_bias, 0.1, 1e-12);
   EXPECT_NEAR(s.features.at("diameter").bias, -1, 1e-12);
   EXPECT_FALSE(s.features.contains("other"));
+}
+
+TEST(Score, AnAxisErrsByAQuarterTurnAtMostAndAnElevationHasNoPercentage) {
+  std::vector<ScoredThing> found{thing(0, 0, 4)}, truth{thing(0, 0, 4)};
+  found[0].features = {{"orientation", 3.1}, {"elevation", 12}};
+  truth[0].features = {{"orientation", 0.1}, {"elevation", 10}};
+  const MatchRules rules{.scales = {{"orientation", Scale::axis}, {"elevation", Scale::interval}}};
+  const Score s = score(found, truth, rules);
+  EXPECT_NEAR(s.features.at("orientation").bias, 3 - std::numbers::pi, 1e-12);
+  EXPECT_TRUE(std::isnan(s.features.at("orientation").relative_bias));
+  EXPECT_NEAR(s.features.at("elevation").bias, 2, 1e-12);
+  EXPECT_TRUE(std::isnan(s.features.at("elevation").relative_bias));
 }
 
 TEST(Score, NothingAgainstNothing) {
