@@ -26,19 +26,24 @@ std::string fact(const std::string& number, const std::string& of) {
   return fmt::format("<li><b>{}</b><span>{}</span></li>", number, escaped(of));
 }
 
+constexpr int kFactsPerType = 3;
+
 /// The few numbers a reader looks for first.
 std::string facts(const std::vector<LandmarkSection>& sections, const std::vector<RunRecord>& runs) {
   std::string items;
   for (const LandmarkSection& section : sections) {
     if (section.landmarks.empty()) continue;
     const std::string type = title_of(section.type.name);
+    const std::string whose = sections.size() > 1 ? section.type.name + " " : "";
     items += fact(number_text(static_cast<double>(section.landmarks.size())), type + " landmarks");
-    for (std::size_t i = 0; i < section.type.features.size(); ++i) {
+    int shown = 0;
+    for (std::size_t i = 0; i < section.type.features.size() && shown < kFactsPerType; ++i) {
       const auto values = known_values(section, i);
       const FeatureSpec& feature = section.type.features[i];
       if (values.empty() || feature.scale == Scale::axis) continue;
       const double largest = *std::max_element(values.begin(), values.end());
-      items += fact(reading_of(feature, largest)(largest), "largest " + feature.name);
+      items += fact(reading_of(feature, largest)(largest), "largest " + spoken(whose + feature.name));
+      ++shown;
     }
   }
   if (!runs.empty() && runs.back().seconds > 0)
@@ -47,7 +52,7 @@ std::string facts(const std::vector<LandmarkSection>& sections, const std::vecto
 }
 
 std::string place_of(const Crs& crs) {
-  if (crs.kind() == CrsKind::local) return "Local metres, on no body";
+  if (crs.kind() == CrsKind::local) return "Local metres";
   const std::string code = crs.authority().empty() ? "" : " (" + crs.id() + ")";
   return crs.body().name + " \u00b7 " + crs.name() + code;
 }

@@ -7,6 +7,9 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
+/// "mountain_top" reads "mountain top".
+std::string spoken(std::string_view name);
+
 /// "mountain_top" reads "Mountain top".
 std::string title_of(std::string_view name);
 
