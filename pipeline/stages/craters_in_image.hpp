@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "geo/image_source.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/craters/find_craters.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/vision/image_faults.hpp"
+#include "pipeline/vision/image_light.hpp"
+namespace waymark {
+
+/// A stage that searches one image for craters; which method it takes is all that tells two apart.
+template <CraterMethod kMethod>
+struct CratersInImage {
+  struct Options {
+    double min_diameter = CraterSearch{}.min_diameter;
+    double max_diameter = 0;
+    double min_confidence = CraterSearch{}.min_confidence;
+    void describe(OptionVisitor& option) {
+      option("min_diameter", min_diameter,
+             {.help = "Smallest crater kept, in pixels of the image", .min = 6, .max = 1e5});
+      option("max_diameter", max_diameter,
+             {.help = "Largest crater kept, in pixels; 0: 0.6 of the image's shorter side",
+              .min = 0,
+              .max = 1e6});
+      option("min_confidence", min_confidence,
+             {.help = "Craters less probable than this are left out", .min = 0, .max = 1});
+    }
+  };
+  static constexpr In<ImageSet> image_set{"image_set"};
+  static constexpr Out<std::vector<Detection>> detections{"detections"};
+
+  static StageSpec specified(std::string name, std::string summary, int version) {
+    return {.name = std::move(name),
+            .summary = std::move(summary),
+            .version = version,
+            .scope = Scope::image,
+            .inputs = {image_set},
+            .outputs = {detections}};
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
+    TypeRegistry types;
+    register_landmark_types(types);
+    const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
+    if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
+    auto found = find_craters(pixels, {.method = kMethod,
+                                       .type = types.id("crater"),
+                                       .sun_angle = image_light(image.info()),
+                                       .min_diameter = options.min_diameter,
+                                       .max_diameter = options.max_diameter,
+                                       .min_confidence = options.min_confidence});
+    unit.count_out(static_cast<std::int64_t>(found.size()));
+    unit.write(detections, std::move(found));
+  }
+};
+
+}  // namespace waymark
