@@ -121,16 +121,19 @@ std::string evaluate_track(const std::string& track_file, const std::string& tru
                     truth.poses.back().t),
         track_file, "are they of the same drive? a coarse truth needs a larger --longest-gap");
   if (!how.picture.empty()) draw(track_file, track, truth, opened ? &*opened : nullptr, how);
-  nlohmann::ordered_json all;
+  using Json = nlohmann::ordered_json;
+  Json all;
   all["poses"] = s.poses;
   all["align"] = how.align;
   all["ate_rmse"] = s.ate_rmse;
   all["ate_median"] = s.ate_median;
   all["ate_largest"] = s.ate_largest;
   all["rpe"] = s.rpe;
-  all["heading_rmse_deg"] = s.heading_rmse_deg ? nlohmann::ordered_json(*s.heading_rmse_deg) : nullptr;
-  all["anees"] = s.anees ? nlohmann::ordered_json(*s.anees) : nullptr;
-  all["anees_band"] = {s.anees_low, s.anees_high};
+  all["heading_rmse_deg"] = s.heading_rmse_deg ? Json(*s.heading_rmse_deg) : nullptr;
+  const auto& c = s.consistency;
+  all["anees"] = c ? Json(c->anees) : nullptr;
+  all["anees_band"] = c ? Json{c->low, c->high} : nullptr;
+  all["anees_independent"] = c ? Json(c->independent) : nullptr;
   all["matches"] = s.matches;
   all["rejected"] = s.rejected;
   all["wrong_matches"] = s.wrong_matches;

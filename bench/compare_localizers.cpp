@@ -162,7 +162,7 @@ void run(const Variant& v, const RobotLog& log, const Site& site, const Landmark
   sum.median.push_back(s.ate_median);
   sum.rpe.push_back(s.rpe);
   sum.heading.push_back(s.heading_rmse_deg.value_or(0));
-  sum.anees.push_back(s.anees.value_or(0));
+  sum.anees.push_back(s.consistency ? s.consistency->anees : 0);
   sum.spent += judged.spent;
   sum.updates += judged.updates;
   sum.matched += judged.matched;

@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 15> kColumns{"t",       "x",       "y",        "z",     "roll",
-                                               "pitch",   "yaw",     "var_x",    "var_y", "cov_xy",
-                                               "var_yaw", "matched", "rejected", "wrong", "lost"};
+constexpr std::array<const char*, 17> kColumns{
+    "t",      "x",       "y",       "z",        "roll",  "pitch", "yaw",       "var_x",    "var_y",
+    "cov_xy", "var_yaw", "matched", "rejected", "wrong", "lost",  "cov_x_yaw", "cov_y_yaw"};
 using Values = std::array<double, kColumns.size()>;
 
 Values values_of(const TrackRow& row, const LocalFrame* frame) {
@@ -43,7 +43,9 @@ Values values_of(const TrackRow& row, const LocalFrame* frame) {
           double(row.matched),
           double(row.rejected),
           double(row.wrong),
-          double(row.lost)};
+          double(row.lost),
+          c(0, 2),
+          c(1, 2)};
 }
 
 TrackRow row_of(const Values& v) {
@@ -52,7 +54,7 @@ TrackRow row_of(const Values& v) {
                .z = v[3],
                .roll = v[4],
                .pitch = v[5]};
-  row.at.covariance << v[7], v[9], 0, v[9], v[8], 0, 0, 0, v[10];
+  row.at.covariance << v[7], v[9], v[15], v[9], v[8], v[16], v[15], v[16], v[10];
   row.matched = static_cast<int>(v[11]);
   row.rejected = static_cast<int>(v[12]);
   row.wrong = static_cast<int>(v[13]);
@@ -81,7 +83,8 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
     fmt::format_to(std::back_inserter(text), "{:.4f},{:.{}f},{:.{}f},{:.4f},{:.6f},{:.6f},{:.6f}", v[0], v[1],
                    places, v[2], places, v[3], v[4], v[5], v[6]);
     for (std::size_t i = 7; i < 11; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
-    for (std::size_t i = 11; i < v.size(); ++i) fmt::format_to(std::back_inserter(text), ",{:g}", v[i]);
+    for (std::size_t i = 11; i < 15; ++i) fmt::format_to(std::back_inserter(text), ",{:g}", v[i]);
+    for (std::size_t i = 15; i < 17; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
     text.push_back('\n');
   }
   out.write(text.data(), static_cast<std::streamsize>(text.size()));

@@ -12,8 +12,8 @@ struct TrackOutput {
 };
 
 /// Writes a track. CSV: t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected, then wrong
-/// (matches the log contradicts) and lost (0 or 1); seconds, metres, radians. The file is written aside and
-/// renamed. Throws Error{output}.
+/// (matches the log contradicts), lost (0 or 1), cov_x_yaw and cov_y_yaw; seconds, metres, radians. The file
+/// is written aside and renamed. Throws Error{output}.
 void write_track_csv(const std::filesystem::path& file, const Track& track, const TrackOutput& output = {});
 
 /// The same columns as points of a GeoPackage, layer `track`. `output.frame` and `output.crs` are needed.

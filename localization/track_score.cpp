@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "localization/chi_square.hpp"
-
 namespace waymark {
 namespace {
 
@@ -105,9 +103,7 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAl
   s.poses = pairs.size();
   if (pairs.empty()) return s;
   const PlaneAlignment aligned = align(from, to, alignment);
-  std::vector<double> places, turns;
-  double nees = 0;
-  std::size_t counted = 0;
+  std::vector<double> places, turns, times, squares;
   for (const Pair& p : pairs) {
     const Eigen::Vector2d off = aligned(p.row->at.pose.at()) - p.truth.at();
     places.push_back(off.norm());
@@ -118,20 +114,15 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAl
     if (alignment != TrackAlignment::none || !headings || cholesky.info() != Eigen::Success) continue;
     const double square = cholesky.matrixL().solve(e).squaredNorm();
     if (!std::isfinite(square)) continue;
-    nees += square;
-    ++counted;
+    times.push_back(p.row->t);
+    squares.push_back(square);
   }
   s.ate_rmse = root_mean_square(places);
   s.ate_median = median(places);
   s.ate_largest = *std::ranges::max_element(places);
   if (headings) s.heading_rmse_deg = root_mean_square(turns);
   s.rpe = headings ? relative_error(pairs, rpe_seconds) : relative_place_error(pairs, rpe_seconds, aligned);
-  if (counted) {
-    s.anees = nees / (3 * static_cast<double>(counted));
-    const double freedom = 3 * std::max(1.0, pairs.back().row->t - pairs.front().row->t);
-    s.anees_low = chi_square_quantile(0.025, freedom) / freedom;
-    s.anees_high = chi_square_quantile(0.975, freedom) / freedom;
-  }
+  if (!squares.empty()) s.consistency = consistency(times, squares, 3);
   return s;
 }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include "localization/consistency.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/track.hpp"
 namespace waymark {
@@ -26,8 +27,7 @@ struct TrackScore {
   double ate_rmse = 0, ate_median = 0, ate_largest = 0;  ///< m, absolute trajectory error
   double rpe = 0;                                        ///< m, RMSE of the motion over `rpe_seconds`
   std::optional<double> heading_rmse_deg;                ///< absent where the truth has no heading
-  std::optional<double> anees;           ///< mean of e' P^-1 e over its number of rows: 1 is consistent
-  double anees_low = 0, anees_high = 0;  ///< 95 % band for as many independent poses as there are seconds
+  std::optional<Consistency> consistency;                ///< of covariances (x, y, yaw)
   std::int64_t matches = 0, rejected = 0, wrong_matches = 0;
   double lost = 0;  ///< part of the rows
 };

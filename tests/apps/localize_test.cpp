@@ -47,6 +47,21 @@ TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
   EXPECT_THAT(waymark({"localize", map, data, "-o", track_}).err, HasSubstr("add --robot 1"));
 }
 
+TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {
+  ASSERT_EQ(localize(drive_log({}), {"--method", "ekf"}).code, 0);
+  EXPECT_THAT(text_of(track_), HasSubstr(",lost,cov_x_yaw,cov_y_yaw\n"));
+  write_text(track_,
+             "t,x,y,yaw,var_x,var_y,var_yaw,cov_x_yaw\n0,1,0,1,1,1,1,0.9\n1,2,0,1,1,1,1,0.9\n"
+             "2,1,0,1,1,1,1,0.9\n");
+  write_text(folder_.path() / "truth.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0\n2,0,0,0\n");
+  // e' P^-1 e = (1 - 2 * 0.9 + 1) / (1 - 0.9^2), over 3.
+  const nlohmann::json said = score(folder_ / "truth.csv");
+  EXPECT_NEAR(said["anees"], 0.2 / 0.19 / 3, 1e-9);
+  EXPECT_EQ(said["anees_independent"], 1);
+  EXPECT_LT(said["anees_band"][0], said["anees"]);
+  EXPECT_GT(said["anees_band"][1], 3);
+}
+
 TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
   const std::string log = drive_log({.start = false});
   EXPECT_EQ(localize(log, {"--method", "global", "--ids", "unknown"}).code, 0);

@@ -14,6 +14,7 @@
 #include "localization/filters/particle_filter.hpp"
 #include "localization/play_log.hpp"
 #include "localization/track_score.hpp"
+#include "mrclam_robots.hpp"
 
 namespace waymark::testing {
 namespace {
@@ -163,12 +164,9 @@ TEST(LaserStems, FindsAPostBeforeTheBackground) {
   EXPECT_TRUE(find_stems({}, {}).empty());
 }
 
-/// Real robots with motion-capture truth; the data stay outside the repository.
 class Mrclam : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!fs::exists(folder_)) GTEST_SKIP() << folder_ << " is not on this machine";
-  }
+  void SetUp() override { SKIP_WITHOUT_MRCLAM(); }
   struct Pooled {
     double rmse = 0, heading = 0;
     std::vector<double> medians;
@@ -176,20 +174,15 @@ class Mrclam : public ::testing::Test {
   };
   template <class Make>
   Pooled follow(bool identities, Make&& make) {
-    const TypeRegistry types = all_types();
-    const TypeId beacon = types.id("beacon");
-    const SemanticMap map(types, Crs::local(), import_mrclam_landmarks(folder_, beacon, types[beacon]), {});
+    const MrclamRobots robots = read_mrclam();
     IdentificationOptions options;
     options.use_identities = identities;
     Pooled all;
     double rows = 0;
-    for (int robot = 1; robot <= 5; ++robot) {
-      RobotLog log = import_mrclam_log(folder_, robot, types);
-      place_in(log, map.frame());
-      PoseEstimate start{*pose_at(log.truth, log.events.front().t, 5), {}};
-      start.covariance = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal();
-      const auto localizer =
-          make(start, LandmarkWindow{LandmarkGrid(landmarks_of(map))}, FeatureScales(types), options);
+    for (std::size_t robot = 0; robot < 5; ++robot) {
+      const RobotLog& log = robots.logs[robot];
+      const auto localizer = make(robots.start[robot], LandmarkWindow{LandmarkGrid(robots.map)},
+                                  FeatureScales(robots.types), options);
       const Track track = play(log, *localizer, {});
       const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
       const auto n = static_cast<double>(s.poses);
@@ -204,7 +197,6 @@ class Mrclam : public ::testing::Test {
     all.heading = std::sqrt(all.heading / rows);
     return all;
   }
-  fs::path folder_ = fs::path(WAYMARK_SOURCE_DIR) / "../shared/data/localization/mrclam/MRCLAM_Dataset6";
 };
 
 TEST_F(Mrclam, ExtendedKalmanWithIdentities) {

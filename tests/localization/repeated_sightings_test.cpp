@@ -102,7 +102,7 @@ double anees(bool knows) {
                           LandmarkWindow{LandmarkGrid(beacons)}, FeatureScales(TypeRegistry{}));
     PlayOptions options;
     options.error_memory = knows ? 1 : 0;
-    sum += *score(play(log, filter, options), log.truth, TrackAlignment::none, true).anees / 60;
+    sum += score(play(log, filter, options), log.truth, TrackAlignment::none, true).consistency->anees / 60;
   }
   return sum;
 }
