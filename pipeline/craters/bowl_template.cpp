@@ -31,7 +31,7 @@ double height(double r) {
 double fresh_light(double u, double v, double elevation) {
   const double here = height(std::hypot(u, v)), rise = std::tan(elevation);
   for (double s = 0.05; s < 2.4; s += 0.05)
-    if (height(std::hypot(u + s, v)) > here + s * rise) return 0;
+    if (height(std::sqrt((u + s) * (u + s) + v * v)) > here + s * rise) return 0;
   constexpr double h = 1e-3;
   const double gx = (height(std::hypot(u + h, v)) - height(std::hypot(u - h, v))) / (2 * h);
   const double gy = (height(std::hypot(u, v + h)) - height(std::hypot(u, v - h))) / (2 * h);

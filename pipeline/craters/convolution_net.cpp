@@ -1,31 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/craters/convolution_net.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <cstring>
+#include <type_traits>
+#include <utility>
 
 namespace waymark {
 namespace {
 
-// The number of outputs is known to the compiler, which then adds four at a time.
-template <int kOutputs>
-void sums(const Convolution& layer, const float* in, const float* facts, float* out) {
+constexpr int kLanes = 8;
+using Lanes [[gnu::vector_size(sizeof(float) * kLanes)]] = float;
+
+// Sums of kVectors x kLanes outputs at kTogether places of a row at once, so that a weight is read once for
+// all and no sum waits for another; all are held in registers, since the compiler knows each index. Each adds
+// its products in the order of the inputs. What is negative is multiplied by `leak`.
+template <int kVectors, int kTogether>
+[[gnu::always_inline]] inline void sums(const Convolution& layer, const float* in, const float* facts,
+                                        float leak, float* out) {
+  const int places = layer.out_side(), row = layer.kernel * layer.channels;
+  const std::ptrdiff_t apart = std::ptrdiff_t{layer.stride} * layer.channels;
+  const auto each = []<std::size_t... kIndex>(std::index_sequence<kIndex...>, const auto& act)
+      __attribute__((always_inline)) {
+    (act(std::integral_constant<std::size_t, kIndex>{}), ...);
+  };
+  constexpr std::make_index_sequence<std::size_t{kVectors} * kTogether> all;
+  for (int y = 0; y < places; ++y)
+    for (int x = 0; x < places; x += kTogether, out += kTogether * kVectors * kLanes) {
+      Lanes total[kVectors * kTogether];
+      each(
+          all, [&](auto i) __attribute__((always_inline)) {
+            std::memcpy(&total[i], layer.biases.data() + i % kVectors * kLanes, sizeof(Lanes));
+          });
+      const float* weight = layer.weights.data();
+      const auto add = [&](const float* value, int count, std::ptrdiff_t step)
+          __attribute__((always_inline)) {
+        for (int n = 0; n < count; ++n, ++value, weight += kVectors * kLanes)
+          each(
+              all, [&](auto i) __attribute__((always_inline)) {
+                Lanes by;
+                std::memcpy(&by, weight + i % kVectors * kLanes, sizeof by);
+                total[i] += value[std::ptrdiff_t{i / kVectors} * step] * by;
+              });
+      };
+      for (int j = 0; j < layer.kernel; ++j)
+        add(in + ((y * layer.stride + j) * layer.side + x * layer.stride) * layer.channels, row, apart);
+      add(facts, layer.facts, 0);
+      each(
+          all, [&](auto i) __attribute__((always_inline)) {
+            const Lanes result = total[i] > 0 ? total[i] : leak * total[i];
+            std::memcpy(out + i * kLanes, &result, sizeof result);
+          });
+    }
+}
+
+void four_sums(const Convolution& layer, const float* in, const float* facts, float leak, float* out) {
   const int places = layer.out_side(), row = layer.kernel * layer.channels;
   for (int y = 0; y < places; ++y)
     for (int x = 0; x < places; ++x) {
-      std::array<float, kOutputs> total;
-      for (int o = 0; o < kOutputs; ++o)
-        total[static_cast<std::size_t>(o)] = layer.biases[static_cast<std::size_t>(o)];
+      std::array<float, 4> total{};
+      std::copy_n(layer.biases.begin(), 4, total.begin());
       const float* weight = layer.weights.data();
       const auto add = [&](const float* value, int count) {
-        for (int i = 0; i < count; ++i, weight += kOutputs)
-          for (int o = 0; o < kOutputs; ++o) total[static_cast<std::size_t>(o)] += value[i] * weight[o];
+        for (int i = 0; i < count; ++i, weight += 4)
+          for (std::size_t o = 0; o < 4; ++o) total[o] += value[i] * weight[o];
       };
       for (int j = 0; j < layer.kernel; ++j)
         add(in + ((y * layer.stride + j) * layer.side + x * layer.stride) * layer.channels, row);
       add(facts, layer.facts);
-      for (const float sum : total) *out++ = sum;
+      for (const float sum : total) *out++ = sum > 0 ? sum : leak * sum;
     }
+}
+
+[[gnu::always_inline]] inline void all_sums(const Convolution& layer, const float* in, const float* facts,
+                                            float leak, float* out) {
+  const int places = layer.out_side();
+  switch (layer.outputs) {
+    case 4:
+      return four_sums(layer, in, facts, leak, out);
+    case 8:
+      return places % 5 == 0 ? sums<1, 5>(layer, in, facts, leak, out)
+                             : sums<1, 1>(layer, in, facts, leak, out);
+    case 16:
+      return places % 4 == 0 ? sums<2, 4>(layer, in, facts, leak, out)
+                             : sums<2, 1>(layer, in, facts, leak, out);
+    case 32:
+      return places % 2 == 0 ? sums<4, 2>(layer, in, facts, leak, out)
+                             : sums<4, 1>(layer, in, facts, leak, out);
+    default:
+      assert(false);
+  }
+}
+
+#ifdef __x86_64__
+[[gnu::target("avx2")]] void sums_by_eight(const Convolution& layer, const float* in, const float* facts,
+                                           float leak, float* out) {
+  all_sums(layer, in, facts, leak, out);
+}
+#endif
+
+void sums_anyhow(const Convolution& layer, const float* in, const float* facts, float leak, float* out) {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2")) return sums_by_eight(layer, in, facts, leak, out);
+#endif
+  all_sums(layer, in, facts, leak, out);
 }
 
 }  // namespace
@@ -35,24 +115,7 @@ void convolve(const Convolution& layer, std::span<const float> in, std::span<con
   assert(in.size() == static_cast<std::size_t>(layer.side * layer.side * layer.channels));
   assert(layer.facts == 0 || facts.size() == static_cast<std::size_t>(layer.facts));
   out.resize(static_cast<std::size_t>(layer.out_side() * layer.out_side() * layer.outputs));
-  switch (layer.outputs) {
-    case 4:
-      sums<4>(layer, in.data(), facts.data(), out.data());
-      break;
-    case 8:
-      sums<8>(layer, in.data(), facts.data(), out.data());
-      break;
-    case 16:
-      sums<16>(layer, in.data(), facts.data(), out.data());
-      break;
-    case 32:
-      sums<32>(layer, in.data(), facts.data(), out.data());
-      break;
-    default:
-      assert(false);
-  }
-  if (!last)
-    for (float& value : out) value = value > 0 ? value : 0.1F * value;
+  sums_anyhow(layer, in.data(), facts.data(), last ? 1.0F : 0.1F, out.data());
 }
 
 std::vector<float> answer(const ConvolutionNet& net, std::span<const float> image,

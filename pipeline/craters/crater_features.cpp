@@ -125,13 +125,22 @@ void PatchSource::read(const CraterCandidate& c, double reach, bool mirrored, fl
   const double step = reach * c.diameter / kSide;  // pixels of the image between samples
   const auto wanted = static_cast<int>(std::floor(std::log2(std::max(1.0, step / 0.75))));
   const Level& level = (*levels_)[std::min(static_cast<std::size_t>(wanted), levels_->size() - 1)];
-  const double towards_x = std::cos(sun_angle_.value), towards_y = std::sin(sun_angle_.value);
+  // In pixels of the level from here on.
+  const double x = (c.x + 0.5) / level.shrink_x - 0.5, y = (c.y + 0.5) / level.shrink_y - 0.5;
+  const double cosine = std::cos(sun_angle_.value) * step, sine = std::sin(sun_angle_.value) * step;
+  const double u_x = cosine / level.shrink_x, u_y = sine / level.shrink_y;
+  const double v_x = (mirrored ? 1 : -1) * sine / level.shrink_x,
+               v_y = (mirrored ? -1 : 1) * cosine / level.shrink_y;
+  constexpr double middle = (kSide - 1) / 2.0;
+  const bool inside =
+      is_inside(level.pixels, x, y, 1.5 * step / std::min(level.shrink_x, level.shrink_y) * middle);
+  const float* const pixels = level.pixels.cells().data();
   for (int j = 0; j < kSide; ++j)
     for (int i = 0; i < kSide; ++i) {
-      const double u = (i - (kSide - 1) / 2.0) * step,
-                   v = (mirrored ? -1 : 1) * (j - (kSide - 1) / 2.0) * step;
-      const double x = c.x + u * towards_x - v * towards_y, y = c.y + u * towards_y + v * towards_x;
-      *samples++ = sample(level.pixels, (x + 0.5) / level.shrink_x - 0.5, (y + 0.5) / level.shrink_y - 0.5);
+      const double u = i - middle, v = j - middle;
+      const double at_x = x + u * u_x + v * v_x, at_y = y + u * u_y + v * v_y;
+      *samples++ = inside ? sample_inside(pixels, level.pixels.columns(), at_x, at_y)
+                          : sample(level.pixels, at_x, at_y);
     }
 }
 

@@ -25,8 +25,10 @@ std::optional<RimPoint> edge(const Pixels& image, const CraterCandidate& c, doub
   const auto count = static_cast<std::size_t>((kFarthest - kNearest) / step) + 1;
   // A slope over about 0.1 radii or 1.5 px, whichever is more.
   const double half = std::max(0.06, 0.75 / radius);
+  const bool inside = is_inside(image, c.x, c.y, (kFarthest + half) * radius + 1);
   const auto brightness = [&](double r) {
-    return sample(image, c.x + r * radius * towards_x, c.y + r * radius * towards_y);
+    const double x = c.x + r * radius * towards_x, y = c.y + r * radius * towards_y;
+    return inside ? sample_inside(image.cells().data(), image.columns(), x, y) : sample(image, x, y);
   };
   std::vector<double> steepness(count);
   for (std::size_t i = 0; i < count; ++i) {

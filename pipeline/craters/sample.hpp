@@ -15,4 +15,18 @@ inline float sample(const Pixels& image, double x, double y) {
          b * ((1 - a) * image(column, below) + a * image(right, below));
 }
 
+/// The same for a place that is neither beyond nor on the edge: [0, columns - 1) x [0, rows - 1).
+inline float sample_inside(const float* pixels, std::int64_t columns, double x, double y) {
+  const auto column = static_cast<int>(x), row = static_cast<int>(y);
+  const auto a = static_cast<float>(x - column), b = static_cast<float>(y - row);
+  const float* p = pixels + row * columns + column;
+  return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * p[columns] + a * p[columns + 1]);
+}
+
+/// Whether all places within `reach` of (x, y) along either axis are inside in that sense.
+inline bool is_inside(const Pixels& image, double x, double y, double reach) {
+  return x - reach >= 0 && y - reach >= 0 && x + reach < double(image.columns() - 1) &&
+         y + reach < double(image.rows() - 1);
+}
+
 }  // namespace waymark

@@ -8,19 +8,20 @@
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/craters/pixel_noise.hpp"
+#include "pipeline/craters/tile_correlation.hpp"
 
 namespace waymark {
 namespace {
 
 constexpr int kSizesPerOctave = 7;
-constexpr int kTile = 256;           // side of a transform
 constexpr double kLargestBowl = 24;  // pixels at the level it is sought on
 
-// One size of bowl: the spectra of its templates, ready to multiply.
+// One size of bowl: its templates, two in each spectrum (the second as imaginary part).
 struct Bowl {
   double diameter = 0;  // pixels of the level
   int half = 0;         // of the template's side
-  std::vector<cv::Mat1f> spectra;
+  std::size_t shapes = 0;
+  std::vector<ComplexTile> spectra;
 };
 
 cv::Mat1f as_matrix(const Pixels& pixels) {
@@ -28,59 +29,44 @@ cv::Mat1f as_matrix(const Pixels& pixels) {
           const_cast<float*>(pixels.cells().data())};
 }
 
+// A correlation is a product with the conjugate; the template's middle goes to the tile's first cell.
 Bowl make_bowl(double diameter, const std::vector<Pixels>& shapes) {
-  Bowl bowl{.diameter = diameter, .half = 0, .spectra = {}};
-  for (const Pixels& shape : shapes) {
-    bowl.half = static_cast<int>(shape.columns() / 2);
-    cv::Mat1f padded(kTile, kTile, 0.0F), spectrum;
-    as_matrix(shape).copyTo(padded(cv::Rect(0, 0, 2 * bowl.half + 1, 2 * bowl.half + 1)));
-    cv::dft(padded, spectrum, 0, 2 * bowl.half + 1);
-    bowl.spectra.push_back(spectrum);
+  Bowl bowl{.diameter = diameter, .half = 0, .shapes = shapes.size(), .spectra = {}};
+  for (std::size_t i = 0; i < shapes.size(); i += 2) {
+    bowl.half = static_cast<int>(shapes[i].columns() / 2);
+    ComplexTile tile;
+    const auto put = [&](const Pixels& shape, std::vector<float>& part, float scale) {
+      for (int y = -bowl.half; y <= bowl.half; ++y)
+        for (int x = -bowl.half; x <= bowl.half; ++x)
+          part[static_cast<std::size_t>((y & (kTileSide - 1)) * kTileSide + (x & (kTileSide - 1)))] =
+              scale * shape(x + bowl.half, y + bowl.half);
+    };
+    constexpr float each = 1.0F / ComplexTile::kCells;
+    put(shapes[i], tile.real, each);
+    if (i + 1 < shapes.size()) put(shapes[i + 1], tile.imaginary, -each);
+    to_spectrum(tile);
+    for (float& value : tile.imaginary) value = -value;
+    bowl.spectra.push_back(std::move(tile));
   }
   return bowl;
 }
 
-// Local sums of the tile and its square.
-struct Sums {
-  cv::Mat1d sum, squares;
-  explicit Sums(const cv::Mat1f& tile) { cv::integral(tile, sum, squares, CV_64F, CV_64F); }
-  // n times the variance over squares of `half` about `count` cells of a row, from (column, row) on.
-  void spreads(int column, int row, int half, int count, double* out) const {
-    const int side = 2 * half + 1;
-    const double each = 1.0 / (double(side) * side);
-    const double *top = sum.ptr<double>(row - half) + column - half,
-                 *low = sum.ptr<double>(row - half + side) + column - half;
-    const double *top2 = squares.ptr<double>(row - half) + column - half,
-                 *low2 = squares.ptr<double>(row - half + side) + column - half;
-    for (int i = 0; i < count; ++i) {
-      const double total = low[i + side] - top[i + side] - low[i] + top[i];
-      const double total2 = low2[i + side] - top2[i + side] - low2[i] + top2[i];
-      out[i] = std::max(0.0, total2 - total * total * each);
-    }
+// Squares of the correlation, with their sign, at the pixels of the tile that are `margin` from its edge: in
+// the real part of `best`.
+void correlate(const ComplexTile& spectrum, const TileSums& sums, const Bowl& bowl, int margin, double noise,
+               ComplexTile& best, ComplexTile& other) {
+  // The last template may stand alone.
+  const auto paired = [&](std::size_t i) { return 2 * i + 1 < bowl.shapes; };
+  from_product(spectrum, bowl.spectra[0], best);
+  for (std::size_t i = 1; i < bowl.spectra.size(); ++i) {
+    from_product(spectrum, bowl.spectra[i], other);
+    raise(best.real, other.real);
+    if (paired(i)) raise(best.real, other.imaginary);
   }
-};
-
-// Correlation in [-1, 1] at the pixels of `tile` that are `margin` from its edge.
-cv::Mat1f correlation(const cv::Mat1f& spectrum, const Sums& sums, const Bowl& bowl, int margin,
-                      double noise) {
-  const int inner = kTile - 2 * margin;
-  cv::Mat1f best(inner, inner, -1.0F), product, response;
-  const cv::Rect valid(margin - bowl.half, margin - bowl.half, inner, inner);
-  for (const cv::Mat1f& shape : bowl.spectra) {
-    cv::mulSpectrums(spectrum, shape, product, 0, true);
-    cv::dft(product, response, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT, valid.y + valid.height);
-    cv::max(cv::InputArray(best), cv::InputArray(response(valid)), cv::OutputArray(best));
-  }
+  const std::span<const float> second =
+      paired(0) ? std::span<const float>(best.imaginary) : std::span<const float>();
   const double cells = (2.0 * bowl.half + 1) * (2.0 * bowl.half + 1);
-  std::vector<double> spread(static_cast<std::size_t>(inner));
-  const double floor = cells * noise * noise + 1e-30;
-  for (int y = 0; y < inner; ++y) {
-    sums.spreads(margin, y + margin, bowl.half, inner, spread.data());
-    float* row = best.ptr<float>(y);
-    for (int x = 0; x < inner; ++x)
-      row[x] /= static_cast<float>(std::sqrt(spread[static_cast<std::size_t>(x)] + floor));
-  }
-  return best;
+  normalise(best.real, second, sums, bowl.half, margin, cells * noise * noise + 1e-30);
 }
 
 // Offset of the vertex of the parabola through three equidistant values, the middle the highest.
@@ -89,31 +75,34 @@ double vertex(double before, double at, double after) {
   return bend < 0 ? 0.5 * (before - after) / bend : 0;
 }
 
-// Local maxima whose own pixel lies in `core`; level and tile coordinates to those of the image by
-// `to_image`.
+// Local maxima in `core` of a tile of squared correlations; tile coordinates to a candidate by `to_image`.
 template <class ToImage>
-void collect(const cv::Mat1f& score, const cv::Rect& core, double least, const ToImage& to_image,
+void collect(const std::vector<float>& squares, const cv::Rect& core, double least, const ToImage& to_image,
              std::vector<CraterCandidate>& found) {
+  const auto least_square = static_cast<float>(least * least);
+  const auto score = [](float square) {
+    return std::copysign(std::sqrt(std::abs(double(square))), double(square));
+  };
   for (int y = core.y; y < core.y + core.height; ++y) {
-    const float* row = score.ptr<float>(y);
+    const float* row = squares.data() + std::ptrdiff_t{y} * kTileSide;
     for (int x = core.x; x < core.x + core.width; ++x) {
       const float s = row[x];
-      if (!(s >= least) || s < row[x - 1]) continue;
-      bool highest = true;
-      for (int j = -1; j <= 1 && highest; ++j)
-        for (int i = -1; i <= 1 && highest; ++i)
-          if (i != 0 || j != 0)
-            highest = j < 0 || (j == 0 && i < 0) ? s > score(y + j, x + i) : s >= score(y + j, x + i);
-      if (!highest) continue;
-      found.push_back(to_image(x + vertex(score(y, x - 1), s, score(y, x + 1)),
-                               y + vertex(score(y - 1, x), s, score(y + 1, x)), static_cast<double>(s)));
+      if (!(s >= least_square) || s < row[x - 1]) continue;
+      const float *above = row + x - kTileSide, *below = row + x + kTileSide;
+      // Of equals the first.
+      if (!(s > above[-1] && s > above[0] && s > above[1] && s > row[x - 1] && s >= row[x + 1] &&
+            s >= below[-1] && s >= below[0] && s >= below[1]))
+        continue;
+      const double at = score(s);
+      found.push_back(to_image(x + vertex(score(row[x - 1]), at, score(row[x + 1])),
+                               y + vertex(score(above[0]), at, score(below[0])), at));
     }
   }
 }
 
 // `made`: by size, once for all levels; what is not there yet is added.
-std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search, std::map<int, Bowl>& made) {
-  std::vector<Bowl> bowls;
+std::vector<const Bowl*> bowls_of_level(int level, const ShapeSearch& search, std::map<int, Bowl>& made) {
+  std::vector<const Bowl*> bowls;
   const double shrink = std::exp2(level);
   // The finest level also has the bowls too small for an octave of their own.
   for (int i = level == 0 ? -kSizesPerOctave : 0; i < kSizesPerOctave; ++i) {
@@ -122,16 +111,17 @@ std::vector<Bowl> bowls_of_level(int level, const ShapeSearch& search, std::map<
       continue;
     auto known = made.find(i);
     if (known == made.end()) known = made.emplace(i, make_bowl(diameter, search.shapes(diameter))).first;
-    bowls.push_back(known->second);
+    bowls.push_back(&known->second);
   }
   return bowls;
 }
 
-void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y, const std::vector<Bowl>& bowls,
-                  double least, std::vector<CraterCandidate>& candidates) {
+void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y,
+                  const std::vector<const Bowl*>& bowls, double least,
+                  std::vector<CraterCandidate>& candidates) {
   int widest = 0;
-  for (const Bowl& bowl : bowls) widest = std::max(widest, bowl.half);
-  const int margin = widest + 1, core = kTile - 2 * margin - 2;
+  for (const Bowl* bowl : bowls) widest = std::max(widest, bowl->half);
+  const int margin = widest + 1, core = kTileSide - 2 * margin - 2;
   const double noise = pixel_noise(image.ptr<float>(), image.cols, image.rows);
   cv::Mat1f padded;
   const int columns = (image.cols + core - 1) / core, rows = (image.rows + core - 1) / core;
@@ -142,19 +132,22 @@ void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y, cons
                                                   static_cast<std::size_t>(rows));
   tbb::parallel_for(0, columns * rows, [&](int tile_index) {
     const int x0 = tile_index % columns * core, y0 = tile_index / columns * core;
-    cv::Mat1f tile = padded(cv::Rect(x0, y0, kTile, kTile)).clone();
-    tile -= cv::mean(tile)[0];
-    const Sums sums(tile);
-    cv::Mat1f spectrum;
-    cv::dft(tile, spectrum);
-    const cv::Rect inside(1, 1, std::min(core, image.cols - x0), std::min(core, image.rows - y0));
-    for (const Bowl& bowl : bowls) {
-      const cv::Mat1f score = correlation(spectrum, sums, bowl, margin, noise);
+    ComplexTile tile, best, other;
+    cv::Mat1f values(kTileSide, kTileSide, tile.real.data());
+    padded(cv::Rect(x0, y0, kTileSide, kTileSide)).copyTo(values);
+    values -= cv::mean(values)[0];
+    const TileSums sums(tile.real);
+    to_spectrum(tile);
+    const int first = margin + 1;
+    const cv::Rect inside(first, first, std::min(core, image.cols - x0), std::min(core, image.rows - y0));
+    for (const Bowl* bowl : bowls) {
+      correlate(tile, sums, *bowl, margin, noise, best, other);
       const auto to_image = [&](double x, double y, double s) {
-        return CraterCandidate{(x - 1 + x0 + 0.5) * shrink_x - 0.5, (y - 1 + y0 + 0.5) * shrink_y - 0.5,
-                               bowl.diameter * std::sqrt(shrink_x * shrink_y), s};
+        return CraterCandidate{(x - first + x0 + 0.5) * shrink_x - 0.5,
+                               (y - first + y0 + 0.5) * shrink_y - 0.5,
+                               bowl->diameter * std::sqrt(shrink_x * shrink_y), s};
       };
-      collect(score, inside, least, to_image, found[static_cast<std::size_t>(tile_index)]);
+      collect(best.real, inside, least, to_image, found[static_cast<std::size_t>(tile_index)]);
     }
   });
   for (const auto& part : found) candidates.insert(candidates.end(), part.begin(), part.end());
