@@ -32,7 +32,7 @@ struct CraterModel {
 
 /// O(weights), about 5 us.
 CraterVerdict judge(const CraterModel& model, const CraterFeatures& features);
-/// O(weights x places), about 40 us. The network is not empty.
+/// O(weights x places), about 3 us. The network is not empty.
 CraterVerdict judge(const ConvolutionNet& looks, const CraterLook& look);
 
 /// The circle the verdict speaks of.
