@@ -15,7 +15,8 @@ struct ExistenceRules {
 };
 
 /// By likelihood on testbed landings 303 and 304 (docs/qualities.md): what is mistaken for a rock is mistaken
-/// in every image, and hardly ever is one below 0.3; craters are often missed. Other types: the defaults.
+/// in every image, and one that more probably is none is left out; craters are often missed. Other types: the
+/// defaults.
 ExistenceRules existence_rules(std::string_view type);
 
 /// Probability that a landmark exists, from the confidences of its observations, each in (0, 1], and the

@@ -31,7 +31,7 @@ struct ValueLandmarks {
               .min = 0,
               .max = 1000});
       option("keep_improbable", keep_improbable,
-             {.help = "Keep landmarks that most probably are none (rocks below 0.3)"});
+             {.help = "Keep landmarks that most probably are none (rocks below 0.5)"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -45,7 +45,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
-            .version = 2,
+            .version = 3,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};

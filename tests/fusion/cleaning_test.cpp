@@ -198,7 +198,7 @@ TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {
   std::vector<Landmark> all(3);
   for (std::size_t i = 0; i < 3; ++i)
     all[i].type = kTypes.id("rock"), all[i].uid = std::string(1, char('a' + i));
-  all[0].confidence = 0.29, all[1].confidence = 0.3, all[2].confidence = 0.1;
+  all[0].confidence = 0.49, all[1].confidence = 0.5, all[2].confidence = 0.1;
   all[2].type = kTypes.id("crater");
   std::vector<Observation> seen{rock(0, 0, 1), rock(1, 0, 1), rock(2, 0, 1), rock(3, 0, 1)};
   seen[0].landmark_uid = "a", seen[1].landmark_uid = "b", seen[2].landmark_uid = "c";
