@@ -66,24 +66,27 @@ double calibrated(double probability) {
 
 }  // namespace
 
-std::vector<CrownInImage> crowns_in_image(const ColourImage& image, const DenseNetwork& network,
-                                          int threads) {
+std::vector<CrownInImage> crowns_in_image(const ColourImage& image, const DenseNetwork& network, int threads,
+                                          const ProgressMeter::Listener& progress) {
   const CrownCanopy canopy(image, network);
   const TreeSearch search = crown_search();
   const std::vector<Tile> tiles = tiles_of(image.columns(), image.rows(), kSide);
   std::vector<std::vector<CrownInImage>> parts(tiles.size());
   const auto reach = static_cast<std::int64_t>(std::ceil(kWidestCrown / image.cell())) + 1;
+  ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
       const std::vector<FoundTree> found = find_trees(canopy, tiles[i].cells, search);
-      if (found.empty()) return;
-      const ColourWindow seen = image.read(grown(tiles[i].cells, reach));
+      ColourWindow seen;
+      if (!found.empty()) seen = image.read(grown(tiles[i].cells, reach));
       for (const FoundTree& tree : found)
         parts[i].push_back({image.pixel(tree.top.column), image.pixel(tree.top.row),
                             crown_width(seen, tree.top), calibrated(tree.height)});
+      meter.add(1);
     });
   });
+  meter.finish();
   std::vector<CrownInImage> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
   return all;

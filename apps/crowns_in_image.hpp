@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 #include "apps/colour_image.hpp"
+#include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/vision/dense_network.hpp"
 namespace waymark {
 
@@ -13,7 +14,8 @@ struct CrownInImage {
 };
 
 /// The crowns of an image, by a network of pipeline/forest/crown_network: local maxima of the probability
-/// within 3 m. In row order; the same for any `threads`.
-std::vector<CrownInImage> crowns_in_image(const ColourImage& image, const DenseNetwork& network, int threads);
+/// within 3 m. In row order; `progress` is told how many pieces are done; the same for any `threads`.
+std::vector<CrownInImage> crowns_in_image(const ColourImage& image, const DenseNetwork& network, int threads,
+                                          const ProgressMeter::Listener& progress = {});
 
 }  // namespace waymark

@@ -125,8 +125,8 @@ std::optional<Radians> find_light(const DetectPlan& plan, FoundInImage& found) {
 
 }  // namespace
 
-FoundInImage find_in_image(const DetectPlan& plan, int threads) {
-  if (plan.type == "tree") return find_trees_in_image(plan, threads);
+FoundInImage find_in_image(const DetectPlan& plan, int threads, const ProgressMeter::Listener& progress) {
+  if (plan.type == "tree") return find_trees_in_image(plan, threads, progress);
   const ImageInfo& info = plan.image->info();
   const TypeId type = all_types().id(plan.type);
   FoundInImage found;
@@ -146,6 +146,7 @@ FoundInImage find_in_image(const DetectPlan& plan, int threads) {
   const auto sun = find_light(plan, found);
   ImageSearch search = plan.search;
   search.threads = threads;
+  search.progress = progress;
   found.detections.detections = search_image(*plan.image, search, finder(plan, type, sun));
   if (plan.type == "rock" && !plan.sun_elevation && (info.ortho || plan.gsd))
     found.warnings.push_back("rocks have no heights: they need --sun-elevation");

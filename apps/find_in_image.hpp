@@ -4,6 +4,7 @@
 #include <vector>
 #include "apps/detect_request.hpp"
 #include "exporters/detections.hpp"
+#include "pipeline/engine/progress_meter.hpp"
 namespace waymark {
 
 struct FoundInImage {
@@ -14,7 +15,7 @@ struct FoundInImage {
 
 /// Carries a plan out: looks at the brightness of the image, estimates the direction of the light where it is
 /// not told, checks it where it is, and searches the image. An image in which nothing can be seen (one pixel,
-/// black, no data) has no detections and a warning that says why.
-FoundInImage find_in_image(const DetectPlan& plan, int threads);
+/// black, no data) has no detections and a warning that says why. `progress` is told of the search.
+FoundInImage find_in_image(const DetectPlan& plan, int threads, const ProgressMeter::Listener& progress = {});
 
 }  // namespace waymark

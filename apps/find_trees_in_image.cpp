@@ -63,15 +63,19 @@ double pixel_metres(const DetectPlan& plan, FoundInImage& found) {
 }
 
 std::vector<FoundTree> search_tiles(const CanopySource& canopy, const TreeSearch& search, std::int64_t side,
-                                    int threads) {
+                                    int threads, const ProgressMeter::Listener& progress) {
   const GridGeometry& grid = canopy.geometry();
   const std::vector<Tile> tiles = tiles_of(grid.columns, grid.rows, side);
   std::vector<std::vector<FoundTree>> parts(tiles.size());
+  ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, tiles.size(),
-                      [&](std::size_t i) { parts[i] = find_trees(canopy, tiles[i].cells, search); });
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      parts[i] = find_trees(canopy, tiles[i].cells, search);
+      meter.add(1);
+    });
   });
+  meter.finish();
   std::vector<FoundTree> all;
   for (auto& part : parts)
     all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
@@ -99,7 +103,7 @@ struct Kept {
 
 /// Tops of a canopy: of heights, or of what is green and dark in a colour image.
 std::vector<Kept> by_canopy(const DetectPlan& plan, double metres, const std::string& method, TypeId type,
-                            int threads) {
+                            int threads, const ProgressMeter::Listener& progress) {
   const bool imagery = method == "imagery";
   const LandmarkType& tree_type = all_types()[type];
   const auto canopy =
@@ -107,7 +111,7 @@ std::vector<Kept> by_canopy(const DetectPlan& plan, double metres, const std::st
   const TreeSearch search = imagery ? imagery_search() : height_search(method);
   std::vector<Kept> kept;
   for (const FoundTree& tree :
-       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads)) {
+       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads, progress)) {
     Kept one{detection_of(tree, type, metres, imagery), {}};
     one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
     if (imagery)
@@ -119,12 +123,13 @@ std::vector<Kept> by_canopy(const DetectPlan& plan, double metres, const std::st
 }
 
 /// Crowns of a colour image by what a network has learnt.
-std::vector<Kept> by_network(const ImageInfo& info, double metres, TypeId type, int threads) {
+std::vector<Kept> by_network(const ImageInfo& info, double metres, TypeId type, int threads,
+                             const ProgressMeter::Listener& progress) {
   const ColourImage image(info, metres);
   const LandmarkType& tree_type = all_types()[type];
   const DenseNetwork& network = image.infrared() ? crown_network_infrared() : crown_network_colour();
   std::vector<Kept> kept;
-  for (const CrownInImage& crown : crowns_in_image(image, network, threads)) {
+  for (const CrownInImage& crown : crowns_in_image(image, network, threads, progress)) {
     Kept one;
     one.detection.type = type;
     const double diameter = crown.diameter / metres;
@@ -142,7 +147,8 @@ std::vector<Kept> by_network(const ImageInfo& info, double metres, TypeId type, 
 
 }  // namespace
 
-FoundInImage find_trees_in_image(const DetectPlan& plan, int threads) {
+FoundInImage find_trees_in_image(const DetectPlan& plan, int threads,
+                                 const ProgressMeter::Listener& progress) {
   const ImageInfo& info = plan.image->info();
   const int bands = band_count(info.path);
   const std::string method = !plan.method.empty() ? plan.method : bands >= 3 ? "imagery" : "peaks";
@@ -169,8 +175,8 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads) {
                       .sun_elevation = plan.sun_elevation,
                       .sun_azimuth = plan.sun_azimuth};
   std::vector<Kept> kept = imagery && (bands > 3 || metres >= kFineColour)
-                               ? by_network(info, metres, type, threads)
-                               : by_canopy(plan, metres, method, type, threads);
+                               ? by_network(info, metres, type, threads, progress)
+                               : by_canopy(plan, metres, method, type, threads, progress);
   std::erase_if(kept, [&](const Kept& one) {
     const double diameter = one.detection.outline.diameter();
     return one.detection.confidence < plan.min_confidence || diameter < plan.search.min_diameter ||

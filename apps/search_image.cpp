@@ -158,16 +158,22 @@ std::vector<Detection> search_image(const ImageSource& image, const ImageSearch&
   const double max = whole ? search.max_diameter : std::min(asked, 1.5 * fits);
   const auto pieces = pieces_of(info, search.piece, max);
   std::vector<std::vector<Detection>> found(pieces.size());
+  const std::int64_t factor = (std::max(info.columns, info.rows) + search.piece - 1) / search.piece;
+  const double least = std::max({fits, search.min_diameter, 8.0 * static_cast<double>(factor)});
+  const bool reduce = !whole && search.reduce_for_large && asked > 1.5 * fits && least < asked;
+  ProgressMeter meter(search.progress, "search_image",
+                      static_cast<std::int64_t>(pieces.size()) + (reduce ? 1 : 0));
   tbb::task_arena arena(search.threads > 0 ? search.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
       found[i] = search_piece(image, pieces[i], search.min_diameter, max, find);
+      meter.add(1);
     });
-    if (whole || !search.reduce_for_large || asked <= 1.5 * fits) return;
-    const std::int64_t factor = (std::max(info.columns, info.rows) + search.piece - 1) / search.piece;
-    const double least = std::max({fits, search.min_diameter, 8.0 * static_cast<double>(factor)});
-    if (least < asked) found.push_back(search_reduced(image, factor, least, asked, find));
+    if (!reduce) return;
+    found.push_back(search_reduced(image, factor, least, asked, find));
+    meter.add(1);
   });
+  meter.finish();
   return joined(found);
 }
 

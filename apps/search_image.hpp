@@ -4,15 +4,17 @@
 #include <vector>
 #include "core/detection.hpp"
 #include "geo/image_source.hpp"
+#include "pipeline/engine/progress_meter.hpp"
 namespace waymark {
 
 /// How an image of any size is searched.
 struct ImageSearch {
-  double min_diameter = 8;       ///< pixels
-  double max_diameter = 0;       ///< pixels; 0: 0.6 of the image's shorter side
-  std::int64_t piece = 8192;     ///< longest side of what is searched at once, pixels, >= 256
-  bool reduce_for_large = true;  ///< false: nothing larger than a sixteenth of a piece is looked for
-  int threads = 0;               ///< 0: one per processor
+  double min_diameter = 8;                ///< pixels
+  double max_diameter = 0;                ///< pixels; 0: 0.6 of the image's shorter side
+  std::int64_t piece = 8192;              ///< longest side of what is searched at once, pixels, >= 256
+  bool reduce_for_large = true;           ///< false: nothing larger than a sixteenth of a piece is looked for
+  int threads = 0;                        ///< 0: one per processor
+  ProgressMeter::Listener progress = {};  ///< is told how many of the pieces are done
 };
 
 /// Finds things of one kind in some pixels: between two diameters, in pixels.

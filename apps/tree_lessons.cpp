@@ -27,6 +27,11 @@ NetworkExamples examples_of(const std::vector<const TreeLesson*>& lessons) {
   return examples;
 }
 
+DenseNetwork learn(const std::vector<const TreeLesson*>& lessons, const NetworkTraining& training,
+                   ProgressMeter& meter) {
+  return train_network(examples_of(lessons), training, [&meter](int, double) { meter.add(1); });
+}
+
 /// A table may say that an image shows no tree at all: a header, or nothing.
 bool says_nothing(const std::filesystem::path& table) {
   std::ifstream file(table);
@@ -57,21 +62,22 @@ TreeLesson tree_lesson(const std::string& path, bool infrared) {
   return lesson;
 }
 
-DenseNetwork crown_network_of(const std::vector<TreeLesson>& lessons, const NetworkTraining& training) {
+DenseNetwork crown_network_of(const std::vector<TreeLesson>& lessons, const NetworkTraining& training,
+                              ProgressMeter& meter) {
   std::vector<const TreeLesson*> all;
   for (const TreeLesson& lesson : lessons) all.push_back(&lesson);
-  return train_network(examples_of(all), training);
+  return learn(all, training, meter);
 }
 
 Score held_out_score(const std::vector<TreeLesson>& lessons, int parts, const NetworkTraining& training,
-                     int threads) {
+                     int threads, ProgressMeter& meter) {
   std::vector<ScoredThing> found, truth;
   const auto count = static_cast<std::size_t>(parts);
   for (std::size_t part = 0; part < count; ++part) {
     std::vector<const TreeLesson*> others;
     for (std::size_t i = 0; i < lessons.size(); ++i)
       if (i % count != part) others.push_back(&lessons[i]);
-    const DenseNetwork network = train_network(examples_of(others), training);
+    const DenseNetwork network = learn(others, training, meter);
     for (std::size_t i = part; i < lessons.size(); i += count) {
       const ColourImage& image = *lessons[i].image;
       const auto metres = [&, i](double x, double y) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 #include "apps/colour_image.hpp"
+#include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/forest/crown_network.hpp"
 #include "testbed/score.hpp"
 namespace waymark {
@@ -18,12 +19,14 @@ struct TreeLesson {
 /// tree in pixels. Throws Error{input}.
 TreeLesson tree_lesson(const std::string& path, bool infrared);
 
-DenseNetwork crown_network_of(const std::vector<TreeLesson>& lessons, const NetworkTraining& training);
+/// `meter` counts the rounds of learning, here and below.
+DenseNetwork crown_network_of(const std::vector<TreeLesson>& lessons, const NetworkTraining& training,
+                              ProgressMeter& meter);
 
 /// Finds of networks that have not seen the image they are asked about: lessons are dealt into `parts`, each
 /// part is searched with a network trained on the others, for finds of confidence 0.5 and more. Places may be
 /// 6 m off, as is usual for marked points.
 Score held_out_score(const std::vector<TreeLesson>& lessons, int parts, const NetworkTraining& training,
-                     int threads);
+                     int threads, ProgressMeter& meter);
 
 }  // namespace waymark

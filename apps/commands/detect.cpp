@@ -8,6 +8,7 @@
 #include "apps/detect_request.hpp"
 #include "apps/find_in_image.hpp"
 #include "apps/log.hpp"
+#include "apps/progress.hpp"
 #include "apps/registries.hpp"
 #include "apps/session.hpp"
 #include "apps/write_detections.hpp"
@@ -56,7 +57,7 @@ class Detect final : public Command {
     check_detection_output(request_.output);
     const auto started = std::chrono::system_clock::now();
     for (const std::string& warning : plan.warnings) log_warning(warning);
-    FoundInImage found = find_in_image(plan, static_cast<int>(session.threads));
+    FoundInImage found = find_in_image(plan, static_cast<int>(session.threads), progress_renderer(session));
     for (const std::string& warning : found.warnings) log_warning(warning);
     if (!found.light.empty()) say(found.light + "\n");
     write_detections(request_.output, found.detections, plan.image->info().path, session, started);

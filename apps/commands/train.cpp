@@ -5,6 +5,7 @@
 #include "apps/crater_lessons.hpp"
 #include "apps/log.hpp"
 #include "apps/model_source.hpp"
+#include "apps/progress.hpp"
 #include "apps/session.hpp"
 #include "apps/tree_lessons.hpp"
 #include "core/error.hpp"
@@ -99,16 +100,20 @@ class Train final : public Command {
     }
     NetworkTraining training{.seed = static_cast<std::uint64_t>(seed_)};
     if (rounds_ > 0) training.rounds = static_cast<int>(rounds_);
+    const bool leave_out = lessons.size() >= kParts;
+    const ProgressMeter::Listener listener = progress_renderer(session);
+    ProgressMeter meter(listener, "train trees", training.rounds * (leave_out ? kParts + 1 : 1));
     std::string held_out;
-    if (lessons.size() >= kParts) {
-      const Score score = held_out_score(lessons, kParts, training, static_cast<int>(session.threads));
+    if (leave_out) {
+      const Score score = held_out_score(lessons, kParts, training, static_cast<int>(session.threads), meter);
       held_out = fmt::format("; left out in turn, {} parts: precision {:.3f}, recall {:.3f}, F1 {:.3f}",
                              kParts, score.all.precision(), score.all.recall(), score.all.f1());
       for (const CalibrationBin& bin : score.by_confidence)
         say(fmt::format("told {:.2f} to {:.2f}: {} of {} are trees\n", bin.from, bin.to, bin.right,
                         bin.found));
     }
-    DenseNetwork network = crown_network_of(lessons, training);
+    DenseNetwork network = crown_network_of(lessons, training, meter);
+    meter.finish();
     network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", lessons.size(), trees,
                                      training.rounds, seed_, held_out);
     say(network.trained_on + "\n");

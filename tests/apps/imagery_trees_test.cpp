@@ -90,6 +90,13 @@ TEST_F(ImageryTrees, AreFoundWithAndWithoutInfrared) {
   }
 }
 
+TEST_F(ImageryTrees, SearchesTellTheirProgress) {
+  make_dem(folder_ / "park.tif", park(4));
+  const Outcome made = detect("park.tif", "trees.csv", {"--progress", "dots"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("search_image: 0...10"), HasSubstr("100 - done.\n")));
+}
+
 TEST_F(ImageryTrees, TransparencyIsNoInfrared) {
   make_dem(folder_ / "park.tif", park(3));
   ASSERT_EQ(
@@ -146,8 +153,10 @@ TEST_F(ImageryTrees, AreLearntFromMarkedImages) {
   }
   write_text(folder_ / "c.csv", "x,y\n");  // an image without a tree is a lesson, too
   const Outcome made = waymark({"train", "trees", folder_ / "a.tif", folder_ / "b.tif", folder_ / "c.tif",
-                                "-o", folder_ / "model.txt", "--rounds", "1"});
+                                "-o", folder_ / "model.txt", "--rounds", "1", "--progress", "dots"});
   ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("train trees: 0...10...20"));
+  EXPECT_THAT(made.err, HasSubstr("100 - done.\n"));
   EXPECT_THAT(made.out + made.err, HasSubstr("3 images, 120 trees, 1 rounds, seed 1; left out in turn"));
   EXPECT_THAT(text_of(folder_ / "model.txt"), testing::StartsWith("dense_network 1\n3 images"));
   ASSERT_EQ(waymark({"train", "trees", folder_ / "a.tif", "-o", folder_ / "model.cpp", "--rounds", "1"}).code,
