@@ -5,12 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 
 #include "apps/registries.hpp"
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
-#include "pipeline/forest/crown_shape.hpp"
+#include "pipeline/forest/crown_table.hpp"
 #include "pipeline/fusion/image_view.hpp"
 
 namespace waymark {
@@ -61,6 +62,18 @@ Shape shape_of(CrownShape crown) {
   return {.parts = {{.outer = std::move(crown.ring)}},
           .values = {crown.uid.empty() ? AttributeValue() : AttributeValue(crown.uid), crown.source,
                      crown.height, crown.area, crown.diameter}};
+}
+
+/// Unpacked one by one.
+MadeShapes shapes_of(std::vector<CrownTable> tables) {
+  std::size_t count = 0;
+  for (const CrownTable& table : tables) count += table.size();
+  const auto held = std::make_shared<const std::vector<CrownTable>>(std::move(tables));
+  return {count, [held](std::size_t row) {
+            auto table = held->begin();
+            for (; row >= table->size(); ++table) row -= table->size();
+            return shape_of(table->at(row));
+          }};
 }
 
 /// Share of the cells of a canopy model that are known, from every 64th of its rows.
@@ -130,12 +143,9 @@ MapContents map_of_run(RunResult& result, RunRecord run, bool with_dem) {
   contents.landmarks = joined(result.take<std::vector<Landmark>>("landmarks"));
   contents.observations = joined(result.take<std::vector<Observation>>("evidence"));
   ShapeLayer crowns = crown_layer();
-  bool drawn = false;
-  for (auto& made : result.take<std::vector<CrownShape>>("crowns")) {
-    drawn = true;
-    for (CrownShape& crown : made)
-      if (crown.ring.size() >= 3) crowns.rows.push_back(shape_of(std::move(crown)));
-  }
+  auto tables = result.take<CrownTable>("crowns");
+  const bool drawn = !tables.empty();
+  crowns.more = shapes_of(std::move(tables));
   for (const auto& surveys : result.artifacts<Canopies>("canopies"))
     if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
   if (drawn) contents.layers.push_back(std::move(crowns));

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/reorder.hpp"
 #include "geodb/attribute_column.hpp"
 #include "geodb/hilbert.hpp"
 #include "geodb/layer_registration.hpp"
@@ -42,8 +43,7 @@ void check_names(const ShapeLayer& layer) {
              "names are a-z, 0-9 and _, each once; id and geom are made");
 }
 
-void check_row(const ShapeLayer& layer, std::size_t row) {
-  const Shape& shape = layer.rows[row];
+void check_row(const ShapeLayer& layer, const Shape& shape, std::size_t row) {
   const std::string where = fmt::format("layer {}, row {}", layer.name, row + 1);
   const char* hint = "this comes from what made the shapes";
   if (shape.values.size() != layer.columns.size())
@@ -114,15 +114,16 @@ void sort_boxes(std::vector<IndexedBox>& boxes, const Envelope& extent) {
   const auto cell = [&](double value, double low) {
     return static_cast<std::uint16_t>(std::clamp((value - low) / width, 0.0, 1.0) * 65535);
   };
-  std::vector<std::pair<std::uint32_t, std::size_t>> order;
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    order.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> along;
+  along.reserve(boxes.size());
+  for (std::uint32_t i = 0; i < boxes.size(); ++i)
+    along.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
                                      cell((boxes[i].min_y + boxes[i].max_y) / 2, extent.min_y)),
                        i);
-  std::ranges::sort(order);
-  std::vector<IndexedBox> sorted;
-  for (const auto& [key, i] : order) sorted.push_back(boxes[i]);
-  boxes = std::move(sorted);
+  std::ranges::sort(along);
+  std::vector<std::uint32_t> order(boxes.size());
+  std::ranges::transform(along, order.begin(), [](const auto& place) { return place.second; });
+  reorder(boxes, std::move(order));
 }
 
 Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, std::int32_t srs_id) {
@@ -132,9 +133,12 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
       database.prepare(fmt::format("INSERT INTO {} VALUES ({})", sql_name(layer.name), places));
   Envelope extent;
   std::vector<IndexedBox> boxes;
-  for (std::size_t i = 0; i < layer.rows.size(); ++i) {
-    check_row(layer, i);
-    const Shape& shape = layer.rows[i];
+  const std::size_t count = layer.rows.size() + layer.more.count;
+  boxes.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Shape made = i < layer.rows.size() ? Shape() : layer.more.make(i - layer.rows.size());
+    const Shape& shape = i < layer.rows.size() ? layer.rows[i] : made;
+    check_row(layer, shape, i);
     const auto row = static_cast<std::int64_t>(i + 1);
     const std::vector<std::byte> blob = shape_blob(layer.kind, shape.parts, srs_id);
     insert.bind(1, row);

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,12 @@ struct ShapeStyle {
   std::string label = {};          ///< column written into the shape; empty: none
 };
 
+/// Rows made one by one as they are written: for layers too large to be held.
+struct MadeShapes {
+  std::size_t count = 0;
+  std::function<Shape(std::size_t)> make = {};
+};
+
 /// Name and column names are [a-z][a-z0-9_]*. Columns `id` and `geom` are made and may not be named.
 struct ShapeLayer {
   std::string name, summary;
@@ -44,6 +51,7 @@ struct ShapeLayer {
   std::vector<AttributeSpec> columns = {};
   std::vector<Shape> rows = {};
   ShapeStyle style = {};
+  MadeShapes more = {};  ///< after `rows`
 };
 
 namespace sqlite {

@@ -22,6 +22,7 @@
 #include "geodb/row_order.hpp"
 #include "geodb/sql_text.hpp"
 #include "geodb/type_catalogue.hpp"
+#include "landmarks/uid_index.hpp"
 
 namespace waymark {
 namespace {
@@ -31,8 +32,6 @@ const char* page_size(const MapContents& contents) {
   constexpr std::size_t kLarge = 50'000;  // landmarks
   return contents.landmarks.size() < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384";
 }
-
-using RowOfUid = std::unordered_map<std::string_view, std::int64_t>;
 
 [[noreturn]] void refuse(std::string problem, std::string where) {
   throw Error(ErrorCode::input, std::move(problem), std::move(where),
@@ -58,8 +57,7 @@ class MapWriter {
       : database_(&database),
         contents_(&contents),
         changed_(time_stamp(contents.run.started_utc)),
-        of_type_(landmarks_by_type(contents)),
-        row_of_uid_(contents.types.size()) {
+        of_type_(landmarks_by_type(contents)) {
     choose_types(options.empty_tables);
   }
 
@@ -129,7 +127,6 @@ class MapWriter {
       layout.bind(insert, ++row, landmark, geometry);
       insert.run();
       points.push_back({row, landmark.position.xyz.x(), landmark.position.xyz.y()});
-      if (!contents_->observations.empty()) row_of_uid_[old_id].emplace(landmark.uid, row);
     }
     return points;
   }
@@ -162,18 +159,28 @@ class MapWriter {
 
   void write_evidence() {
     EvidenceWriter writer(*database_, types_);
+    std::vector<std::optional<UidIndex>> rows(contents_->types.size());
     for (Observation observation : contents_->observations) {
-      const RowOfUid& rows = row_of_uid_[observation.type];
-      const auto row = rows.find(observation.landmark_uid);
       const bool kept = observation.rejected.empty();
-      if (kept && row == rows.end())
+      std::optional<std::int64_t> row;
+      if (kept) row = row_of(observation, rows[observation.type]);
+      if (kept && !row)
         refuse(
             "an observation is evidence of a landmark that is not there",
             fmt::format("observation from {}, landmark '{}'", observation.source, observation.landmark_uid));
       observation.type = new_id_.at(observation.type);
-      writer.add(observation, kept ? std::optional(row->second) : std::nullopt);
+      writer.add(observation, row);
     }
     database_->execute("CREATE INDEX observation_uid ON observation (uid)");
+  }
+
+  /// Of the landmark an observation is evidence of; `rows` finds those of its type, and is made here.
+  std::optional<std::int64_t> row_of(const Observation& observation, std::optional<UidIndex>& rows) const {
+    const std::vector<std::uint32_t>& order = of_type_[observation.type];
+    if (!rows) rows.emplace(contents_->landmarks, order);
+    const auto place = rows->find(observation.landmark_uid);
+    if (!place) return {};
+    return new_id_.at(observation.type) * kRowsPerType + 1 + *place;
   }
 
   void write_images() {
@@ -198,7 +205,6 @@ class MapWriter {
   const MapContents* contents_;
   std::string changed_;
   std::vector<std::vector<std::uint32_t>> of_type_;
-  std::vector<RowOfUid> row_of_uid_;           ///< by type of the contents
   TypeRegistry types_;                         ///< of the map: those of the contents that get a table
   std::vector<TypeId> kept_;                   ///< their ids in the contents
   std::unordered_map<TypeId, TypeId> new_id_;  ///< id in the contents -> id in the map

@@ -15,7 +15,8 @@ struct WriteMapOptions {
 
 /// Writes a map as a GeoPackage 1.3 (tables: geodb/sql/schema.sql, docs of interface.md).
 /// Rows lie along a Hilbert curve and the RTree is packed: 5 us of processor time per landmark with ten
-/// features, and box queries touch few pages. Memory: about 60 bytes per landmark above the contents. The
+/// features, and box queries touch few pages. Memory: about 60 bytes per landmark and 90 per
+/// shape above the contents. The
 /// file is written aside in the same folder in one transaction, flushed and renamed, so `path` is always the
 /// old map or the new one, whole. The same contents give the same bytes. Throws Error: a folder that is
 /// missing or cannot be written, a full disk, an existing file that may not be replaced, a uid that is empty

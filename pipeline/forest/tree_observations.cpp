@@ -35,18 +35,4 @@ Observation observation_of(const FoundTree& tree, const CanopySource& canopy, co
   return seen;
 }
 
-CrownShape crown_shape_of(const FoundTree& tree, const CanopySource& canopy, const Observation& observation) {
-  const Georeference& where = canopy.geometry().where;
-  CrownShape shape;
-  shape.source = observation.source;
-  shape.top = observation.position.xyz.head<2>();
-  shape.height = tree.height;
-  shape.area = tree.crown_area;
-  shape.diameter = tree.crown_diameter;
-  for (const CanopyCell& corner : tree.crown.ring)
-    shape.ring.emplace_back(where.x(static_cast<double>(corner.column) - 0.5),
-                            where.y(static_cast<double>(corner.row) - 0.5));
-  return shape;
-}
-
 }  // namespace waymark

@@ -6,7 +6,6 @@
 #include "core/observation.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/forest/allometry.hpp"
-#include "pipeline/forest/crown_shape.hpp"
 #include "pipeline/forest/find_trees.hpp"
 namespace waymark {
 
@@ -23,8 +22,5 @@ struct TreeErrors {
 Observation observation_of(const FoundTree& tree, const CanopySource& canopy, const LandmarkType& type,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
                            const TreeErrors& errors = {});
-
-/// Its crown on the map; `observation` is the tree's.
-CrownShape crown_shape_of(const FoundTree& tree, const CanopySource& canopy, const Observation& observation);
 
 }  // namespace waymark

@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/reorder.hpp"
 #include "landmarks/uid.hpp"
 #include "pipeline/fusion/body_radius.hpp"
 #include "pipeline/fusion/clustering.hpp"
@@ -45,6 +46,8 @@ Sightings sightings_of(std::span<const Observation> observations, const TypeRegi
   for (auto& [_, number] : sources) number = next++;
 
   Sightings found;
+  found.all.reserve(observations.size());
+  found.observation.reserve(observations.size());
   for (Index i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (!o.rejected.empty()) continue;
@@ -66,6 +69,8 @@ void reject_twins(Sightings& seen, std::vector<Observation>& observations, const
                   const IdentityRules& rules) {
   std::vector<Eigen::Vector3d> places;
   std::vector<double> reach;
+  places.reserve(seen.all.size());
+  reach.reserve(seen.all.size());
   for (const Sighting& s : seen.all) {
     places.push_back(plane.in_space(s.at));
     reach.push_back(std::isnan(s.log_size) ? 0 : rules.overlap * std::exp(s.log_size));
@@ -91,16 +96,17 @@ void reject_twins(Sightings& seen, std::vector<Observation>& observations, const
   for (const Index i : order)
     if (!out[i])
       for (const Index other : others[i]) out[other] = true;
-  Sightings kept;
+  std::size_t kept = 0;
   for (Index i = 0; i < seen.all.size(); ++i) {
     if (out[i]) {
       observations[seen.observation[i]].rejected = "seen twice in one image";
       continue;
     }
-    kept.all.push_back(seen.all[i]);
-    kept.observation.push_back(seen.observation[i]);
+    seen.all[kept] = seen.all[i];
+    seen.observation[kept++] = seen.observation[i];
   }
-  seen = std::move(kept);
+  seen.all.resize(kept);
+  seen.observation.resize(kept);
 }
 
 // Weighted by inverse covariances; heights join in where all are known.
@@ -164,14 +170,13 @@ FeatureSet merged_features(std::span<const Index> members, const Sightings& seen
 }
 
 std::vector<Observation> by_content(std::vector<Observation> observations) {
+  if (std::is_sorted(observations.begin(), observations.end(), comes_before)) return observations;
   std::vector<Index> order(observations.size());
   std::iota(order.begin(), order.end(), Index{0});
   tbb::parallel_sort(order.begin(), order.end(),
                      [&](Index a, Index b) { return comes_before(observations[a], observations[b]); });
-  std::vector<Observation> sorted;
-  sorted.reserve(observations.size());
-  for (const Index i : order) sorted.push_back(std::move(observations[i]));
-  return sorted;
+  reorder(observations, std::move(order));
+  return observations;
 }
 
 bool landmark_before(const Landmark& a, const Landmark& b) {
@@ -219,8 +224,8 @@ MergedObservations merge_observations(std::vector<Observation> observations, con
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return landmark_before(made[a], made[b]); });
   MergedObservations merged;
-  merged.landmarks.reserve(count);
-  for (const Index i : order) merged.landmarks.push_back(std::move(made[i]));
+  reorder(made, order);
+  merged.landmarks = std::move(made);
   assign_uids(types, crs, merged.landmarks);
   for (Index rank = 0; rank < count; ++rank)
     for (Index i = starts[order[rank]]; i < starts[order[rank] + 1]; ++i)

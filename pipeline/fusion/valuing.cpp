@@ -7,8 +7,8 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <unordered_map>
 
+#include "landmarks/uid_index.hpp"
 #include "pipeline/fusion/body_radius.hpp"
 #include "pipeline/fusion/footprint.hpp"
 
@@ -39,6 +39,31 @@ struct Images {
     return (at.array() >= boxes[i].low.array() - reach).all() &&
            (at.array() <= boxes[i].high.array() + reach).all();
   }
+};
+
+// The evidence of each landmark, in its order.
+class EvidenceOf {
+ public:
+  EvidenceOf(std::span<const Landmark> landmarks, std::span<const Observation> evidence)
+      : starts_(landmarks.size() + 2), items_(evidence.size()) {
+    const UidIndex index(landmarks);
+    std::vector<std::uint32_t> landmark_of(evidence.size(), kNone);
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      if (!evidence[i].rejected.empty() || evidence[i].landmark_uid.empty()) continue;
+      landmark_of[i] = index.find(evidence[i].landmark_uid).value_or(kNone);
+      if (landmark_of[i] != kNone) ++starts_[landmark_of[i] + 2];
+    }
+    for (std::size_t l = 2; l < starts_.size(); ++l) starts_[l] += starts_[l - 1];
+    for (std::uint32_t i = 0; i < evidence.size(); ++i)
+      if (landmark_of[i] != kNone) items_[starts_[landmark_of[i] + 1]++] = i;
+  }
+  std::span<const std::uint32_t> operator[](std::size_t landmark) const {
+    return std::span(items_).subspan(starts_[landmark], starts_[landmark + 1] - starts_[landmark]);
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> starts_, items_;
 };
 
 struct Counted {
@@ -89,14 +114,7 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
                      std::span<const ImageView> images, const Terrain* terrain, const TypeRegistry& types,
                      double metres_per_unit, const ValuationRules& rules) {
   const Images known(images);
-  std::unordered_map<std::string_view, std::size_t> row;
-  row.reserve(landmarks.size());
-  for (std::size_t i = 0; i < landmarks.size(); ++i) row.emplace(landmarks[i].uid, i);
-  std::vector<std::vector<const Observation*>> seen(landmarks.size());
-  for (const Observation& o : evidence) {
-    if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
-    if (const auto found = row.find(o.landmark_uid); found != row.end()) seen[found->second].push_back(&o);
-  }
+  const EvidenceOf seen(landmarks, evidence);
 
   tbb::parallel_for(std::size_t{0}, landmarks.size(), [&](std::size_t l) {
     Landmark& landmark = landmarks[l];
@@ -104,7 +122,8 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
     std::set<std::size_t> detected;
     std::set<std::string_view> surveys;
     std::vector<double> confidences;
-    for (const Observation* o : seen[l]) {
+    for (const std::uint32_t i : seen[l]) {
+      const Observation* const o = &evidence[i];
       const auto image = known.by_name.find(o->source);
       if (image != known.by_name.end())
         detected.insert(image->second);

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/count_kept.hpp"
@@ -57,11 +59,20 @@ struct MergeObservations {
             .outputs = {merged, merged_evidence}};
   }
 
+  // Part by part, each let go of at once.
+  static std::vector<Observation> joined(std::vector<std::vector<Observation>> parts) {
+    std::size_t count = 0;
+    for (const auto& part : parts) count += part.size();
+    std::vector<Observation> all;
+    all.reserve(count);
+    for (auto& part : parts) std::ranges::move(std::exchange(part, {}), std::back_inserter(all));
+    return all;
+  }
+
   static void run(const Options& options, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
-    std::vector<Observation> all;
-    for (auto& part : unit.take_all(observations)) std::ranges::move(part, std::back_inserter(all));
+    std::vector<Observation> all = joined(unit.take_all(observations));
     MergeRules rules;
     rules.identity.position_gate = options.position_gate;
     rules.identity.size_gate = options.size_gate;

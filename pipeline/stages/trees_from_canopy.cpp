@@ -4,6 +4,7 @@
 
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
+#include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/tree_observations.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
 
@@ -57,12 +58,12 @@ struct TreesFromCanopy {
   };
   static constexpr In<Canopies> canopies{"canopies"};
   static constexpr Out<std::vector<Observation>> observations{"observations"};
-  static constexpr Out<std::vector<CrownShape>> seen_crowns{"seen_crowns"};
+  static constexpr Out<CrownTable> seen_crowns{"seen_crowns"};
 
   static StageSpec spec() {
     return {.name = "trees_from_canopy",
             .summary = "Finds treetops and crowns in canopy models; stem diameters by allometry",
-            .version = 1,
+            .version = 2,
             .scope = Scope::tile,
             .inputs = {canopies},
             .outputs = {observations, seen_crowns},
@@ -111,16 +112,19 @@ struct TreesFromCanopy {
     const Canopies& surveys = unit.read(canopies);
     const GridGeometry common = common_grid(surveys);
     std::vector<Observation> seen;
-    std::vector<CrownShape> outlines;
+    CrownTable outlines;
     for (const auto& canopy : surveys) {
       const Window owned = part_of(canopy->geometry(), common, unit.tile().cells);
+      const std::uint32_t survey = outlines.add_survey(*canopy);
       for (const FoundTree& tree : find_trees(*canopy, owned, search)) {
         seen.push_back(
             observation_of(tree, *canopy, types[id], id, table, species_of(tree, *canopy, options)));
-        if (options.crowns) outlines.push_back(crown_shape_of(tree, *canopy, seen.back()));
+        if (options.crowns) outlines.add(survey, tree);
       }
     }
     unit.count_out(static_cast<std::int64_t>(seen.size()));
+    seen.shrink_to_fit();
+    outlines.close();
     unit.write(observations, std::move(seen));
     unit.write(seen_crowns, std::move(outlines));
   }

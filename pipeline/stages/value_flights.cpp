@@ -4,8 +4,9 @@
 #include <set>
 
 #include "landmarks/landmark_type.hpp"
+#include "landmarks/uid_index.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/forest/crown_shape.hpp"
+#include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
 #include "pipeline/fusion/image_view_codec.hpp"
@@ -23,17 +24,17 @@ struct ValueFlights {
   static constexpr In<Canopies> canopies{"canopies"};
   static constexpr In<std::vector<Landmark>> merged{"merged"};
   static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
-  static constexpr In<std::vector<CrownShape>> seen_crowns{"seen_crowns"};
+  static constexpr In<CrownTable> seen_crowns{"seen_crowns"};
   static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
   static constexpr Out<std::vector<Observation>> evidence{"evidence"};
-  static constexpr Out<std::vector<CrownShape>> crowns{"crowns"};
+  static constexpr Out<CrownTable> crowns{"crowns"};
   static constexpr Out<std::vector<ImageView>> image_views{"image_views"};
 
   static StageSpec spec() {
     return {.name = "value_flights",
             .summary =
                 "Values trees: how many canopy models show them of how many could have; names their crowns",
-            .version = 2,
+            .version = 3,
             .scope = Scope::map,
             .inputs = {canopies, merged, merged_evidence, seen_crowns},
             .outputs = {landmarks, evidence, crowns, image_views}};
@@ -95,25 +96,36 @@ struct ValueFlights {
   }
 
   // One crown per tree: of the first survey by name that shows it.
-  static std::vector<CrownShape> named(std::vector<std::vector<CrownShape>> parts,
-                                       const std::vector<Observation>& seen,
-                                       const std::vector<Landmark>& all) {
-    using Key = std::tuple<std::string_view, double, double>;
-    std::map<Key, CrownShape*> at;
-    for (auto& part : parts)
-      for (CrownShape& crown : part) at[{crown.source, crown.top.x(), crown.top.y()}] = &crown;
-    std::map<std::string_view, CrownShape*> of_tree;
+  static CrownTable named(std::vector<CrownTable> parts, const std::vector<Observation>& seen,
+                          const std::vector<Landmark>& all) {
+    struct Place {
+      double x = 0, y = 0;
+      std::uint32_t part = 0, row = 0;
+    };
+    std::map<std::string_view, std::vector<Place>> of_source;
+    for (std::uint32_t part = 0; part < parts.size(); ++part)
+      for (std::uint32_t row = 0; row < parts[part].size(); ++row) {
+        const Eigen::Vector2d top = parts[part].top(row);
+        of_source[parts[part].source(row)].push_back({top.x(), top.y(), part, row});
+      }
+    const auto by_place = [](const Place& place) { return std::pair(place.x, place.y); };
+    for (auto& [_, places] : of_source) std::ranges::sort(places, {}, by_place);
+    const UidIndex index(all);
+    std::vector<const Place*> of_tree(all.size());
     for (const Observation& o : seen) {  // by source, then place: the first survey by name comes first
       if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
-      const auto found = at.find({o.source, o.position.xyz.x(), o.position.xyz.y()});
-      if (found != at.end()) of_tree.try_emplace(o.landmark_uid, found->second);
+      const auto tree = index.find(o.landmark_uid);
+      const auto places = of_source.find(o.source);
+      if (!tree || of_tree[*tree] || places == of_source.end()) continue;
+      const std::pair at(o.position.xyz.x(), o.position.xyz.y());
+      const auto place = std::ranges::lower_bound(places->second, at, {}, by_place);
+      if (place != places->second.end() && by_place(*place) == at) of_tree[*tree] = &*place;
     }
-    std::vector<CrownShape> crowns;
-    for (const Landmark& tree : all)
-      if (const auto found = of_tree.find(tree.uid); found != of_tree.end()) {
-        crowns.push_back(std::move(*found->second));  // one survey's find is of one tree
-        crowns.back().uid = tree.uid;
-      }
+    CrownTable crowns;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (const Place* place = of_tree[i]; place && parts[place->part].drawn(place->row))
+        crowns.add(parts[place->part], place->row, all[i].uid);
+    crowns.close();
     return crowns;
   }
 };

@@ -158,5 +158,18 @@ TEST(ShapeLayer, RefusesWhatAMapCannotHold) {
   EXPECT_EQ(file_bytes(folder / "map.gpkg"), before) << "nothing half-written";
 }
 
+TEST(ShapeLayer, RowsMadeOnWritingAreRowsLikeOthers) {
+  const ShapeLayer held = squares(500);
+  ShapeLayer made = held;
+  made.rows.resize(20);
+  made.more = {480, [&](std::size_t i) { return held.rows[20 + i]; }};
+  const TemporaryFolder folder;
+  MapContents contents = scattered({});
+  contents.layers = {made};
+  write_map(folder / "map.gpkg", contents);
+  expect_equal(read_shape_layer(folder / "map.gpkg", "crown"), held);
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
+}
+
 }  // namespace
 }  // namespace waymark

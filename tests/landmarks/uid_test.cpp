@@ -3,7 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <set>
+
+#include "landmarks/uid_index.hpp"
 
 namespace waymark {
 namespace {
@@ -64,6 +67,23 @@ TEST(AssignUids, NumbersThoseAtOnePlace) {
   EXPECT_EQ(rocks[1].uid, rocks[0].uid + "-2");
   EXPECT_EQ(rocks[2].uid, rocks[0].uid + "-3");
   EXPECT_NE(rocks[3].uid, rocks[0].uid);
+}
+
+TEST(UidIndex, FindsTheFirstOfEachUid) {
+  std::vector<Landmark> landmarks(1000);
+  for (std::size_t i = 0; i < landmarks.size(); ++i) landmarks[i].uid = "tr-" + std::to_string(i % 900);
+  const UidIndex all(landmarks);
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 999; i >= 950; --i) some.push_back(i);
+  const UidIndex few(landmarks, some), none(landmarks, std::span<const std::uint32_t>{});
+  for (std::uint32_t i = 0; i < 900; ++i) {
+    const std::string uid = "tr-" + std::to_string(i);
+    EXPECT_EQ(all.find(uid), i);
+    EXPECT_EQ(few.find(uid), i >= 50 && i < 100 ? std::optional(99 - i) : std::nullopt) << i;
+    EXPECT_EQ(none.find(uid), std::nullopt);
+  }
+  EXPECT_EQ(all.find("tr-900"), std::nullopt);
+  EXPECT_EQ(UidIndex(std::span<const Landmark>{}).find(""), std::nullopt);
 }
 
 }  // namespace
