@@ -35,9 +35,11 @@ float white_of(const std::vector<std::shared_ptr<const ImageSource>>& bands, con
   std::vector<float> values;
   const std::int64_t step = std::max<std::int64_t>(1, image.rows / 64);
   for (const auto& band : bands)
-    for (std::int64_t row = 0; row < image.rows; row += step)
-      for (const float value : band->read({0, row, image.columns, 1}).cells())
+    for (std::int64_t row = 0; row < image.rows; row += step) {
+      const Pixels line = band->read({0, row, image.columns, 1});
+      for (const float value : line.cells())
         if (!std::isnan(value)) values.push_back(value);
+    }
   if (values.empty()) return static_cast<float>(image.saturated);
   const auto bright = values.begin() + static_cast<std::ptrdiff_t>(0.995 * double(values.size() - 1));
   std::nth_element(values.begin(), bright, values.end());

@@ -105,7 +105,7 @@ TEST(Orthophoto, PixelZeroLiesAtItsCentre) {
                                   .cells = counted(4, 4),
                                   .type = GDT_Byte,
                                   .transform = GeoTransform{500000, 2, 0, 4000000, 0, -2}});
-  const ImageInfo& info = import_image(path)->info();
+  const ImageInfo info = import_image(path)->info();
   EXPECT_EQ(info.ortho->x0, 500001);
   EXPECT_EQ(info.ortho->y0, 3999999);
   EXPECT_EQ(info.ortho->dy, -2);
