@@ -134,11 +134,15 @@ std::string evaluate_track(const std::string& track_file, const std::string& tru
   all["anees"] = c ? Json(c->anees) : nullptr;
   all["anees_band"] = c ? Json{c->low, c->high} : nullptr;
   all["anees_independent"] = c ? Json(c->independent) : nullptr;
+  const auto& v = s.innovations;
+  all["anis"] = v ? Json(v->anees) : nullptr;
+  all["anis_band"] = v ? Json{v->low, v->high} : nullptr;
   all["matches"] = s.matches;
   all["rejected"] = s.rejected;
   all["wrong_matches"] = s.wrong_matches;
   all["lost"] = s.lost;
-  all["time_per_update_us"] = nullptr;  // a track has no times: waymark localize says how long it took
+  // A track tells it where waymark localize was asked for --timing.
+  all["time_per_update_us"] = s.update_seconds ? Json(1e6 * *s.update_seconds) : nullptr;
   if (format == "json") return all.dump(2) + "\n";
   std::string text;
   for (const auto& [name, value] : all.items())

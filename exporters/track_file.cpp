@@ -20,9 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 17> kColumns{
-    "t",      "x",       "y",       "z",        "roll",  "pitch", "yaw",       "var_x",    "var_y",
-    "cov_xy", "var_yaw", "matched", "rejected", "wrong", "lost",  "cov_x_yaw", "cov_y_yaw"};
+constexpr std::array<const char*, 20> kColumns{
+    "t",     "x",         "y",         "z",       "roll",     "pitch",       "yaw",
+    "var_x", "var_y",     "cov_xy",    "var_yaw", "matched",  "rejected",    "wrong",
+    "lost",  "cov_x_yaw", "cov_y_yaw", "nis",     "nis_rows", "seconds_used"};
 using Values = std::array<double, kColumns.size()>;
 
 Values values_of(const TrackRow& row, const LocalFrame* frame) {
@@ -45,7 +46,14 @@ Values values_of(const TrackRow& row, const LocalFrame* frame) {
           double(row.wrong),
           double(row.lost),
           c(0, 2),
-          c(1, 2)};
+          c(1, 2),
+          row.nis,
+          double(row.nis_rows),
+          row.seconds};
+}
+
+std::size_t columns_of(const TrackOutput& output) {
+  return kColumns.size() - !output.timing;  // the times come last
 }
 
 TrackRow row_of(const Values& v) {
@@ -59,6 +67,7 @@ TrackRow row_of(const Values& v) {
   row.rejected = static_cast<int>(v[12]);
   row.wrong = static_cast<int>(v[13]);
   row.lost = v[14] != 0;
+  row.nis = v[17], row.nis_rows = static_cast<int>(v[18]), row.seconds = v[19];
   return row;
 }
 
@@ -73,7 +82,8 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
   std::ofstream out(aside, std::ios::binary);
   if (!out) cannot_write(file, std::strerror(errno));
   fmt::memory_buffer text;
-  for (std::size_t i = 0; i < kColumns.size(); ++i)
+  const std::size_t columns = columns_of(output);
+  for (std::size_t i = 0; i < columns; ++i)
     fmt::format_to(std::back_inserter(text), "{}{}", i ? "," : "", kColumns[i]);
   text.push_back('\n');
   const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
@@ -84,7 +94,7 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
                    places, v[2], places, v[3], v[4], v[5], v[6]);
     for (std::size_t i = 7; i < 11; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
     for (std::size_t i = 11; i < 15; ++i) fmt::format_to(std::back_inserter(text), ",{:g}", v[i]);
-    for (std::size_t i = 15; i < 17; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
+    for (std::size_t i = 15; i < columns; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
     text.push_back('\n');
   }
   out.write(text.data(), static_cast<std::streamsize>(text.size()));
@@ -112,15 +122,16 @@ void write_track_geopackage(const fs::path& file, const Track& track, const Trac
   }
   OGRLayer* layer = set->CreateLayer("track", on_body ? &srs : nullptr, wkbPoint25D, nullptr);
   if (!layer) cannot_write(file, messages.cause("no layer"));
-  for (const char* name : kColumns) {
-    OGRFieldDefn field(name, OFTReal);
+  const std::size_t columns = columns_of(output);
+  for (std::size_t i = 0; i < columns; ++i) {
+    OGRFieldDefn field(kColumns[i], OFTReal);
     if (layer->CreateField(&field) != OGRERR_NONE) cannot_write(file, messages.cause("no column"));
   }
   set->StartTransaction();
   for (const TrackRow& row : track.rows) {
     const Values v = values_of(row, output.frame);
     OGRFeature feature(layer->GetLayerDefn());
-    for (std::size_t i = 0; i < v.size(); ++i) feature.SetField(static_cast<int>(i), v[i]);
+    for (std::size_t i = 0; i < columns; ++i) feature.SetField(static_cast<int>(i), v[i]);
     OGRPoint point(v[1], v[2], v[3]);
     feature.SetGeometry(&point);
     if (layer->CreateFeature(&feature) != OGRERR_NONE)

@@ -53,7 +53,7 @@ double effective_number(std::vector<double> x) {
 
 }  // namespace
 
-Consistency consistency(std::span<const double> t, std::span<const double> squares, int dimensions) {
+Consistency consistency(std::span<const double> t, std::span<const double> squares, double dimensions) {
   assert(!squares.empty() && t.size() == squares.size() && dimensions > 0);
   Consistency c{.anees = mean(squares) / dimensions, .independent = effective_number(evenly(t, squares))};
   const double freedom = dimensions * c.independent;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "localization/identification/joint_evidence.hpp"
+
 namespace waymark {
 namespace {
 
@@ -95,10 +97,12 @@ class Player {
       s.range_sd *= options_.sensor_noise;
     }
     repeated_.widen(seen, now_);
+    const Eigen::Matrix3d prior = localizer_.estimate().covariance;
     const double before = clock_ ? clock_() : 0;
     const std::vector<Match> matches = localizer_.see(seen);
-    if (clock_) track_.seconds += clock_() - before;
+    if (clock_) track_.seconds += row.seconds = clock_() - before;
     ++track_.updates;
+    JointEvidence evidence;
     for (std::size_t i = 0; i < matches.size(); ++i) {
       ++track_.verdicts[static_cast<std::size_t>(matches[i].verdict)];
       if (matches[i].verdict != Verdict::matched) {
@@ -106,11 +110,13 @@ class Player {
         continue;
       }
       ++row.matched;
+      evidence += matches[i].pairing.evidence;
       if (!seen.sightings[i].identity) continue;
       ++track_.named;
       row.wrong += *seen.sightings[i].identity != matches[i].key;
     }
     track_.wrong += row.wrong;
+    if (evidence.rows) row.nis = joint_distance(evidence, prior).squares, row.nis_rows = evidence.rows;
     return true;
   }
 

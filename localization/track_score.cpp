@@ -83,6 +83,24 @@ PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eige
   return result;
 }
 
+namespace {
+
+// Both need no truth.
+void score_updates(TrackScore& s, const Track& track) {
+  std::vector<double> times, squares;
+  double rows = 0, seconds = 0, updates = 0;
+  for (const TrackRow& row : track.rows) {
+    if (row.seconds > 0) seconds += row.seconds, ++updates;
+    if (row.nis_rows == 0) continue;
+    times.push_back(row.t), squares.push_back(row.nis);
+    rows += row.nis_rows;
+  }
+  if (!times.empty()) s.innovations = consistency(times, squares, rows / static_cast<double>(times.size()));
+  if (updates > 0) s.update_seconds = seconds / updates;
+}
+
+}  // namespace
+
 TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAlignment alignment,
                  bool headings, double rpe_seconds, double longest_gap) {
   TrackScore s;
@@ -100,6 +118,7 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAl
     }
   }
   if (!track.rows.empty()) s.lost /= static_cast<double>(track.rows.size());
+  score_updates(s, track);
   s.poses = pairs.size();
   if (pairs.empty()) return s;
   const PlaneAlignment aligned = align(from, to, alignment);

@@ -28,6 +28,8 @@ struct TrackScore {
   double rpe = 0;                                        ///< m, RMSE of the motion over `rpe_seconds`
   std::optional<double> heading_rmse_deg;                ///< absent where the truth has no heading
   std::optional<Consistency> consistency;                ///< of covariances (x, y, yaw)
+  std::optional<Consistency> innovations;                ///< NIS over its rows; from the track alone
+  std::optional<double> update_seconds;                  ///< mean, where the track tells it
   std::int64_t matches = 0, rejected = 0, wrong_matches = 0;
   double lost = 0;  ///< part of the rows
 };

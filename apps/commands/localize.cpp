@@ -80,6 +80,8 @@ class Localize final : public Command {
              Argument{"--layers", "MAP.gpkg", &layers_,
                       "Map file that gets the layers track and, of a harvester, harvested"}
                  .offering(Offer::file),
+             Argument{"--timing", "", &timing_,
+                      "Write how long each update took, too (seconds_used); no two such files are alike"},
              Argument{"--live", "SECONDS", &live_,
                       "Write --layers while the log plays: so often, in seconds of the log, and after each "
                       "felled tree"}},
@@ -142,7 +144,7 @@ class Localize final : public Command {
     if (live_ > 0) task.watch = LiveLayers(layers_, log, map.frame, live_);
     const Track track = method.run(task);
 
-    TrackOutput form{.frame = in_crs_ ? &map.frame : nullptr, .crs = &map.crs()};
+    TrackOutput form{.frame = in_crs_ ? &map.frame : nullptr, .crs = &map.crs(), .timing = timing_};
     if (out.extension() == ".gpkg") {
       form.frame = &map.frame;
       write_track_geopackage(out, track, form);
@@ -276,6 +278,7 @@ class Localize final : public Command {
   std::string write_map_;
   bool update_map_ = false;
   double live_ = 0;
+  bool timing_ = false;
   LogImport how_;
   std::vector<std::string> sets_, dem_;
   bool in_crs_ = false, list_ = false;

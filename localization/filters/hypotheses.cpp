@@ -84,8 +84,7 @@ PoseEstimate HypothesesFilter::updated_by(const Part& part, const SightingSet& s
     if (how.choice[i] < 0) continue;
     MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
     landmark.covariance *= 1 + alike(landmark.key) / 2;
-    const double floor = identification_.quality_floor;
-    const double trust = floor < 1 ? std::max(landmark.quality, floor) : 1;
+    const double trust = trust_in(landmark, identification_);
     const SeenLandmark& seen = some.sightings[i];
     if (options_.unscented)
       at = unscented_updated(at, seen, some.robot_from_sensor, landmark, trust);
@@ -178,7 +177,11 @@ std::vector<Match> HypothesesFilter::see(const SightingSet& seen) {
       match.verdict = Verdict::ambiguous;
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);
-      match.key = map[match.pairing.landmark].key;
+      const MapLandmark& landmark = map[match.pairing.landmark];
+      match.key = landmark.key;
+      const SeenLandmark& s = seen.sightings[places[k]];
+      match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
+                                           landmark.covariance, trust_in(landmark, identification_));
       uses_[match.key] = {1 + alike(match.key), driven_};
     }
   }

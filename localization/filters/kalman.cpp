@@ -54,8 +54,7 @@ std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
     match.key = landmark.key;
-    const double floor = identification_.quality_floor;
-    uses.push_back({&seen.sightings[i], &landmark, floor < 1 ? std::max(landmark.quality, floor) : 1});
+    uses.push_back({&seen.sightings[i], &landmark, trust_in(landmark, identification_)});
   }
   if (posterior && doubtful) {
     missed_ = 0;

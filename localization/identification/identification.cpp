@@ -208,8 +208,9 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
       continue;
     }
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
-    const double trust = options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
-    CandidatePair p{.landmark = i, .evidence = evidence_of(seen, expected, landmark.covariance, trust)};
+    CandidatePair p{
+        .landmark = i,
+        .evidence = evidence_of(seen, expected, landmark.covariance, trust_in(landmark, options))};
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -80,6 +81,11 @@ struct Identification {
   /// still count, by as much as they can be trusted.
   std::optional<PoseEstimate> posterior;
 };
+
+/// How far a landmark is trusted: its quality, but no less than the floor; all alike where that is 1.
+inline double trust_in(const MapLandmark& landmark, const IdentificationOptions& options) {
+  return options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
+}
 
 /// Candidates by type, place and features (section 4.1, first step). Landmarks within the gate of the pose's
 /// and the sensor's uncertainty; for sightings without range, of the wedge of figure 2.

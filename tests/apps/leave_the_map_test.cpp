@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // A robot that drives off the mapped ground, among rocks the map does not have, and comes back.
-#include <map>
-
 #include "core/random.hpp"
 #include "localize_fixture.hpp"
 #include "made_pose.hpp"
@@ -70,17 +68,10 @@ class LeaveTheMap : public Localize {
 
   /// Error of the last pose, and whether the track says `lost` there.
   std::pair<double, bool> end(const Site& made) {
-    std::istringstream rows(text_of(track_));
-    std::string names, row, last;
-    std::getline(rows, names);
-    while (std::getline(rows, row)) last = row;
-    std::istringstream columns(names), cells(last);
-    std::map<std::string, double> v;
-    for (std::string name, cell; std::getline(columns, name, ',') && std::getline(cells, cell, ',');)
-      v[name] = std::stod(cell);
+    std::map<std::string, double> v = last_row();
     MadePose truth;
     std::istringstream lines(made.log);
-    while (std::getline(lines, row))
+    for (std::string row; std::getline(lines, row);)
       if (const auto json = nlohmann::json::parse(row); json["kind"] == "truth")
         truth = {json["x"], json["y"], json["yaw"]};
     return {truth.away({v.at("x"), v.at("y"), 0}), v.at("lost") != 0};

@@ -2,6 +2,7 @@
 #pragma once
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -55,6 +56,18 @@ class Localize : public testing::Test {
     const Outcome said = waymark(words);
     EXPECT_EQ(said.code, 0) << said.err;
     return nlohmann::json::parse(said.out);
+  }
+  /// The last row of the track, by the names of its columns.
+  std::map<std::string, double> last_row() {
+    std::istringstream rows(text_of(track_));
+    std::string names, row, last;
+    std::getline(rows, names);
+    while (std::getline(rows, row)) last = row;
+    std::istringstream columns(names), cells(last);
+    std::map<std::string, double> values;
+    for (std::string name, cell; std::getline(columns, name, ',') && std::getline(cells, cell, ',');)
+      values[name] = std::stod(cell);
+    return values;
   }
   nlohmann::json score() { return score(folder_ / "log.jsonl"); }
   /// The message of a log or option that is refused.

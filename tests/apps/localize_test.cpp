@@ -49,7 +49,7 @@ TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
 
 TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {
   ASSERT_EQ(localize(drive_log({}), {"--method", "ekf"}).code, 0);
-  EXPECT_THAT(text_of(track_), HasSubstr(",lost,cov_x_yaw,cov_y_yaw\n"));
+  EXPECT_THAT(text_of(track_), HasSubstr(",lost,cov_x_yaw,cov_y_yaw,nis,nis_rows\n"));
   write_text(track_,
              "t,x,y,yaw,var_x,var_y,var_yaw,cov_x_yaw\n0,1,0,1,1,1,1,0.9\n1,2,0,1,1,1,1,0.9\n"
              "2,1,0,1,1,1,1,0.9\n");
@@ -60,6 +60,20 @@ TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {
   EXPECT_EQ(said["anees_independent"], 1);
   EXPECT_LT(said["anees_band"][0], said["anees"]);
   EXPECT_GT(said["anees_band"][1], 3);
+}
+
+TEST_F(Localize, EvaluateTellsInnovationsAndTimes) {
+  const std::string log = drive_log({});
+  ASSERT_EQ(localize(log, {"--method", "ekf", "--timing"}).code, 0);
+  EXPECT_THAT(text_of(track_), HasSubstr(",nis_rows,seconds_used\n"));
+  const nlohmann::json said = score();
+  EXPECT_GT(said["anis"], 0.1);
+  EXPECT_LT(said["anis"], 3);
+  EXPECT_LT(said["anis_band"][0], said["anis_band"][1]);
+  EXPECT_GT(said["time_per_update_us"], 0);
+  ASSERT_EQ(localize(log, {"--method", "odometry"}).code, 0);
+  EXPECT_TRUE(score()["anis"].is_null());
+  EXPECT_TRUE(score()["time_per_update_us"].is_null());
 }
 
 TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
