@@ -1,3 +1,11 @@
+# Seconds until a test is taken to hang; sanitizers take five times as long.
+function(waymark_patience variable seconds)
+  if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    math(EXPR seconds "5 * ${seconds}")
+  endif()
+  set(${variable} ${seconds} PARENT_SCOPE)
+endfunction()
+
 # tests/<folder>/*_test.cpp become one executable <folder>_tests whose cases ctest lists one by one.
 #   waymark_tests(NAME geo USES waymark_geo)
 function(waymark_tests)
@@ -11,6 +19,7 @@ function(waymark_tests)
   target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules waymark_test_options
                         GTest::gmock GTest::gtest_main)
   waymark_use_precompiled(${target} waymark_tests_precompiled)
+  waymark_patience(patience 600)
   gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60
-                       PROPERTIES TIMEOUT 600 ENVIRONMENT RC_PARAMS=seed=2026 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+                       PROPERTIES TIMEOUT ${patience} ENVIRONMENT RC_PARAMS=seed=2026 SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
 endfunction()
