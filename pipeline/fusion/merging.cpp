@@ -73,7 +73,7 @@ void reject_twins(Sightings& seen, std::vector<Observation>& observations, const
   reach.reserve(seen.all.size());
   for (const Sighting& s : seen.all) {
     places.push_back(plane.in_space(s.at));
-    reach.push_back(std::isnan(s.log_size) ? 0 : rules.overlap * std::exp(s.log_size));
+    reach.push_back(std::isnan(s.log_size) ? 0 : rules.twin * std::exp(s.log_size));
   }
   const auto pairs = close_pairs(places, reach, [&](Index a, Index b) {
     const Sighting &s = seen.all[a], &t = seen.all[b];

@@ -13,16 +13,17 @@ double largest_eigenvalue(const Eigen::Matrix2d& m) {
   return mean + std::hypot(half, m(0, 1));
 }
 
-bool inside(const Sighting& a, const Sighting& b, double distance, const IdentityRules& rules) {
+// Bodies of like size, their centres nearer than a share of the smaller radius.
+bool inside(const Sighting& a, const Sighting& b, double distance, double share, const IdentityRules& rules) {
   if (!(std::abs(a.log_size - b.log_size) <= std::log(rules.alike))) return false;
-  return distance <= rules.overlap * std::exp(std::min(a.log_size, b.log_size));
+  return distance <= share * std::exp(std::min(a.log_size, b.log_size));
 }
 
 }  // namespace
 
 bool stand_in_each_other(const Sighting& a, const Sighting& b, const MapPlane& plane,
                          const IdentityRules& rules) {
-  return inside(a, b, plane.offset(a.at, b.at).norm(), rules);
+  return inside(a, b, plane.offset(a.at, b.at).norm(), rules.twin, rules);
 }
 
 double reach(const Sighting& sighting, const IdentityRules& rules) {
@@ -42,7 +43,7 @@ std::optional<double> same_thing_cost(const Sighting& a, const Sighting& b, cons
                           sum(0, 0) * apart.y() * apart.y()) /
                          determinant;
   double cost = squared + std::log(determinant);
-  const bool stands_inside = inside(a, b, distance, rules);
+  const bool stands_inside = inside(a, b, distance, rules.overlap, rules);
   if (!(squared <= rules.position_gate) && !stands_inside) return std::nullopt;
   const double size_apart = a.log_size - b.log_size;
   if (std::isnan(size_apart)) return cost;

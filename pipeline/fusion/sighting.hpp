@@ -26,9 +26,11 @@ struct IdentityRules {
   double size_gate = 15.1;
   /// Never further apart than this, metres, whatever the covariances say.
   double max_distance = std::numeric_limits<double>::infinity();
-  /// Two things of like size whose centres are nearer than this share of the smaller radius are one thing,
-  /// whatever the covariances say: bodies do not stand inside each other.
-  double overlap = 0.5;
+  /// Things of different images, of like size, whose centres are nearer than this share of the smaller radius
+  /// are one thing, whatever the covariances say: bodies do not stand inside each other.
+  double overlap = 1;
+  /// The same for two sightings of one image, which more likely are two things.
+  double twin = 0.5;
   /// Sizes alike for that: larger / smaller.
   double alike = 1.5;
   /// Relative spread of a size beyond its measured error, from shape and light.
@@ -38,7 +40,7 @@ struct IdentityRules {
 /// How far the place may be from another of the same thing, the other's own reach added, metres.
 double reach(const Sighting& sighting, const IdentityRules& rules);
 
-/// Bodies of like size, the centre of one well inside the other: one thing, see IdentityRules::overlap.
+/// Two sightings of one image, of like size, the centre of one well inside the other: IdentityRules::twin.
 bool stand_in_each_other(const Sighting& a, const Sighting& b, const MapPlane& plane,
                          const IdentityRules& rules);
 

@@ -31,11 +31,12 @@ struct MergeObservations {
               .max = 1000});
       option("size_gate", size_gate,
              {.help = "The same for the logarithm of the size (chi-square of 1)", .min = 0.1, .max = 1000});
-      option("overlap", overlap,
-             {.help = "Bodies of like size nearer than this share of their radius are one whatever the "
-                      "covariances say",
-              .min = 0,
-              .max = 2});
+      option(
+          "overlap", overlap,
+          {.help = "Bodies of like size in different images, nearer than this share of their radius, are one "
+                   "whatever the covariances say",
+           .min = 0,
+           .max = 2});
       option("common_share", common_share,
              {.help = "Share of a position's variance that more images do not reduce: shape, light, DEM",
               .min = 0,
@@ -53,7 +54,7 @@ struct MergeObservations {
   static StageSpec spec() {
     return {.name = "merge_observations",
             .summary = "Makes one landmark of the observations of one thing in different images",
-            .version = 2,
+            .version = 3,
             .scope = Scope::map,
             .inputs = {dem, observations},
             .outputs = {merged, merged_evidence}};

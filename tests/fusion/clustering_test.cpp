@@ -145,6 +145,19 @@ TEST(Cluster, BodiesThatStandInEachOtherAreOneThoughCovariancesDeny) {
   EXPECT_EQ(cluster(seen, kPlane, {.overlap = 0}), (std::vector<std::uint32_t>{0, 1}));
 }
 
+TEST(Cluster, TheCentreOfABodyIsInNoOther) {
+  // Images that disagree by more than they say, as where the ground differs from its DEM.
+  const auto labels = [](double apart, double radius, std::uint32_t source) {
+    return cluster(std::vector<Sighting>{at(0, 0, 0.01, 10, 0), at(apart, 0, 0.01, radius, source)}, kPlane,
+                   {});
+  };
+  const std::vector<std::uint32_t> one{0, 0}, two{0, 1};
+  EXPECT_EQ(labels(9, 10, 1), one);
+  EXPECT_EQ(labels(11, 10, 1), two);
+  EXPECT_EQ(labels(9, 16, 1), two) << "not of like size";
+  EXPECT_EQ(labels(9, 10, 0), two) << "of one image";
+}
+
 TEST(Cluster, SmallCraterInALargeOneIsAnother) {
   const std::vector<Sighting> seen{at(0, 0, 2, 50, 0), at(1, 0, 2, 12, 1)};
   EXPECT_EQ(cluster(seen, kPlane, {}), (std::vector<std::uint32_t>{0, 1}));
