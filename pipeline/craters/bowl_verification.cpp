@@ -20,7 +20,7 @@ constexpr double kModelSize = 0.35;       // weight of the model's diameter agai
 constexpr double kEvenUntrained = 0.645;  // without a model, which then decides alone
 constexpr double kPriorTrust = 0.45;      // how far towards the image's own share of craters
 
-constexpr double kHopeless = 0.12;  // probability at first sight that nothing makes up for
+constexpr double kHopeless = 0.03;  // probability at first sight that nothing makes up for
 
 double logistic(double x) {
   return 1 / (1 + std::exp(-x));
