@@ -183,7 +183,7 @@ std::vector<Argument> arguments(DetectRequest& request) {
       Argument{"--max-diameter", "PX", &request.max_diameter, "Largest thing looked for"}.or_else(
           "0.6 of the shorter side for craters, 100 for rocks"),
       Argument{"--min-confidence", "P", &request.min_confidence, "Leave out what is less probable"}.or_else(
-          "0.5"),
+          "0.5; nothing of trees told by heights"),
       Argument{"--band", "N", &request.band, "Band of the image, from 1"}.or_else(
           "brightness of a colour image, else the first"),
       Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
@@ -199,7 +199,8 @@ DetectPlan plan_of(const DetectRequest& request) {
   plan.method = request.method.empty() ? kind.methods[0] : request.method;
   check_method(kind, plan.method);
   if (plan.type == "tree") plan.method = request.method;  // by the image's bands where none is named
-  plan.min_confidence = request.min_confidence;
+  if (given(request.min_confidence))
+    plan.min_confidence = plan.min_confidence_of_tops = request.min_confidence;
   plan.search.min_diameter = given(request.min_diameter) ? request.min_diameter : kind.min_diameter;
   plan.search.max_diameter = given(request.max_diameter) ? request.max_diameter : kind.max_diameter;
   if (plan.search.max_diameter > 0 && plan.search.min_diameter >= plan.search.max_diameter)

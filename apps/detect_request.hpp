@@ -21,7 +21,7 @@ struct DetectRequest {
   double gsd = std::numeric_limits<double>::quiet_NaN();
   double min_diameter = std::numeric_limits<double>::quiet_NaN();
   double max_diameter = std::numeric_limits<double>::quiet_NaN();
-  double min_confidence = 0.5;
+  double min_confidence = std::numeric_limits<double>::quiet_NaN();
   std::int64_t band = 0, piece = 8192;
 };
 std::vector<Argument> arguments(DetectRequest& request);
@@ -36,6 +36,8 @@ struct DetectPlan {
   std::optional<Meters> gsd;  ///< of an image without georeference
   ImageSearch search;
   double min_confidence = 0.5;
+  /// Of trees told by heights, whose second tops are told by their confidence and not left out unasked.
+  double min_confidence_of_tops = 0;
   std::vector<std::string> warnings;
 };
 

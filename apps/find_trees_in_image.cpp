@@ -92,7 +92,7 @@ Detection detection_of(const FoundTree& tree, TypeId type, double metres, bool i
   const double sd = imagery ? kPlaceSd : errors.place_base + errors.place_slope * tree.height;
   one.covariance = Eigen::Matrix2d::Identity() * (sd * sd / (metres * metres) + 1.0 / 12);
   one.diameter_sd = errors.crown_share * diameter;
-  one.confidence = imagery ? 1 - 0.5 * std::exp(1 - tree.height / kLeastGreen) : 0.9;
+  one.confidence = imagery ? 1 - 0.5 * std::exp(1 - tree.height / kLeastGreen) : tree.confidence;
   return one;
 }
 
@@ -177,9 +177,10 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads,
   std::vector<Kept> kept = imagery && (bands > 3 || metres >= kFineColour)
                                ? by_network(info, metres, type, threads, progress)
                                : by_canopy(plan, metres, method, type, threads, progress);
+  const double least = imagery ? plan.min_confidence : plan.min_confidence_of_tops;
   std::erase_if(kept, [&](const Kept& one) {
     const double diameter = one.detection.outline.diameter();
-    return one.detection.confidence < plan.min_confidence || diameter < plan.search.min_diameter ||
+    return one.detection.confidence < least || diameter < plan.search.min_diameter ||
            (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter);
   });
   std::stable_sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) {

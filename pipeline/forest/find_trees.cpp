@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/forest/tree_confidence.hpp"
+
 namespace waymark {
 namespace {
 
@@ -33,6 +35,24 @@ RulesAt rules_at(const TreeSearch& search, const Window& cells, const Grid<std::
   };
 }
 
+// Cells beyond `owned` whose tops are needed: for crowns and for rivals.
+std::int64_t needed_beyond(const TreeSearch& search, double cell) {
+  const auto rivals = static_cast<std::int64_t>(std::ceil(kRivalReach / cell)) + 1;
+  return search.crowns ? std::max(rivals, crown_reach(search.forest.crowns, cell)) : rivals;
+}
+
+ForestType type_at(const Grid<std::uint8_t>& types, const Window& cells, const CanopyCell& at,
+                   ForestType otherwise) {
+  const std::uint8_t type = types.columns() ? types(at.column - cells.column, at.row - cells.row) : 0;
+  return type == 0 ? otherwise : static_cast<ForestType>(type);
+}
+
+ForestType type_of(const ForestPreset& preset) {
+  for (const ForestType type : {ForestType::conifer, ForestType::broadleaf})
+    if (preset.name == forest_preset(type).name) return type;
+  return ForestType::mixed;
+}
+
 // Smoothing lowers a top: its height is that of the highest shoot around it.
 double height_at(const CanopyWindow& raw, const CanopyCell& top) {
   float highest = 0;
@@ -48,9 +68,10 @@ double height_at(const CanopyWindow& raw, const CanopyCell& top) {
 std::int64_t search_halo(const TreeSearch& search, double cell) {
   const std::int64_t tops = tops_reach(search, cell),
                      smoothing = smoothing_reach(search.forest.smoothing, cell);
-  if (!search.crowns) return tops + smoothing + 1;
+  const std::int64_t beyond = needed_beyond(search, cell);
+  if (!search.crowns) return beyond + tops + smoothing + 1;
   const std::int64_t crown = crown_reach(search.forest.crowns, cell);
-  return std::max(5 * crown / 2 + 3, crown + tops) + smoothing + 1;
+  return std::max(5 * crown / 2 + 3, beyond + tops) + smoothing + 1;
 }
 
 std::vector<FoundTree> find_trees(const CanopySource& canopy, const Window& owned, const TreeSearch& search) {
@@ -63,17 +84,20 @@ std::vector<FoundTree> find_trees(const CanopySource& canopy, const Window& owne
   const Grid<std::uint8_t> types =
       search.by_type.empty() ? Grid<std::uint8_t>{} : canopy.forest_types(raw.cells);
   const RulesAt rules = rules_at(search, raw.cells, types);
-  const std::int64_t beyond = search.crowns ? crown_reach(search.forest.crowns, least) : 0;
+  const std::int64_t beyond = needed_beyond(search, least);
   const std::vector<Treetop> tops = find_treetops(smooth, grown(owned, beyond), rules);
   std::vector<Crown> crowns;
   if (search.crowns) crowns = find_crowns(smooth, owned, tops, search.forest.crowns);
   std::vector<FoundTree> trees;
-  for (const Treetop& top : tops) {
+  for (std::size_t i = 0; i < tops.size(); ++i) {
+    const Treetop& top = tops[i];
     if (!owned.contains(top.cell.column, top.cell.row)) continue;
     FoundTree tree{.top = top.cell, .height = height_at(raw, top.cell), .crown = {}};
     if (search.crowns) tree.crown = std::move(crowns[trees.size()]);
     tree.crown_area = static_cast<double>(tree.crown.cells) * width * height;
     tree.crown_diameter = 2 * std::sqrt(tree.crown_area / std::numbers::pi);
+    tree.confidence = tree_confidence(evidence_of(raw, smooth, tops, i),
+                                      type_at(types, raw.cells, top.cell, type_of(search.forest)));
     trees.push_back(std::move(tree));
   }
   return trees;

@@ -20,6 +20,7 @@ struct FoundTree {
   double height = 0;                          ///< metres: the highest of the unsmoothed cells at the top
   Crown crown;                                ///< empty where crowns were not asked for
   double crown_area = 0, crown_diameter = 0;  ///< m2, and metres of the circle of that area
+  double confidence = 1;                      ///< that it is a tree of its own: tree_confidence.hpp
 };
 
 /// The trees whose tops are among the cells `owned` of a survey, in row order: smoothing, treetops, crowns.

@@ -21,7 +21,7 @@ Observation observation_of(const FoundTree& tree, const CanopySource& canopy, co
   seen.covariance(0, 0) = lean * lean + cell_x * cell_x / 12;
   seen.covariance(1, 1) = lean * lean + cell_y * cell_y / 12;
   seen.covariance(2, 2) = std::isnan(ground) ? std::nan("") : 0.25;
-  seen.confidence = 0.9;
+  seen.confidence = tree.confidence;
   seen.features.resize(type.features.size());
   const auto set = [&](const char* name, double value, double sd) {
     seen.features[feature_index(type, name)] = {value, sd * sd, 1};

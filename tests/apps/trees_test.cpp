@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -94,6 +95,12 @@ TEST_F(Trees, AreDetectedInAnImageOfHeights) {
       text_of(folder_ / "trees.csv"),
       StartsWith(
           "x,y,diameter,major,minor,angle,confidence,height,tree_diameter,crown_diameter,map_x,map_y\n"));
+  const auto rows = [&](const std::string& least) {
+    waymark({"detect", "trees", chm(), "-o", folder_ / "some.csv", "--min-confidence", least});
+    return std::ranges::count(text_of(folder_ / "some.csv"), '\n');
+  };
+  EXPECT_EQ(rows("0"), std::ranges::count(text_of(folder_ / "trees.csv"), '\n'));
+  EXPECT_EQ(rows("1"), 1);  // no top is certain
   EXPECT_EQ(waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv", "--method", "imagery"}).code, 2);
 }
 

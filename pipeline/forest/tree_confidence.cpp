@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forest/tree_confidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <tuple>
+
+namespace waymark {
+namespace {
+
+using Terms = std::array<double, 6>;
+
+// As printed by tests/forest: TreeConfidence.DISABLED_Fit.
+constexpr Terms kConifer{19.075, -12.140, 0.250, 6.131, -0.069, -3.058};
+constexpr Terms kBroadleaf{20.243, -13.500, 0.594, 4.947, -0.370, -3.537};
+constexpr Terms kMixed{17.285, -9.366, 1.193, 3.210, -0.197, -2.517};
+
+constexpr double kLeast = 0.1, kMost = 0.99;  // made forests tell no more
+
+double roughness_at(const CanopyWindow& raw, const CanopyWindow& smooth, const CanopyCell& top) {
+  double squares = 0;
+  int count = 0;
+  for (std::int64_t r = -2; r <= 2; ++r)
+    for (std::int64_t c = -2; c <= 2; ++c) {
+      const CanopyCell cell{top.column + c, top.row + r};
+      if (!raw.contains(cell) || raw.at(cell) == kNoCanopy || smooth.at(cell) == kNoCanopy) continue;
+      const auto off = static_cast<double>(raw.at(cell) - smooth.at(cell));
+      squares += off * off;
+      ++count;
+    }
+  return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+// How far the canopy descends on the straight line from one top to another, metres.
+double drop_between(const CanopyWindow& smooth, const Treetop& from, const CanopyCell& to) {
+  const std::int64_t columns = to.column - from.cell.column, rows = to.row - from.cell.row;
+  const std::int64_t steps = std::max(std::abs(columns), std::abs(rows));
+  float lowest = from.height;
+  for (std::int64_t i = 1; i < steps; ++i) {
+    const double part = static_cast<double>(i) / static_cast<double>(steps);
+    const CanopyCell cell{from.cell.column + std::llround(part * static_cast<double>(columns)),
+                          from.cell.row + std::llround(part * static_cast<double>(rows))};
+    lowest = std::min(lowest, std::max(0.0F, smooth.at(cell)));
+  }
+  return static_cast<double>(from.height - lowest);
+}
+
+bool stands_over(const Treetop& a, const Treetop& b) {
+  return std::tuple(-a.height, a.cell.row, a.cell.column) < std::tuple(-b.height, b.cell.row, b.cell.column);
+}
+
+}  // namespace
+
+TopEvidence evidence_of(const CanopyWindow& raw, const CanopyWindow& smooth, const std::vector<Treetop>& tops,
+                        std::size_t index) {
+  const Treetop& top = tops[index];
+  TopEvidence evidence{.height = static_cast<double>(top.height),
+                       .roughness = roughness_at(raw, smooth, top.cell)};
+  const auto rows = static_cast<std::int64_t>(kRivalReach / smooth.cell_height),
+             columns = static_cast<std::int64_t>(kRivalReach / smooth.cell_width);
+  double nearest = std::numeric_limits<double>::infinity();
+  auto other = std::lower_bound(tops.begin(), tops.end(), top.cell.row - rows,
+                                [](const Treetop& t, std::int64_t row) { return t.cell.row < row; });
+  for (; other != tops.end() && other->cell.row <= top.cell.row + rows; ++other) {
+    if (std::abs(other->cell.column - top.cell.column) > columns || !stands_over(*other, top)) continue;
+    const double distance =
+        std::hypot(static_cast<double>(other->cell.column - top.cell.column) * smooth.cell_width,
+                   static_cast<double>(other->cell.row - top.cell.row) * smooth.cell_height);
+    if (distance > kRivalReach) continue;
+    const double drop = drop_between(smooth, top, other->cell) / std::max(evidence.height, 0.1);
+    if (drop * distance >= nearest) continue;
+    nearest = drop * distance;
+    evidence.rivalled = true, evidence.distance = distance, evidence.drop = drop;
+  }
+  return evidence;
+}
+
+std::array<double, 6> terms_of(const TopEvidence& e) {
+  const double rivalled = e.rivalled ? 1 : 0;
+  return {1,
+          rivalled,
+          rivalled * std::log(e.drop + 0.01),
+          rivalled * std::log(std::max(e.distance, 0.1)),
+          std::log(e.roughness + 0.02),
+          std::log(std::max(e.height, 0.1))};
+}
+
+double tree_confidence(const TopEvidence& evidence, ForestType type) {
+  const Terms& weights = type == ForestType::conifer     ? kConifer
+                         : type == ForestType::broadleaf ? kBroadleaf
+                                                         : kMixed;
+  const Terms terms = terms_of(evidence);
+  double odds = 0;
+  for (std::size_t i = 0; i < terms.size(); ++i) odds += weights[i] * terms[i];
+  return std::clamp(1 / (1 + std::exp(-odds)), kLeast, kMost);
+}
+
+}  // namespace waymark
