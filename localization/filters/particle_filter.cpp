@@ -14,8 +14,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kNearEnough = 2;  // m: what the mean cannot see, no particle can
-constexpr double kCluster = 1.5;   // m: particles nearer than this are one hypothesis
+constexpr double kNearEnough = 2;    // m: what the mean cannot see, no particle can
+constexpr double kCluster = 1.5;     // m: particles nearer than this are one hypothesis
+constexpr double kOneHeading = 0.5;  // rad
+constexpr int kMostParts = 20;       // in which one set is believed
 
 /// Calls work(i) for all i, on several threads where it pays. Results must not depend on the order.
 template <class Work>
@@ -116,53 +118,6 @@ void ParticleFilter::spread() {
   pending_ = {};
 }
 
-std::optional<Pose2> ParticleFilter::pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
-                                                        Random& random) const {
-  if (!hints_.empty() && random.chance(0.5)) return hints_[random.below(hints_.size())];
-  const SeenLandmark& s = seen.sightings[random.below(seen.sightings.size())];
-  if (!s.sound() || map.empty()) return {};
-  const auto known = identification_.use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
-  const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.below(map.size()));
-  if (!known && s.type && *s.type != map[l].type) return {};
-  const double range = s.range ? std::max(0.0, *s.range + s.range_sd * random.normal())
-                               : identification_.bearing_reach * std::sqrt(random.uniform());
-  const double from = random.uniform(-std::numbers::pi, std::numbers::pi);  // landmark to sensor
-  const double yaw = wrapped(from + std::numbers::pi - s.bearing + s.bearing_sd * random.normal());
-  const Pose2 sensor{map[l].at.x() + range * std::cos(from), map[l].at.y() + range * std::sin(from), yaw};
-  return sensor * inverse(seen.robot_from_sensor);
-}
-
-// At most every fifth set: the finder looks at the whole map.
-void ParticleFilter::ask_finder(const SightingSet& seen) {
-  if (asked_ != 0 && sets_ < asked_ + 5) return;
-  asked_ = sets_;
-  hints_.clear();
-  FoundPoses found = finder_(with_bearings(memory_.recall(), seen));
-  if (found.sure) found.possible = {*found.sure};
-  Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "hints");
-  for (const PoseEstimate& e : found.possible) {
-    const Eigen::Matrix3d root = square_root(e.covariance);
-    for (int i = 0; i < 50; ++i) hints_.push_back(sample(e, root, random));
-  }
-  // It is somewhere else than all particles: begin again.
-  if (found.sure && doubt_ && !searching_) {
-    doubt_->confirm(*found.sure, summary_);
-    searching_ = !doubt_->found();
-  }
-  if (found.sure && searching_) {
-    poses_.clear();
-    found_sd_ = std::sqrt(found.sure->covariance(0, 0) + found.sure->covariance(1, 1));
-  }
-}
-
-void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count) {
-  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "search");
-  poses_.clear();
-  for (std::size_t tries = 0; poses_.size() < count && tries < 50 * count; ++tries)
-    if (const auto pose = pose_that_explains(seen, map, random)) poses_.push_back(*pose);
-  weights_.assign(poses_.size(), poses_.empty() ? 0 : 1 / static_cast<double>(poses_.size()));
-}
-
 void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
   SightingScore score(seen, map, scales_, options_.weight, identification_.use_identities);
   if (score.sightings() == 0) return;
@@ -172,7 +127,10 @@ void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
     score.hide(hidden_landmarks(summary_.pose * seen.robot_from_sensor, map,
                                 options_.weight.view_range + spread, visible_));
   std::vector<double> fit(poses_.size());
-  for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) { fit[i] = score(poses_[i]); });
+  const auto ask = [&] {
+    for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) { fit[i] = score(poses_[i]); });
+  };
+  ask();
   if (options_.weight.weights == "paper") {
     const std::vector<double> factor = paper_weights(fit);
     for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = std::log(weights_[i]) + std::log(factor[i]);
@@ -184,8 +142,30 @@ void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
     mean += weights_[i] * std::exp(fit[i] / static_cast<double>(score.sightings()));
   slow_ += (slow_ == 0 ? 1 : options_.recovery_slow) * (mean - slow_);
   fast_ += (fast_ == 0 ? 1 : options_.recovery_fast) * (mean - fast_);
-  for (std::size_t i = 0; i < fit.size(); ++i) fit[i] += std::log(weights_[i]);
-  weights_ = normalised(fit);
+
+  const auto believe = [&](double part) {
+    for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = part * fit[i] + std::log(weights_[i]);
+    weights_ = normalised(fit);
+  };
+  const double least = options_.resample_below * static_cast<double>(poses_.size());
+  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "parts");
+  double left = 1;
+  for (int i = 0; i < kMostParts && together(); ++i) {
+    const double part = bearable_part(weights_, fit, left, least);
+    if (part >= left) break;
+    believe(part);
+    left -= part;
+    poses_ = redraw(poses_, weights_, poses_.size(), random);
+    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
+    ask();
+  }
+  believe(left);
+}
+
+bool ParticleFilter::together() const {
+  if (searching_) return false;
+  const Eigen::Matrix3d c = moments(poses_, weights_).covariance;
+  return c(0, 0) + c(1, 1) < kCluster * kCluster && c(2, 2) < kOneHeading * kOneHeading;
 }
 
 std::size_t ParticleFilter::wanted() const {
@@ -198,17 +178,19 @@ std::size_t ParticleFilter::wanted() const {
 void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map) {
   Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw");
   const std::size_t count = wanted();
-  const auto drawn = resample(weights_, count, random.uniform());
   std::vector<Pose2> next;
-  next.reserve(count);
-  const double fresh = options_.recovery && slow_ > 0 ? std::clamp(1 - fast_ / slow_, 0.0, 0.2) : 0;
+  if (together()) {
+    next = redraw(poses_, weights_, count, random);
+  } else {
+    for (const std::uint32_t i : resample(weights_, count, random.uniform())) next.push_back(poses_[i]);
+  }
+  // New places are tried when what is seen fits half as well as it used to (Gutmann & Fox 2002).
+  const double fresh = options_.recovery && slow_ > 0 ? std::clamp(1 - 2 * fast_ / slow_, 0.0, 0.2) : 0;
   // A pose that explains one sighting is right once in as many as there are landmarks.
   const bool sensible = !hints_.empty() || map.size() <= count;
-  for (const std::uint32_t i : drawn) {
-    std::optional<Pose2> other;
-    if (fresh > 0.02 && sensible && random.chance(fresh)) other = pose_that_explains(seen, map, random);
-    next.push_back(other ? *other : poses_[i]);
-  }
+  if (fresh > 0.02 && sensible)
+    for (Pose2& p : next)
+      if (random.chance(fresh)) p = pose_that_explains(seen, map, random).value_or(p);
   poses_ = std::move(next);
   weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
 }

@@ -28,9 +28,11 @@ struct ParticleOptions {
 };
 
 /// Particle filter (section 4.2; Monte Carlo localization, Thrun et al. 2005, with augmented recovery and KLD
-/// sampling). The same seed gives the same track for any number of threads. Poses for the search are drawn
-/// where a landmark of the right type explains one of the sightings, and half of them from a PoseFinder, if
-/// there is one, which is asked about all that was seen lately.
+/// sampling). Sightings that would leave a handful of the particles that lie together are believed part by
+/// part, with a new cloud drawn after each (progressive correction and regularization, Musso et al. 2001).
+/// The same seed gives the same track for any number of threads. Poses for the search are drawn where a
+/// landmark of the right type explains one of the sightings, and half of them from a PoseFinder, if there is
+/// one, which is asked about all that was seen lately.
 class ParticleFilter final : public Localizer {
  public:
   /// Without a start the first sightings say where the robot may be.
@@ -55,6 +57,7 @@ class ParticleFilter final : public Localizer {
  private:
   void spread();  // moves the particles by what has been driven since the last time
   void weigh(const SightingSet& seen, const LandmarkGrid& map);
+  bool together() const;  // the particles are one cloud about one place
   void draw_again(const SightingSet& seen, const LandmarkGrid& map);
   std::optional<Pose2> pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                           Random& random) const;

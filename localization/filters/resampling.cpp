@@ -5,8 +5,12 @@
 #include <cstdint>
 #include <tuple>
 
+#include "localization/body_motion.hpp"
+
 namespace waymark {
 namespace {
+
+constexpr double kEverywhere = 1e150;  // m
 
 PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights,
                      const Eigen::Vector2d& near, double radius) {
@@ -53,6 +57,46 @@ std::vector<std::uint32_t> resample(std::span<const double> weights, std::size_t
   return drawn;
 }
 
+PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights) {
+  return moments(poses, weights, poses.empty() ? Eigen::Vector2d(0, 0) : poses[0].at(), kEverywhere);
+}
+
+std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights, std::size_t count,
+                          Random& random) {
+  const PoseEstimate all = moments(poses, weights);
+  const double blur = std::pow(0.8 / static_cast<double>(std::max<std::size_t>(count, 2)), 2.0 / 7);
+  const Eigen::Matrix3d root = square_root(blur * all.covariance);
+  std::vector<Pose2> next;
+  next.reserve(count);
+  for (const std::uint32_t i : resample(weights, count, random.uniform())) {
+    const Pose2& p = poses[i];
+    const Eigen::Vector3d off(p.x - all.pose.x, p.y - all.pose.y, wrapped(p.yaw - all.pose.yaw));
+    const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
+    next.push_back(pose_of(all.pose.vector() + std::sqrt(1 - blur) * off + root * noise));
+  }
+  return next;
+}
+
+double bearable_part(std::span<const double> weights, std::span<const double> fit, double most,
+                     double least) {
+  const double best = fit.empty() ? 0 : std::ranges::max(fit);
+  const auto bearable = [&](double part) {
+    double sum = 0, squares = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      const double w = weights[i] * std::exp(part * (fit[i] - best));
+      sum += w, squares += w * w;
+    }
+    return sum * sum >= least * squares;
+  };
+  if (bearable(most)) return most;
+  double low = 0, high = most;
+  for (int i = 0; i < 10; ++i) {
+    const double middle = (low + high) / 2;
+    (bearable(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 std::size_t kld_count(std::size_t bins, double error) {
   if (bins < 2) return 1;
   constexpr double kNormal99 = 2.3263478740408408;
@@ -72,9 +116,7 @@ std::size_t occupied_bins(std::span<const Pose2> poses, double metres, double ra
 }
 
 PoseEstimate summary(std::span<const Pose2> poses, std::span<const double> weights, double radius) {
-  constexpr double kEverywhere = 1e300;
-  const Eigen::Vector2d first = poses.empty() ? Eigen::Vector2d(0, 0) : poses[0].at();
-  const PoseEstimate all = moments(poses, weights, first, std::sqrt(kEverywhere));
+  const PoseEstimate all = moments(poses, weights);
   if (std::sqrt(all.covariance(0, 0) + all.covariance(1, 1)) < radius / 3) return all;
   // The heaviest cell, then its surroundings.
   std::vector<std::tuple<double, double, std::size_t>> cells;

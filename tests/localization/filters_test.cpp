@@ -3,11 +3,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <functional>
+#include <set>
 
 #include "localization/chi_square.hpp"
 #include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/particle_filter.hpp"
+#include "localization/filters/resampling.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
@@ -134,6 +136,65 @@ TEST(HypothesesFilter, FollowsLandmarksWithoutNames) {
     EXPECT_GT(matched, 20) << "seed " << seed;
     EXPECT_LE(wrong, matched / 20) << "seed " << seed;
   }
+}
+
+// A few hundred particles that die of each set of sightings but a handful would be far too sure.
+TEST(ParticleFilter, AFewHundredAreConsistent) {
+  double sum = 0;
+  constexpr int kRuns = 60;
+  for (int run = 0; run < kRuns; ++run) {
+    MadeDrive drive(static_cast<std::uint64_t>(run) + 1);
+    ParticleOptions options;
+    options.particles = 300;
+    options.weight.temper = 1;  // made errors are independent
+    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(true),
+                          options);
+    for (int i = 0; i < 20; ++i) {
+      filter.move(drive.drive());
+      filter.see(drive.look());
+    }
+    sum += nees(filter.estimate(), drive.truth());
+  }
+  const double freedom = 3.0 * kRuns;
+  EXPECT_GT(sum, chi_square_quantile(0.0005, freedom) / 1.15);
+  EXPECT_LT(sum, chi_square_quantile(0.9995, freedom) * 1.15);
+}
+
+TEST(Resampling, RedrawnParticlesKeepMeanAndCovarianceAndAreNoCopies) {
+  Random random(5);
+  std::vector<Pose2> poses;
+  std::vector<double> weights;
+  for (int i = 0; i < 2000; ++i) {
+    poses.push_back({100 + random.normal(), 0.3 * random.normal(), wrapped(3.1 + 0.1 * random.normal())});
+    weights.push_back(std::exp(-2 * poses.back().y));
+  }
+  double total = 0;
+  for (const double w : weights) total += w;
+  for (double& w : weights) w /= total;
+  const PoseEstimate before = moments(poses, weights);
+  const std::vector<Pose2> after = redraw(poses, weights, 2000, random);
+  const PoseEstimate now = moments(after, std::vector<double>(2000, 1.0 / 2000));
+  EXPECT_NEAR(now.pose.x, before.pose.x, 0.1);
+  EXPECT_NEAR(now.pose.y, before.pose.y, 0.03);
+  EXPECT_NEAR(wrapped(now.pose.yaw - before.pose.yaw), 0, 0.01);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(now.covariance(i, i) / before.covariance(i, i), 1, 0.15) << i;
+  std::set<double> different;
+  for (const Pose2& p : after) different.insert(p.x);
+  EXPECT_EQ(different.size(), after.size());
+}
+
+TEST(Resampling, OnlyAsMuchIsBelievedAsLeavesEnoughParticles) {
+  const std::vector<double> weights(100, 0.01);
+  std::vector<double> fit;
+  for (int i = 0; i < 100; ++i) fit.push_back(-0.5 * i);
+  EXPECT_EQ(bearable_part(weights, fit, 0.01, 50), 0.01);
+  const double part = bearable_part(weights, fit, 1, 50);
+  EXPECT_LT(part, 0.2);
+  std::vector<double> after = fit;
+  for (double& f : after) f *= part;
+  const double left = effective_count(normalised(after));
+  EXPECT_GE(left, 50);
+  EXPECT_LT(left, 51);
 }
 
 TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {

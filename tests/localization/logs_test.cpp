@@ -168,7 +168,7 @@ class Mrclam : public ::testing::Test {
  protected:
   void SetUp() override { SKIP_WITHOUT_MRCLAM(); }
   struct Pooled {
-    double rmse = 0, heading = 0;
+    double rmse = 0, heading = 0, anees = 0;
     std::vector<double> medians;
     std::int64_t named = 0, wrong = 0;
   };
@@ -188,11 +188,13 @@ class Mrclam : public ::testing::Test {
       const auto n = static_cast<double>(s.poses);
       all.rmse += n * s.ate_rmse * s.ate_rmse;
       all.heading += n * *s.heading_rmse_deg * *s.heading_rmse_deg;
+      all.anees += n * s.consistency->anees;
       all.medians.push_back(s.ate_median);
       all.named += track.named;
       all.wrong += track.wrong;
       rows += n;
     }
+    all.anees /= rows;
     all.rmse = std::sqrt(all.rmse / rows);
     all.heading = std::sqrt(all.heading / rows);
     return all;
@@ -222,6 +224,7 @@ TEST_F(Mrclam, HypothesesWithoutIdentities) {
 TEST_F(Mrclam, ParticlesWithIdentities) {
   const Pooled all = follow(true, [](auto&&... given) { return std::make_unique<ParticleFilter>(given...); });
   EXPECT_LE(all.rmse, 0.35);
+  EXPECT_LT(all.anees, 1.1);  // of a consistent filter, with 97.5 %: see consistency_test
 }
 
 TEST_F(Mrclam, ParticlesFromNowhereWithoutIdentities) {
