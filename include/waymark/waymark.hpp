@@ -62,7 +62,7 @@
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/engine/stage_pages.hpp"
-#include "pipeline/forest/crown_shape.hpp"
+#include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "pipeline/forest/stand_inventory.hpp"
 #include "pipeline/fusion/detection_codec.hpp"

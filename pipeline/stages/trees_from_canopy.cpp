@@ -63,7 +63,7 @@ struct TreesFromCanopy {
   static StageSpec spec() {
     return {.name = "trees_from_canopy",
             .summary = "Finds treetops and crowns in canopy models; stem diameters by allometry",
-            .version = 2,
+            .version = 3,
             .scope = Scope::tile,
             .inputs = {canopies},
             .outputs = {observations, seen_crowns},
