@@ -56,7 +56,8 @@ class Train final : public Command {
   }
 
  private:
-  static constexpr int kSide = 640;  // pixels
+  static constexpr int kSide = 640;              // pixels
+  static constexpr std::uint64_t kNetworks = 3;  // of looks: their mean is as good as any of them, or better
 
   int train_craters(const Session& session) const {
     std::vector<CraterExample> examples;
@@ -77,9 +78,13 @@ class Train final : public Command {
     CraterModel model = train_crater_model(examples, training, [&](int round, double loss) {
       if (!session.quiet) say(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
     });
-    model.looks = train_looks(looks, training.rounds, training.seed, [&](int round, double loss) {
-      if (!session.quiet) say(fmt::format("looks, round {}: loss {:.4f}\n", round + 1, loss));
-    });
+    for (std::uint64_t net = 0; net < kNetworks; ++net)
+      model.looks.push_back(
+          train_looks(looks, training.rounds, training.seed + net, [&](int round, double loss) {
+            if (!session.quiet)
+              say(fmt::format("looks, network {} of {}, round {}: loss {:.4f}\n", net + 1, kNetworks,
+                              round + 1, loss));
+          }));
     model.trained_on =
         fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes_ - 1,
                     kSide, examples.size(), training.rounds, seed_);

@@ -47,8 +47,14 @@ CraterVerdict judge(const CraterModel& model, const CraterFeatures& features) {
   return verdict_of(in);
 }
 
-CraterVerdict judge(const ConvolutionNet& looks, const CraterLook& look) {
-  return verdict_of(answer(looks, look.patch, look.facts));
+CraterVerdict judge(std::span<const ConvolutionNet> looks, const CraterLook& look) {
+  assert(!looks.empty());
+  std::vector<float> mean(4);
+  for (const ConvolutionNet& net : looks) {
+    const std::vector<float> one = answer(net, look.patch, look.facts);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / static_cast<float>(looks.size());
+  }
+  return verdict_of(mean);
 }
 
 CraterCandidate corrected(const CraterCandidate& c, const CraterVerdict& verdict, Radians sun_angle) {

@@ -133,6 +133,10 @@ Convolution read_convolution(std::string_view words, const ConvolutionNet& befor
   return c;
 }
 
+bool complete(const ConvolutionNet& net) {
+  return !net.empty() && net.back().outputs == 4 && net.back().out_side() == 1;
+}
+
 }  // namespace
 
 std::string as_text(const CraterModel& model) {
@@ -144,7 +148,8 @@ std::string as_text(const CraterModel& model) {
       write_output(text, {layer.biases[static_cast<std::size_t>(o)], {weights, weights + layer.inputs}});
     }
   }
-  for (const Convolution& convolution : model.looks) write_convolution(text, convolution);
+  for (const ConvolutionNet& net : model.looks)
+    for (const Convolution& convolution : net) write_convolution(text, convolution);
   return text;
 }
 
@@ -158,7 +163,8 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
     std::string_view line = lines.next();
     if (line.starts_with("convolution ")) {
       line.remove_prefix(12);
-      model.looks.push_back(read_convolution(line, model.looks, lines));
+      if (model.looks.empty() || complete(model.looks.back())) model.looks.emplace_back();
+      model.looks.back().push_back(read_convolution(line, model.looks.back(), lines));
       continue;
     }
     if (!line.starts_with("layer ") || !model.looks.empty())
@@ -178,7 +184,7 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
     model.layers.push_back(std::move(layer));
   }
   if (model.layers.empty() || inputs != 4) lines.fail("the last layer must have 4 outputs");
-  if (!model.looks.empty() && (model.looks.back().outputs != 4 || model.looks.back().out_side() != 1))
+  if (!model.looks.empty() && !complete(model.looks.back()))
     lines.fail("the last convolution must give 4 outputs at one place");
   return model;
 }

@@ -76,7 +76,7 @@ TEST(ConvolutionNet, AnswersAsByDefinition) {
 // Places are summed several at a time where their number allows: in the shipped network everywhere.
 TEST(ConvolutionNet, SeveralPlacesAtATimeKeepTheBits) {
   Random random(15, "convolution test");
-  const ConvolutionNet& net = built_in_crater_model().looks;
+  const ConvolutionNet& net = built_in_crater_model().looks.at(0);
   std::vector<float> in = numbers(random, 24 * 24);
   const auto facts = numbers(random, 3);
   for (const Convolution& c : net) {
