@@ -211,5 +211,23 @@ TEST_F(SlamCommand, WrongWishesAreRefused) {
   EXPECT_EQ(graph.code, 1);
 }
 
+// Half an hour in a car, 7230 scans of its laser, no map; the truth is GPS, good to a few decimetres.
+TEST(RealSlam, VictoriaParkFromTheRawLaser) {
+  const auto park = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/localization/victoria_park";
+  if (!std::filesystem::exists(park)) GTEST_SKIP() << park << " is not on this machine";
+  TempFolder folder;
+  const std::string track = folder / "track.csv";
+  const Outcome made = waymark({"localize", "none", park, "--log-format", "victoria-park", "--method", "slam",
+                                "--timing", "-o", track});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome said = waymark({"evaluate", "track", track, "--truth", park, "--align", "se2",
+                                "--longest-gap", "5", "--format", "json"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const auto score = nlohmann::json::parse(said.out);
+  std::cout << "ATE " << score["ate_rmse"] << " m, " << score["time_per_update_us"] << " us per scan\n";
+  EXPECT_GT(score["poses"], 8000);
+  EXPECT_LT(score["ate_rmse"], 1.37);
+}
+
 }  // namespace
 }  // namespace waymark::test
