@@ -15,7 +15,7 @@ struct TrackRow {
   int wrong = 0;                      ///< matched with another landmark than the log says
   bool lost = false;
   double nis = 0;      ///< normalized innovation squared of all matches: v' S^-1 v, from the estimate before
-  int nis_rows = 0;    ///< its degrees of freedom; 0 without matches, and of SLAM
+  int nis_rows = 0;    ///< its degrees of freedom; 0 without matches, of particles and SLAM
   double seconds = 0;  ///< in the update, if it was measured
 };
 

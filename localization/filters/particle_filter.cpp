@@ -273,8 +273,10 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
     draw_again(seen, map);
 
   std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
-  for (Match& match : matches)
+  for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
+    match.pairing.evidence = {};  // of the estimate after the update: residuals, no innovations
+  }
   if (doubt_) doubt_->count(fitting_share(matches), chance_ ? chance_(seen, summary_) : 0, !searching_);
   return matches;
 }

@@ -71,8 +71,10 @@ TEST_F(Localize, EvaluateTellsInnovationsAndTimes) {
   EXPECT_LT(said["anis"], 3);
   EXPECT_LT(said["anis_band"][0], said["anis_band"][1]);
   EXPECT_GT(said["time_per_update_us"], 0);
-  ASSERT_EQ(localize(log, {"--method", "odometry"}).code, 0);
-  EXPECT_TRUE(score()["anis"].is_null());
+  for (const std::string method : {"odometry", "pf"}) {  // particles are identified after the update
+    ASSERT_EQ(localize(log, {"--method", method}).code, 0);
+    EXPECT_TRUE(score()["anis"].is_null()) << method;
+  }
   EXPECT_TRUE(score()["time_per_update_us"].is_null());
 }
 
