@@ -12,6 +12,7 @@
 #include "pipeline/fusion/clustering.hpp"
 #include "pipeline/fusion/local_ground.hpp"
 #include "pipeline/fusion/place_covariance.hpp"
+#include "pipeline/fusion/shared_ground.hpp"
 
 namespace waymark {
 namespace {
@@ -49,6 +50,7 @@ class Bundle {
          const TypeRegistry& types, const Crs& crs, const AlignmentRules& rules)
       : images_(images), plane_(crs), metres_per_unit_(crs.metres_per_unit()), rules_(rules) {
     const auto n = static_cast<Eigen::Index>(images.size());
+    shared_ = shared_ground(images);
     correction_ = Eigen::VectorXd::Zero(6 * n);
     prior_ = Eigen::MatrixXd::Zero(6 * n, 6 * n);
     middle_ = Eigen::MatrixXd::Zero(2, 6 * n);
@@ -63,7 +65,6 @@ class Bundle {
       prior.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
       prior_.block<6, 6>(6 * i, 6 * i) = prior;
     }
-    posterior_ = prior_;
     std::vector<std::optional<BodySize>> sizes;
     for (const LandmarkType& type : types) sizes.push_back(body_size(type));
     std::vector<int> count(images.size(), 0);
@@ -83,12 +84,12 @@ class Bundle {
   }
 
   void solve() {
+    settle({});
     for (int round = 0; round < rules_.rounds; ++round) {
       const std::vector<IndexPair> pairs = only_candidates();
       pairs_ = static_cast<int>(pairs.size());
       if (pairs.empty()) return;
-      for (int k = 0; k < rules_.solutions; ++k) solve(pairs);
-      posterior_ = normal_.llt().solve(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols()));
+      settle(pairs);
     }
   }
 
@@ -119,16 +120,20 @@ class Bundle {
     const double cell = std::max(terrain.step_x(), terrain.step_y());
     if (const auto ground = local_ground(terrain, at.x(), at.y(), std::max(cell, body ? body->metres : 0)))
       tie.gradient = ground->gradient;
+    Matrix26 on_slope = Matrix26::Zero();
     if (view.view) {
       const Eigen::Vector3d along = at - view.view->centre().xyz;
       // Level: with slopes the pairs would tell where all images lie together by how relief shifts between
       // them, which the errors of a DEM's slopes make a fiction.
       const GroundPlane ground{at, Eigen::Vector2d::Zero()};
-      tie.per_pose = pose_jacobian(view, {view.view->centre(), {along.normalized()}}, ground).topRows<2>();
+      const Ray<GridFrame> line{view.view->centre(), {along.normalized()}};
+      tie.per_pose = pose_jacobian(view, line, ground).topRows<2>();
+      on_slope = pose_jacobian(view, line, {at, tie.gradient}).topRows<2>();
     }
     const double least = std::max(0.01, body ? 0.03 * body->metres : 0);
     const Eigen::Matrix2d told = o.covariance.topLeftCorner<2, 2>();
-    const Eigen::Matrix2d pose = carried(tie.per_pose, prior_.block<6, 6>(6 * image, 6 * image));
+    // As it was put in (place_covariance): the level one leaves more than all else where poses are vague.
+    const Eigen::Matrix2d pose = carried(on_slope, prior_.block<6, 6>(6 * image, 6 * image));
     tie.own = told.allFinite() ? positive(told - pose, least) : Eigen::Matrix2d::Identity();
     tie.sighting.at = o.position.xyz.head<2>();
     tie.sighting.type = o.type;
@@ -163,6 +168,11 @@ class Bundle {
     return pairs;
   }
 
+  void settle(const std::vector<IndexPair>& pairs) {
+    for (int k = 0; k < rules_.solutions; ++k) solve(pairs);
+    posterior_ = normal_.llt().solve(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols()));
+  }
+
   void solve(const std::vector<IndexPair>& pairs) {
     std::vector<int> degree(ties_.size(), 0);
     std::vector<double> of_image(images_.size(), 0);
@@ -172,9 +182,15 @@ class Bundle {
       ++of_image[static_cast<std::size_t>(ties_[p.second].image)];
     }
     normal_ = Eigen::MatrixXd::Zero(prior_.rows(), prior_.cols());
-    for (Eigen::Index i = 0; i < prior_.rows(); i += 6)
-      normal_.block<6, 6>(i, i) = prior_.block<6, 6>(i, i).inverse();
     Eigen::VectorXd right = Eigen::VectorXd::Zero(prior_.rows());
+    for (std::size_t image = 0; image < images_.size(); ++image) {
+      const auto i = static_cast<Eigen::Index>(6 * image);
+      normal_.block<6, 6>(i, i) = prior_.block<6, 6>(i, i).inverse();
+      if (const auto& tie = images_[image].on_ground) {
+        normal_.block<6, 6>(i, i) += tie->information / shared_[image];
+        right.segment<6>(i) += tie->pull / shared_[image];
+      }
+    }
     for (const IndexPair& p : pairs) {
       const Tie &a = ties_[p.first], &b = ties_[p.second];
       const Eigen::Vector2d apart = plane_.offset(b.sighting.at, a.sighting.at);  // a - b as told
@@ -204,6 +220,7 @@ class Bundle {
   double metres_per_unit_;
   const AlignmentRules& rules_;
   std::vector<Tie> ties_;
+  std::vector<double> shared_;  // knowledge of the ground, by so many images
   Eigen::VectorXd correction_;
   Eigen::MatrixXd prior_, posterior_, normal_;
   Eigen::MatrixXd middle_;  // 2 x 6 n: mean shift of the ties of all images per correction
@@ -263,7 +280,7 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
     if (count[i]) aligned.moved[i] = (mean[i] / count[i]).norm();
     correct(aligned.images[i], bundle.correction(static_cast<int>(i)),
             bundle.covariance(static_cast<int>(i)));
-    aligned.images[i].common = rules.common_growth * common;
+    aligned.images[i].common = common;
   }
   return aligned;
 }

@@ -16,9 +16,6 @@ struct AlignmentRules {
   int solutions = 4;  ///< reweighted solutions per round
   /// Neighbouring pairs share errors of the DEM: more pairs of an image tell no more than so many.
   double independent_pairs = 100;
-  /// The common covariance is multiplied by this: light that falls from one side in all images shifts what
-  /// detectors see in all of them alike, which comparing images cannot tell from a shift of the poses.
-  double common_growth = 1.3;
   int most_images = 250;  ///< more are left as they are: 6 n unknowns are solved densely
 };
 
@@ -35,10 +32,11 @@ struct Alignment {
 /// uncertain, and neighbours merge. Here observations of different images that could only be each other
 /// (no other candidate in either image) tie the images together: the six corrections of every pose are
 /// solved for by weighted least squares with the poses' own covariances as prior and Cauchy weights against
-/// wrong pairs (a small bundle adjustment whose points are landmarks). What remains uncertain is split: the
-/// part common to all images goes to ImageView::common and is out of the gates, the rest stays in the
-/// observations' covariances. Images without pose or whose pose is told to be exact do not move.
-/// Deterministic. `observations` in any order; `terrain` gives the slope of the ground.
+/// wrong pairs (a small bundle adjustment whose points are landmarks); what a comparison with the DEM told of
+/// a pose (ImageView::on_ground) goes in too, each by its share of what all images on that ground know. What
+/// remains uncertain is split: the part common to all images goes to ImageView::common and is out of the
+/// gates, the rest stays in the observations' covariances. Images without pose or whose pose is told to be
+/// exact do not move. Deterministic. `observations` in any order; `terrain` gives the slope of the ground.
 Alignment align_images(std::vector<Observation> observations, std::vector<ImageView> images,
                        const Terrain& terrain, const TypeRegistry& types, const Crs& crs,
                        const AlignmentRules& rules = {});

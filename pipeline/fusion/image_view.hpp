@@ -18,6 +18,13 @@ struct OrthoGrid {
   friend bool operator==(const OrthoGrid&, const OrthoGrid&) = default;
 };
 
+/// What is known of the correction of a pose (about the camera's axes, then the centre, as in
+/// PosedCamera::covariance): how surely, and that times the correction.
+struct PoseTie {
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Vector<double, 6> pull = Eigen::Vector<double, 6>::Zero();
+};
+
 /// What an image looks at: all that merging, valuation and the map's layer `image` need once its pixels have
 /// been read. Either `view` or `ortho` is there.
 struct ImageView {
@@ -35,6 +42,7 @@ struct ImageView {
   /// East, north: what all images of the map are off by together, square metres; not in the covariances of
   /// observations that were aligned (see alignment.hpp).
   Eigen::Matrix2d common = Eigen::Matrix2d::Zero();
+  std::optional<PoseTie> on_ground;  ///< by comparison with the DEM (ground_match.hpp)
 };
 
 /// Model and pose of the camera, or the georeference of the orthophoto, as the map's layer `image` tells it:

@@ -42,6 +42,11 @@ void layout(auto& io, auto& sun) requires requires {
 }
 { io(sun.azimuth), io(sun.elevation), io(sun.sd); }
 
+void layout(auto& io, auto& tie) requires requires {
+  tie.pull;
+}
+{ layout(io, tie.information), layout(io, tie.pull); }
+
 template <class T>
 void write_optional(ByteWriter& out, const std::optional<T>& value) {
   out(value.has_value());
@@ -63,6 +68,7 @@ void write(ByteWriter& out, const ImageView& image) {
   }
   out(image.area), out(image.gsd);
   layout(out, image.common);
+  write_optional(out, image.on_ground);
 }
 
 ImageView read_image(ByteReader& in) {
@@ -77,6 +83,7 @@ ImageView read_image(ByteReader& in) {
   }
   in(image.area), in(image.gsd);
   layout(in, image.common);
+  read_optional(in, image.on_ground);
   return image;
 }
 
@@ -104,7 +111,7 @@ std::string Codec<std::vector<ImageView>>::encode(const std::vector<ImageView>& 
 
 std::vector<ImageView> Codec<std::vector<ImageView>>::decode(std::string_view bytes) {
   ByteReader in(bytes);
-  std::vector<ImageView> images(in.length(83));
+  std::vector<ImageView> images(in.length(84));
   for (ImageView& image : images) image = read_image(in);
   in.expect_end();
   return images;

@@ -33,7 +33,7 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Takes out what the poses of images are off by, from landmarks they share",
-            .version = 3,
+            .version = 4,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};

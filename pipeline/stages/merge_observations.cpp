@@ -54,7 +54,7 @@ struct MergeObservations {
   static StageSpec spec() {
     return {.name = "merge_observations",
             .summary = "Makes one landmark of the observations of one thing in different images",
-            .version = 3,
+            .version = 4,
             .scope = Scope::map,
             .inputs = {dem, observations},
             .outputs = {merged, merged_evidence}};

@@ -5,6 +5,7 @@
 #include "geo/plane_dem.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/ground_match.hpp"
 #include "pipeline/fusion/image_view_codec.hpp"
 #include "pipeline/fusion/image_view_of.hpp"
 #include "pipeline/fusion/placing.hpp"
@@ -19,6 +20,7 @@ struct ProjectToGround {
     double slope_sd = PlacingRules{}.slope_sd;
     double shadow_shape = PlacingRules{}.shadow_shape;
     double rim_shape = PlacingRules{}.rim_shape;
+    bool match_ground = true;
     void describe(OptionVisitor& option) {
       option("height_sd", height_sd,
              {.help = "Standard deviation of the ground's height where the DEM does not tell its own: places "
@@ -37,6 +39,10 @@ struct ProjectToGround {
              {.help = "Uncertainty of a crater's middle from the unevenness of its rim, in diameters",
               .min = 0,
               .max = 1});
+      option("match_ground", match_ground,
+             {.help =
+                  "Compares the image with the light the DEM's slopes would show, to tell align_images where "
+                  "the pose is off"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -48,7 +54,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 2,
+            .version = 3,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -87,6 +93,12 @@ struct ProjectToGround {
         observation.position.xyz.head<2>() /= metres_per_unit;
         all.push_back(std::move(observation));
       }
+    if (options.match_ground && rules.heights_known && image.view && image.view->covariance.trace() > 0) {
+      const Pixels pixels = unit.read(image_set)
+                                .at(static_cast<std::size_t>(unit.image().index))
+                                ->read({0, 0, info.columns, info.rows});
+      image.on_ground = match_ground(pixels, image, terrain, metres_per_unit);
+    }
     unit.count_in(0), unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(placed_observations, std::move(all));
     unit.write(image_view, std::move(image));

@@ -34,7 +34,7 @@ struct ValueFlights {
     return {.name = "value_flights",
             .summary =
                 "Values trees: how many canopy models show them of how many could have; names their crowns",
-            .version = 3,
+            .version = 4,
             .scope = Scope::map,
             .inputs = {canopies, merged, merged_evidence, seen_crowns},
             .outputs = {landmarks, evidence, crowns, image_views}};

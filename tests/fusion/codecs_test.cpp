@@ -56,6 +56,9 @@ TEST(FusionCodecs, ImageViews) {
   image.view->camera.fx = 900;
   image.view->camera.lens = Camera::Lens::fisheye;
   image.view->grid_from_camera.transform.translation() = Eigen::Vector3d(1, 2, 3);
+  image.on_ground.emplace();
+  image.on_ground->information(5, 1) = 2;
+  image.on_ground->pull(4) = 3;
   image.view->covariance(5, 0) = 0.25;
   image.sun = Sun{{120}, {35}, {0.5}};
   image.taken_utc = "2026-11-21T10:00:00Z";
