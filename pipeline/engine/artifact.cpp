@@ -5,8 +5,14 @@ namespace waymark {
 
 Artifact::Value Artifact::value() {
   const std::lock_guard lock(mutex_);
-  if (!value_) value_ = load_();
-  return value_;
+  if (value_) return value_;
+  if (Value used = used_.lock()) return used;
+  Value fetched = load_();
+  if (once_ == Once::held)
+    value_ = fetched;
+  else
+    used_ = fetched;
+  return fetched;
 }
 
 Artifact::Value Artifact::hand_over() {

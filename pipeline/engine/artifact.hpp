@@ -6,13 +6,15 @@
 #include <utility>
 namespace waymark {
 
-/// What a unit wrote to one port: in memory, or fetched from the work folder when first read. Thread-safe.
+/// What a unit wrote to one port: in memory, or fetched from where it was kept when it is read. Thread-safe.
 class Artifact {
  public:
   using Value = std::shared_ptr<const void>;
+  enum class Once { held, let_go };  ///< what becomes of it once it is fetched and nobody uses it
 
   explicit Artifact(Value value) : value_(std::move(value)) {}
-  explicit Artifact(std::function<Value()> load) : load_(std::move(load)) {}
+  explicit Artifact(std::function<Value()> load, Once once = Once::held)
+      : load_(std::move(load)), once_(once) {}
 
   /// Throws what `load` throws, and tries again at the next call.
   Value value();
@@ -22,7 +24,9 @@ class Artifact {
  private:
   std::mutex mutex_;
   Value value_;
+  std::weak_ptr<const void> used_;  ///< by whom it was fetched for last
   std::function<Value()> load_;
+  Once once_ = Once::held;
 };
 
 using ArtifactPtr = std::shared_ptr<Artifact>;

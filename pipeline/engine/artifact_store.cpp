@@ -109,14 +109,20 @@ std::optional<StoredUnit> ArtifactStore::find(const Unit& unit, const StageSpec&
     stored.warnings = manifest.at("warnings");
     for (const OutputPort& port : spec.outputs) {
       if (!manifest.at("outputs").contains(port.name)) return std::nullopt;
-      stored.artifacts[port.name] =
-          std::make_shared<Artifact>([file = payload_file(result, port.name), codec = port.codec,
-                                      stage = spec.name] { return load(file, *codec, stage); });
+      stored.artifacts[port.name] = artifact(unit, spec, port);
     }
   } catch (const Json::exception&) {
     return std::nullopt;
   }
   return stored;
+}
+
+ArtifactPtr ArtifactStore::artifact(const Unit& unit, const StageSpec& spec, const OutputPort& port) const {
+  return std::make_shared<Artifact>(
+      [file = payload_file(result_folder(unit), port.name), codec = port.codec, stage = spec.name] {
+        return load(file, *codec, stage);
+      },
+      spec.scope == Scope::tile ? Artifact::Once::let_go : Artifact::Once::held);
 }
 
 void ArtifactStore::save(const Unit& unit, const StageSpec& spec, const UnitOutcome& outcome) const {

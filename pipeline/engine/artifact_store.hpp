@@ -30,6 +30,8 @@ class ArtifactStore {
 
   /// Nothing where the result is missing, truncated or damaged.
   std::optional<StoredUnit> find(const Unit& unit, const StageSpec& spec) const;
+  /// One port of a result that is there; decoded when read. Those of tiles are let go of after each reading.
+  ArtifactPtr artifact(const Unit& unit, const StageSpec& spec, const OutputPort& port) const;
   /// Whether there is a result, without looking into it.
   bool contains(const Unit& unit) const;
   /// Throws Error{output} where the disk does not take it.

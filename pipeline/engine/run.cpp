@@ -42,6 +42,8 @@ Run::Run(const Pipeline& pipeline, const RunOptions& options) : pipeline_(pipeli
   anew_ = reached_from(options.rerun_from, pipeline, wires_);
   seconds_.resize(wires_.size());
   if (!options.work.empty()) store_.emplace(options.work);
+  for (std::size_t stage = 0; stage < wires_.size(); ++stage)
+    scratch_.push_back(std::make_shared<ScratchFile>(options.scratch, options.held_bytes));
   name_inputs();
 }
 
@@ -164,6 +166,7 @@ void Run::release_read(std::size_t stage) {
       continue;
     for (std::size_t i = plan_.begins[wire.writer]; i < plan_.begins[wire.writer + 1]; ++i)
       states_[i].artifacts.erase(wire.port);
+    scratch_[wire.writer].reset();  // lives on in what is left of its artifacts
   }
 }
 
@@ -179,7 +182,7 @@ RunResult Run::result() const {
     report.seconds = seconds_[stage];
     result.report.stages.push_back(std::move(report));
     for (const OutputPort& port : spec.outputs) {
-      RunResult::Kept kept{port.name, port.type, spec.scope, {}};
+      RunResult::Kept kept{spec.name, port.name, port.type, spec.scope, {}};
       for (std::size_t i = plan_.begins[stage]; i < plan_.begins[stage + 1]; ++i) {
         const auto found = states_[i].artifacts.find(port.name);
         kept.items.push_back(found == states_[i].artifacts.end() ? nullptr : found->second);

@@ -9,6 +9,7 @@
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/engine/run_state.hpp"
 #include "pipeline/engine/runner.hpp"
+#include "pipeline/engine/scratch_file.hpp"
 namespace waymark {
 
 /// One run from plan to result. Stage by stage; the units of a stage run in parallel, each touching its own
@@ -38,6 +39,8 @@ class Run {
   bool gathers_nothing(std::size_t stage, std::size_t unit) const;
   bool reuse(std::size_t stage, std::size_t unit);
   void make(std::size_t stage, std::size_t unit, ProgressMeter& progress);
+  bool put_aside(std::size_t stage, const std::string& port) const;
+  ArtifactPtr aside(std::size_t stage, const OutputPort& port, Artifact::Value value);
   void warn_of_lost(std::size_t stage, std::size_t unit);
   UnitInputs inputs_of(std::size_t stage, std::size_t unit) const;
   void expect_wanted_unit() const;
@@ -57,7 +60,8 @@ class Run {
   Items items_;
   std::vector<InputFile> image_files_;  ///< one per image
   std::vector<UnitState> states_;
-  std::vector<double> seconds_;  ///< per stage
+  std::vector<double> seconds_;                        ///< per stage
+  std::vector<std::shared_ptr<ScratchFile>> scratch_;  ///< per stage
 };
 
 }  // namespace waymark

@@ -26,6 +26,24 @@ Artifact::Value RunResult::find_one(std::string_view name, std::type_index type)
               "run without --check, --shard and --unit to finish the job");
 }
 
+bool RunResult::whole(std::string_view stage, std::string_view name) const {
+  return std::ranges::any_of(artifacts_, [&](const Kept& kept) {
+    return kept.stage == stage && kept.name == name &&
+           std::ranges::none_of(kept.items, [](const ArtifactPtr& item) { return item == nullptr; });
+  });
+}
+
+std::vector<ArtifactPtr> RunResult::take_tiles(std::string_view name, std::type_index type) {
+  std::vector<ArtifactPtr> items;
+  std::erase_if(artifacts_, [&](Kept& kept) {
+    if (kept.name != name || kept.type != type || kept.scope != Scope::tile) return false;
+    for (ArtifactPtr& item : kept.items)
+      if (item) items.push_back(std::move(item));
+    return true;
+  });
+  return items;
+}
+
 std::vector<Artifact::Value> RunResult::find_all(std::string_view name, std::type_index type) const {
   std::vector<Artifact::Value> values;
   for (const Kept& kept : artifacts_) {

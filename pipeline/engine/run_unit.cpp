@@ -100,11 +100,36 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   state.outcome = context.finish();
   warn_of_lost(stage, unit);
   if (store_ && anew_[stage]) store_->remove(what);
-  if (store_ && !state.partial) store_->save(what, spec, state.outcome);
-  for (auto& [port, value] : std::exchange(state.outcome.outputs, {}))
-    state.artifacts[port] = std::make_shared<Artifact>(std::move(value));
+  const bool saved = store_ && !state.partial;
+  if (saved) store_->save(what, spec, state.outcome);
+  auto outputs = std::exchange(state.outcome.outputs, {});
+  for (const OutputPort& port : spec.outputs) {
+    Artifact::Value& value = outputs.at(port.name);
+    state.artifacts[port.name] = !put_aside(stage, port.name) ? std::make_shared<Artifact>(std::move(value))
+                                 : saved                      ? store_->artifact(what, spec, port)
+                                                              : aside(stage, port, std::move(value));
+  }
   state.status = Status::made;
   progress.reach(1);
+}
+
+/// Whether an artifact is kept out of memory: that of a tile which no stage of the map reads. Such a stage
+/// would have all of them at once, so nothing were gained.
+bool Run::put_aside(std::size_t stage, const std::string& port) const {
+  if (step(stage).spec().scope != Scope::tile) return false;
+  for (std::size_t later = stage + 1; later < wires_.size(); ++later)
+    for (const Wire& wire : wires_[later])
+      if (wire.writer == stage && wire.port == port && !wire.same_item) return false;
+  return true;
+}
+
+ArtifactPtr Run::aside(std::size_t stage, const OutputPort& port, Artifact::Value value) {
+  const std::shared_ptr<ScratchFile>& file = scratch_[stage];  // lives as long as an artifact in it
+  return std::make_shared<Artifact>(
+      [file, codec = port.codec, read = file->put(port.codec->encode(value.get()))] {
+        return codec->decode(read());
+      },
+      Artifact::Once::let_go);
 }
 
 void Run::warn_of_lost(std::size_t stage, std::size_t unit) {

@@ -39,6 +39,11 @@ struct RunOptions {
   /// Artifacts of the map that the caller will ask for. The others are let go of after the last stage that
   /// reads them; empty: none are.
   std::vector<std::string> results = {};
+  /// Results of tiles that a stage of the map need not see at once are kept out of memory: in the work
+  /// folder, else what exceeds this many bytes per stage in a nameless file in `scratch` (empty: the system's
+  /// folder for temporary files).
+  std::filesystem::path scratch = {};
+  std::size_t held_bytes = std::size_t{32} << 20;
   bool check_only = false;  ///< stop after planning: options, wiring, files
   std::function<void(const Progress&)> progress = {};
   FileHasher hash_file = hash_plain_file;
@@ -58,6 +63,13 @@ class RunResult {
   template <class T>
   const T& artifact(std::string_view name) const&& = delete;  // would dangle
 
+  /// Reads one artifact each time it is called, which stays in memory no longer than it is used.
+  template <class T>
+  using Reader = std::function<std::shared_ptr<const T>()>;
+
+  /// Whether every unit of the stage wrote that.
+  bool whole(std::string_view stage, std::string_view name) const;
+
   /// What all stages wrote under that name and type, stage by stage, each in the order of its tiles or
   /// images; without what was not made, and what was released after the last stage that reads it.
   template <class T>
@@ -65,6 +77,15 @@ class RunResult {
     std::vector<std::shared_ptr<const T>> all;
     for (auto& value : find_all(name, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
     return all;
+  }
+  /// The same out of the result, of tiles alone: to be read one by one, as there may be more than memory
+  /// holds.
+  template <class T>
+  std::vector<Reader<T>> take_readers(std::string_view name) {
+    std::vector<Reader<T>> readers;
+    for (ArtifactPtr& item : take_tiles(name, typeid(T)))
+      readers.push_back([item] { return std::static_pointer_cast<const T>(item->value()); });
+    return readers;
   }
   /// The same, out of the result: without a copy where nobody else holds them.
   template <class T>
@@ -79,13 +100,14 @@ class RunResult {
  private:
   friend class Run;
   struct Kept {
-    std::string name;
+    std::string stage, name;
     std::type_index type;
     Scope scope;
     std::vector<ArtifactPtr> items;  ///< null where not made
   };
   Artifact::Value find_one(std::string_view name, std::type_index type) const;
   std::vector<Artifact::Value> find_all(std::string_view name, std::type_index type) const;
+  std::vector<ArtifactPtr> take_tiles(std::string_view name, std::type_index type);
 
   std::vector<Kept> artifacts_;
 };

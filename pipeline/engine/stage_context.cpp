@@ -40,12 +40,18 @@ const PortInput& StageContext::declared_input(std::string_view port, std::type_i
   return inputs_.ports.find(port)->second;
 }
 
-Artifact::Value StageContext::read_one(std::string_view port, std::type_index type) {
+const ArtifactPtr& StageContext::only_item(std::string_view port, std::type_index type) const {
   const PortInput& input = declared_input(port, type);
   if (input.many)
     throw std::logic_error(
         fmt::format("stage {} reads '{}' with read, but there are many: use read_all", spec_.name, port));
-  return input.items.front()->value();
+  return input.items.front();
+}
+
+Artifact::Value StageContext::read_one(std::string_view port, std::type_index type) {
+  const ArtifactPtr& item = only_item(port, type);
+  const std::lock_guard lock(mutex_);
+  return read_.try_emplace(item.get(), item->value()).first->second;
 }
 
 std::vector<Artifact::Value> StageContext::read_each(std::string_view port, std::type_index type) {
@@ -55,11 +61,8 @@ std::vector<Artifact::Value> StageContext::read_each(std::string_view port, std:
 }
 
 Artifact::Value StageContext::take_one(std::string_view port, std::type_index type) {
-  Artifact::Value value = read_one(port, type);
-  const ArtifactPtr& item = declared_input(port, type).items.front();
-  if (item.use_count() > 1) return value;  // the run keeps it for others
-  value.reset();
-  return item->hand_over();
+  const ArtifactPtr& item = only_item(port, type);
+  return item.use_count() > 1 ? item->value() : item->hand_over();  // the run keeps it for others, or not
 }
 
 std::vector<Artifact::Value> StageContext::take_each(std::string_view port, std::type_index type) {

@@ -135,11 +135,13 @@ class StageContext {
   std::vector<Artifact::Value> take_each(std::string_view port, std::type_index type);
   void write_one(std::string_view port, std::type_index type, Artifact::Value value);
   const PortInput& declared_input(std::string_view port, std::type_index type) const;
+  const ArtifactPtr& only_item(std::string_view port, std::type_index type) const;
 
   const StageSpec& spec_;
   const UnitInputs& inputs_;
   std::mutex mutex_;
   UnitOutcome outcome_;
+  std::map<const Artifact*, Artifact::Value> read_;  ///< what was read lives until the unit ends
   bool counts_what_goes_in_ = false;
 };
 
