@@ -92,6 +92,8 @@ int make_map(const Job& job, const MapRequest& request, RunOptions options, cons
   options.work = request.work;
   options.rerun_from = request.rerun_from;
   options.results = artifacts_of_a_map();
+  options.scratch = std::filesystem::path(request.map).parent_path();
+  if (options.scratch.empty()) options.scratch = ".";
   check_request(job, request, options);
   if (request.check) return check(job, options);
   const auto started = std::chrono::system_clock::now();
@@ -104,8 +106,8 @@ int make_map(const Job& job, const MapRequest& request, RunOptions options, cons
     return result.report.exit_code();
   }
   const MapContents contents = map_of_run(result, record_of(job, result, session, started), request.with_dem);
-  write_map(request.map, contents, {.empty_tables = types_found(job.pipeline)});
-  say(summary_of_run(result, contents, request.map));
+  const auto written = write_map(request.map, contents, {.empty_tables = types_found(job.pipeline)});
+  say(summary_of_run(result, contents, written, request.map));
   return result.report.exit_code();
 }
 

@@ -8,11 +8,12 @@
 #include <memory>
 #include <optional>
 
+#include "apps/crown_layer.hpp"
 #include "apps/registries.hpp"
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
 #include "pipeline/forest/crown_table.hpp"
-#include "pipeline/fusion/image_view.hpp"
+#include "pipeline/fusion/canopy_view.hpp"
 
 namespace waymark {
 namespace {
@@ -32,9 +33,7 @@ ImageRecord record_of(const ImageView& image) {
 }
 
 /// "1204 mountain_top", "12 crater, 3 rock".
-std::string count_by_type(const MapContents& contents) {
-  std::map<std::string, std::int64_t> counts;
-  for (const Landmark& landmark : contents.landmarks) ++counts[contents.types[landmark.type].name];
+std::string told(const std::map<std::string, std::int64_t>& counts) {
   std::string text;
   for (const auto& [type, count] : counts)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
@@ -43,37 +42,6 @@ std::string count_by_type(const MapContents& contents) {
 
 std::string cell_count(double cells) {
   return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
-}
-
-ShapeLayer crown_layer() {
-  using Kind = AttributeSpec::Kind;
-  return {.name = "crown",
-          .summary = "Crowns of the trees, seen from above",
-          .kind = ShapeKind::polygon,
-          .columns = {{"uid", "", Kind::text, "The tree in layer tree; empty where it was not kept"},
-                      {"source", "", Kind::text, "Canopy model it was drawn on"},
-                      {"height", "m", Kind::real, "Height of the tree"},
-                      {"area", "m2", Kind::real, "Area"},
-                      {"diameter", "m", Kind::real, "Diameter of the circle of that area"}},
-          .style = {.colour = "#1b5e20", .fill = "#66bb6a", .fill_opacity = 0.3, .width = 0.2}};
-}
-
-Shape shape_of(CrownShape crown) {
-  return {.parts = {{.outer = std::move(crown.ring)}},
-          .values = {crown.uid.empty() ? AttributeValue() : AttributeValue(crown.uid), crown.source,
-                     crown.height, crown.area, crown.diameter}};
-}
-
-/// Unpacked one by one.
-MadeShapes shapes_of(std::vector<CrownTable> tables) {
-  std::size_t count = 0;
-  for (const CrownTable& table : tables) count += table.size();
-  const auto held = std::make_shared<const std::vector<CrownTable>>(std::move(tables));
-  return {count, [held](std::size_t row) {
-            auto table = held->begin();
-            for (; row >= table->size(); ++table) row -= table->size();
-            return shape_of(table->at(row));
-          }};
 }
 
 /// Share of the cells of a canopy model that are known, from every 64th of its rows.
@@ -119,14 +87,24 @@ std::vector<T> joined(std::vector<std::vector<T>> parts) {
   return all;
 }
 
+/// Those of tiles, as the engine keeps them: read one tile at a time.
+LandmarkParts parts_of(RunResult& result) {
+  const auto landmarks = result.take_readers<std::vector<Landmark>>("landmarks");
+  const auto evidence = result.take_readers<std::vector<Observation>>("evidence");
+  return {.count = landmarks.size(),
+          .landmarks = [landmarks](std::size_t part) { return landmarks[part](); },
+          .evidence = [evidence](std::size_t part) { return evidence[part](); }};
+}
+
 }  // namespace
 
 bool makes_map(const Pipeline& pipeline, const RunResult& result) {
   const auto writes_landmarks = [](const std::unique_ptr<Step>& step) {
     return std::ranges::count(step->spec().outputs, "landmarks", &OutputPort::name) > 0;
   };
-  const auto made = result.artifacts<std::vector<Landmark>>("landmarks").size();
-  return static_cast<std::ptrdiff_t>(made) == std::ranges::count_if(pipeline.steps(), writes_landmarks);
+  return std::ranges::all_of(pipeline.steps(), [&](const std::unique_ptr<Step>& step) {
+    return !writes_landmarks(step) || result.whole(step->spec().name, "landmarks");
+  });
 }
 
 std::vector<std::string> artifacts_of_a_map() {
@@ -140,15 +118,17 @@ MapContents map_of_run(RunResult& result, RunRecord run, bool with_dem) {
   contents.crs = dem->geometry().where.crs;
   contents.run = std::move(run);
   if (with_dem) contents.dem_coverage = dem;
+  contents.parts = parts_of(result);
   contents.landmarks = joined(result.take<std::vector<Landmark>>("landmarks"));
   contents.observations = joined(result.take<std::vector<Observation>>("evidence"));
-  ShapeLayer crowns = crown_layer();
-  auto tables = result.take<CrownTable>("crowns");
-  const bool drawn = !tables.empty();
-  crowns.more = shapes_of(std::move(tables));
-  for (const auto& surveys : result.artifacts<Canopies>("canopies"))
+  auto tables = result.take_readers<CrownTable>("crowns");
+  for (CrownTable& table : result.take<CrownTable>("crowns"))
+    tables.push_back([held = std::make_shared<const CrownTable>(std::move(table))] { return held; });
+  for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
     if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
-  if (drawn) contents.layers.push_back(std::move(crowns));
+    for (const auto& canopy : *surveys) contents.images.push_back(record_of(canopy_view(*canopy)));
+  }
+  if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
   for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
     for (const ImageView& image : *made) contents.images.push_back(record_of(image));
   return contents;
@@ -163,11 +143,12 @@ std::vector<std::string> types_found(const Pipeline& pipeline) {
   return types;
 }
 
-std::string summary_of_run(const RunResult& result, const MapContents& contents, const std::string& map) {
+std::string summary_of_run(const RunResult& result, const MapContents& contents,
+                           const std::map<std::string, std::int64_t>& written, const std::string& map) {
   auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
   const auto canopies = result.artifacts<Canopies>("canopies");
   for (const auto& surveys : canopies) cells = static_cast<double>(common_grid(*surveys).cells());
-  std::string text = fmt::format("{}: {}\n", map, count_by_type(contents));
+  std::string text = fmt::format("{}: {}\n", map, told(written));
   if (canopies.empty() && !contents.images.empty()) {
     const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);
     text += fmt::format("{} images, {} observations, {} of them used, {:.2f} s\n", contents.images.size(),

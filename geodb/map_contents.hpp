@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,12 +43,21 @@ struct ImageRecord {
   friend bool operator==(const ImageRecord&, const ImageRecord&) = default;
 };
 
-/// All a map file holds, in memory.
+/// Landmarks in parts, each read when it is asked for, any number of times: of a map larger than memory.
+struct LandmarkParts {
+  std::size_t count = 0;
+  std::function<std::shared_ptr<const std::vector<Landmark>>(std::size_t part)> landmarks = {};
+  /// What the landmarks of that part rest on; none is rejected.
+  std::function<std::shared_ptr<const std::vector<Observation>>(std::size_t part)> evidence = {};
+};
+
+/// All a map file holds, in memory but for the parts.
 struct MapContents {
   TypeRegistry types;  ///< each gets a table; Landmark::type and Observation::type index it
   Crs crs = Crs::local();
   std::vector<Landmark> landmarks;
   std::vector<Observation> observations;
+  LandmarkParts parts;  ///< besides; a landmark and all its evidence belong to one of them
   std::vector<ImageRecord> images;
   std::vector<ShapeLayer> layers;  ///< beside the landmarks: crowns, stands, tracks
   RunRecord run;

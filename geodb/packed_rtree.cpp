@@ -5,10 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "geodb/geometry_blob.hpp"
 #include "geodb/sql_text.hpp"
 
 namespace waymark {
@@ -58,15 +60,15 @@ class Packer {
         bytes_(static_cast<std::size_t>(database.integer("SELECT length(data) FROM " +
                                                          sql_name(index + "_node") + " WHERE nodeno = 1"))) {}
 
-  /// Writes one level of the tree and gives the cells of the next.
-  std::vector<Cell> pack(std::span<const Cell> cells, int depth) {
+  /// Writes one level of the tree, of `count` cells that `next` gives, and gives the cells of the next.
+  std::vector<Cell> pack(std::size_t count, const std::function<Cell()>& next, int depth) {
     const std::size_t room = (bytes_.size() - kHeaderBytes) / kCellBytes;
-    const std::size_t nodes = std::max<std::size_t>(1, (cells.size() + room - 1) / room);
-    std::vector<Cell> above;
+    const std::size_t nodes = std::max<std::size_t>(1, (count + room - 1) / room);
+    std::vector<Cell> above, part;
     above.reserve(nodes);
     for (std::size_t i = 0; i < nodes; ++i) {  // evenly filled: none is nearly empty
-      const auto part =
-          cells.subspan(i * cells.size() / nodes, (i + 1) * cells.size() / nodes - i * cells.size() / nodes);
+      part.resize((i + 1) * count / nodes - i * count / nodes);
+      std::ranges::generate(part, next);
       const std::int64_t number = nodes == 1 ? kRoot : next_node_++;
       write(number, part, nodes == 1 ? depth : 0);
       sqlite::Statement& link = depth == 0 ? rowid_ : parent_;
@@ -98,30 +100,40 @@ class Packer {
   std::int64_t next_node_ = kRoot + 1;
 };
 
-void pack_all(const sqlite::Database& database, std::string_view table, std::vector<Cell> level) {
+Cell cell_of(std::int64_t id, double min_x, double max_x, double min_y, double max_y) {
+  return {id, {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}};
+}
+
+void pack_all(const sqlite::Database& database, std::string_view table, std::size_t count,
+              const std::function<Cell()>& next) {
+  if (count == 0) return;
   Packer packer(database, "rtree_" + std::string(table) + "_geom");
-  for (int depth = 0; !level.empty(); ++depth) level = packer.pack(level, depth);
+  std::vector<Cell> level = packer.pack(count, next, 0);
+  for (int depth = 1; !level.empty(); ++depth) {
+    auto cell = level.begin();
+    level = packer.pack(
+        level.size(), [&] { return *cell++; }, depth);
+  }
 }
 
 }  // namespace
 
 void fill_rtree(const sqlite::Database& database, std::string_view table, std::span<const IndexedBox> boxes) {
-  if (boxes.empty()) return;
-  std::vector<Cell> level;
-  level.reserve(boxes.size());
-  for (const auto& [id, min_x, max_x, min_y, max_y] : boxes)
-    level.push_back({id, {rounded_down(min_x), rounded_up(max_x), rounded_down(min_y), rounded_up(max_y)}});
-  pack_all(database, table, std::move(level));
+  auto box = boxes.begin();
+  pack_all(database, table, boxes.size(), [&] {
+    const auto& [id, min_x, max_x, min_y, max_y] = *box++;
+    return cell_of(id, min_x, max_x, min_y, max_y);
+  });
 }
 
-void fill_rtree(const sqlite::Database& database, std::string_view table,
-                std::span<const IndexedPoint> points) {
-  if (points.empty()) return;
-  std::vector<Cell> level;
-  level.reserve(points.size());
-  for (const auto& [id, x, y] : points)
-    level.push_back({id, {rounded_down(x), rounded_up(x), rounded_down(y), rounded_up(y)}});
-  pack_all(database, table, std::move(level));
+void fill_rtree(const sqlite::Database& database, std::string_view table) {
+  const std::string rows = " FROM " + sql_name(table) + " WHERE geom IS NOT NULL";
+  sqlite::Statement row = database.prepare("SELECT id, geom" + rows + " ORDER BY id");
+  pack_all(database, table, static_cast<std::size_t>(database.integer("SELECT count(*)" + rows)), [&] {
+    row.step();
+    const Envelope box = envelope(row.blob(1)).value();
+    return cell_of(row.integer(0), box.min_x, box.max_x, box.min_y, box.max_y);
+  });
 }
 
 }  // namespace waymark

@@ -133,13 +133,9 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
       database.prepare(fmt::format("INSERT INTO {} VALUES ({})", sql_name(layer.name), places));
   Envelope extent;
   std::vector<IndexedBox> boxes;
-  const std::size_t count = layer.rows.size() + layer.more.count;
-  boxes.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Shape made = i < layer.rows.size() ? Shape() : layer.more.make(i - layer.rows.size());
-    const Shape& shape = i < layer.rows.size() ? layer.rows[i] : made;
-    check_row(layer, shape, i);
-    const auto row = static_cast<std::int64_t>(i + 1);
+  std::int64_t row = 0;
+  const auto add = [&](const Shape& shape) {
+    check_row(layer, shape, static_cast<std::size_t>(row++));
     const std::vector<std::byte> blob = shape_blob(layer.kind, shape.parts, srs_id);
     insert.bind(1, row);
     insert.bind(2, nullptr);
@@ -147,14 +143,19 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
     for (std::size_t c = 0; c < layer.columns.size(); ++c)
       bind_attribute(insert, 3 + static_cast<int>(c), shape.values[c]);
     insert.run();
-    if (shape.parts.empty()) continue;
+    if (shape.parts.empty()) return;
     const Envelope box = envelope_of(shape.parts);
     extent.add(box);
-    boxes.push_back({row, box.min_x, box.max_x, box.min_y, box.max_y});
-  }
+    if (!layer.more) boxes.push_back({row, box.min_x, box.max_x, box.min_y, box.max_y});
+  };
+  std::ranges::for_each(layer.rows, add);
+  if (layer.more) layer.more(add);
   create_spatial_index(database, layer.name);
   sort_boxes(boxes, extent);
-  fill_rtree(database, layer.name, boxes);
+  if (layer.more)
+    fill_rtree(database, layer.name);
+  else
+    fill_rtree(database, layer.name, boxes);
   return extent;
 }
 

@@ -38,11 +38,9 @@ struct ShapeStyle {
   std::string label = {};          ///< column written into the shape; empty: none
 };
 
-/// Rows made one by one as they are written: for layers too large to be held.
-struct MadeShapes {
-  std::size_t count = 0;
-  std::function<Shape(std::size_t)> make = {};
-};
+/// Gives rows one by one as they are written: for layers too large to be held. Those near each other should
+/// follow each other, as the spatial index takes them in this order.
+using ShapeMaker = std::function<void(const std::function<void(const Shape&)>& take)>;
 
 /// Name and column names are [a-z][a-z0-9_]*. Columns `id` and `geom` are made and may not be named.
 struct ShapeLayer {
@@ -51,7 +49,7 @@ struct ShapeLayer {
   std::vector<AttributeSpec> columns = {};
   std::vector<Shape> rows = {};
   ShapeStyle style = {};
-  MadeShapes more = {};  ///< after `rows`
+  ShapeMaker more = {};  ///< after `rows`
 };
 
 namespace sqlite {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <unordered_map>
 
 #include "core/error.hpp"
@@ -14,12 +15,12 @@
 #include "geodb/evidence.hpp"
 #include "geodb/geometry_blob.hpp"
 #include "geodb/landmark_layout.hpp"
+#include "geodb/landmark_order.hpp"
 #include "geodb/layer_registration.hpp"
 #include "geodb/layer_style.hpp"
 #include "geodb/migrations.hpp"
 #include "geodb/packed_rtree.hpp"
 #include "geodb/provenance.hpp"
-#include "geodb/row_order.hpp"
 #include "geodb/sql_text.hpp"
 #include "geodb/type_catalogue.hpp"
 #include "landmarks/uid_index.hpp"
@@ -27,37 +28,57 @@
 namespace waymark {
 namespace {
 
-// Large pages save a quarter of the time of a large map; small ones keep a small map small.
-const char* page_size(const MapContents& contents) {
-  constexpr std::size_t kLarge = 50'000;  // landmarks
-  return contents.landmarks.size() < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384";
-}
-
 [[noreturn]] void refuse(std::string problem, std::string where) {
   throw Error(ErrorCode::input, std::move(problem), std::move(where),
               "this comes from the stage that made the landmarks");
 }
 
-/// Landmarks by type: positions in MapContents::landmarks.
-std::vector<std::vector<std::uint32_t>> landmarks_by_type(const MapContents& contents) {
-  std::vector<std::vector<std::uint32_t>> of_type(contents.types.size());
-  for (std::uint32_t i = 0; i < contents.landmarks.size(); ++i) {
-    const Landmark& landmark = contents.landmarks[i];
+/// What there is of a type.
+struct Stock {
+  std::int64_t count = 0;
+  Envelope extent;
+  std::vector<std::uint32_t> held = {};  ///< positions in MapContents::landmarks
+};
+
+void take_stock(std::vector<Stock>& of_type, const std::vector<Landmark>& landmarks, bool held) {
+  for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
+    const Landmark& landmark = landmarks[i];
     if (landmark.uid.empty()) refuse("a landmark has no uid", fmt::format("landmark {}", i));
     if (!landmark.position.xyz.allFinite())
       refuse("a landmark's position is not finite", "landmark " + landmark.uid);
-    of_type.at(landmark.type).push_back(i);
+    Stock& stock = of_type.at(landmark.type);
+    ++stock.count;
+    stock.extent.add(landmark.position.xyz.x(), landmark.position.xyz.y());
+    if (held) stock.held.push_back(i);
   }
+}
+
+std::vector<Stock> stock_of(const MapContents& contents) {
+  std::vector<Stock> of_type(contents.types.size());
+  take_stock(of_type, contents.landmarks, true);
+  for (std::size_t part = 0; part < contents.parts.count; ++part)
+    take_stock(of_type, *contents.parts.landmarks(part), false);
   return of_type;
+}
+
+// Large pages save a quarter of the time of a large map; small ones keep a small map small.
+const char* page_size(const std::vector<Stock>& stock) {
+  constexpr std::int64_t kLarge = 50'000;  // landmarks
+  std::int64_t count = 0;
+  for (const Stock& type : stock) count += type.count;
+  return count < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384";
 }
 
 class MapWriter {
  public:
-  MapWriter(const sqlite::Database& database, const MapContents& contents, const WriteMapOptions& options)
+  MapWriter(const sqlite::Database& database, const MapContents& contents, const std::vector<Stock>& stock,
+            const WriteMapOptions& options)
       : database_(&database),
         contents_(&contents),
+        stock_(&stock),
+        at_once_(options.landmarks_at_once),
         changed_(time_stamp(contents.run.started_utc)),
-        of_type_(landmarks_by_type(contents)) {
+        held_place_(contents.landmarks.size()) {
     choose_types(options.empty_tables);
   }
 
@@ -77,12 +98,13 @@ class MapWriter {
 
  private:
   void choose_types(const std::vector<std::string>& wanted) {
-    const bool all = wanted.empty() && contents_->landmarks.empty();
+    const bool all =
+        wanted.empty() && std::ranges::all_of(*stock_, [](const Stock& type) { return type.count == 0; });
     std::vector<char> evident(contents_->types.size());
     for (const auto& o : contents_->observations) evident.at(o.type) = 1;
     for (TypeId id = 0; id < contents_->types.size(); ++id) {
       const LandmarkType& type = contents_->types[id];
-      if (all || evident[id] || !of_type_[id].empty() || std::ranges::count(wanted, type.name) > 0) {
+      if (all || evident[id] || (*stock_)[id].count > 0 || std::ranges::count(wanted, type.name) > 0) {
         kept_.push_back(id);
         new_id_[id] = types_.add(type);
       }
@@ -92,14 +114,13 @@ class MapWriter {
   void write_landmarks(TypeId old_id) {
     const LandmarkType& type = types_[new_id_.at(old_id)];
     const LandmarkLayout layout(type, new_id_.at(old_id));
-    const Envelope extent = extent_of(contents_->landmarks, of_type_[old_id]);
-    sort_along_hilbert_curve(of_type_[old_id], contents_->landmarks, extent);
-
+    const Envelope& extent = (*stock_)[old_id].extent;
+    orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, at_once_));
     database_->execute(layout.create_table());
-    const std::vector<IndexedPoint> points = insert_rows(layout, old_id);
+    insert_rows(layout, old_id);
     create_uid_index(type.name);
     create_spatial_index(*database_, type.name);
-    fill_rtree(*database_, type.name, points);
+    fill_rtree(*database_, type.name);
 
     register_layer(*database_, {.table = type.name,
                                 .description = type.summary,
@@ -114,21 +135,21 @@ class MapWriter {
     whole_extent_.add(extent);
   }
 
-  std::vector<IndexedPoint> insert_rows(const LandmarkLayout& layout, TypeId old_id) {
-    std::vector<IndexedPoint> points;
-    points.reserve(of_type_[old_id].size());
+  void insert_rows(const LandmarkLayout& layout, TypeId old_id) {
     sqlite::Statement insert = database_->prepare(layout.insert());
-    std::int64_t row = layout.type_id() * kRowsPerType;
-    const std::vector<std::uint32_t>& order = of_type_[old_id];
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      fetch_ahead(contents_->landmarks, order, i);
-      const Landmark& landmark = contents_->landmarks[order[i]];
+    const std::span<const Landmark> held = contents_->landmarks;
+    orders_.at(old_id).visit([&](const Landmark& landmark, std::int64_t place) {
       const PointBlob geometry = point_blob(landmark.position.xyz, srs_id_);
-      layout.bind(insert, ++row, landmark, geometry);
+      layout.bind(insert, row_at(old_id, place), landmark, geometry);
       insert.run();
-      points.push_back({row, landmark.position.xyz.x(), landmark.position.xyz.y()});
-    }
-    return points;
+      const std::less<const Landmark*> before;
+      if (!before(&landmark, held.data()) && before(&landmark, held.data() + held.size()))
+        held_place_[static_cast<std::size_t>(&landmark - held.data())] = static_cast<std::uint32_t>(place);
+    });
+  }
+
+  std::int64_t row_at(TypeId old_id, std::int64_t place) const {
+    return new_id_.at(old_id) * kRowsPerType + 1 + place;
   }
 
   void create_uid_index(const std::string& table) {
@@ -171,16 +192,22 @@ class MapWriter {
       observation.type = new_id_.at(observation.type);
       writer.add(observation, row);
     }
+    for (const TypeId type : kept_)
+      orders_.at(type).visit_evidence([&](Observation observation, std::int64_t place) {
+        observation.type = new_id_.at(type);
+        writer.add(observation, row_at(type, place));
+      });
     database_->execute("CREATE INDEX observation_uid ON observation (uid)");
   }
 
   /// Of the landmark an observation is evidence of; `rows` finds those of its type, and is made here.
   std::optional<std::int64_t> row_of(const Observation& observation, std::optional<UidIndex>& rows) const {
-    const std::vector<std::uint32_t>& order = of_type_[observation.type];
-    if (!rows) rows.emplace(contents_->landmarks, order);
-    const auto place = rows->find(observation.landmark_uid);
-    if (!place) return {};
-    return new_id_.at(observation.type) * kRowsPerType + 1 + *place;
+    const std::vector<std::uint32_t>& held = (*stock_)[observation.type].held;
+    if (held.empty()) return {};
+    if (!rows) rows.emplace(contents_->landmarks, held);
+    const auto found = rows->find(observation.landmark_uid);
+    if (!found) return {};
+    return row_at(observation.type, held_place_[held[*found]]);
   }
 
   void write_images() {
@@ -203,8 +230,11 @@ class MapWriter {
 
   const sqlite::Database* database_;
   const MapContents* contents_;
+  const std::vector<Stock>* stock_;  ///< by type of the contents
+  std::size_t at_once_;
   std::string changed_;
-  std::vector<std::vector<std::uint32_t>> of_type_;
+  std::vector<std::uint32_t> held_place_;      ///< in the order of rows, of each of MapContents::landmarks
+  std::map<TypeId, LandmarkOrder> orders_;     ///< by type of the contents
   TypeRegistry types_;                         ///< of the map: those of the contents that get a table
   std::vector<TypeId> kept_;                   ///< their ids in the contents
   std::unordered_map<TypeId, TypeId> new_id_;  ///< id in the contents -> id in the map
@@ -214,23 +244,28 @@ class MapWriter {
 
 }  // namespace
 
-void write_map(const std::filesystem::path& path, const MapContents& contents,
-               const WriteMapOptions& options) {
+std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path, const MapContents& contents,
+                                              const WriteMapOptions& options) {
   if (!options.replace && std::filesystem::exists(path))
     throw Error(ErrorCode::output, "the file exists already", path.string(),
                 "choose another name, or allow replacing it");
   AsideFile file(path);
+  std::map<std::string, std::int64_t> counts;
   try {
+    const std::vector<Stock> stock = stock_of(contents);
+    for (TypeId type = 0; type < stock.size(); ++type)
+      if (stock[type].count > 0) counts[contents.types[type].name] = stock[type].count;
     sqlite::Database database(file.path(), sqlite::OpenMode::create);
-    database.execute(page_size(contents));
+    database.execute(page_size(stock));
     sqlite::Transaction all(database);
-    MapWriter(database, contents, options).write();
+    MapWriter(database, contents, stock, options).write();
     all.commit();
     database.close();
   } catch (const Error& e) {  // name the map, not the file aside
     throw Error(e.code(), e.problem(), e.where().ends_with(".part") ? path.string() : e.where(), e.hint());
   }
   file.keep();
+  return counts;
 }
 
 }  // namespace waymark

@@ -93,14 +93,20 @@ Eigen::Vector2d CrownTable::top(std::size_t row) const {
   return {s.x0 + crown.column * s.dx, s.y0 + crown.row * s.dy};
 }
 
+std::string_view CrownTable::uid(std::size_t row) const {
+  std::size_t at = crowns_[row].begins;
+  const auto letters = static_cast<std::size_t>(get(bytes_, at));
+  return std::string_view(bytes_).substr(at, letters);
+}
+
 CrownShape CrownTable::at(std::size_t row) const {
   const Packed& crown = crowns_.at(row);
   const Survey& survey = surveys_[crown.survey];
   CrownShape shape;
+  shape.uid = uid(row);
   std::size_t at = crown.begins;
-  const auto letters = static_cast<std::size_t>(get(bytes_, at));
-  shape.uid = bytes_.substr(at, letters);
-  at += letters;
+  get(bytes_, at);
+  at += shape.uid.size();
   shape.source = survey.source;
   shape.top = top(row);
   shape.height = static_cast<double>(crown.height);

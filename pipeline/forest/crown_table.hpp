@@ -33,6 +33,7 @@ class CrownTable {
   std::size_t size() const { return crowns_.size(); }
   /// Unpacked.
   CrownShape at(std::size_t row) const;
+  std::string_view uid(std::size_t row) const;
   std::string_view source(std::size_t row) const { return surveys_[crowns_[row].survey].source; }
   Eigen::Vector2d top(std::size_t row) const;
   bool drawn(std::size_t row) const { return crowns_[row].cells > 0; }  ///< has an outline

@@ -61,8 +61,8 @@ TEST_P(PackedRtree, IsWhatSqliteWouldAccept) {
   const TemporaryFolder folder;
   const sqlite::Database database(folder / "index.db", sqlite::OpenMode::create);
   database.execute("CREATE VIRTUAL TABLE rtree_t_geom USING rtree(id, minx, maxx, miny, maxy)");
-  std::vector<IndexedPoint> points;
-  for (int i = 0; i < GetParam(); ++i) points.push_back({i + 1, i * 0.1, 1e7 - i});
+  std::vector<IndexedBox> points;
+  for (int i = 0; i < GetParam(); ++i) points.push_back({i + 1, i * 0.1, i * 0.1, 1e7 - i, 1e7 - i});
   fill_rtree(database, "t", points);
   sqlite::Statement check =
       database.prepare("SELECT rtreecheck('rtree_t_geom'), (SELECT count(*) FROM rtree_t_geom)");

@@ -162,7 +162,7 @@ TEST(ShapeLayer, RowsMadeOnWritingAreRowsLikeOthers) {
   const ShapeLayer held = squares(500);
   ShapeLayer made = held;
   made.rows.resize(20);
-  made.more = {480, [&](std::size_t i) { return held.rows[20 + i]; }};
+  made.more = [&](const auto& take) { std::for_each(held.rows.begin() + 20, held.rows.end(), take); };
   const TemporaryFolder folder;
   MapContents contents = scattered({});
   contents.layers = {made};

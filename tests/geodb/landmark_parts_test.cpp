@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// A map written of parts: which, and how many landmarks are in memory at once, make no difference.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "geodb/curve_ranges.hpp"
+#include "geodb/map_store.hpp"
+#include "geodb/validate_map.hpp"
+#include "geodb/write_map.hpp"
+#include "tests/geodb/map_scenes.hpp"
+
+namespace waymark {
+namespace {
+
+/// Landmarks cut into parts, `columns` x `columns` squares, and how many are in memory at most.
+class Parts {
+ public:
+  Parts(const MapContents& whole, int columns) : columns_(columns) {
+    landmarks_.resize(static_cast<std::size_t>(columns * columns));
+    evidence_.resize(landmarks_.size());
+    std::map<std::string, std::size_t> part_of;
+    for (const Landmark& l : whole.landmarks) {
+      const std::size_t part = square(l.position.xyz);
+      part_of[l.uid] = part;
+      landmarks_[part].push_back(l);
+    }
+    for (const Observation& o : whole.observations)
+      if (o.rejected.empty()) evidence_[part_of.at(o.landmark_uid)].push_back(o);
+  }
+  LandmarkParts parts() {
+    return {.count = landmarks_.size(),
+            .landmarks = [this](std::size_t part) { return lent(landmarks_[part]); },
+            .evidence = [this](std::size_t part) { return lent(evidence_[part]); }};
+  }
+  std::size_t most() const { return most_; }
+
+ private:
+  std::size_t square(const Eigen::Vector3d& at) const {
+    const auto cell = [&](double v, double low) { return static_cast<int>((v - low) / 1e5 * columns_); };
+    return static_cast<std::size_t>(cell(at.x(), 4e5) * columns_ + cell(at.y(), 5e6));
+  }
+  template <class T>
+  std::shared_ptr<const std::vector<T>> lent(const std::vector<T>& items) {
+    lent_ += items.size();
+    most_ = std::max(most_, lent_);
+    return {new std::vector<T>(items), [this](const std::vector<T>* gone) {
+              lent_ -= gone->size();
+              delete gone;
+            }};
+  }
+  int columns_;
+  std::vector<std::vector<Landmark>> landmarks_;
+  std::vector<std::vector<Observation>> evidence_;
+  std::size_t lent_ = 0, most_ = 0;
+};
+
+MapContents held(int landmarks) {
+  MapContents contents = scattered({.landmarks = landmarks, .with_evidence = landmarks});
+  std::erase_if(contents.observations, [](const Observation& o) { return !o.rejected.empty(); });
+  return contents;
+}
+
+MapContents without_landmarks(MapContents contents) {
+  contents.landmarks.clear();
+  contents.observations.clear();
+  return contents;
+}
+
+TEST(LandmarkParts, GiveTheSameBytesHoweverTheyAreCut) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(3000);
+  MapContents contents = without_landmarks(whole);
+  std::string first;
+  for (const int columns : {1, 2, 9})
+    for (const std::size_t at_once : {10u, 500u, 100'000u}) {
+      Parts parts(whole, columns);
+      contents.parts = parts.parts();
+      EXPECT_EQ(write_map(folder / "map.gpkg", contents, {.landmarks_at_once = at_once}).at("lamp_post"),
+                3000);
+      const std::string bytes = file_bytes(folder / "map.gpkg");
+      if (first.empty()) first = bytes;
+      EXPECT_TRUE(bytes == first) << columns << " x " << columns << ", " << at_once << " at once";
+    }
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), testing::IsEmpty());
+}
+
+TEST(LandmarkParts, AreRowsLikeThoseThatAreHeld) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(2000);
+  Parts parts(whole, 6);
+  MapContents contents = without_landmarks(whole);
+  contents.parts = parts.parts();
+  write_map(folder / "held.gpkg", whole);
+  write_map(folder / "parts.gpkg", contents, {.landmarks_at_once = 100});
+  for (const char* sql :
+       {"SELECT group_concat(id || hex(geom) || uid || height || observations) FROM lamp_post",
+        "SELECT group_concat(hex(data)) FROM rtree_lamp_post_geom_node",
+        "SELECT group_concat(l.uid || o.uid || o.pixel_y) FROM (SELECT * FROM lamp_post ORDER BY uid) l JOIN"
+        "  lamp_post_observation r ON r.base_id = l.id JOIN observation o ON o.id = r.related_id"})
+    EXPECT_EQ(query_text(folder / "parts.gpkg", sql), query_text(folder / "held.gpkg", sql)) << sql;
+}
+
+TEST(LandmarkParts, StandBesideThoseThatAreHeld) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(1000);
+  MapContents some = whole;
+  some.landmarks.resize(400), some.observations.resize(400);
+  MapContents rest = whole;
+  rest.landmarks.erase(rest.landmarks.begin(), rest.landmarks.begin() + 400);
+  rest.observations.erase(rest.observations.begin(), rest.observations.begin() + 400);
+  Parts parts(rest, 4);
+  some.parts = parts.parts();
+  write_map(folder / "whole.gpkg", whole);
+  write_map(folder / "both.gpkg", some, {.landmarks_at_once = 50});
+  const char* sql = "SELECT group_concat(id || uid || height) FROM lamp_post";
+  EXPECT_EQ(query_text(folder / "both.gpkg", sql), query_text(folder / "whole.gpkg", sql));
+  const MapStore map = MapStore::open(folder / "both.gpkg");
+  for (const Landmark& l : whole.landmarks) {
+    const auto evidence = map.observations_of(l.uid);
+    ASSERT_EQ(evidence.size(), 1u);
+    EXPECT_EQ(evidence[0].position, l.position);
+  }
+  EXPECT_THAT(validate_map(folder / "both.gpkg"), testing::IsEmpty());
+}
+
+TEST(LandmarkParts, FewAreInMemoryAtOnce) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(20'000);
+  MapContents contents = without_landmarks(whole);
+  Parts parts(whole, 40);
+  contents.parts = parts.parts();
+  write_map(folder / "map.gpkg", contents, {.landmarks_at_once = 400});
+  EXPECT_LE(parts.most(), 100u) << "one part's landmarks or evidence, of 40,000";
+}
+
+TEST(LandmarkParts, RefuseWhatIsNoMap) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(100);
+  MapContents contents = without_landmarks(whole);
+  const auto message = [&](MapContents broken) -> std::string {
+    Parts parts(broken, 3);
+    contents.parts = parts.parts();
+    try {
+      write_map(folder / "map.gpkg", contents);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  MapContents twice = whole;
+  twice.landmarks[7].uid = twice.landmarks[70].uid;
+  std::erase_if(twice.observations, [](const Observation& o) { return o.landmark_uid == "lp-7"; });
+  EXPECT_THAT(message(twice), testing::HasSubstr("two landmarks have the same uid"));
+  MapContents nowhere = whole;
+  nowhere.landmarks[3].position.xyz.z() = std::nan("");
+  EXPECT_THAT(message(nowhere), testing::HasSubstr("not finite"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "map.gpkg"));
+}
+
+TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
+  const MapContents whole = held(5000);
+  Envelope extent;
+  for (const Landmark& l : whole.landmarks) extent.add(l.position.xyz.x(), l.position.xyz.y());
+  const auto places = [&](std::size_t part, const auto& take) {
+    for (std::size_t i = part; i < whole.landmarks.size(); i += 3)
+      take(whole.landmarks[i].position.xyz.head<2>());
+  };
+  const std::vector<CurveRange> ranges = divide_curve(3, places, extent, 250);
+  EXPECT_GE(ranges.size(), 20u);
+  EXPECT_LE(ranges.size(), 30u);
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    EXPECT_TRUE(i == 0 || ranges[i].first > ranges[i - 1].last);
+    std::set<std::uint32_t> parts;
+    std::size_t held_by = 0;
+    for (std::size_t l = 0; l < whole.landmarks.size(); ++l) {
+      if (!ranges[i].holds(along_curve(whole.landmarks[l].position.xyz.head<2>(), extent))) continue;
+      parts.insert(static_cast<std::uint32_t>(l % 3));
+      ++held_by;
+    }
+    EXPECT_LE(held_by, 250u);
+    EXPECT_THAT(ranges[i].parts, testing::ElementsAreArray(parts));
+    all += held_by;
+  }
+  EXPECT_EQ(all, 5000u);
+}
+
+}  // namespace
+}  // namespace waymark
