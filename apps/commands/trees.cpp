@@ -76,6 +76,10 @@ class Trees final : public Shortcut {
         nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}, {"flights", flights_}}
             .dump());
     pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", !no_crowns_}}.dump());
+    if (!flights_) {
+      pipeline.add("trees_of_survey");
+      return;
+    }
     pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
     pipeline.add("value_flights");
   }

@@ -150,7 +150,10 @@ std::vector<IndexPair> possible_pairs(std::span<const Sighting> sightings, const
 
 std::vector<std::uint32_t> cluster(std::span<const Sighting> sightings, const MapPlane& plane,
                                    const IdentityRules& rules) {
-  const std::vector<IndexPair> pairs = possible_pairs(sightings, plane, rules);
+  const bool one_source =
+      std::ranges::all_of(sightings, [&](const Sighting& s) { return s.source == sightings.front().source; });
+  const std::vector<IndexPair> pairs =
+      one_source ? std::vector<IndexPair>() : possible_pairs(sightings, plane, rules);
   std::vector<Index> group(sightings.size());
   std::iota(group.begin(), group.end(), Index{0});
   for (const IndexPair& pair : pairs) {

@@ -53,8 +53,7 @@ std::string forest_job(const std::string& name, const ForestLaw& law, const std:
   Json stages = Json::array();
   stages.push_back(canopy);
   stages.push_back({{"stage", "trees_from_canopy"}, {"preset", preset}});
-  stages.push_back({{"stage", "merge_observations"}, {"overlap", 0.1}});
-  stages.push_back({{"stage", "value_flights"}});
+  stages.push_back({{"stage", "trees_of_survey"}});
   return Json{{"name", name}, {"stages", stages}}.dump(2) + "\n";
 }
 

@@ -37,6 +37,15 @@ class Trees : public testing::Test {
   std::string csv(const std::string& map = "trees.gpkg") {
     return waymark({"query", folder_ / map, "--format", "csv"}).out;
   }
+  /// Everything in these layers, row by row, as GDAL sees it.
+  std::string rows(const std::string& map = "trees.gpkg",
+                   const std::vector<std::string>& layers = {"tree", "crown", "observation",
+                                                             "tree_observation", "image"}) {
+    std::string all;
+    for (const std::string& layer : layers)
+      all += bash("ogrinfo -ro -q -nomd '" + (folder_ / map) + "' " + layer).out;
+    return all;
+  }
   std::string chm() { return make_dem(folder_ / "chm.tif", cones()); }
 
   TempFolder folder_;
@@ -58,9 +67,29 @@ TEST_F(Trees, ConesEndToEnd) {
 TEST_F(Trees, DoNotDependOnTilesAndThreads) {
   const std::string file = chm();
   trees({"--chm", file});
-  const std::string once = csv();
-  trees({"--chm", file, "--tile-cells", "64", "--threads", "1"});
-  EXPECT_EQ(csv(), once);
+  trees({"--chm", file, "--tile-cells", "64", "--threads", "1"}, "tiles.gpkg");
+  trees({"--chm", file, "--tile-cells", "64", "--work", folder_ / "work"}, "work.gpkg");
+  trees({"--chm", file, "--tile-cells", "64", "--work", folder_ / "work"}, "resumed.gpkg");
+  const std::string once = rows();
+  EXPECT_GT(once.size(), 19U * 13U * 500U);
+  for (const char* map : {"tiles.gpkg", "work.gpkg", "resumed.gpkg"}) EXPECT_EQ(rows(map), once) << map;
+}
+
+TEST_F(Trees, OfOneSurveyAreThoseThatMergingGives) {
+  ASSERT_EQ(trees({"--chm", chm(), "--tile-cells", "64"}).code, 0);
+  const Outcome merged = trees({"--chm", chm(), "--flights"}, "merged.gpkg");
+  ASSERT_EQ(merged.code, 0);
+  EXPECT_THAT(merged.err, HasSubstr("merge_observations"));
+  EXPECT_EQ(csv("merged.gpkg"), csv());
+  EXPECT_EQ(rows("merged.gpkg", {"tree", "crown"}), rows("trees.gpkg", {"tree", "crown"}));
+}
+
+TEST_F(Trees, LeaveNothingButTheMap) {
+  ASSERT_EQ(trees({"--chm", chm(), "--tile-cells", "64"}).code, 0);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
+    names.push_back(entry.path().filename());
+  EXPECT_THAT(names, testing::UnorderedElementsAre("chm.tif", "trees.gpkg"));
 }
 
 TEST_F(Trees, FlightsAreMerged) {
