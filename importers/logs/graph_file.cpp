@@ -272,7 +272,7 @@ std::string graph_format(const fs::path& file) {
   for_each_line(file, text, [&](const Line& line) {
     const std::string_view w = line.word;
     if (w == "ODOMETRY") format = "isam";
-    if (w == "VERTEX2" || w == "VERTEX") format = "toro";
+    if (w == "VERTEX2" || w == "VERTEX" || w == "VERTEX3" || w == "EDGE3") format = "toro";
     if (w.starts_with("VERTEX_") || w.starts_with("EDGE_") || w.starts_with("PARAMS_")) format = "g2o";
     if (w == "EDGE2" && line.rest.size() >= 11) {
       edges = true;

@@ -9,8 +9,10 @@
 namespace waymark {
 
 struct HypothesesOptions {
-  std::int64_t most = 40;        ///< Gaussians kept
-  double least = 1e-4;           ///< weight of a Gaussian, relative to the best, to be kept
+  std::int64_t most = 40;  ///< Gaussians kept
+  /// Weight of a Gaussian, relative to the best, to be kept. Sightings err more often by far than any
+  /// Gaussian says, so one that seems 1 : 100 000 may yet be right; how many are kept bounds the cost.
+  double least = 1e-6;
   double merge = 0.5;            ///< Gaussians nearer than this (squared Mahalanobis distance) become one
   double split_yaw = 0.25;       ///< rad: Gaussians wider than this are split before they meet sightings
   std::int64_t lost_after = 10;  ///< sets in a row that fit nowhere until the search begins

@@ -106,6 +106,8 @@ TEST_F(GraphFile, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 1 1 0 0 1 2 0 1 0 1\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("not positive definite")));
   EXPECT_THAT(refusal("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"), HasSubstr("in space, not in the plane"));
+  EXPECT_THAT(refusal("EDGE3 0 1 0.3 0 0 0 0 0.2 10 0 0 0 0 0 10 0 0 0 0 10 0 0 0 10 0 0 10 0 10\n"),
+              HasSubstr("in space, not in the plane"));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\n"), HasSubstr("no edges"));
   EXPECT_THAT(
       refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nVERTEX_XY 9 1 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n"),
