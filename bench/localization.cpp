@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Updates of the filters: particles times sightings on maps of 1e3 to 1e7 landmarks at one density, and
-// Kalman updates. One thread.
+// Updates of the filters: particles times sightings on maps of 1e3 to 1e7 landmarks at one density, a
+// particle filter's whole update, and Kalman updates. One thread.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <numbers>
 
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
@@ -71,6 +72,60 @@ BENCHMARK(weigh)
     ->Args({10000000, 1000, 8})
     ->Args({50000, 1000, 3})
     ->Unit(benchmark::kMicrosecond);
+
+/// Looks of a robot that drives in a circle, 0.5 m from one to the next, at three landmarks of `map` each,
+/// with the errors they state.
+std::vector<SightingSet> looks_of_a_round(const LandmarkGrid& map, std::size_t count, bool ranges) {
+  Random random(1, "looks");
+  std::vector<SightingSet> looks(count);
+  Pose2 robot;
+  const Pose2 step = twist_motion(0.5, 0, 2 * std::numbers::pi / static_cast<double>(count), 1, {}).step;
+  for (SightingSet& look : looks) {
+    robot = robot * step;
+    std::vector<std::uint32_t> near;
+    map.near(robot.at(), 20, [&](std::uint32_t i) { near.push_back(i); });
+    for (int i = 0; i < 3 && !near.empty(); ++i) {
+      const auto chosen = near.begin() + static_cast<std::ptrdiff_t>(random.below(near.size()));
+      const MapLandmark& l = map[*chosen];
+      near.erase(chosen);
+      const Eigen::Vector2d to = l.at - robot.at();
+      SeenLandmark s;
+      s.type = l.type;
+      s.bearing = wrapped(std::atan2(to.y(), to.x()) - robot.yaw + s.bearing_sd * random.normal());
+      if (ranges) s.range = std::max(to.norm() + s.range_sd * random.normal(), 0.1);
+      s.features.value[0] = l.features.value[0] + 0.1 * random.normal();
+      s.features.variance[0] = 0.01;
+      look.sightings.push_back(s);
+    }
+  }
+  return looks;
+}
+
+/// The particle filter's whole update, motion and sightings without identities: 1000 particles, three
+/// sightings, 50,000 landmarks in memory. `error_m`: mean, so that a filter that is lost shows.
+void particle_update(benchmark::State& state) {
+  const LandmarkGrid map = map_of(50000);
+  const std::vector<SightingSet> looks = looks_of_a_round(map, 200, state.range(0) != 0);
+  const BodyMotion step = twist_motion(0.5, 0, 2 * std::numbers::pi / 200, 1, {});
+  PoseEstimate start;
+  start.covariance = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal();
+  ParticleOptions options;
+  options.particles = 1000;
+  options.threads = 1;
+  ParticleFilter filter(start, LandmarkWindow(map), {}, {.use_identities = false}, options);
+  Pose2 truth;
+  double error = 0;
+  std::size_t updates = 0;
+  for (auto _ : state) {
+    truth = truth * step.step;
+    filter.move(step);
+    benchmark::DoNotOptimize(filter.see(looks[updates++ % looks.size()]).size());
+    error += (filter.estimate().pose.at() - truth.at()).norm();
+  }
+  state.counters["error_m"] = error / static_cast<double>(updates);
+}
+BENCHMARK(particle_update)->ArgName("ranges")->Arg(1)->Unit(benchmark::kMicrosecond);
+BENCHMARK(particle_update)->ArgName("ranges")->Arg(0)->Unit(benchmark::kMillisecond);
 
 /// What a window of a map of any size costs once it is cached: the same question to a window of 200 m.
 void weigh_in_window(benchmark::State& state) {
