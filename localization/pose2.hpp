@@ -7,7 +7,7 @@ namespace waymark {
 
 /// The same direction in [-pi, pi].
 inline double wrapped(double angle) {
-  return std::remainder(angle, 2 * std::numbers::pi);
+  return std::abs(angle) <= std::numbers::pi ? angle : std::remainder(angle, 2 * std::numbers::pi);
 }
 
 /// Where something is in the plane and where it looks: metres, and radians from x (east, forward) towards y

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <unordered_map>
-#include "localization/filters/particle_weights.hpp"
+#include "localization/filters/sighting_score.hpp"
 #include "localization/identification/joint_search.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/line_of_sight.hpp"

@@ -1,39 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/filters/particle_filter.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <numbers>
 #include <stdexcept>
 
+#include "core/ziggurat.hpp"
+#include "localization/filters/particle_blocks.hpp"
 #include "localization/filters/resampling.hpp"
 
 namespace waymark {
 namespace {
-
-constexpr double kNearEnough = 2;    // m: what the mean cannot see, no particle can
-constexpr double kCluster = 1.5;     // m: particles nearer than this are one hypothesis
-constexpr double kOneHeading = 0.5;  // rad
-constexpr int kMostParts = 20;       // in which one set is believed
-
-/// Calls work(i) for all i, on several threads where it pays. Results must not depend on the order.
-template <class Work>
-void for_each_particle(std::size_t count, std::int64_t threads, Work&& work) {
-  if (count < 2048 || threads == 1) {
-    for (std::size_t i = 0; i < count; ++i) work(i);
-    return;
-  }
-  const auto all = [&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 512), [&](const auto& some) {
-      for (std::size_t i = some.begin(); i < some.end(); ++i) work(i);
-    });
-  };
-  if (threads == 0) return all();
-  tbb::task_arena(static_cast<int>(threads)).execute(all);
-}
 
 Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& random) {
   const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
@@ -109,97 +86,25 @@ void ParticleFilter::move(const BodyMotion& motion) {
 void ParticleFilter::spread() {
   summary_ = moved(summary_, pending_);
   const Eigen::Matrix3d root = square_root(pending_.covariance);
-  const PoseEstimate step{pending_.step, {}};
   const std::uint64_t stream = named_seed(static_cast<std::uint64_t>(options_.seed), "motion") + ++step_;
-  for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) {
-    Random random(mixed(stream) + i);
-    poses_[i] = poses_[i] * sample(step, root, random);
+  const Ziggurat& normal = Ziggurat::shared();
+  for_each_block(poses_.size(), options_.threads, [&](std::size_t first, std::size_t last) {
+    Random random(mixed(stream) + first);
+    for (std::size_t i = first; i < last; ++i) {
+      const double a = normal(random), b = normal(random), c = normal(random);
+      poses_[i] = poses_[i] * Pose2{pending_.step.x + root(0, 0) * a,
+                                    pending_.step.y + root(1, 0) * a + root(1, 1) * b,
+                                    pending_.step.yaw + root(2, 0) * a + root(2, 1) * b + root(2, 2) * c};
+    }
   });
   pending_ = {};
-}
-
-void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
-  SightingScore score(seen, map, scales_, options_.weight, identification_.use_identities);
-  if (score.sightings() == 0) return;
-  // Seen from the mean: a search has no such place, and expects all.
-  const double spread = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  if (visible_ && options_.weight.expect_unseen && spread < kNearEnough)
-    score.hide(hidden_landmarks(summary_.pose * seen.robot_from_sensor, map,
-                                options_.weight.view_range + spread, visible_));
-  std::vector<double> fit(poses_.size());
-  const auto ask = [&] {
-    for_each_particle(poses_.size(), options_.threads, [&](std::size_t i) { fit[i] = score(poses_[i]); });
-  };
-  ask();
-  if (options_.weight.weights == "paper") {
-    const std::vector<double> factor = paper_weights(fit);
-    for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = std::log(weights_[i]) + std::log(factor[i]);
-    weights_ = normalised(fit);
-    return;
-  }
-  double mean = 0;  // of the probability of one sighting
-  for (std::size_t i = 0; i < fit.size(); ++i)
-    mean += weights_[i] * std::exp(fit[i] / static_cast<double>(score.sightings()));
-  slow_ += (slow_ == 0 ? 1 : options_.recovery_slow) * (mean - slow_);
-  fast_ += (fast_ == 0 ? 1 : options_.recovery_fast) * (mean - fast_);
-
-  const auto believe = [&](double part) {
-    for (std::size_t i = 0; i < fit.size(); ++i) fit[i] = part * fit[i] + std::log(weights_[i]);
-    weights_ = normalised(fit);
-  };
-  const double least = options_.resample_below * static_cast<double>(poses_.size());
-  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "parts");
-  double left = 1;
-  for (int i = 0; i < kMostParts && together(); ++i) {
-    const double part = bearable_part(weights_, fit, left, least);
-    if (part >= left) break;
-    believe(part);
-    left -= part;
-    poses_ = redraw(poses_, weights_, poses_.size(), random);
-    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
-    ask();
-  }
-  believe(left);
-}
-
-bool ParticleFilter::together() const {
-  if (searching_) return false;
-  const Eigen::Matrix3d c = moments(poses_, weights_).covariance;
-  return c(0, 0) + c(1, 1) < kCluster * kCluster && c(2, 2) < kOneHeading * kOneHeading;
-}
-
-std::size_t ParticleFilter::wanted() const {
-  const auto most = static_cast<std::size_t>(searching_ ? options_.search_particles : options_.particles);
-  if (!options_.adaptive) return most;
-  const std::size_t needed = kld_count(occupied_bins(poses_, 0.25, 0.17), options_.kld_error);
-  return std::clamp<std::size_t>(needed, 50, static_cast<std::size_t>(options_.search_particles));
-}
-
-void ParticleFilter::draw_again(const SightingSet& seen, const LandmarkGrid& map) {
-  Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw");
-  const std::size_t count = wanted();
-  std::vector<Pose2> next;
-  if (together()) {
-    next = redraw(poses_, weights_, count, random);
-  } else {
-    for (const std::uint32_t i : resample(weights_, count, random.uniform())) next.push_back(poses_[i]);
-  }
-  // New places are tried when what is seen fits half as well as it used to (Gutmann & Fox 2002).
-  const double fresh = options_.recovery && slow_ > 0 ? std::clamp(1 - 2 * fast_ / slow_, 0.0, 0.2) : 0;
-  // A pose that explains one sighting is right once in as many as there are landmarks.
-  const bool sensible = !hints_.empty() || map.size() <= count;
-  if (fresh > 0.02 && sensible)
-    for (Pose2& p : next)
-      if (random.chance(fresh)) p = pose_that_explains(seen, map, random).value_or(p);
-  poses_ = std::move(next);
-  weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
 }
 
 template <class Fit>
 bool ParticleFilter::weigh_by(Fit&& fit) {
   for (std::size_t i = 0; i < poses_.size(); ++i) weights_[i] = std::log(weights_[i]) + fit(poses_[i]);
   weights_ = normalised(weights_);
-  summary_ = summary(poses_, weights_, kCluster);
+  summary_ = summary(poses_, weights_, kOnePlace);
   if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
     Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw by fix");
     std::vector<Pose2> next;
@@ -225,7 +130,7 @@ bool ParticleFilter::fix(const GnssFix& gnss) {
       poses_.push_back({gnss.at.x() + gnss.sd * random.normal(), gnss.at.y() + gnss.sd * random.normal(),
                         random.uniform(-std::numbers::pi, std::numbers::pi)});
     weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
-    summary_ = summary(poses_, weights_, kCluster);
+    summary_ = summary(poses_, weights_, kOnePlace);
     if (doubt_) doubt_->lose(), doubt_->fix(gnss);
     return true;
   }
@@ -266,9 +171,9 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
 
   weigh(seen, map);
-  summary_ = summary(poses_, weights_, kCluster);
+  summary_ = summary(poses_, weights_, kOnePlace);
   const double sd = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kCluster, 3 * found_sd_));
+  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kOnePlace, 3 * found_sd_));
   if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
     draw_again(seen, map);
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include "core/random.hpp"
 #include "localization/filters/convergence.hpp"
-#include "localization/filters/particle_weights.hpp"
+#include "localization/filters/sighting_score.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/identification/landmark_window.hpp"
@@ -55,9 +55,11 @@ class ParticleFilter final : public Localizer {
   std::size_t particles() const { return poses_.size(); }
 
  private:
+  static constexpr double kOnePlace = 1.5;  // m: particles nearer than this are one hypothesis
+
   void spread();  // moves the particles by what has been driven since the last time
   void weigh(const SightingSet& seen, const LandmarkGrid& map);
-  bool together() const;  // the particles are one cloud about one place
+  bool together(const PoseEstimate& cloud) const;  // the particles are one cloud about one place
   void draw_again(const SightingSet& seen, const LandmarkGrid& map);
   std::optional<Pose2> pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                           Random& random) const;

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 #include <vector>
-#include "localization/identification/identification.hpp"
+#include "core/options.hpp"
 namespace waymark {
 
 /// How particles are weighed.
@@ -29,57 +29,6 @@ struct WeightOptions {
   double bearing_reach = 100;  ///< m
 
   void describe(OptionVisitor& option);
-};
-
-/// Weighs poses by one set of sightings. Made once per set, then asked for each particle from any thread:
-/// about 60 ns per sighting where the map holds a few landmarks inside the gate, whatever its size.
-class SightingScore {
- public:
-  /// `map` and `scales` must outlive it. Unsound sightings are left out.
-  SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
-                const WeightOptions& options, bool use_identities);
-
-  /// `likelihood`: sum over sightings of the log of (clutter + best landmark's density times quality), and
-  /// with `expect_unseen` the sum of log(1 - q detection) over landmarks in view that no sighting is nearest
-  /// to. What stands between is not known: in dense forest choose `view_range` so that most is seen.
-  /// `paper`: e of eq. 12, the sum of match distances times qualities.
-  double operator()(const Pose2& robot) const;
-  std::size_t sightings() const { return prepared_.size(); }
-  /// Landmarks that cannot be seen from where the robot about is, ascending: they are not expected.
-  void hide(std::vector<std::uint32_t> landmarks) { hidden_ = std::move(landmarks); }
-  /// The sum of log(1 - q detection) over landmarks in view that are not among those matched.
-  double unseen(const Pose2& robot, std::span<const std::uint32_t> matched) const;
-
- private:
-  struct Prepared {
-    SeenLandmark seen;
-    double cosine, sine;  ///< of the bearing
-    double range_variance, bearing_variance;
-    double radius;       ///< m about the expected place; about the sensor where there is no range
-    double log_clutter;  ///< ln of the density where no landmark fits
-    double gate;
-    std::optional<std::uint32_t> landmark;  ///< of a known identity
-    bool absent = false;                    ///< a known identity the map does not have
-  };
-  struct Best {
-    double cost;
-    std::uint32_t landmark;
-  };
-  Best best(const Prepared& p, const Eigen::Vector2d& sensor, double cosine, double sine) const;
-  double log_unseen(std::uint32_t landmark) const;
-  double unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
-                std::span<const std::uint32_t> matched) const;
-  double pair(const Prepared& p, std::uint32_t landmark, const Eigen::Vector2d& sensor,
-              const Eigen::Vector2d& along) const;
-
-  const LandmarkGrid* map_;
-  const FeatureScales* scales_;
-  WeightOptions options_;
-  Pose2 robot_from_sensor_;
-  std::vector<Prepared> prepared_;
-  bool paper_;
-  std::vector<std::uint32_t> hidden_;
-  std::vector<TypeId> types_;  // that the sensor sees, as far as this set tells
 };
 
 /// Weights of eqs. 13-14 from errors: (e_max - e) / e_max. Degenerate cases: all errors equal (also all 0, or

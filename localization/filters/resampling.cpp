@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <tuple>
 
+#include "core/ziggurat.hpp"
 #include "localization/body_motion.hpp"
 
 namespace waymark {
@@ -12,26 +14,42 @@ namespace {
 
 constexpr double kEverywhere = 1e150;  // m
 
-PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights,
-                     const Eigen::Vector2d& near, double radius) {
-  double total = 0, c = 0, s = 0;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  const auto inside = [&](const Pose2& p) { return (p.at() - near).squaredNorm() <= radius * radius; };
+/// Of the sum of the unit vectors of those within a squared distance.
+double direction(std::span<const Pose2> poses, std::span<const double> weights, const Eigen::Vector2d& near,
+                 double square) {
+  double c = 0, s = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!inside(poses[i])) continue;
-    total += weights[i];
-    mean += weights[i] * (poses[i].at() - near);  // about a near point: no cancellation far from the origin
+    if (!((poses[i].at() - near).squaredNorm() <= square)) continue;
     c += weights[i] * std::cos(poses[i].yaw);
     s += weights[i] * std::sin(poses[i].yaw);
   }
-  if (!(total > 0)) return {{near.x(), near.y(), 0}, Eigen::Matrix3d::Zero()};
-  const Eigen::Vector2d at = near + mean / total;
-  PoseEstimate e{{at.x(), at.y(), std::atan2(s, c)}, Eigen::Matrix3d::Zero()};
+  return std::atan2(s, c);
+}
+
+/// Of those within `radius` metres of `near`.
+PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights,
+                     const Eigen::Vector2d& near, double radius) {
+  const double square = radius * radius, ahead = poses.empty() ? 0 : poses[0].yaw;
+  double total = 0, x = 0, y = 0, yaw = 0, farthest = 0;  // about a near point: no cancellation far away
+  double xx = 0, xy = 0, yy = 0, xt = 0, yt = 0, tt = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!inside(poses[i])) continue;
-    const Eigen::Vector3d d(poses[i].x - at.x(), poses[i].y - at.y(), wrapped(poses[i].yaw - e.pose.yaw));
-    e.covariance += weights[i] / total * d * d.transpose();
+    const double dx = poses[i].x - near.x(), dy = poses[i].y - near.y();
+    if (!(dx * dx + dy * dy <= square)) continue;
+    const double turn = wrapped(poses[i].yaw - ahead), w = weights[i];
+    farthest = std::max(farthest, std::abs(turn));
+    total += w, x += w * dx, y += w * dy, yaw += w * turn;
   }
+  if (!(total > 0)) return {{near.x(), near.y(), 0}, Eigen::Matrix3d::Zero()};
+  x /= total, y /= total, yaw = wrapped(ahead + yaw / total);
+  if (farthest > std::numbers::pi / 2) yaw = direction(poses, weights, near, square);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double dx = poses[i].x - near.x(), dy = poses[i].y - near.y();
+    if (!(dx * dx + dy * dy <= square)) continue;
+    const double a = dx - x, b = dy - y, t = wrapped(poses[i].yaw - yaw), w = weights[i] / total;
+    xx += w * a * a, xy += w * a * b, yy += w * b * b, xt += w * a * t, yt += w * b * t, tt += w * t * t;
+  }
+  PoseEstimate e{{near.x() + x, near.y() + y, yaw}, {}};
+  e.covariance << xx, xy, xt, xy, yy, yt, xt, yt, tt;
   return e;
 }
 
@@ -61,40 +79,23 @@ PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weigh
   return moments(poses, weights, poses.empty() ? Eigen::Vector2d(0, 0) : poses[0].at(), kEverywhere);
 }
 
-std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights, std::size_t count,
-                          Random& random) {
-  const PoseEstimate all = moments(poses, weights);
+std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights,
+                          const PoseEstimate& all, std::size_t count, Random& random) {
   const double blur = std::pow(0.8 / static_cast<double>(std::max<std::size_t>(count, 2)), 2.0 / 7);
+  const double keep = std::sqrt(1 - blur);
   const Eigen::Matrix3d root = square_root(blur * all.covariance);
+  const Ziggurat& normal = Ziggurat::shared();
   std::vector<Pose2> next;
   next.reserve(count);
   for (const std::uint32_t i : resample(weights, count, random.uniform())) {
     const Pose2& p = poses[i];
-    const Eigen::Vector3d off(p.x - all.pose.x, p.y - all.pose.y, wrapped(p.yaw - all.pose.yaw));
-    const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
-    next.push_back(pose_of(all.pose.vector() + std::sqrt(1 - blur) * off + root * noise));
+    const double a = normal(random), b = normal(random), c = normal(random);
+    next.push_back({all.pose.x + keep * (p.x - all.pose.x) + root(0, 0) * a,
+                    all.pose.y + keep * (p.y - all.pose.y) + root(1, 0) * a + root(1, 1) * b,
+                    wrapped(all.pose.yaw + keep * wrapped(p.yaw - all.pose.yaw) + root(2, 0) * a +
+                            root(2, 1) * b + root(2, 2) * c)});
   }
   return next;
-}
-
-double bearable_part(std::span<const double> weights, std::span<const double> fit, double most,
-                     double least) {
-  const double best = fit.empty() ? 0 : std::ranges::max(fit);
-  const auto bearable = [&](double part) {
-    double sum = 0, squares = 0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      const double w = weights[i] * std::exp(part * (fit[i] - best));
-      sum += w, squares += w * w;
-    }
-    return sum * sum >= least * squares;
-  };
-  if (bearable(most)) return most;
-  double low = 0, high = most;
-  for (int i = 0; i < 10; ++i) {
-    const double middle = (low + high) / 2;
-    (bearable(middle) ? low : high) = middle;
-  }
-  return low;
 }
 
 std::size_t kld_count(std::size_t bins, double error) {

@@ -14,17 +14,16 @@ double effective_count(std::span<const double> weights);
 /// [0, 1). Each is drawn within one of its expected number. Weights sum to 1.
 std::vector<std::uint32_t> resample(std::span<const double> weights, std::size_t count, double u);
 
-/// Mean and covariance of all weighted poses.
+/// Mean and covariance of all weighted poses. Headings that all lie within a right angle of the first one's
+/// are averaged as they are, others by their vectors.
 PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights);
 
 /// As many poses drawn by weight, each moved a little, so that copies of few survivors are a cloud again:
 /// shrunk towards the mean and blurred by a kernel (Liu & West 2001, width by Silverman's rule), which keeps
-/// mean and covariance. For particles that lie together: between two places it would fill the gap.
-std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights, std::size_t count,
-                          Random& random);
-
-/// Largest part b of [0, most] so that weights times exp(b fit) still count as at least `least` particles.
-double bearable_part(std::span<const double> weights, std::span<const double> fit, double most, double least);
+/// mean and covariance, `all`: the moments. For particles that lie together: between two places it would fill
+/// the gap.
+std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights,
+                          const PoseEstimate& all, std::size_t count, Random& random);
 
 /// Particles needed so that the error of their histogram (Kullback-Leibler distance) stays below `error` with
 /// probability 0.99, given the number of bins they occupy (Fox 2003, eq. 7).

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "localization/chi_square.hpp"
+#include "localization/filters/bearable_part.hpp"
 #include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/particle_filter.hpp"
@@ -172,7 +173,7 @@ TEST(Resampling, RedrawnParticlesKeepMeanAndCovarianceAndAreNoCopies) {
   for (const double w : weights) total += w;
   for (double& w : weights) w /= total;
   const PoseEstimate before = moments(poses, weights);
-  const std::vector<Pose2> after = redraw(poses, weights, 2000, random);
+  const std::vector<Pose2> after = redraw(poses, weights, before, 2000, random);
   const PoseEstimate now = moments(after, std::vector<double>(2000, 1.0 / 2000));
   EXPECT_NEAR(now.pose.x, before.pose.x, 0.1);
   EXPECT_NEAR(now.pose.y, before.pose.y, 0.03);
@@ -187,14 +188,49 @@ TEST(Resampling, OnlyAsMuchIsBelievedAsLeavesEnoughParticles) {
   const std::vector<double> weights(100, 0.01);
   std::vector<double> fit;
   for (int i = 0; i < 100; ++i) fit.push_back(-0.5 * i);
-  EXPECT_EQ(bearable_part(weights, fit, 0.01, 50), 0.01);
-  const double part = bearable_part(weights, fit, 1, 50);
-  EXPECT_LT(part, 0.2);
+  EXPECT_EQ(believed(weights, fit, 0.01, 50).part, 0.01);
+  const Borne borne = believed(weights, fit, 1, 50);
+  EXPECT_LT(borne.part, 0.2);
   std::vector<double> after = fit;
-  for (double& f : after) f *= part;
+  for (double& f : after) f *= borne.part;
   const double left = effective_count(normalised(after));
   EXPECT_GE(left, 50);
   EXPECT_LT(left, 51);
+  for (std::size_t i = 0; i < after.size(); ++i)
+    EXPECT_NEAR(borne.weights[i], normalised(after)[i], 1e-12) << i;
+}
+
+// By halving; fits of clouds in three dimensions, from vague to precise, with a floor as clutter makes it.
+TEST(Resampling, WhatIsBelievedIsFoundAsByHalving) {
+  Random random(8);
+  const std::vector<double> weights(400, 1.0 / 400);
+  for (const double precise : {0.3, 3.0, 30.0, 300.0, 3e4}) {
+    std::vector<double> fit;
+    for (int i = 0; i < 400; ++i) {
+      const double a = random.normal() + 0.5, b = random.normal(), c = random.normal();
+      fit.push_back(std::log(std::exp(-precise * (a * a + 0.3 * b * b + 0.1 * c * c)) + 1e-9) - 700);
+    }
+    const auto bears = [&](double part, double least) {
+      std::vector<double> after = fit;
+      for (double& f : after) f *= part;
+      return effective_count(normalised(after)) >= least;
+    };
+    double low = 0, high = 1;
+    for (int i = 0; i < 40 && !bears(high, 200); ++i) {
+      const double middle = (low + high) / 2;
+      (bears(middle, 200) ? low : high) = middle;
+    }
+    const Borne borne = believed(weights, fit, 1, 200);
+    EXPECT_TRUE(bears(borne.part, 200)) << precise;
+    EXPECT_NEAR(borne.part, bears(1, 200) ? 1 : low, 0.05 * borne.part) << precise;
+  }
+}
+
+TEST(Resampling, HopelessAndEqualFitsAreBelievedWhole) {
+  const std::vector<double> weights(10, 0.1);
+  EXPECT_EQ(believed(weights, std::vector<double>(10, -1e5), 1, 5).part, 1);
+  const std::vector<double> one{1, 0, 0, 0};
+  EXPECT_EQ(believed(one, std::vector<double>{-1, 0, -2, 0}, 1, 2).part, 0) << "too few before";
 }
 
 TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {

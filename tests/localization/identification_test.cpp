@@ -8,8 +8,8 @@
 #include <set>
 
 #include "localization/chi_square.hpp"
-#include "localization/filters/particle_weights.hpp"
 #include "localization/filters/resampling.hpp"
+#include "localization/filters/sighting_score.hpp"
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
 #include "localization/identification/landmark_window.hpp"

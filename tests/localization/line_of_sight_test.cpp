@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "localization/filters/hypotheses.hpp"
-#include "localization/filters/particle_weights.hpp"
+#include "localization/filters/sighting_score.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/filters/particle_weights.hpp"
+#include "localization/filters/sighting_score.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,6 +59,54 @@ TEST(SightingScore, IsTheDensityOfTheNearestLandmark) {
     }
     ASSERT_NEAR(score(robot), expected, 2e-3 * std::max(1.0, std::abs(expected)));
   }
+}
+
+// What poses of a cloud share is looked up once; no score changes by it, not even in its last bit.
+TEST(SightingScore, GatheringChangesNoScore) {
+  std::size_t fits = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    Random random(seed, "cloud");
+    auto all = strewn(400, 60, seed, 0.1);
+    for (MapLandmark& l : all) {
+      l.type = static_cast<TypeId>(random.below(2));
+      l.quality = random.uniform(0.1, 1);
+      l.features.value[0] = random.uniform(0.5, 1);
+    }
+    const LandmarkGrid map(all);
+    const FeatureScales scales;
+    WeightOptions options;
+    options.weights = seed % 5 == 0 ? "paper" : "likelihood";
+    options.expect_unseen = seed % 3 == 0;
+    options.bearing_reach = 40;
+    SightingSet seen{{0.3, 0.1, random.uniform(-3, 3)}, {}};
+    for (int i = 0; i < 6; ++i) {
+      seen.sightings.push_back(seen_at(random.uniform(1, 20), random.uniform(-3, 3)));
+      SeenLandmark& s = seen.sightings.back();
+      if (random.chance(0.3)) s.range.reset();
+      if (random.chance(0.7)) s.type = TypeId{0}, s.features.value[0] = 0.7, s.features.variance[0] = 0.01;
+      if (random.chance(0.2)) s.identity = random.below(450);
+    }
+    SightingScore score(seen, map, scales, options, true);
+    const double wide = seed % 4 == 0 ? 20 : 0.5, turned = seed % 7 == 0 ? 3 : 0.1;
+    const Pose2 middle{random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-3.1, 3.1)};
+    std::vector<Pose2> poses;
+    for (int i = 0; i < 200; ++i)
+      poses.push_back(middle *
+                      Pose2{wide * random.normal(), wide * random.normal(), turned * random.normal()});
+    std::vector<double> before;
+    for (const Pose2& p : poses) before.push_back(score(p));
+    score.gather(std::span(poses).first(150));  // the others are as ever
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      ASSERT_EQ(score(poses[i]), before[i]) << "seed " << seed << " pose " << i;
+      fits += before[i] != before[0];
+    }
+    std::vector<double> several(poses.size());
+    score(std::span(poses).first(150), several);  // but for rounding
+    score(std::span(poses).subspan(150), std::span(several).subspan(150));
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      ASSERT_NEAR(several[i], before[i], 1e-9 * std::abs(before[i])) << "seed " << seed << " pose " << i;
+  }
+  EXPECT_GT(fits, 1000u);
 }
 
 TEST(Resampling, DrawsEachWithinOneOfItsShare) {

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/sighting_score.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
+namespace waymark {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 1e-6;  // m: no rounding leaves out a landmark
+
+/// Poses that are asked at once, side by side in vector registers.
+constexpr int kLanes = 8;
+using Lanes = Eigen::Array<double, kLanes, 1>;
+
+/// atan2 for the small angles that pass a gate; to 1e-7 rad where it is a series.
+template <class T>
+T series(const T& t) {
+  const T s = t * t;
+  return t * (1 - s * (1.0 / 3 - s * (0.2 - s * (1.0 / 7 - s * (1.0 / 9)))));
+}
+double small_angle(double y, double x) {
+  const double t = y / x;
+  return x > 0 && std::abs(t) < 0.25 ? series(t) : std::atan2(y, x);
+}
+Lanes small_angle(const Lanes& y, const Lanes& x) {
+  const Lanes t = y / x;
+  Lanes angle = series(t);
+  for (int i = 0; i < kLanes; ++i)
+    if (!(x[i] > 0 && std::abs(t[i]) < 0.25)) angle[i] = std::atan2(y[i], x[i]);
+  return angle;
+}
+
+/// Of angles up to kShortTurn, to 1e-16.
+constexpr double kShortTurn = 0.5;
+Lanes cosine_of(const Lanes& angle) {
+  const Lanes s = angle * angle;
+  Lanes sum = Lanes::Ones();
+  for (const double n : {14, 12, 10, 8, 6, 4, 2}) sum = 1 - s * (1 / (n * (n - 1))) * sum;
+  return sum;
+}
+Lanes sine_of(const Lanes& angle) {
+  const Lanes s = angle * angle;
+  Lanes sum = Lanes::Ones();
+  for (const double n : {13, 11, 9, 7, 5, 3}) sum = 1 - s * (1 / (n * (n - 1))) * sum;
+  return angle * sum;
+}
+
+double at_least(double a, double least) {
+  return std::max(a, least);
+}
+Lanes at_least(const Lanes& a, double least) {
+  return a.max(least);
+}
+
+}  // namespace
+
+/// Where the sensor is and where a sighting points.
+template <class T>
+struct SightingScore::View {
+  T x, y, cosine, sine;
+};
+
+/// A landmark's place compared with the one seen: squared distance, and one over the determinant of its
+/// covariance.
+template <class T>
+struct SightingScore::Place {
+  T squares, inverse_det;
+};
+
+SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
+                             const WeightOptions& options, bool use_identities)
+    : map_(&map),
+      scales_(&scales),
+      options_(options),
+      robot_from_sensor_(seen.robot_from_sensor),
+      paper_(options.weights == "paper") {
+  const double gate = -2 * std::log1p(-options.gate);  // chi-square quantile of two degrees of freedom
+  const double sigmas = std::sqrt(gate);
+  for (const SeenLandmark& s : seen.sightings) {
+    if (!s.sound()) continue;
+    const double far = s.range ? *s.range : options.bearing_reach;
+    Prepared p{.seen = s,
+               .cosine = std::cos(s.bearing),
+               .sine = std::sin(s.bearing),
+               .range_variance = s.range ? s.range_sd * s.range_sd : 0,
+               .bearing_variance = s.bearing_sd * s.bearing_sd,
+               .radius = far,
+               .clutter = options.clutter * (s.range ? 1 : far),
+               .gate = gate,
+               .candidates = {}};
+    if (s.range)
+      p.radius = sigmas * std::max(s.range_sd, far * std::min(s.bearing_sd, 1.0)) + sigmas * map.largest_sd();
+    p.known = use_identities && s.identity;
+    if (p.known) {
+      if (const auto l = map.find(*s.identity))
+        if (const auto alike = likeness(p, *l))
+          p.candidates.push_back({*l, map[*l].at, map[*l].covariance, *alike});
+    }
+    if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
+    prepared_.push_back(std::move(p));
+  }
+}
+
+SightingScore::Cloud SightingScore::cloud_of(std::span<const Pose2> poses) {
+  if (poses.empty()) return {};
+  Eigen::AlignedBox2d box;
+  double right = 0, left = 0;
+  for (const Pose2& p : poses) {
+    box.extend(p.at());
+    const double turn = wrapped(p.yaw - poses[0].yaw);
+    right = std::min(right, turn), left = std::max(left, turn);
+  }
+  const Eigen::Vector2d middle = box.center();
+  return {.middle = {middle.x(), middle.y(), wrapped(poses[0].yaw + (left + right) / 2)},
+          .half = box.sizes() / 2 + Eigen::Vector2d::Constant(kSlack),
+          .turn = (left - right) / 2 + kSlack};
+}
+
+void SightingScore::gather(std::span<const Pose2> poses) {
+  cloud_ = cloud_of(poses);
+  const double turned = robot_from_sensor_.at().norm() * std::min(cloud_.turn, 2.0);
+  alike_ = !paper_ && !options_.expect_unseen && cloud_.turn < kShortTurn;
+  for (Prepared& p : prepared_) {
+    if (p.known) continue;
+    gather(p, cloud_.middle * robot_from_sensor_, cloud_.half.norm() + turned + kSlack);
+    alike_ = alike_ && p.gathered;
+  }
+}
+
+// `sensor`: that of the cloud's middle; the others are within `radius` of it.
+void SightingScore::gather(Prepared& p, const Pose2& sensor, double radius) {
+  p.candidates.clear();
+  const double swing = p.seen.range ? *p.seen.range * std::min(cloud_.turn, 2.0) : 0;
+  // Of a wide cloud each particle has landmarks of its own.
+  p.gathered = radius + swing < 4 * p.radius;
+  if (!p.gathered) return;
+  const double along = sensor.yaw + p.seen.bearing;
+  const Eigen::Vector2d out(std::cos(along), std::sin(along));
+  const Eigen::Vector2d centre = sensor.at() + p.seen.range.value_or(0) * out;
+  map_->near(centre, p.radius + radius + swing, [&](std::uint32_t i) {
+    const MapLandmark& l = (*map_)[i];
+    const Eigen::Vector2d d = l.at - sensor.at();
+    const double away = d.norm();
+    if (p.seen.range) {
+      if (std::abs(away - *p.seen.range) > p.radius + radius) return;
+    } else if (away > 2 * radius) {
+      const double nearest = away - radius, sd = map_->largest_sd() / nearest;
+      const double most = std::sqrt(p.gate * (p.bearing_variance + sd * sd)) + cloud_.turn +
+                          std::asin(radius / away) + kSlack;
+      if (std::abs(std::atan2(out.x() * d.y() - out.y() * d.x(), out.dot(d))) > most) return;
+    }
+    if (const auto alike = likeness(p, i)) p.candidates.push_back({i, l.at, l.covariance, *alike});
+  });
+}
+
+double SightingScore::log_unseen(std::uint32_t landmark) const {
+  return std::log1p(-options_.detection * std::max((*map_)[landmark].quality, options_.quality_floor));
+}
+
+double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
+                             std::span<const std::uint32_t> matched) const {
+  double sum = 0;
+  const double least = std::cos(options_.view_angle / 2);
+  map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
+    const MapLandmark& l = (*map_)[i];
+    if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
+    if (std::ranges::binary_search(hidden_, i)) return;
+    const Eigen::Vector2d d = l.at - sensor;
+    if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < least * d.norm()) return;
+    if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
+  });
+  return sum;
+}
+
+double SightingScore::unseen(const Pose2& robot, std::span<const std::uint32_t> matched) const {
+  const Pose2 sensor = robot * robot_from_sensor_;
+  return unseen(sensor.at(), std::cos(sensor.yaw), std::sin(sensor.yaw), matched);
+}
+
+std::optional<SightingScore::Likeness> SightingScore::likeness(const Prepared& p,
+                                                               std::uint32_t landmark) const {
+  const MapLandmark& l = (*map_)[landmark];
+  if (!p.known && p.seen.type && *p.seen.type != l.type) return {};
+  const bool comparable = p.seen.type && *p.seen.type == l.type;
+  const FeatureComparison features =
+      comparable ? compare_features(*scales_, l.type, p.seen.features, l.features, options_.feature_tolerance)
+                 : FeatureComparison{};
+  if (features.largest > options_.feature_limit) return {};
+  const double quality = std::max(l.quality, options_.quality_floor);
+  // A missing feature counts 1; right ones count 1 each on average.
+  const double alike = std::exp((features.used - features.squares) / 2);
+  const double turns = 2 * std::numbers::pi;
+  return Likeness{.scale = quality * p.seen.confidence * alike / (p.seen.range ? turns : std::sqrt(turns)),
+                  .features = features.squares,
+                  .quality = quality};
+}
+
+template <class T>
+SightingScore::Place<T> SightingScore::place(const Prepared& p, const Eigen::Vector2d& at,
+                                             const Eigen::Matrix2d& c, const View<T>& view) const {
+  using std::sqrt;
+  const T dx = at.x() - view.x, dy = at.y() - view.y;
+  const T ahead = view.cosine * dx + view.sine * dy, left = view.cosine * dy - view.sine * dx;
+  const T range = at_least(T(sqrt(dx * dx + dy * dy)), 1e-3), inverse = 1 / range;
+  const T nx = dx * inverse, ny = dy * inverse, xx = nx * nx, xy = nx * ny, yy = ny * ny;
+  const T turn = small_angle(left, ahead);
+  const T across = yy * c(0, 0) - 2 * c(0, 1) * xy + xx * c(1, 1);
+  const T d = p.bearing_variance + across * (inverse * inverse);
+  if (!p.seen.range) {
+    const T inverse_d = 1 / d;
+    return {turn * turn * (paper_ ? T(0 * d + 1 / p.bearing_variance) : inverse_d), inverse_d};
+  }
+  const T off = *p.seen.range - range;
+  const T a = p.range_variance + xx * c(0, 0) + 2 * c(0, 1) * xy + yy * c(1, 1);
+  const T b = (xy * (c(1, 1) - c(0, 0)) + (xx - yy) * c(0, 1)) * inverse;
+  const T inverse_det = 1 / (a * d - b * b);
+  if (paper_) return {off * off / p.range_variance + turn * turn / p.bearing_variance, inverse_det};
+  return {(d * off * off + 2 * b * off * turn + a * turn * turn) * inverse_det, inverse_det};
+}
+
+template <class T>
+T SightingScore::value(const Place<T>& place, const Likeness& likeness) const {
+  using std::exp;
+  using std::sqrt;
+  if (paper_) return (place.squares + likeness.features) * likeness.quality;
+  return likeness.scale * exp(-0.5 * place.squares) * sqrt(place.inverse_det);
+}
+
+SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& view, bool in_cloud) const {
+  Best best{paper_ ? kNone : 0, 0};
+  const auto take = [&](const Place<double>& there, const Likeness& alike, std::uint32_t landmark) {
+    const double v = value(there, alike);
+    if (paper_ ? v < best.value : v > best.value) best = {v, landmark};
+  };
+  const double range = p.seen.range.value_or(0);
+  const Eigen::Vector2d centre(view.x + range * view.cosine, view.y + range * view.sine);
+  if (p.known || (in_cloud && p.gathered)) {
+    for (const Candidate& c : p.candidates) {
+      if (!p.known && !((c.at - centre).squaredNorm() <= p.radius * p.radius)) continue;
+      if (const auto there = place(p, c.at, c.covariance, view); there.squares <= p.gate)
+        take(there, c.likeness, c.landmark);
+    }
+    return best;
+  }
+  map_->near(centre, p.radius, [&](std::uint32_t i) {
+    const MapLandmark& l = (*map_)[i];
+    if (p.seen.type && *p.seen.type != l.type) return;
+    const auto there = place(p, l.at, l.covariance, view);
+    if (!(there.squares <= p.gate)) return;
+    if (const auto alike = likeness(p, i)) take(there, *alike, i);
+  });
+  return best;
+}
+
+// The heart of the filter.
+void SightingScore::several(const Pose2* poses, double* fit) const {
+  Lanes x, y, turn;
+  for (int i = 0; i < kLanes; ++i) {
+    x[i] = poses[i].x, y[i] = poses[i].y;
+    turn[i] = wrapped(poses[i].yaw - cloud_.middle.yaw);
+  }
+  const double ahead = std::cos(cloud_.middle.yaw), across = std::sin(cloud_.middle.yaw);
+  const Lanes c = cosine_of(turn), s = sine_of(turn);
+  const Lanes cosine = ahead * c - across * s, sine = across * c + ahead * s;
+  const Pose2& mount = robot_from_sensor_;
+  x += cosine * mount.x - sine * mount.y;
+  y += sine * mount.x + cosine * mount.y;
+  Lanes sum = Lanes::Zero(), product = Lanes::Ones();
+  const double mount_cosine = std::cos(mount.yaw), mount_sine = std::sin(mount.yaw);
+  for (const Prepared& p : prepared_) {
+    const double forward = mount_cosine * p.cosine - mount_sine * p.sine,
+                 left = mount_sine * p.cosine + mount_cosine * p.sine;
+    const View<Lanes> view{x, y, cosine * forward - sine * left, sine * forward + cosine * left};
+    const double range = p.seen.range.value_or(0), square = p.known ? kNone : p.radius * p.radius;
+    const Lanes centre_x = x + range * view.cosine, centre_y = y + range * view.sine;
+    Lanes best = Lanes::Zero();
+    for (const Candidate& l : p.candidates) {
+      const Lanes away = (l.at.x() - centre_x).square() + (l.at.y() - centre_y).square();
+      if (!(away.minCoeff() <= square)) continue;
+      const Place<Lanes> there = place(p, l.at, l.covariance, view);
+      if (!(there.squares.minCoeff() <= p.gate)) continue;
+      const Lanes v = value(there, l.likeness);
+      for (int i = 0; i < kLanes; ++i) {
+        const double inside = away[i] <= square && there.squares[i] <= p.gate ? v[i] : 0;
+        best[i] = std::max(best[i], inside);
+      }
+    }
+    product *= p.clutter + best;
+    if (!(product.minCoeff() > 1e-100 && product.maxCoeff() < 1e100))
+      sum += product.log(), product = Lanes::Ones();
+  }
+  const Lanes all = options_.temper * (sum + product.log());
+  std::copy_n(all.data(), kLanes, fit);
+}
+
+void SightingScore::operator()(std::span<const Pose2> poses, std::span<double> fit) const {
+  std::size_t i = 0;
+  if (alike_ && std::ranges::all_of(poses, [&](const Pose2& p) { return cloud_.holds(p); }))
+    for (; i + kLanes <= poses.size(); i += kLanes) several(&poses[i], &fit[i]);
+  for (; i < poses.size(); ++i) fit[i] = (*this)(poses[i]);
+}
+
+double SightingScore::operator()(const Pose2& robot) const {
+  double cosine = std::cos(robot.yaw), sine = std::sin(robot.yaw);
+  const Pose2& mount = robot_from_sensor_;
+  const Eigen::Vector2d sensor(robot.x + cosine * mount.x - sine * mount.y,
+                               robot.y + sine * mount.x + cosine * mount.y);
+  if (mount.yaw != 0) cosine = std::cos(robot.yaw + mount.yaw), sine = std::sin(robot.yaw + mount.yaw);
+  const bool in_cloud = cloud_.holds(robot);
+  const bool expects = options_.expect_unseen && !paper_;
+  const double detection = expects ? options_.detection : 1;
+  double sum = 0, product = 1;  // of costs; of densities
+  std::vector<std::uint32_t> matched;
+  for (const Prepared& p : prepared_) {
+    const Eigen::Vector2d along(cosine * p.cosine - sine * p.sine, sine * p.cosine + cosine * p.sine);
+    const auto [value, landmark] = best(p, {sensor.x(), sensor.y(), along.x(), along.y()}, in_cloud);
+    if (paper_) {
+      sum += value < kNone ? value : options_.unmatched_cost < 0 ? p.gate : options_.unmatched_cost;
+      continue;
+    }
+    if (expects && value > 0) matched.push_back(landmark);
+    product *= p.clutter + detection * value;
+    if (!(product > 1e-100 && product < 1e100)) sum += std::log(product), product = 1;
+  }
+  if (paper_) return sum;
+  sum += std::log(product);
+  if (expects) sum += unseen(sensor, cosine, sine, matched);
+  return options_.temper * sum;
+}
+
+}  // namespace waymark
