@@ -12,6 +12,8 @@
 namespace waymark {
 namespace {
 
+constexpr int kPatience = 10;  // fixes that are left out while a set of sightings is awaited
+
 Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& random) {
   const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
   return pose_of(about.pose.vector() + root * noise);
@@ -116,21 +118,33 @@ bool ParticleFilter::weigh_by(Fit&& fit) {
   return true;
 }
 
+// Any heading; the particles there are keep a part of the weight.
+void ParticleFilter::draw_about(const GnssFix& gnss, double kept) {
+  Random random(static_cast<std::uint64_t>(options_.seed) + ++step_, "fix");
+  if (!(kept > 0)) poses_.clear(), weights_.clear();
+  for (double& w : weights_) w *= kept;
+  const auto count = static_cast<std::size_t>(options_.search_particles);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = gnss.at.x() + gnss.sd * random.normal(), y = gnss.at.y() + gnss.sd * random.normal();
+    poses_.push_back({x, y, random.uniform(-std::numbers::pi, std::numbers::pi)});
+    weights_.push_back((1 - kept) / static_cast<double>(count));
+  }
+  summary_ = summary(poses_, weights_, kOnePlace);
+}
+
 bool ParticleFilter::fix(const GnssFix& gnss) {
   spread();
   const double squares = updated(summary_, gnss).squares;
   const bool scattered = trust() == Trust::lost;
   if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
+  if (contested_ > 0 && --contested_ >= 0) return false;
   double nearest = 1e300;
   for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
-  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there: all anew, any heading
-    Random random(static_cast<std::uint64_t>(options_.seed) + ++step_, "fix");
-    poses_.clear();
-    for (std::int64_t i = 0; i < options_.search_particles; ++i)
-      poses_.push_back({gnss.at.x() + gnss.sd * random.normal(), gnss.at.y() + gnss.sd * random.normal(),
-                        random.uniform(-std::numbers::pi, std::numbers::pi)});
-    weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
-    summary_ = summary(poses_, weights_, kOnePlace);
+  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there
+    // Particles that see what they should are kept beside the new ones: errors of fixes last, under trees.
+    const bool fits = !scattered && slow_ > 0 && fast_ > 0.5 * slow_;
+    contested_ = fits ? kPatience : 0;
+    draw_about(gnss, fits ? 0.5 : 0);
     if (doubt_) doubt_->lose(), doubt_->fix(gnss);
     return true;
   }
@@ -171,6 +185,7 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
   if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
 
   weigh(seen, map);
+  contested_ = 0;
   summary_ = summary(poses_, weights_, kOnePlace);
   const double sd = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
   searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kOnePlace, 3 * found_sd_));

@@ -64,6 +64,7 @@ class ParticleFilter final : public Localizer {
   std::optional<Pose2> pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
                                           Random& random) const;
   void ask_finder(const SightingSet& seen);
+  void draw_about(const GnssFix& gnss, double kept);
   template <class Fit>
   bool weigh_by(Fit&& fit);
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
@@ -87,6 +88,7 @@ class ParticleFilter final : public Localizer {
   std::uint64_t sets_ = 0;
   double found_sd_ = 0;  // m, of the last pose the finder was sure of: no search gets nearer by itself
   FixGate gnss_;
+  int contested_ = 0;  // fixes that are left out until what is seen decides between them and the particles
   std::optional<Convergence> doubt_;  // where no start was given
   ChanceShare chance_;
   LineOfSight visible_;
