@@ -74,6 +74,17 @@ std::unordered_map<std::string, const Shape*> outlines_by_tree(const ShapeLayer&
   return of;
 }
 
+/// Mean crown diameter over height of the trees that are tall in their stand: those whose crowns hide others.
+/// NaN where none is known.
+double crown_share(std::span<const StandTree> trees, std::span<const StandCrown> crowns, double dominant) {
+  constexpr double kTall = 0.8;
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < trees.size(); ++i)
+    if (trees[i].height > kTall * dominant && crowns[i].diameter > 0)
+      sum += crowns[i].diameter / trees[i].height, ++count;
+  return sum / count;
+}
+
 const Allometry& diameters_for(const StandTables& tables, const std::string& species) {
   const auto& table = tables.diameters.empty() ? built_in_allometry() : tables.diameters;
   if (const Allometry* row = allometry_of(table, species)) return *row;
@@ -171,7 +182,8 @@ StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables&
   all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
   result.figures = result.complete = inventory(result.trees, result.stand.ground, all);
   if (map.from_air && all.recall.empty()) {
-    all.recall = air_recall(result.figures.dominant_height.value);
+    const double dominant = result.figures.dominant_height.value;
+    all.recall = air_recall(dominant, crown_share(result.trees, crowns, dominant));
     all.recall_errs_alike = true;
     result.complete = inventory(result.trees, result.stand.ground, all);
   }

@@ -1,19 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/forest/air_recall.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
+namespace {
 
-std::vector<RecallRow> air_recall(double dominant_height) {
-  if (!(dominant_height > 0) || !std::isfinite(dominant_height)) return {};
-  struct Share {
-    double from, recall, sd;
-  };
-  constexpr Share kShares[] = {
-      {0, 0.15, 0.16}, {0.6, 0.23, 0.17}, {0.7, 0.36, 0.21}, {0.8, 0.53, 0.19}, {0.9, 0.81, 0.11}};
+struct Share {
+  double recall, sd;
+};
+
+constexpr double kHeights[] = {0, 0.6, 0.7, 0.8, 0.9};  // from, over dominant height
+
+// Conifers, mixed, broadleaves of the made forests, by the crowns found in them. Where shares did not rise
+// with the height, neighbours were pooled.
+struct Kind {
+  double crown_share;
+  Share of[std::size(kHeights)];
+};
+constexpr Kind kKinds[] = {{0.194, {{0.72, 0.42}, {0.72, 0.31}, {0.72, 0.20}, {0.72, 0.19}, {0.72, 0.08}}},
+                           {0.246, {{0.31, 0.49}, {0.31, 0.19}, {0.42, 0.22}, {0.55, 0.19}, {0.67, 0.13}}},
+                           {0.295, {{0.16, 0.22}, {0.16, 0.14}, {0.28, 0.18}, {0.44, 0.17}, {0.66, 0.17}}}};
+
+}  // namespace
+
+std::vector<RecallRow> air_recall(double dominant_height, double crown_share) {
+  if (!(dominant_height > 0) || !std::isfinite(dominant_height) || !(crown_share > 0)) return {};
+  const bool wide = crown_share > kKinds[1].crown_share;
+  const Kind &a = kKinds[wide], &b = kKinds[wide + 1];
+  const double t = std::clamp((crown_share - a.crown_share) / (b.crown_share - a.crown_share), 0.0, 1.0);
   std::vector<RecallRow> rows;
-  for (const Share& share : kShares) rows.push_back({share.from * dominant_height, share.recall, share.sd});
+  for (std::size_t i = 0; i < std::size(kHeights); ++i)
+    rows.push_back({kHeights[i] * dominant_height, std::lerp(a.of[i].recall, b.of[i].recall, t),
+                    std::lerp(a.of[i].sd, b.of[i].sd, t)});
   return rows;
 }
 

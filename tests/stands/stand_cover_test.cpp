@@ -88,19 +88,21 @@ TEST(StandTables, SayWhatIsWrong) {
 }
 
 TEST(AirRecall, RisesWithTheHeightOfATree) {
-  EXPECT_TRUE(air_recall(std::nan("")).empty());
-  const std::vector<RecallRow> rows = air_recall(30);
-  ASSERT_GT(rows.size(), 3u);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    EXPECT_GT(rows[i].recall, 0);
-    EXPECT_LE(rows[i].recall, 1);
-    EXPECT_GT(rows[i].sd, 0) << "what other forests have is not known for sure";
-    if (i > 0) {
-      EXPECT_GT(rows[i].height_from, rows[i - 1].height_from);
-      EXPECT_GE(rows[i].recall, rows[i - 1].recall);
+  for (const double crowns : {0.1, 0.194, 0.22, 0.246, 0.27, 0.295, 0.5}) {
+    EXPECT_TRUE(air_recall(std::nan(""), crowns).empty());
+    const std::vector<RecallRow> rows = air_recall(30, crowns);
+    ASSERT_GT(rows.size(), 3u);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      EXPECT_GT(rows[i].recall, 0);
+      EXPECT_LE(rows[i].recall, 1);
+      EXPECT_GT(rows[i].sd, 0) << "what other forests have is not known for sure";
+      if (i > 0) {
+        EXPECT_GT(rows[i].height_from, rows[i - 1].height_from);
+        EXPECT_GE(rows[i].recall, rows[i - 1].recall);
+      }
     }
+    EXPECT_NEAR(air_recall(15, crowns)[2].height_from, rows[2].height_from / 2, 1e-9);
   }
-  EXPECT_NEAR(air_recall(15)[2].height_from, rows[2].height_from / 2, 1e-9);
 }
 
 }  // namespace
