@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <unordered_map>
 
 #include "core/error.hpp"
@@ -29,21 +30,26 @@ struct ObservedErrors {
   int count = 0;
 };
 
-std::unordered_map<std::string, ObservedErrors> observed_errors(const MapStore& map, std::size_t height,
-                                                                std::size_t diameter, std::size_t crown) {
-  std::unordered_map<std::string, ObservedErrors> of;
-  for (const Observation& seen : map.observations()) {
-    if (!seen.rejected.empty() || map.types()[seen.type].name != "tree") continue;
+/// By the uid of a tree its place among all.
+using Places = std::unordered_map<std::string_view, std::size_t>;
+
+std::vector<ObservedErrors> observed_errors(const MapStore& map, const Places& places, std::size_t height,
+                                            std::size_t diameter, std::size_t crown) {
+  std::vector<ObservedErrors> of(places.size());
+  map.visit_observations([&](Observation&& seen) {
+    if (!seen.rejected.empty() || map.types()[seen.type].name != "tree") return;
+    const auto place = places.find(seen.landmark_uid);
+    if (place == places.end()) return;
     const auto variance = [&](std::size_t feature) {
       const double v = seen.features[feature].variance;
       return v > 0 ? v : 0;
     };
-    ObservedErrors& errors = of[seen.landmark_uid];
+    ObservedErrors& errors = of[place->second];
     errors.height += variance(height);
     errors.diameter += variance(diameter);
     errors.crown += variance(crown);
     ++errors.count;
-  }
+  });
   return of;
 }
 
@@ -62,16 +68,30 @@ double metres_per_unit(const MapStore& map) {
   return map.crs().kind() == CrsKind::local ? 1 : map.crs().metres_per_unit();
 }
 
-/// Outlines of layer `crown` by the uid of their tree; the first where several surveys drew one.
-std::unordered_map<std::string, const Shape*> outlines_by_tree(const ShapeLayer& layer) {
-  std::unordered_map<std::string, const Shape*> of;
-  std::size_t uid = layer.columns.size();
-  for (std::size_t i = 0; i < layer.columns.size(); ++i)
-    if (layer.columns[i].name == "uid") uid = i;
-  for (const Shape& row : layer.rows)
-    if (uid < row.values.size() && !row.parts.empty())
-      if (const auto* name = std::get_if<std::string>(&row.values[uid])) of.emplace(*name, &row);
-  return of;
+/// Outlines of layer `crown`; the first where several surveys drew one. Whether there is any.
+bool read_outlines(const MapStore& map, const Places& places, MapTrees& all) {
+  if (std::ranges::count(shape_layers(map.path()), "crown") == 0) return false;
+  bool any = false;
+  std::size_t uid = 0;
+  visit_shape_layer(
+      map.path(), "crown",
+      [&](const ShapeLayer& layer) {
+        uid = static_cast<std::size_t>(std::ranges::find(layer.columns, "uid", &AttributeSpec::name) -
+                                       layer.columns.begin());
+      },
+      [&](Shape&& row) {
+        any = true;
+        if (uid >= row.values.size() || row.parts.empty()) return;
+        const auto* name = std::get_if<std::string>(&row.values[uid]);
+        const auto place = name ? places.find(*name) : places.end();
+        if (place == places.end()) return;
+        std::vector<Eigen::Vector2d>& ring = all.crowns[place->second].ring;
+        if (!ring.empty()) return;
+        ring = row.parts[0].outer;
+        ring.shrink_to_fit();
+        for (auto& corner : ring) corner *= all.unit;
+      });
+  return any;
 }
 
 /// Mean crown diameter over height of the trees that are tall in their stand: those whose crowns hide others.
@@ -113,13 +133,7 @@ MapTrees trees_of(const MapStore& map) {
         "list");
   const std::size_t height = feature_index(*type, "height"), diameter = feature_index(*type, "diameter"),
                     crown = feature_index(*type, "crown_diameter");
-  ShapeLayer crowns;
-  for (const std::string& name : shape_layers(map.path()))
-    if (name == "crown") crowns = read_shape_layer(map.path(), name);
-  all.from_air = !crowns.rows.empty();
-  const auto outlines = outlines_by_tree(crowns);
-  const auto evidence = observed_errors(map, height, diameter, crown);
-  for (const Landmark& landmark : map.query({.types = {"tree"}})) {
+  map.visit("tree", [&](Landmark&& landmark) {
     StandTree tree;
     tree.place = landmark.position.xyz.head<2>() * all.unit;
     tree.place_sd = place_deviation(landmark);
@@ -128,26 +142,30 @@ MapTrees trees_of(const MapStore& map) {
     tree.diameter = known(landmark, diameter);
     tree.diameter_sd = deviation(landmark, diameter);
     tree.confidence = landmark.confidence;
-    double crown_sd = deviation(landmark, crown);
-    if (const auto found = evidence.find(landmark.uid); found != evidence.end()) {
-      // Heights of several flights average. A tree that is thicker than its height tells stays so in each.
-      const ObservedErrors& errors = found->second;
-      tree.height_sd =
-          std::max(tree.height_sd / std::sqrt(errors.count), std::sqrt(errors.height) / errors.count);
-      tree.diameter_sd = std::max(tree.diameter_sd, std::sqrt(errors.diameter / errors.count));
-      crown_sd = std::max(crown_sd, std::sqrt(errors.crown / errors.count));
-    }
-    StandCrown shade{.place = tree.place,
-                     .diameter = landmark.features[crown].known() ? known(landmark, crown) : 0,
-                     .diameter_sd = crown_sd,
-                     .ring = {},
-                     .confidence = landmark.confidence};
-    if (const auto found = outlines.find(landmark.uid); found != outlines.end())
-      for (const auto& corner : found->second->parts[0].outer) shade.ring.push_back(corner * all.unit);
-    all.uids.push_back(landmark.uid);
+    all.crowns.push_back({.place = tree.place,
+                          .diameter = landmark.features[crown].known() ? known(landmark, crown) : 0,
+                          .diameter_sd = deviation(landmark, crown),
+                          .ring = {},
+                          .confidence = landmark.confidence});
     all.trees.push_back(tree);
-    all.crowns.push_back(std::move(shade));
+    all.uids.push_back(std::move(landmark.uid));
+  });
+  Places places;
+  places.reserve(all.uids.size());
+  for (std::size_t i = 0; i < all.uids.size(); ++i) places.emplace(all.uids[i], i);
+  const std::vector<ObservedErrors> evidence = observed_errors(map, places, height, diameter, crown);
+  for (std::size_t i = 0; i < all.trees.size(); ++i) {
+    // Heights of several flights average. A tree that is thicker than its height tells stays so in each.
+    const ObservedErrors& errors = evidence[i];
+    if (errors.count == 0) continue;
+    StandTree& tree = all.trees[i];
+    double& crown_sd = all.crowns[i].diameter_sd;
+    tree.height_sd =
+        std::max(tree.height_sd / std::sqrt(errors.count), std::sqrt(errors.height) / errors.count);
+    tree.diameter_sd = std::max(tree.diameter_sd, std::sqrt(errors.diameter / errors.count));
+    crown_sd = std::max(crown_sd, std::sqrt(errors.crown / errors.count));
   }
+  all.from_air = read_outlines(map, places, all);
   return all;
 }
 
@@ -158,7 +176,6 @@ StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables&
   const Allometry& diameters = diameters_for(tables, result.stand.species);
   const VolumeRow& volumes = volumes_for(tables, result.stand.species);
   const Eigen::AlignedBox2d box = bounds(result.stand.ground);
-  std::vector<StandCrown> crowns;
   for (std::size_t i = 0; i < map.trees.size(); ++i) {
     // As far as a place may err, or a crown that is no circle may reach.
     const double reach = std::max({5 * map.trees[i].place_sd, 2 * map.crowns[i].diameter, 5.0});
@@ -176,19 +193,23 @@ StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables&
     tree.mass = tree.volume * volumes.mass_per_volume;
     result.near.push_back(i);
     result.trees.push_back(tree);
-    crowns.push_back(map.crowns[i]);
   }
+  const bool all_near = result.near.size() == map.trees.size();  // their outlines are not copied
+  std::vector<StandCrown> crowns;
+  for (std::size_t i = 0; !all_near && i < result.near.size(); ++i)
+    crowns.push_back(map.crowns[result.near[i]]);
+  const std::span<const StandCrown> shades = all_near ? map.crowns : crowns;
   InventoryOptions all = options;
   all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
   result.figures = result.complete = inventory(result.trees, result.stand.ground, all);
   if (map.from_air && all.recall.empty()) {
     const double dominant = result.figures.dominant_height.value;
-    all.recall = air_recall(dominant, crown_share(result.trees, crowns, dominant));
+    all.recall = air_recall(dominant, crown_share(result.trees, shades, dominant));
     all.recall_errs_alike = true;
     result.complete = inventory(result.trees, result.stand.ground, all);
   }
   result.members = trees_in(result.trees, result.stand.ground);
-  result.cover = cover(crowns, result.stand.ground);
+  result.cover = cover(shades, result.stand.ground);
   return result;
 }
 

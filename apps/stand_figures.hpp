@@ -54,7 +54,8 @@ StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables&
 /// diameter class. Every row has the classes of all.
 ShapeLayer stand_layer(const std::vector<StandResult>& results);
 
-/// Layer `stand_tree`: the trees of the stands, one row for each stand a tree is counted in.
+/// Layer `stand_tree`: the trees of the stands, one row for each stand a tree is counted in, made as they are
+/// written. Both must outlive it.
 ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& results);
 
 }  // namespace waymark

@@ -132,17 +132,19 @@ ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& resul
                   {"biomass_kg", "kg", Kind::real, "Dry mass; NULL without a table that tells it"},
                   {"confidence", "", Kind::real, "Probability that it is a tree"}},
       .style = {.colour = "#2e7d32"}};
-  for (const StandResult& r : results)
-    for (const std::size_t i : r.members) {
-      const StandTree& t = r.trees[i];
-      const double crown = map.crowns[r.near[i]].diameter;
-      layer.rows.push_back({{{.outer = {t.place / map.unit}}},
-                            {r.stand.name, map.uids[r.near[i]], number(t.height), number(100 * t.diameter),
-                             std::isnan(t.diameter) ? AttributeValue() : number(100 * t.diameter_sd),
-                             crown > 0 ? number(crown) : AttributeValue(),
-                             number(std::acos(-1.0) / 4 * t.diameter * t.diameter), number(t.volume),
-                             number(t.mass), t.confidence}});
-    }
+  layer.more = [&map, &results](const auto& take) {
+    for (const StandResult& r : results)
+      for (const std::size_t i : r.members) {
+        const StandTree& t = r.trees[i];
+        const double crown = map.crowns[r.near[i]].diameter;
+        take({{{.outer = {t.place / map.unit}}},
+              {r.stand.name, map.uids[r.near[i]], number(t.height), number(100 * t.diameter),
+               std::isnan(t.diameter) ? AttributeValue() : number(100 * t.diameter_sd),
+               crown > 0 ? number(crown) : AttributeValue(),
+               number(std::acos(-1.0) / 4 * t.diameter * t.diameter), number(t.volume), number(t.mass),
+               t.confidence}});
+      }
+  };
   return layer;
 }
 

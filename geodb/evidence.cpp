@@ -70,15 +70,14 @@ void EvidenceWriter::add(const Observation& o, std::optional<std::int64_t> landm
   link_[o.type].run();
 }
 
-std::vector<Observation> read_evidence(const sqlite::Database& database, const TypeRegistry& types,
-                                       std::string_view where, std::string_view parameter) {
+void visit_evidence(const sqlite::Database& database, const TypeRegistry& types, std::string_view where,
+                    std::string_view parameter, const std::function<void(Observation&&)>& visit) {
   sqlite::Statement row = database.prepare(
       "SELECT type, uid, source, pixel_x, pixel_y, x, y, z, var_x, var_y, cov_xy, var_z, weight, features, "
       "rejected"
       "  FROM observation o " +
       std::string(where) + " ORDER BY o.id");
   if (!parameter.empty()) row.bind(1, parameter);
-  std::vector<Observation> all;
   while (row.step()) {
     Observation o;
     o.type = types.id(row.text(0));
@@ -93,8 +92,15 @@ std::vector<Observation> read_evidence(const sqlite::Database& database, const T
     o.confidence = row.real(12);
     o.features = features_from(types[o.type], row.text(13));
     o.rejected = row.text(14);
-    all.push_back(std::move(o));
+    visit(std::move(o));
   }
+}
+
+std::vector<Observation> read_evidence(const sqlite::Database& database, const TypeRegistry& types,
+                                       std::string_view where, std::string_view parameter) {
+  std::vector<Observation> all;
+  visit_evidence(database, types, where, parameter,
+                 [&](Observation&& observation) { all.push_back(std::move(observation)); });
   return all;
 }
 

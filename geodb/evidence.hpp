@@ -26,5 +26,8 @@ class EvidenceWriter {
 /// Observations that meet `where` (SQL on table o, with one text parameter at most), in order of storing.
 std::vector<Observation> read_evidence(const sqlite::Database& database, const TypeRegistry& types,
                                        std::string_view where, std::string_view parameter = {});
+/// The same, one at a time.
+void visit_evidence(const sqlite::Database& database, const TypeRegistry& types, std::string_view where,
+                    std::string_view parameter, const std::function<void(Observation&&)>& visit);
 
 }  // namespace waymark

@@ -137,6 +137,14 @@ std::vector<Observation> MapStore::observations_of(std::string_view uid) const {
 std::vector<Observation> MapStore::observations() const {
   return read_evidence(connection_->database, types(), "");
 }
+void MapStore::visit(std::string_view type, const std::function<void(Landmark&&)>& visit) const {
+  LandmarkTable& table = connection_->table(type);
+  connection_->visit(table, everywhere(),
+                     [&](const sqlite::Statement& row) { visit(table.layout.read(row)); });
+}
+void MapStore::visit_observations(const std::function<void(Observation&&)>& visit) const {
+  visit_evidence(connection_->database, types(), "", {}, visit);
+}
 std::vector<ImageRecord> MapStore::images() const {
   return read_images(connection_->database);
 }

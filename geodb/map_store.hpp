@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,10 @@ class MapStore {
 
   std::vector<Observation> observations_of(std::string_view uid) const;  ///< kept ones, in order of storing
   std::vector<Observation> observations() const;                         ///< all, rejected ones too
+  /// All landmarks of a type, or all observations, one at a time in order of storing: for maps larger than
+  /// memory. Throws Error{usage} for a type the map does not have.
+  void visit(std::string_view type, const std::function<void(Landmark&&)>& visit) const;
+  void visit_observations(const std::function<void(Observation&&)>& visit) const;
   std::vector<ImageRecord> images() const;
   std::vector<RunRecord> runs() const;  ///< oldest first
   bool has_dem_coverage() const;        ///< read it with GDAL as "GPKG:<path>:dem"

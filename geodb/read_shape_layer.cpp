@@ -36,16 +36,18 @@ std::vector<AttributeSpec> columns_of(const sqlite::Database& database, const st
   return columns;
 }
 
-void read_rows(const sqlite::Database& database, ShapeLayer& layer) {
+void read_rows(const sqlite::Database& database, const ShapeLayer& layer,
+               const std::function<void(Shape&&)>& visit) {
   std::string names = "geom";
   for (const AttributeSpec& column : layer.columns) names += ", " + sql_name(column.name);
   sqlite::Statement row =
       database.prepare(fmt::format("SELECT {} FROM {} ORDER BY id", names, sql_name(layer.name)));
   while (row.step()) {
-    Shape& shape = layer.rows.emplace_back();
+    Shape shape;
     if (!row.null(0)) shape.parts = parts_of(row.blob(0));
     for (std::size_t i = 0; i < layer.columns.size(); ++i)
       shape.values.push_back(read_attribute(row, 1 + static_cast<int>(i), layer.columns[i].kind));
+    visit(std::move(shape));
   }
 }
 
@@ -74,18 +76,28 @@ std::vector<std::string> shape_layers(const std::filesystem::path& map) {
   return names;
 }
 
-ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view name) {
+void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
+                       const std::function<void(const ShapeLayer&)>& begin,
+                       const std::function<void(Shape&&)>& visit) {
   const OpenMap open = open_for_reading(map);
   std::vector<std::string> names;
   for (ShapeLayer& layer : declared_layers(open.database)) {
     names.push_back(layer.name);
     if (layer.name != name) continue;
     layer.columns = columns_of(open.database, layer.name);
-    read_rows(open.database, layer);
-    return std::move(layer);
+    begin(layer);
+    return read_rows(open.database, layer, visit);
   }
   throw Error(ErrorCode::input, fmt::format("this map has no layer '{}'", name), map.string(),
               names.empty() ? "it has landmarks only" : fmt::format("it has: {}", fmt::join(names, ", ")));
+}
+
+ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view name) {
+  ShapeLayer all;
+  visit_shape_layer(
+      map, name, [&](const ShapeLayer& layer) { all = layer; },
+      [&](Shape&& shape) { all.rows.push_back(std::move(shape)); });
+  return all;
 }
 
 }  // namespace waymark

@@ -72,5 +72,9 @@ std::vector<std::string> shape_layers(const std::filesystem::path& map);
 
 /// Reads one back. Throws Error{input} where the map has no such layer.
 ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view name);
+/// The same without the rows, which are given one at a time after `begin(layer)`.
+void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
+                       const std::function<void(const ShapeLayer&)>& begin,
+                       const std::function<void(Shape&&)>& visit);
 
 }  // namespace waymark

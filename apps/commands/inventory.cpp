@@ -110,6 +110,9 @@ class Inventory final : public Command {
       results.push_back(figures_of(trees, std::move(stand), tables(), options));
     tell_weak(results);
     write(stand_layer(results), tree_layer(trees, results), map);
+    std::size_t counted = 0;
+    for (const StandResult& stand : results) counted += stand.members.size();
+    say(fmt::format("{}: {} stands, {} trees\n", output_, results.size(), counted));
     for (const std::string& failure : failed_) log_error(failure + ": left out");
     return failed_.empty() ? 0 : 3;
   }
@@ -234,6 +237,13 @@ class Inventory final : public Command {
     if (told > 20) tell(fmt::format("{} more warnings of this kind", told - 20));
   }
 
+  /// With its rows, for a picture.
+  static ShapeLayer held(ShapeLayer layer) {
+    layer.more([&](const Shape& row) { layer.rows.push_back(row); });
+    layer.more = {};
+    return layer;
+  }
+
   void write(const ShapeLayer& stands, const ShapeLayer& trees, const MapStore& map) const {
     if (fs::path(output_).extension() == ".csv") {
       write_file(output_, as_csv(stands));
@@ -253,11 +263,9 @@ class Inventory final : public Command {
       write_inventory_report(report_, {.title = fs::path(map_).filename().string(),
                                        .crs = map.crs().id(),
                                        .stands = stands,
-                                       .trees = trees,
+                                       .trees = held(trees),
                                        .warnings = warnings_,
                                        .failed = failed_});
-    std::size_t counted = trees.rows.size();
-    say(fmt::format("{}: {} stands, {} trees\n", output_, stands.rows.size(), counted));
   }
 
   std::string map_, output_, stands_, stands_layer_, allometry_, volume_, recall_, report_;

@@ -100,6 +100,22 @@ TEST(Migration, AnEditorMigratesInPlace) {
             "");
 }
 
+TEST(Reading, OneByOneGivesWhatAllAtOnceGive) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  const MapStore map = MapStore::open(folder / "map.gpkg");
+  std::vector<std::string> uids, sources;
+  map.visit("lamp_post", [&](Landmark&& landmark) { uids.push_back(landmark.uid); });
+  map.visit_observations([&](Observation&& o) { sources.push_back(o.source + o.landmark_uid + o.rejected); });
+  std::vector<std::string> all_uids, all_sources;
+  for (const Landmark& landmark : map.query({})) all_uids.push_back(landmark.uid);
+  for (const Observation& o : map.observations())
+    all_sources.push_back(o.source + o.landmark_uid + o.rejected);
+  EXPECT_EQ(uids, all_uids);
+  EXPECT_EQ(sources, all_sources);
+  EXPECT_THROW(map.visit("rock", [](Landmark&&) {}), Error);
+}
+
 void use_it(const MapStore& map) {
   map.query({.nearest = MapQuery::NearestK{450'000, 5'050'000, 5}});
   map.observations();
