@@ -6,14 +6,15 @@
 namespace waymark {
 
 std::optional<Measured> height_from_shadow(const Measured& reach_px, const ImageView& image,
-                                           const GroundPlane& ground, const Sun& sun, double slope_sd) {
+                                           const GroundPlane& ground, const Sun& sun, double slope_sd,
+                                           double follows) {
   const Eigen::Vector3d light = towards(sun).unit;
   const double level = light.head<2>().norm();
   if (!(light.z() > 0) || !(level > 1e-6)) return std::nullopt;
   const Eigen::Vector2d away = -light.head<2>() / level;
   const double rise = ground.gradient.dot(away);
-  const double per_metre = light.z() / level + rise;  // height per level metre of shadow
-  if (!(per_metre > 0.02)) return std::nullopt;
+  if (!(light.z() / level + rise > 0.02)) return std::nullopt;
+  const double per_metre = light.z() / level + follows * rise;  // height per level metre of shadow
 
   const Eigen::Vector3d step(away.x(), away.y(), rise);
   const auto from = appears(image, {ground.at - 0.5 * step}), to = appears(image, {ground.at + 0.5 * step});
@@ -25,7 +26,7 @@ std::optional<Measured> height_from_shadow(const Measured& reach_px, const Image
   const double cosine2 = level * level;  // of the elevation
   const double from_sun = length / cosine2 * to_radians(sun.sd).value;
   return Measured{length * per_metre,
-                  std::hypot(per_metre * length_sd, std::hypot(from_sun, length * slope_sd))};
+                  std::hypot(per_metre * length_sd, std::hypot(from_sun, length * follows * slope_sd))};
 }
 
 }  // namespace waymark

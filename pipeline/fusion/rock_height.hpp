@@ -7,12 +7,15 @@
 namespace waymark {
 
 /// Height of a thing from the reach of its shadow on sloping ground, seen from anywhere:
-/// H = L (tan e + g), L the level length of the shadow, e the sun's elevation, g the rise of the ground per
+/// H = L (tan e + f g), L the level length of the shadow, e the sun's elevation, g the rise of the ground per
 /// metre away from the sun (a shadow that falls downhill is longer than the thing is high).
 /// The reach is turned into metres along the shadow's own direction on the ground, which corrects oblique
-/// views. `slope_sd` is the standard deviation of g. Nothing where the sun is below the ground's own horizon
-/// (tan e + g <= 0.02: the ground is in its own shadow) or the shadow's direction is not seen.
+/// views. `slope_sd` is the standard deviation of g. `follows`, f: how far the reach told follows the length
+/// of the shadow; 1 where it is measured. A detector that does not know the slope and leans on what it
+/// expects of rocks takes part of the slope's effect out itself. Nothing where the sun is below the ground's
+/// own horizon (tan e + g <= 0.02: the ground is in its own shadow) or the shadow's direction is not seen.
 std::optional<Measured> height_from_shadow(const Measured& reach_px, const ImageView& image,
-                                           const GroundPlane& ground, const Sun& sun, double slope_sd);
+                                           const GroundPlane& ground, const Sun& sun, double slope_sd,
+                                           double follows = 1);
 
 }  // namespace waymark

@@ -181,6 +181,16 @@ TEST(HeightFromShadow, DownhillShadowsAreLonger) {
   EXPECT_FALSE(height_from_shadow({20, 1}, camera(), steep, {Degrees{90}, Degrees{30}}, 0));
 }
 
+TEST(HeightFromShadow, ReachThatFollowsInPartIsCorrectedInPart) {
+  const GroundPlane ground{{0, 0, 0}, {std::tan(10 * kDegree), 0}};
+  const Sun sun{Degrees{90}, Degrees{30}};
+  const auto h = height_from_shadow({20, 1}, camera(), ground, sun, 0, 0.4);
+  ASSERT_TRUE(h);
+  EXPECT_NEAR(h->value, 4 * (std::tan(30 * kDegree) - 0.4 * std::tan(10 * kDegree)), 0.01);
+  const GroundPlane steep{{0, 0, 0}, {std::tan(35 * kDegree), 0}};
+  EXPECT_FALSE(height_from_shadow({20, 1}, camera(), steep, sun, 0, 0.4));
+}
+
 TEST(Footprint, OfACameraStraightDownIsARectangle) {
   const Footprint f = footprint(camera(), plane(0));
   ASSERT_EQ(f.rings.size(), 1u);
