@@ -10,8 +10,8 @@
 namespace waymark {
 namespace {
 
-// What merge_observations and value_flights do, where nothing is to be merged: tile by tile, so that memory
-// does not grow with the trees.
+// What merge_observations and value_flights do, where nothing is to be merged: tile by tile, so that the
+// trees need not be in memory all at once.
 struct TreesOfSurvey {
   struct Options {
     void describe(OptionVisitor&) {}
