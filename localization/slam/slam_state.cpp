@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/slam/slam_state.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace waymark {
 namespace {
 
 using Eigen::Index;
+constexpr Index kBlock = 64;
 
 void mirror(Eigen::MatrixXd& p) {
   p.triangularView<Eigen::StrictlyUpper>() = p.transpose();
@@ -129,11 +133,17 @@ Eigen::MatrixXd SlamState::whole(std::vector<Slot>& order) const {
   Eigen::MatrixXd all(a + b, a + b);
   all.topLeftCorner(a, a) = paa_;
   if (b > 0) {
-    all.topRightCorner(a, b).noalias() = phi_ * pab_;
+    // In blocks of columns, the same for any number of threads.
+    tbb::parallel_for(Index{0}, (b + kBlock - 1) / kBlock, [&](Index k) {
+      const Index j = k * kBlock, width = std::min(kBlock, b - j), below = b - j;
+      const auto part = pab_.middleCols(j, width);
+      all.block(0, a + j, a, width).noalias() = phi_ * part;
+      const Eigen::MatrixXd lost = psi_ * part;
+      auto rest = all.block(a + j, a + j, below, width);
+      rest = pbb_.block(j, j, below, width);
+      rest.noalias() -= pab_.rightCols(below).transpose() * lost;
+    });
     all.bottomLeftCorner(b, a) = all.topRightCorner(a, b).transpose();
-    const Eigen::MatrixXd lost = psi_ * pab_;
-    all.bottomRightCorner(b, b) = pbb_;
-    all.bottomRightCorner(b, b).triangularView<Eigen::Lower>() -= pab_.transpose() * lost;
     for (Index j = 1; j < b; ++j)
       for (Index i = 0; i < j; ++i) all(a + i, a + j) = all(a + j, a + i);
   }
