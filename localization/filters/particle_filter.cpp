@@ -137,7 +137,10 @@ bool ParticleFilter::fix(const GnssFix& gnss) {
   const double squares = updated(summary_, gnss).squares;
   const bool scattered = trust() == Trust::lost;
   if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
-  if (contested_ > 0 && --contested_ >= 0) return false;
+  if (contested_ > 0) {
+    --contested_;
+    return false;
+  }
   double nearest = 1e300;
   for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
   if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there
