@@ -103,7 +103,7 @@ Observation placed(const Detection& detection, const ImageView& image, const Ter
   set(observation, type, "orientation", outline->orientation, orientation_sd(*outline, diameter_sd));
   if (detection.shadow_reach && image.sun)
     if (const auto height = height_from_shadow(*detection.shadow_reach, image, *ground, *image.sun,
-                                               rules.slope_sd, rules.reach_follows))
+                                               rules.slope_sd, detection.reach_follows))
       set(observation, type, "height", height->value, std::hypot(height->sd, height->value * range_sd));
 
   double z = outline->centre.z();

@@ -12,10 +12,6 @@ struct PlacingRules {
   double height_sd = 0;       ///< metres, of the terrain where it does not tell its own
   bool heights_known = true;  ///< false: the terrain is a plane somebody assumed, so places have no height
   double slope_sd = 0.03;     ///< of the ground under a rock against the terrain's, metres per metre
-  /// What share of a shadow's change of length the reach told follows (rock_height.hpp): logarithms of
-  /// heights of rocks told by pipeline/rocks follow the ground's slope by 0.3 of what the shadow's length
-  /// does, measured on landings 303, 304, 401, 402 and 512; 0.3 to 0.5 spread heights alike (docs/rocks.md).
-  double reach_follows = 0.4;
   /// Standard deviation of a centre from the shape of the thing, as a share of its diameter: along the sun
   /// for things told by their shadow (how far under its top a rock begins), all round for rims.
   double shadow_shape = 0.1, rim_shape = 0.035;

@@ -22,6 +22,10 @@ constexpr double kLargestAtOneScale = 16, kSmallestAtCoarse = 5;  // pixels of t
 // and less the longer the shadow is (regression on the lessons, docs/rocks.md).
 constexpr double kAside = 0.35;
 
+// Logarithms of the reaches judged follow the ground's slope by 0.3 of what the shadow's length does
+// (landings 303, 304, 401, 402 and 512; 0.3 to 0.5 spread heights alike, docs/rocks.md).
+constexpr double kReachFollows = 0.4;
+
 // Share of rocks among the dark spots the confidence was fitted on, and how far towards the image's own share
 // the confidences are moved (chosen on landings 301 and 302, docs/rocks.md).
 constexpr double kShareTrust = 0.6;
@@ -70,6 +74,7 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   found.diameter_sd = diameter * say.log_radius_sd;
   const double reach = scale * rock.size.reach * std::exp(say.log_reach);
   found.shadow_reach = Measured{reach, reach * say.log_reach_sd};
+  found.reach_follows = kReachFollows;
   found.confidence = judged.confidence;
   return found;
 }

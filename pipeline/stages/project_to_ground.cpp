@@ -18,7 +18,6 @@ struct ProjectToGround {
   struct Options {
     Meters height_sd{0};
     double slope_sd = PlacingRules{}.slope_sd;
-    double reach_follows = PlacingRules{}.reach_follows;
     double shadow_shape = PlacingRules{}.shadow_shape;
     double rim_shape = PlacingRules{}.rim_shape;
     bool match_ground = true;
@@ -32,13 +31,6 @@ struct ProjectToGround {
              {.help = "Standard deviation of the slope under a rock against the DEM's, metres per metre",
               .min = 0,
               .max = 1});
-      option(
-          "reach_follows", reach_follows,
-          {.help =
-               "What share of a slope's effect on a shadow is left in the detector's reach: 1 for one that "
-               "measures and expects nothing",
-           .min = 0,
-           .max = 1});
       option("shadow_shape", shadow_shape,
              {.help = "Uncertainty of a rock's middle along the sun, from its unknown shape, in diameters",
               .min = 0,
@@ -62,7 +54,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 4,
+            .version = 5,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -87,7 +79,6 @@ struct ProjectToGround {
     const PlacingRules rules{.height_sd = options.height_sd.value,
                              .heights_known = !is_assumed_plane(*ground),
                              .slope_sd = options.slope_sd,
-                             .reach_follows = options.reach_follows,
                              .shadow_shape = options.shadow_shape,
                              .rim_shape = options.rim_shape};
     std::vector<Observation> all;

@@ -191,6 +191,20 @@ TEST(HeightFromShadow, ReachThatFollowsInPartIsCorrectedInPart) {
   EXPECT_FALSE(height_from_shadow({20, 1}, camera(), steep, sun, 0, 0.4));
 }
 
+TEST(Placed, HeightIsCorrectedForTheSlopeAsFarAsTheReachFollowsIt) {
+  ImageView image = camera();
+  image.sun = Sun{Degrees{90}, Degrees{30}};
+  Detection d = at(199.5, 149.5);
+  d.shadow_reach = Measured{20, 1};
+  const auto height = [&](double follows) {
+    d.reach_follows = follows;
+    const double east = std::tan(10 * kDegree);
+    return placed(d, image, plane(0, east), kRock, {}).features[feature_index(kRock, "height")].value;
+  };
+  EXPECT_NEAR(height(1), 4 * (std::tan(30 * kDegree) - std::tan(10 * kDegree)), 0.01);
+  EXPECT_NEAR(height(0.4), 4 * (std::tan(30 * kDegree) - 0.4 * std::tan(10 * kDegree)), 0.01);
+}
+
 TEST(Footprint, OfACameraStraightDownIsARectangle) {
   const Footprint f = footprint(camera(), plane(0));
   ASSERT_EQ(f.rings.size(), 1u);

@@ -116,6 +116,18 @@ TEST(FindRocks, EverythingItSaysIsANumber) {
   }
 }
 
+// What is measured follows a slope in full; what leans on what is expected of rocks, in part.
+TEST(FindRocks, TellsHowFarReachesFollowSlopes) {
+  RockSearch search = search_of(kField);
+  const auto leaning = find_rocks(field().pixels, search);
+  search.method = RockMethod::classic;
+  const auto measured = find_rocks(field().pixels, search);
+  ASSERT_FALSE(leaning.empty());
+  ASSERT_FALSE(measured.empty());
+  EXPECT_EQ(leaning.front().reach_follows, 0.4);
+  EXPECT_EQ(measured.front().reach_follows, 1);
+}
+
 TEST(FindRocks, ImagesWithoutRocksHaveNone) {
   for (const RockMethod method : {RockMethod::shadow, RockMethod::classic})
     for (const std::optional<Radians> sun : {std::optional<Radians>{}, std::optional<Radians>{Radians{1}}}) {
