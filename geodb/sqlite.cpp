@@ -78,7 +78,7 @@ const char* settings(OpenMode mode) {
       return "PRAGMA foreign_keys = ON; PRAGMA cache_spill = OFF;";
     case OpenMode::create:
       return "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
-             "PRAGMA locking_mode = EXCLUSIVE; PRAGMA cache_size = -65536;";
+             "PRAGMA locking_mode = EXCLUSIVE;";
   }
   return "";
 }

@@ -61,12 +61,16 @@ std::vector<Stock> stock_of(const MapContents& contents) {
   return of_type;
 }
 
-// Large pages save a quarter of the time of a large map; small ones keep a small map small.
-const char* page_size(const std::vector<Stock>& stock) {
+constexpr const char* kCache = "PRAGMA cache_size = -65536";  // kB
+
+// Large pages save a quarter of the time of a large map; small ones keep a small map small. SQLite counts the
+// cache in pages of the size they had when it was told, so it is told anew.
+void set_page_size(const sqlite::Database& database, const std::vector<Stock>& stock) {
   constexpr std::int64_t kLarge = 50'000;  // landmarks
   std::int64_t count = 0;
   for (const Stock& type : stock) count += type.count;
-  return count < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384";
+  database.execute(count < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384");
+  database.execute(kCache);
 }
 
 class MapWriter {
@@ -158,7 +162,7 @@ class MapWriter {
       // thread.
       database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
       database_->execute(fill_in("CREATE UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
-      database_->execute("PRAGMA cache_size = -65536");
+      database_->execute(kCache);
     } catch (const Error&) {
       sqlite::Statement twice =
           database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");
@@ -256,7 +260,7 @@ std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path,
     for (TypeId type = 0; type < stock.size(); ++type)
       if (stock[type].count > 0) counts[contents.types[type].name] = stock[type].count;
     sqlite::Database database(file.path(), sqlite::OpenMode::create);
-    database.execute(page_size(stock));
+    set_page_size(database, stock);
     sqlite::Transaction all(database);
     MapWriter(database, contents, stock, options).write();
     all.commit();

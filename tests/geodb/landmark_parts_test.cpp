@@ -2,6 +2,7 @@
 // A map written of parts: which, and how many landmarks are in memory at once, make no difference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <map>
@@ -187,6 +188,16 @@ TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
     all += held_by;
   }
   EXPECT_EQ(all, 5000u);
+}
+
+// SQLite's own memory, most of it the cache: 64 MB, of a larger map.
+TEST(LandmarkParts, TheCacheKeepsToItsSize) {
+  MapContents contents = scattered({.landmarks = 500'000, .with_evidence = 0});
+  const TemporaryFolder folder;
+  sqlite3_memory_highwater(1);
+  write_map(folder / "map.gpkg", contents);
+  EXPECT_GT(std::filesystem::file_size(folder / "map.gpkg"), 100'000'000u);
+  EXPECT_LT(sqlite3_memory_highwater(0), 75'000'000);
 }
 
 }  // namespace
