@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geodb/map_store.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "core/error.hpp"
@@ -32,6 +34,12 @@ std::string box_condition(const std::string& table) {
   return fill_in(
       R"(JOIN "rtree_{t}_geom" r ON r.id = t.id WHERE r.maxx >= ?1 AND r.maxy >= ?2 AND r.minx <= ?3 AND r.miny <= ?4)",
       {{"t", table}});
+}
+
+std::string rows_in(const std::string& table, const MapQuery::Box& box) {
+  return fmt::format(
+      "SELECT id FROM {} WHERE maxx >= {:.17g} AND maxy >= {:.17g} AND minx <= {:.17g} AND miny <= {:.17g}",
+      sql_name("rtree_" + table + "_geom"), box.min_x, box.min_y, box.max_x, box.max_y);
 }
 
 bool bounded(const SearchWindows& windows) {
@@ -142,8 +150,28 @@ void MapStore::visit(std::string_view type, const std::function<void(Landmark&&)
   connection_->visit(table, everywhere(),
                      [&](const sqlite::Statement& row) { visit(table.layout.read(row)); });
 }
+void MapStore::visit(std::string_view type, const MapQuery::Box& box,
+                     const std::function<void(Landmark&&)>& visit) const {
+  const LandmarkLayout& layout = connection_->table(type).layout;
+  sqlite::Statement row = connection_->database.prepare(
+      layout.select("WHERE t.id IN (" + rows_in(layout.type().name, box) + ") ORDER BY t.id"));
+  while (row.step()) {
+    Landmark landmark = layout.read(row);
+    const auto& at = landmark.position.xyz;  // boxes of the index are rounded outwards
+    if (at.x() >= box.min_x && at.x() <= box.max_x && at.y() >= box.min_y && at.y() <= box.max_y)
+      visit(std::move(landmark));
+  }
+}
 void MapStore::visit_observations(const std::function<void(Observation&&)>& visit) const {
   visit_evidence(connection_->database, types(), "", {}, visit);
+}
+void MapStore::visit_observations(std::string_view type, const MapQuery::Box& box,
+                                  const std::function<void(Observation&&)>& visit) const {
+  const std::string& table = connection_->table(type).layout.type().name;
+  const std::string where =
+      fill_in(R"(WHERE o.id IN (SELECT related_id FROM "{t}_observation" WHERE base_id IN ({rows})))",
+              {{"t", table}, {"rows", rows_in(table, box)}});
+  visit_evidence(connection_->database, types(), where, {}, visit);
 }
 std::vector<ImageRecord> MapStore::images() const {
   return read_images(connection_->database);

@@ -42,7 +42,13 @@ class MapStore {
   /// All landmarks of a type, or all observations, one at a time in order of storing: for maps larger than
   /// memory. Throws Error{usage} for a type the map does not have.
   void visit(std::string_view type, const std::function<void(Landmark&&)>& visit) const;
+  /// Those of a box on a plane (not across the antimeridian), edges included.
+  void visit(std::string_view type, const MapQuery::Box& box,
+             const std::function<void(Landmark&&)>& visit) const;
   void visit_observations(const std::function<void(Observation&&)>& visit) const;
+  /// Kept ones of a type's landmarks in a box on a plane, and perhaps of some just outside.
+  void visit_observations(std::string_view type, const MapQuery::Box& box,
+                          const std::function<void(Observation&&)>& visit) const;
   std::vector<ImageRecord> images() const;
   std::vector<RunRecord> runs() const;  ///< oldest first
   bool has_dem_coverage() const;        ///< read it with GDAL as "GPKG:<path>:dem"

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "geodb/attribute_column.hpp"
 #include "geodb/open_map.hpp"
@@ -37,11 +39,18 @@ std::vector<AttributeSpec> columns_of(const sqlite::Database& database, const st
 }
 
 void read_rows(const sqlite::Database& database, const ShapeLayer& layer,
-               const std::function<void(Shape&&)>& visit) {
+               const std::optional<MapQuery::Box>& window, const std::function<void(Shape&&)>& visit) {
   std::string names = "geom";
   for (const AttributeSpec& column : layer.columns) names += ", " + sql_name(column.name);
-  sqlite::Statement row =
-      database.prepare(fmt::format("SELECT {} FROM {} ORDER BY id", names, sql_name(layer.name)));
+  const std::string in_window =
+      window ? fmt::format(
+                   " WHERE id IN (SELECT id FROM {} WHERE maxx >= ? AND maxy >= ? AND minx <= ? AND "
+                   "miny <= ?)",
+                   sql_name("rtree_" + layer.name + "_geom"))
+             : "";
+  sqlite::Statement row = database.prepare(
+      fmt::format("SELECT {} FROM {}{} ORDER BY id", names, sql_name(layer.name), in_window));
+  if (window) row.bind_all(window->min_x, window->min_y, window->max_x, window->max_y);
   while (row.step()) {
     Shape shape;
     if (!row.null(0)) shape.parts = parts_of(row.blob(0));
@@ -78,7 +87,8 @@ std::vector<std::string> shape_layers(const std::filesystem::path& map) {
 
 void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
                        const std::function<void(const ShapeLayer&)>& begin,
-                       const std::function<void(Shape&&)>& visit) {
+                       const std::function<void(Shape&&)>& visit,
+                       const std::optional<MapQuery::Box>& window) {
   const OpenMap open = open_for_reading(map);
   std::vector<std::string> names;
   for (ShapeLayer& layer : declared_layers(open.database)) {
@@ -86,10 +96,16 @@ void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
     if (layer.name != name) continue;
     layer.columns = columns_of(open.database, layer.name);
     begin(layer);
-    return read_rows(open.database, layer, visit);
+    return read_rows(open.database, layer, window, visit);
   }
   throw Error(ErrorCode::input, fmt::format("this map has no layer '{}'", name), map.string(),
               names.empty() ? "it has landmarks only" : fmt::format("it has: {}", fmt::join(names, ", ")));
+}
+
+std::int64_t count_shapes(const std::filesystem::path& map, std::string_view name) {
+  const OpenMap open = open_for_reading(map);
+  const bool known = std::ranges::count(declared_layers(open.database), name, &ShapeLayer::name) > 0;
+  return known ? open.database.integer("SELECT count(*) FROM " + sql_name(std::string(name))) : 0;
 }
 
 ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view name) {

@@ -199,8 +199,9 @@ void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> 
   }
 }
 
-void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers) {
+void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers, MapFile file) {
   const OpenMap open = open_for_changing(map);
+  if (file == MapFile::own) open.database.execute("PRAGMA cache_spill = ON; PRAGMA cache_size = -65536");
   sqlite::Transaction all(open.database);
   write_layers(open.database, layers, time_stamp_now());
   all.commit();

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 #include "core/attribute.hpp"
 #include "geo/crs.hpp"
+#include "geodb/map_query.hpp"
 namespace waymark {
 
 /// Layers of a map beside its landmarks: crowns, stands, a machine's track, harvested trees. Each is a table
@@ -64,17 +67,24 @@ void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> 
                   std::string_view changed);
 
 /// The same for a map file that exists, all layers or none: a process killed meanwhile leaves the map as it
-/// was. Throws Error as MapEditor::open does.
-void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers);
+/// was. All that is written is held until then, so that readers are shut out for a moment only, unless
+/// `file` is one nobody else reads. Throws Error as MapEditor::open does.
+enum class MapFile { shared, own };
+void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers,
+                  MapFile file = MapFile::shared);
 
 /// Names of the shape layers of a map, sorted.
 std::vector<std::string> shape_layers(const std::filesystem::path& map);
 
 /// Reads one back. Throws Error{input} where the map has no such layer.
 ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view name);
-/// The same without the rows, which are given one at a time after `begin(layer)`.
+/// The same without the rows, which are given one at a time after `begin(layer)`; those whose boxes meet
+/// `window` (map coordinates) alone, where it is given.
 void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
                        const std::function<void(const ShapeLayer&)>& begin,
-                       const std::function<void(Shape&&)>& visit);
+                       const std::function<void(Shape&&)>& visit,
+                       const std::optional<MapQuery::Box>& window = {});
+/// Rows of a layer; 0 where the map has none of that name.
+std::int64_t count_shapes(const std::filesystem::path& map, std::string_view name);
 
 }  // namespace waymark

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include <fstream>
 
 #include "core/error.hpp"
@@ -143,6 +145,37 @@ TEST(Reading, SeesWhatAWriteAheadLogHolds) {
   const sqlite::Database other(folder / "map.gpkg", sqlite::OpenMode::update);
   other.execute("PRAGMA journal_mode = WAL; DELETE FROM lamp_post WHERE uid = 'lp-9'");
   EXPECT_EQ(MapStore::open(folder / "map.gpkg").count(), 999);
+}
+
+TEST(MapStore, VisitsABoxInTheOrderOfRows) {
+  TemporaryFolder folder;
+  const MapContents contents = scattered({.landmarks = 3000, .with_evidence = 400});
+  write_map(folder / "map.gpkg", contents);
+  const MapStore map = MapStore::open(folder / "map.gpkg");
+  const std::string type = contents.types[0].name;
+  const Eigen::Vector3d& corner = contents.landmarks[7].position.xyz;  // a landmark on the very edge
+  for (const MapQuery::Box& box :
+       {MapQuery::Box{corner.x(), corner.y(), corner.x() + 30'000, corner.y() + 20'000},
+        MapQuery::Box{0, 0, 1e7, 1e7}, MapQuery::Box{0, 0, 1, 1}}) {
+    const auto inside = [&](const Eigen::Vector3d& at) {
+      return at.x() >= box.min_x && at.x() <= box.max_x && at.y() >= box.min_y && at.y() <= box.max_y;
+    };
+    std::vector<std::string> expected, found, seen, expected_seen;
+    std::set<std::string> there;
+    map.visit(type, [&](Landmark&& l) {
+      if (inside(l.position.xyz)) expected.push_back(l.uid);
+    });
+    map.visit(type, box, [&](Landmark&& l) { found.push_back(l.uid); });
+    EXPECT_EQ(found, expected);
+    there.insert(found.begin(), found.end());
+    map.visit_observations([&](Observation&& o) {
+      if (o.rejected.empty() && there.contains(o.landmark_uid)) expected_seen.push_back(o.landmark_uid);
+    });
+    map.visit_observations(type, box, [&](Observation&& o) {
+      if (there.contains(o.landmark_uid)) seen.push_back(o.landmark_uid);
+    });
+    EXPECT_EQ(seen, expected_seen);
+  }
 }
 
 }  // namespace

@@ -171,5 +171,30 @@ TEST(ShapeLayer, RowsMadeOnWritingAreRowsLikeOthers) {
   EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
 }
 
+// Against boxes that are looked at one by one.
+TEST(ShapeLayer, RowsOfAWindowAreThoseWhoseBoxesMeetIt) {
+  TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({.landmarks = 10}));
+  const ShapeLayer all = squares(2000);
+  write_layers(folder / "map.gpkg", std::span(&all, 1), MapFile::own);
+  EXPECT_EQ(count_shapes(folder / "map.gpkg", "crown"), 2000);
+  EXPECT_EQ(count_shapes(folder / "map.gpkg", "track"), 0);
+  for (const double side : {0.0, 5.0, 100.0, 1000.0, 1e7})
+    for (const double x : {449'990.0, 450'000.0, 451'234.0, 453'700.0}) {
+      const MapQuery::Box window{x, 5'050'000 - side, x + side, 5'050'300 + side};
+      std::vector<std::int64_t> expected, found;
+      for (const Shape& row : all.rows) {
+        const Eigen::Vector2d& low = row.parts[0].outer[0];
+        if (low.x() <= window.max_x && low.x() + 10 >= window.min_x && low.y() <= window.max_y &&
+            low.y() + 10 >= window.min_y)
+          expected.push_back(std::get<std::int64_t>(row.values[2]));
+      }
+      visit_shape_layer(
+          folder / "map.gpkg", "crown", [](const ShapeLayer&) {},
+          [&](Shape&& row) { found.push_back(std::get<std::int64_t>(row.values[2])); }, window);
+      EXPECT_EQ(found, expected) << side << " at " << x;
+    }
+}
+
 }  // namespace
 }  // namespace waymark
