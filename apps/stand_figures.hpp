@@ -2,31 +2,12 @@
 #pragma once
 #include <string>
 #include <vector>
-#include "geodb/map_store.hpp"
+#include "apps/stands_in_turn.hpp"
 #include "geodb/shape_layer.hpp"
 #include "pipeline/forest/allometry.hpp"
-#include "pipeline/forest/stand_cover.hpp"
+#include "pipeline/forest/stand_inventory.hpp"
+#include "pipeline/forest/stand_volume.hpp"
 namespace waymark {
-
-/// The trees of a map, metres; uids[i] names trees[i].
-struct MapTrees {
-  std::vector<std::string> uids;
-  std::vector<StandTree> trees;
-  std::vector<StandCrown> crowns;  ///< crowns[i] of trees[i]; no diameter where none is known
-  double unit = 1;                 ///< metres per unit of the map's CRS
-  bool from_air = false;           ///< found in a canopy model: those under others are missing
-};
-
-/// Throws Error{input} where the map has no type `tree`, or its CRS is in degrees. Crowns are the outlines of
-/// layer `crown` where the map has it, else circles.
-MapTrees trees_of(const MapStore& map);
-
-/// A stand to be counted: ground in metres.
-struct NamedStand {
-  std::string name, species;
-  StandPolygon ground;
-  std::vector<ShapePart> outline;  ///< map CRS
-};
 
 /// Tables for diameters and volumes.
 struct StandTables {
@@ -36,17 +17,23 @@ struct StandTables {
   std::string diameters_file, volumes_file;  ///< for messages
 };
 
+/// Trees of a stand, with the diameters and volumes of its species.
+struct StandStems {
+  std::vector<std::size_t> near;  ///< trees in or near the stand: indices of MapTrees
+  std::vector<StandTree> trees;   ///< these
+};
+
+/// Throws Error{input} where a table has no row for the stand's species and none for "all".
+StandStems stems_of(const MapTrees& map, const NamedStand& stand, const StandTables& tables);
+
 struct StandResult {
   NamedStand stand;
-  std::vector<std::size_t> near;     ///< trees of the map in or near the stand: indices of MapTrees
-  std::vector<StandTree> trees;      ///< these, with the diameters and volumes of the stand's species
-  std::vector<std::size_t> members;  ///< those counted in the stand: indices of `near` and `trees`
   StandFigures figures;
   StandFigures complete;  ///< with the trees nobody found: by the recall given, else of trees from the air
   Estimate cover;
 };
 
-/// Throws Error{input} where a table has no row for the stand's species and none for "all".
+/// `map` holds the trees within reach of the stand, and may hold others. Throws as stems_of().
 StandResult figures_of(const MapTrees& map, NamedStand stand, const StandTables& tables,
                        const InventoryOptions& options);
 
@@ -56,6 +43,6 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results);
 
 /// Layer `stand_tree`: the trees of the stands, one row for each stand a tree is counted in, made as they are
 /// written. Both must outlive it.
-ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& results);
+ShapeLayer tree_layer(const StandsInTurn& stands, const StandTables& tables);
 
 }  // namespace waymark

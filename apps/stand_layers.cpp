@@ -116,7 +116,7 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
   return layer;
 }
 
-ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& results) {
+ShapeLayer tree_layer(const StandsInTurn& stands, const StandTables& tables) {
   ShapeLayer layer{
       .name = "stand_tree",
       .summary = "Trees of the stands: a row for each stand a tree is counted in",
@@ -132,18 +132,21 @@ ShapeLayer tree_layer(const MapTrees& map, const std::vector<StandResult>& resul
                   {"biomass_kg", "kg", Kind::real, "Dry mass; NULL without a table that tells it"},
                   {"confidence", "", Kind::real, "Probability that it is a tree"}},
       .style = {.colour = "#2e7d32"}};
-  layer.more = [&map, &results](const auto& take) {
-    for (const StandResult& r : results)
-      for (const std::size_t i : r.members) {
-        const StandTree& t = r.trees[i];
-        const double crown = map.crowns[r.near[i]].diameter;
+  layer.more = [&](const auto& take) {
+    stands.visit([&](const MapTrees& map, const NamedStand& stand) {
+      const StandStems stems = stems_of(map, stand, tables);
+      for (const std::size_t member : trees_in(stems.trees, stand.ground)) {
+        const StandTree& t = stems.trees[member];
+        const std::size_t i = stems.near[member];
+        const double crown = map.crowns[i].diameter;
         take({{{.outer = {t.place / map.unit}}},
-              {r.stand.name, map.uids[r.near[i]], number(t.height), number(100 * t.diameter),
+              {stand.name, map.uids[i], number(t.height), number(100 * t.diameter),
                std::isnan(t.diameter) ? AttributeValue() : number(100 * t.diameter_sd),
                crown > 0 ? number(crown) : AttributeValue(),
                number(std::acos(-1.0) / 4 * t.diameter * t.diameter), number(t.volume), number(t.mass),
                t.confidence}});
       }
+    });
   };
   return layer;
 }

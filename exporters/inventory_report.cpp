@@ -15,8 +15,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kWidth = 1000;             // of the drawing
-constexpr std::size_t kMostTrees = 20'000;  // drawn
+constexpr double kWidth = 1000;  // of the drawing
 constexpr std::size_t kMostCharts = 60;
 
 constexpr const char* kStyle = R"css(
@@ -98,9 +97,7 @@ std::string map_figure(const InventoryPage& page) {
   for (const Shape& row : page.stands.rows)
     svg += fmt::format("<path class=\"stand\" d=\"{}\"><title>{}</title></path>\n", path_of(drawing, row),
                        escaped(text(row, name)));
-  const std::size_t step = 1 + page.trees.rows.size() / kMostTrees;
-  for (std::size_t i = 0; i < page.trees.rows.size(); i += step) {
-    const Shape& row = page.trees.rows[i];
+  for (const Shape& row : page.trees.rows) {
     if (row.parts.empty()) continue;
     const double width = number(row, crown),
                  radius = std::isnan(width) ? 1.5 : std::max(0.6, width * 0.2 * drawing.scale);
@@ -127,9 +124,9 @@ std::string map_figure(const InventoryPage& page) {
       "x=\"{2:.0f}\" y=\"{3:.0f}\">{4:g} (units of {5})</text></g></svg></figure>\n",
       10 + length * drawing.scale, drawing.height() + 14, 20 + length * drawing.scale, drawing.height() + 18,
       length, escaped(page.crs));
-  if (step > 1)
-    svg +=
-        fmt::format("<p class=\"soft\">Every {}th of {} trees is drawn.</p>", step, page.trees.rows.size());
+  if (page.trees.rows.size() < page.tree_count)
+    svg += fmt::format("<p class=\"soft\">{} of {} trees are drawn.</p>", page.trees.rows.size(),
+                       page.tree_count);
   return svg;
 }
 

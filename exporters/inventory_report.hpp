@@ -8,8 +8,11 @@ namespace waymark {
 
 /// What a forester prints: the layers `stand` and `stand_tree` of `waymark inventory`.
 struct InventoryPage {
+  static constexpr std::size_t kMostTrees = 20'000;  ///< that a map is drawn with
   std::string title, crs;
-  ShapeLayer stands, trees;
+  ShapeLayer stands;
+  ShapeLayer trees;            ///< as many as shall be drawn
+  std::size_t tree_count = 0;  ///< of all
   std::vector<std::string> warnings, failed;
 };
 

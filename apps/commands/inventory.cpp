@@ -87,6 +87,9 @@ class Inventory final : public Command {
                       "Share of trees found by height: height_from,recall[,sd]; counts those nobody found"}
                  .offering(Offer::file)
                  .or_else("what was found is what is there"),
+             Argument{"--trees-at-once", "N", &trees_at_once_,
+                      "Trees held in memory, 1 kB each, unless one stand has more; no figure depends on it"}
+                 .or_else("500000"),
              Argument{"--class-width", "CM", &class_width_, "Width of the diameter classes"}.or_else("5"),
              Argument{"--report", "FILE.html", &report_, "Write a report to print, with a map and histograms"}
                  .offering(Offer::file)},
@@ -100,18 +103,20 @@ class Inventory final : public Command {
   int run(const Session&) override {
     check_request();
     const MapStore map = MapStore::open(map_);
-    const MapTrees trees = trees_of(map);
-    if (trees.trees.empty()) tell("the map has no trees: every figure is 0 or empty");
-    std::vector<NamedStand> stands = stands_of(map, trees);
+    const TreeReader reader(map);
+    if (reader.count() == 0) tell("the map has no trees: every figure is 0 or empty");
+    const StandsInTurn stands(reader, stands_of(map, reader), trees_at_once_);
+    const StandTables tables = read_tables();
     InventoryOptions options{.class_width = class_width_ / 100};
     if (!recall_.empty()) options.recall = parse_recall(whole_file(recall_), recall_);
     std::vector<StandResult> results;
-    for (NamedStand& stand : stands)
-      results.push_back(figures_of(trees, std::move(stand), tables(), options));
+    stands.visit([&](const MapTrees& trees, const NamedStand& stand) {
+      results.push_back(figures_of(trees, stand, tables, options));
+    });
     tell_weak(results);
-    write(stand_layer(results), tree_layer(trees, results), map);
     std::size_t counted = 0;
-    for (const StandResult& stand : results) counted += stand.members.size();
+    for (const StandResult& stand : results) counted += static_cast<std::size_t>(stand.figures.trees);
+    write(stand_layer(results), tree_layer(stands, tables), counted, map);
     say(fmt::format("{}: {} stands, {} trees\n", output_, results.size(), counted));
     for (const std::string& failure : failed_) log_error(failure + ": left out");
     return failed_.empty() ? 0 : 3;
@@ -128,11 +133,13 @@ class Inventory final : public Command {
       throw Error(ErrorCode::usage, "--stands and --grid exclude each other", "", "give one of them");
     if (grid_ != 0 && !(grid_ >= 1 && grid_ <= 1e5))
       throw Error(ErrorCode::usage, fmt::format("--grid = {} is outside [1, 100000] m", grid_));
+    if (trees_at_once_ < 1)
+      throw Error(ErrorCode::usage, fmt::format("--trees-at-once = {} is below 1", trees_at_once_));
     if (!(class_width_ >= 0.5 && class_width_ <= 100))
       throw Error(ErrorCode::usage, fmt::format("--class-width = {} is outside [0.5, 100] cm", class_width_));
   }
 
-  StandTables tables() const {
+  StandTables read_tables() const {
     StandTables tables;
     tables.diameters_file = allometry_;
     tables.volumes_file = volume_;
@@ -146,11 +153,11 @@ class Inventory final : public Command {
     warnings_.push_back(warning);
   }
 
-  std::vector<NamedStand> stands_of(const MapStore& map, const MapTrees& trees) {
+  std::vector<NamedStand> stands_of(const MapStore& map, const TreeReader& trees) {
     if (stands_.empty()) {
       NamedStand whole = whole_map(map, trees);
       if (grid_ == 0) return {whole};
-      return cells_of(whole, trees.unit);
+      return cells_of(whole, trees.unit());
     }
     StandOutlines read = read_stand_outlines(stands_, stands_layer_, map.crs());
     for (const std::string& warning : read.warnings) tell(warning);
@@ -163,28 +170,26 @@ class Inventory final : public Command {
         part.holes.assign(rings.begin() + 1, rings.end());
         stand.outline.push_back(std::move(part));
       }
-      stand.ground = in_metres(stand.outline, trees.unit);
+      stand.ground = in_metres(stand.outline, trees.unit());
       stands.push_back(std::move(stand));
     }
     return stands;
   }
 
-  NamedStand whole_map(const MapStore& map, const MapTrees& trees) {
+  NamedStand whole_map(const MapStore& map, const TreeReader& trees) {
     NamedStand whole{.name = "all", .species = {}, .ground = {}, .outline = {}};
     for (const std::string& layer : shape_layers(map.path()))
       if (layer == "survey")
         for (const Shape& row : read_shape_layer(map.path(), layer).rows)
           whole.outline.insert(whole.outline.end(), row.parts.begin(), row.parts.end());
-    whole.ground = in_metres(whole.outline, trees.unit);
+    whole.ground = in_metres(whole.outline, trees.unit());
     if (!whole.ground.rings.empty()) return whole;
-    std::vector<Eigen::Vector2d> places;
-    for (const StandTree& tree : trees.trees) places.push_back(tree.place);
-    whole.ground = ground_of(places);
+    whole.ground = ground_of(trees.places());
     if (whole.ground.rings.empty())
       throw Error(ErrorCode::input, "the map's trees span no area: how large the stand is must be told", map_,
                   "give its ground: --stands POLYGONS");
     ShapePart part;
-    for (const auto& corner : whole.ground.rings[0]) part.outer.push_back(corner / trees.unit);
+    for (const auto& corner : whole.ground.rings[0]) part.outer.push_back(corner / trees.unit());
     whole.outline = {part};
     tell(fmt::format(
         "the map does not tell what ground was surveyed: taken to be the hull of its trees, widened "
@@ -237,14 +242,18 @@ class Inventory final : public Command {
     if (told > 20) tell(fmt::format("{} more warnings of this kind", told - 20));
   }
 
-  /// With its rows, for a picture.
-  static ShapeLayer held(ShapeLayer layer) {
-    layer.more([&](const Shape& row) { layer.rows.push_back(row); });
+  /// With every n-th of its rows, for a picture.
+  static ShapeLayer thinned(ShapeLayer layer, std::size_t every) {
+    std::size_t row = 0;
+    layer.more([&](const Shape& shape) {
+      if (row++ % every == 0) layer.rows.push_back(shape);
+    });
     layer.more = {};
     return layer;
   }
 
-  void write(const ShapeLayer& stands, const ShapeLayer& trees, const MapStore& map) const {
+  void write(const ShapeLayer& stands, const ShapeLayer& trees, std::size_t tree_count,
+             const MapStore& map) const {
     if (fs::path(output_).extension() == ".csv") {
       write_file(output_, as_csv(stands));
     } else {
@@ -255,21 +264,24 @@ class Inventory final : public Command {
       } else {
         AsideFile copy(output_);
         fs::copy_file(map_, copy.path(), fs::copy_options::overwrite_existing);
-        write_layers(copy.path(), layers);
+        write_layers(copy.path(), layers, MapFile::own);
         copy.keep();
       }
     }
+    const std::size_t every = 1 + tree_count / InventoryPage::kMostTrees;
     if (!report_.empty())
       write_inventory_report(report_, {.title = fs::path(map_).filename().string(),
                                        .crs = map.crs().id(),
                                        .stands = stands,
-                                       .trees = held(trees),
+                                       .trees = thinned(trees, every),
+                                       .tree_count = tree_count,
                                        .warnings = warnings_,
                                        .failed = failed_});
   }
 
   std::string map_, output_, stands_, stands_layer_, allometry_, volume_, recall_, report_;
   double grid_ = 0, class_width_ = 5;
+  std::int64_t trees_at_once_ = 500'000;
   std::vector<std::string> warnings_, failed_;
 };
 

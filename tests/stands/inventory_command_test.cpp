@@ -12,6 +12,8 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <type_traits>
+#include <variant>
 
 #include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
@@ -192,6 +194,7 @@ TEST_F(InventoryCommand, RefusesWhatCannotBeCounted) {
   refused("rocks.gpkg --stands stands.geojson -o out.csv", 1, "the map has no trees");
   write("deg.csv", "uid,x,y,height\na,8,48,20\n");
   ASSERT_EQ(waymark("import deg.csv -o deg.gpkg --type tree --map-crs EPSG:4326").code, 0);
+  refused("trees.gpkg --trees-at-once 0 -o out.csv", 2, "--trees-at-once = 0 is below 1");
   refused("deg.gpkg --stands stands.geojson -o out.csv", 1, "the map is in degrees");
   EXPECT_FALSE(fs::exists(folder / "out.csv")) << "nothing half-written";
 }
@@ -228,6 +231,41 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
             1.2 * std::stod(cell("stands.csv", 0, "stems_per_ha")))
       << "trees under others, which the air does not see";
   EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_all_se")), 30);
+
+  // The same, whether all trees are in memory or the few about a stand.
+  const auto layers = [&](const std::string& map) {
+    std::ostringstream text;
+    for (const char* layer : {"stand", "stand_tree"})
+      for (const Shape& row : read_shape_layer(folder / map, layer).rows) {
+        for (const AttributeValue& value : row.values)
+          std::visit(
+              [&](const auto& v) {
+                if constexpr (!std::is_same_v<std::decay_t<decltype(v)>, std::monostate>) text << v;
+                text << ' ';
+              },
+              value);
+        text << row.parts.at(0).outer.at(0).transpose() << '\n';
+      }
+    return text.str();
+  };
+  for (const char* ground : {"--stands one/stands.geojson", "--grid 20", ""}) {
+    ASSERT_EQ(waymark(std::string("inventory found.gpkg -o all.gpkg ") + ground).code, 0);
+    ASSERT_EQ(waymark(std::string("inventory found.gpkg -o all.csv ") + ground).code, 0);
+    const std::string expected = layers("all.gpkg");
+    EXPECT_GT(expected.size(), 1000u);
+    for (const char* held : {"1", "30"}) {
+      const std::string some = std::string(" --trees-at-once ") + held + " " + ground;
+      const Told told = waymark("inventory found.gpkg -o some.gpkg" + some);
+      ASSERT_EQ(told.code, 0) << told.text;
+      EXPECT_EQ(layers("some.gpkg"), expected) << some;
+      EXPECT_THAT(validate_map(folder / "some.gpkg"), ::testing::IsEmpty());
+      ASSERT_EQ(waymark("inventory found.gpkg -o some.csv" + some).code, 0);
+      EXPECT_EQ(read("some.csv"), read("all.csv")) << some;
+    }
+    fs::copy_file(folder / "found.gpkg", folder / "own.gpkg", fs::copy_options::overwrite_existing);
+    ASSERT_EQ(waymark(std::string("inventory own.gpkg -o own.gpkg --trees-at-once 30 ") + ground).code, 0);
+    EXPECT_EQ(layers("own.gpkg"), expected) << "written into the map it reads";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// How much memory the program takes for rasters of different sizes.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <cmath>
+
+#include "made_dem.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kOwnMemory = false;  // a sanitizer keeps what was freed
+#else
+constexpr bool kOwnMemory = true;
+#endif
+
+/// The largest memory of a run, MB.
+double peak_of(const std::vector<std::string>& words) {
+  const pid_t process = start_waymark(words);
+  int status = 0;
+  rusage usage{};
+  EXPECT_EQ(::wait4(process, &status, 0, &usage), process);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << words[0];
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// A mosaic of `times` x `times` copies of a canopy of 2000 x 2000 cells with few trees.
+std::string mosaic(const TempFolder& folder, int times) {
+  const std::string one = folder / "one.tif";
+  constexpr int kSide = 2000;
+  if (!std::filesystem::exists(one)) {
+    MadeDem chm{.columns = kSide, .rows = kSide, .geotransform = {500000, 0.5, 0, 5200000, 0, -0.5}};
+    chm.height = [](int column, int row) {
+      const double x = std::fmod(column, 100.0) - 50, y = std::fmod(row, 100.0) - 50;
+      return std::max(0.0, 15 - 2 * std::hypot(x, y));
+    };
+    make_dem(one, chm);
+  }
+  std::string sources;
+  for (int i = 0; i < times * times; ++i) {
+    const auto attribute = [](const char* name, int value) {
+      return std::string(" ") + name + "=\"" + std::to_string(value) + "\"";
+    };
+    const std::string size = attribute("xSize", kSide) + attribute("ySize", kSide);
+    sources += "<SimpleSource><SourceFilename>" + one +
+               "</SourceFilename><SourceBand>1</SourceBand><SrcRect" + attribute("xOff", 0) +
+               attribute("yOff", 0) + size + "/><DstRect" + attribute("xOff", i % times * kSide) +
+               attribute("yOff", i / times * kSide) + size + "/></SimpleSource>";
+  }
+  const std::string side = "\"" + std::to_string(times * kSide) + "\"",
+                    file = folder / (std::to_string(times) + ".vrt");
+  write_text(file, "<VRTDataset rasterXSize=" + side + " rasterYSize=" + side +
+                       "><SRS>EPSG:32632</SRS><GeoTransform>500000,0.5,0,5200000,0,-0.5</GeoTransform>"
+                       "<VRTRasterBand dataType=\"Float32\" band=\"1\">" +
+                       sources + "</VRTRasterBand></VRTDataset>");
+  return file;
+}
+
+// 128 MB more of raster and 9600 more trees.
+TEST(Memory, OfTreesDoesNotGrowWithTheRaster) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peak = [&](int times) {
+    return peak_of({"-q", "trees", "--chm", mosaic(folder, times), "--memory", "32", "--threads", "1",
+                    "--tile-cells", "1000", "-o", folder / "trees.gpkg"});
+  };
+  const double small = peak(2), large = peak(4);
+  EXPECT_GT(small, 20) << "MB";
+  EXPECT_LT(large, small + 30) << "MB; " << small << " for a quarter of the raster";
+}
+
+}  // namespace
+}  // namespace waymark::test
