@@ -156,13 +156,17 @@ class MapWriter {
     return new_id_.at(old_id) * kRowsPerType + 1 + place;
   }
 
+  /// The sorter works in runs as large as the cache: small ones are sorted beside the scan by a second
+  /// thread.
+  void create_index(const std::string& definition) {
+    database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
+    database_->execute("CREATE " + definition);
+    database_->execute(kCache);
+  }
+
   void create_uid_index(const std::string& table) {
     try {
-      // The sorter works in runs as large as the cache: small ones are sorted beside the scan by a second
-      // thread.
-      database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
-      database_->execute(fill_in("CREATE UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
-      database_->execute(kCache);
+      create_index(fill_in("UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
     } catch (const Error&) {
       sqlite::Statement twice =
           database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");
@@ -201,7 +205,7 @@ class MapWriter {
         observation.type = new_id_.at(type);
         writer.add(observation, row_at(type, place));
       });
-    database_->execute("CREATE INDEX observation_uid ON observation (uid)");
+    create_index("INDEX observation_uid ON observation (uid)");
   }
 
   /// Of the landmark an observation is evidence of; `rows` finds those of its type, and is made here.
