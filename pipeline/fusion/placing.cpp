@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/fusion/bowl_depth.hpp"
+#include "pipeline/fusion/crest_by_wear.hpp"
 #include "pipeline/fusion/ground_outline.hpp"
 #include "pipeline/fusion/local_ground.hpp"
 #include "pipeline/fusion/place_covariance.hpp"
@@ -88,6 +89,12 @@ Observation placed(const Detection& detection, const ImageView& image, const Ter
   if (bowl && outline->diameter() >= 4 * cell)
     if (const auto rim = rim_plane(image, detection.outline, terrain))
       if (const auto on_rim = outline_on(image, detection.outline, *rim)) outline = on_rim, ground = rim;
+  double growth_sd = 0;
+  if (bowl && rules.heights_known && rules.edge_share > 0)
+    if (const auto crest = crest_by_wear(terrain, *outline, rules.edge_share)) {
+      outline->major *= std::exp(crest->growth), outline->minor *= std::exp(crest->growth);
+      growth_sd = crest->growth_sd;
+    }
   const double diameter = outline->diameter();
   if (!bowl && diameter > 2 * cell)
     if (const auto wider = local_ground(terrain, outline->centre.x(), outline->centre.y(), diameter))
@@ -95,7 +102,7 @@ Observation placed(const Detection& detection, const ImageView& image, const Ter
 
   const auto pixel_sd = detection.diameter_sd / std::max(detection.outline.diameter(), 1e-3);
   const auto range_sd = relative_scale_sd(image, *line, hit.range);
-  const double diameter_sd = diameter * std::hypot(pixel_sd, range_sd);
+  const double diameter_sd = diameter * std::hypot(pixel_sd, range_sd, growth_sd);
   for (const char* name : {"diameter", "crown_diameter"}) set(observation, type, name, diameter, diameter_sd);
   set(observation, type, "radius", diameter / 2, diameter_sd / 2);
   set(observation, type, "major_axis", outline->major, diameter_sd * std::sqrt(2.0));

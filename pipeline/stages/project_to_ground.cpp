@@ -18,6 +18,7 @@ struct ProjectToGround {
   struct Options {
     Meters height_sd{0};
     double slope_sd = PlacingRules{}.slope_sd;
+    double edge_share = PlacingRules{}.edge_share;
     double shadow_shape = PlacingRules{}.shadow_shape;
     double rim_shape = PlacingRules{}.rim_shape;
     bool match_ground = true;
@@ -31,6 +32,12 @@ struct ProjectToGround {
              {.help = "Standard deviation of the slope under a rock against the DEM's, metres per metre",
               .min = 0,
               .max = 1});
+      option(
+          "edge_share", edge_share,
+          {.help = "How far from its crest towards its visible edge a crater's outline lies; where the DEM "
+                   "shows how worn it is, it is made as wide as its crest: 0 for detectors that tell crests",
+           .min = 0,
+           .max = 1});
       option("shadow_shape", shadow_shape,
              {.help = "Uncertainty of a rock's middle along the sun, from its unknown shape, in diameters",
               .min = 0,
@@ -54,7 +61,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 5,
+            .version = 6,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -79,6 +86,7 @@ struct ProjectToGround {
     const PlacingRules rules{.height_sd = options.height_sd.value,
                              .heights_known = !is_assumed_plane(*ground),
                              .slope_sd = options.slope_sd,
+                             .edge_share = options.edge_share,
                              .shadow_shape = options.shadow_shape,
                              .rim_shape = options.rim_shape};
     std::vector<Observation> all;

@@ -76,8 +76,8 @@ inline MadeLanding made_landing(Scenario scenario, const MadeDetector& detector 
         d.shadow_reach = Measured{reach * (1 + random.normal(0, 0.1)), 0.1 * reach};
       }
       d.confidence = confidence;
-      PlacingRules rules;
-      rules.shadow_shape = 0;  // the made detector knows where rocks begin
+      PlacingRules rules{.edge_share = 0};  // this detector tells crests
+      rules.shadow_shape = 0;               // the made detector knows where rocks begin
       const Observation o = placed(d, image, made.dem, made.types[type], rules);
       if (!o.rejected.empty()) return;
       made.observations.push_back(o);
