@@ -125,20 +125,25 @@ std::optional<Radians> find_light(const DetectPlan& plan, FoundInImage& found) {
 
 }  // namespace
 
+ImageDetections none_yet(const DetectPlan& plan, TypeId type) {
+  const ImageInfo& info = plan.image->info();
+  return {.type = type,
+          .image = info.name,
+          .columns = info.columns,
+          .rows = info.rows,
+          .detections = {},
+          .place = info.ortho,
+          .gsd = plan.gsd,
+          .sun_elevation = plan.sun_elevation,
+          .sun_azimuth = plan.sun_azimuth};
+}
+
 FoundInImage find_in_image(const DetectPlan& plan, int threads, const ProgressMeter::Listener& progress) {
   if (plan.type == "tree") return find_trees_in_image(plan, threads, progress);
   const ImageInfo& info = plan.image->info();
   const TypeId type = all_types().id(plan.type);
   FoundInImage found;
-  found.detections = {.type = type,
-                      .image = info.name,
-                      .columns = info.columns,
-                      .rows = info.rows,
-                      .detections = {},
-                      .place = info.ortho,
-                      .gsd = plan.gsd,
-                      .sun_elevation = plan.sun_elevation,
-                      .sun_azimuth = plan.sun_azimuth};
+  found.detections = none_yet(plan, type);
   if (const std::string reason = nothing_to_see(*plan.image, found.warnings); !reason.empty()) {
     found.warnings.push_back(reason);
     return found;

@@ -13,6 +13,9 @@ struct FoundInImage {
   std::vector<std::string> warnings;
 };
 
+/// The detections of a type in the plan's image, none yet.
+ImageDetections none_yet(const DetectPlan& plan, TypeId type);
+
 /// Carries a plan out: looks at the brightness of the image, estimates the direction of the light where it is
 /// not told, checks it where it is, and searches the image. An image in which nothing can be seen (one pixel,
 /// black, no data) has no detections and a warning that says why. `progress` is told of the search.

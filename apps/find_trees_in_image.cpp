@@ -165,15 +165,7 @@ FoundInImage find_trees_in_image(const DetectPlan& plan, int threads,
   FoundInImage found;
   const double metres = pixel_metres(plan, found);
   const TypeId type = all_types().id("tree");
-  found.detections = {.type = type,
-                      .image = info.name,
-                      .columns = info.columns,
-                      .rows = info.rows,
-                      .detections = {},
-                      .place = info.ortho,
-                      .gsd = plan.gsd,
-                      .sun_elevation = plan.sun_elevation,
-                      .sun_azimuth = plan.sun_azimuth};
+  found.detections = none_yet(plan, type);
   std::vector<Kept> kept = imagery && (bands > 3 || metres >= kFineColour)
                                ? by_network(info, metres, type, threads, progress)
                                : by_canopy(plan, metres, method, type, threads, progress);

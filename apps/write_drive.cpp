@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
-#include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "exporters/aside_folder.hpp"
 #include "geo/crs.hpp"
 
@@ -17,11 +14,8 @@ std::string write_drive(const std::filesystem::path& folder, const Scenario& sce
   const DriveSettings& drive = scenario.drive;
   if (!drive.trees.empty()) {
     const std::filesystem::path table = scenario_file.parent_path() / drive.trees;
-    std::ifstream file(table, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (text.empty())
-      throw Error(ErrorCode::input, "cannot read the table of trees", table,
-                  "see drive.trees of the scenario");
+    const std::string text =
+        read_text(table, "the table of trees", ErrorCode::input, "see drive.trees of the scenario");
     trees =
         trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north}, scene.terrain);
   }

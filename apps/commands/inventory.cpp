@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "apps/output_path.hpp"
 #include "apps/stand_figures.hpp"
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "exporters/aside_folder.hpp"
 #include "exporters/inventory_report.hpp"
 #include "exporters/shape_csv.hpp"
@@ -22,13 +21,6 @@ namespace waymark {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string whole_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file && text.empty()) throw Error(ErrorCode::input, "cannot read this table", path, "check the path");
-  return text;
-}
 
 StandPolygon in_metres(const std::vector<ShapePart>& outline, double unit) {
   StandPolygon ground;
@@ -108,7 +100,7 @@ class Inventory final : public Command {
     const StandsInTurn stands(reader, stands_of(map, reader), trees_at_once_);
     const StandTables tables = read_tables();
     InventoryOptions options{.class_width = class_width_ / 100};
-    if (!recall_.empty()) options.recall = parse_recall(whole_file(recall_), recall_);
+    if (!recall_.empty()) options.recall = parse_recall(read_text(recall_, "this table"), recall_);
     std::vector<StandResult> results;
     stands.visit([&](const MapTrees& trees, const NamedStand& stand) {
       results.push_back(figures_of(trees, stand, tables, options));
@@ -143,8 +135,9 @@ class Inventory final : public Command {
     StandTables tables;
     tables.diameters_file = allometry_;
     tables.volumes_file = volume_;
-    if (!allometry_.empty()) tables.diameters = parse_allometry(whole_file(allometry_), allometry_);
-    if (!volume_.empty()) tables.volumes = parse_volume(whole_file(volume_), volume_);
+    if (!allometry_.empty())
+      tables.diameters = parse_allometry(read_text(allometry_, "this table"), allometry_);
+    if (!volume_.empty()) tables.volumes = parse_volume(read_text(volume_, "this table"), volume_);
     return tables;
   }
 

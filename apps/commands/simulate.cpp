@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
@@ -13,6 +11,7 @@
 #include "apps/write_forest.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "core/text_file.hpp"
 #include "exporters/aside_folder.hpp"
 #include "exporters/image_file.hpp"
 #include "exporters/raster_file.hpp"
@@ -23,13 +22,6 @@ namespace waymark {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string whole_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file && text.empty()) throw Error(ErrorCode::input, "cannot read the scenario", path);
-  return text;
-}
 
 // Images of an older scene in the folder would be taken for images of this one.
 void check_strangers(const fs::path& images, const std::vector<Shot>& shots) {
@@ -72,7 +64,7 @@ class Simulate final : public Command {
   }
 
   int run(const Session&) override {
-    Scenario scenario = read_scenario(whole_file(scenario_), scenario_);
+    Scenario scenario = read_scenario(read_text(scenario_, "the scenario"), scenario_);
     if (seed_ >= 0) scenario.seed = seed_;
     if (drive_seed_ >= 0) scenario.drive.seed = drive_seed_;
     if ((drive_only_ || drive_seed_ >= 0) && !scenario.drive.on)

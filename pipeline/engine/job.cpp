@@ -4,13 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "pipeline/engine/option_table.hpp"
 
 namespace waymark {
@@ -109,11 +108,7 @@ Job parse_job(std::string_view text, const Registry& registry, std::string_view 
 }
 
 Job read_job(const std::filesystem::path& file, const Registry& registry) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw Error(ErrorCode::usage, "cannot read the job file", file.string(), "check the path");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  Job job = parse_job(text, registry, file.string());
+  Job job = parse_job(read_text(file, "the job file", ErrorCode::usage), registry, file.string());
   job.pipeline.base_folder = file.parent_path();
   return job;
 }

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include "core/error.hpp"
+namespace waymark {
+
+/// All of a file. Throws Error{code}, "cannot read `what`", where there is none, it is a folder, or reading
+/// fails.
+std::string read_text(const std::filesystem::path& file, std::string_view what,
+                      ErrorCode code = ErrorCode::input, std::string_view hint = "check the path");
+
+}  // namespace waymark

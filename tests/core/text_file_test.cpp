@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/text_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace waymark {
+namespace {
+
+TEST(TextFile, IsReadToItsLastByte) {
+  const auto file = std::filesystem::temp_directory_path() / "waymark-text-file";
+  for (const std::string& text : {std::string(), std::string("a\r\n\0b\xff", 6), std::string(100'000, 'x')}) {
+    std::ofstream(file, std::ios::binary) << text;
+    EXPECT_EQ(read_text(file, "this"), text);
+  }
+  std::filesystem::remove(file);
+}
+
+TEST(TextFile, SaysWhatCannotBeRead) {
+  for (const char* file : {"/nowhere/file", "/tmp"}) try {
+      read_text(file, "the table", ErrorCode::usage, "look");
+      ADD_FAILURE() << file;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      EXPECT_EQ(error.problem(), "cannot read the table");
+      EXPECT_EQ(error.where(), file);
+      EXPECT_EQ(error.hint(), "look");
+    }
+}
+
+}  // namespace
+}  // namespace waymark
