@@ -15,7 +15,9 @@ struct CratersInImage {
   struct Options {
     double min_diameter = CraterSearch{}.min_diameter;
     double max_diameter = 0;
-    double min_confidence = CraterSearch{}.min_confidence;
+    /// Bowls that the image alone leaves in doubt are judged again where heights are known
+    /// (project_to_ground).
+    double min_confidence = kMethod == CraterMethod::bowl ? 0.1 : CraterSearch{}.min_confidence;
     void describe(OptionVisitor& option) {
       option("min_diameter", min_diameter,
              {.help = "Smallest crater kept, in pixels of the image", .min = 6, .max = 1e5});

@@ -4,6 +4,7 @@
 #include "geo/image_source.hpp"
 #include "geo/plane_dem.hpp"
 #include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/closed_rims.hpp"
 #include "pipeline/fusion/detection_codec.hpp"
 #include "pipeline/fusion/ground_match.hpp"
 #include "pipeline/fusion/image_view_codec.hpp"
@@ -21,6 +22,7 @@ struct ProjectToGround {
     double edge_share = PlacingRules{}.edge_share;
     double shadow_shape = PlacingRules{}.shadow_shape;
     double rim_shape = PlacingRules{}.rim_shape;
+    double least_crater = 0.5;
     bool match_ground = true;
     void describe(OptionVisitor& option) {
       option("height_sd", height_sd,
@@ -46,6 +48,10 @@ struct ProjectToGround {
              {.help = "Uncertainty of a crater's middle from the unevenness of its rim, in diameters",
               .min = 0,
               .max = 1});
+      option("least_crater", least_crater,
+             {.help = "Craters less probable than this, by image and DEM together, are left out",
+              .min = 0,
+              .max = 1});
       option("match_ground", match_ground,
              {.help =
                   "Compares the image with the light the DEM's slopes would show, to tell align_images where "
@@ -61,7 +67,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 6,
+            .version = 7,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -93,14 +99,16 @@ struct ProjectToGround {
     for (const auto& found : unit.read_all(detections))
       for (const Detection& detection : *found) {
         unit.count_in(1);
-        Observation observation = placed(detection, image, terrain, types[detection.type], rules);
-        if (!observation.rejected.empty()) {
-          unit.reject(observation.rejected);
-          continue;
-        }
-        observation.position.xyz.head<2>() /= metres_per_unit;
-        all.push_back(std::move(observation));
+        all.push_back(placed(detection, image, terrain, types[detection.type], rules));
+        all.back().position.xyz.head<2>() /= metres_per_unit;
       }
+    if (rules.heights_known) weigh_by_rims(all, types, terrain, metres_per_unit);
+    std::erase_if(all, [&](const Observation& o) {
+      const bool doubtful = types[o.type].drawn_as == Solid::bowl && o.confidence < options.least_crater;
+      if (o.rejected.empty() && !doubtful) return false;
+      unit.reject(o.rejected.empty() ? "more probably no crater" : o.rejected);
+      return true;
+    });
     if (options.match_ground && rules.heights_known && image.view && image.view->covariance.trace() > 0) {
       const Pixels pixels = unit.read(image_set)
                                 .at(static_cast<std::size_t>(unit.image().index))
