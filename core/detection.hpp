@@ -31,9 +31,10 @@ struct Detection {
   /// Length of flat ground, pixels, that a shadow of the thing's full height covers: height on level ground =
   /// shadow_reach x GSD x tan(sun elevation). Rocks have it, craters do not.
   std::optional<Measured> shadow_reach;
-  /// What share of what sloping ground does to a shadow's length is in shadow_reach: 1 where it is measured,
-  /// less where the detector leans on what it expects of such things.
-  double reach_follows = 1;
+  /// What share of what sloping ground does to a shadow's length (of its logarithm) is in shadow_reach: 1
+  /// where it is measured, less where the detector leans on what it expects of such things. And what share is
+  /// in the outline's diameter: where a long shadow makes a thing be taken for a large one.
+  double reach_follows = 1, diameter_follows = 0;
   double confidence = 1;  ///< calibrated probability that the thing is there, (0, 1]
 
   friend bool operator==(const Detection&, const Detection&) = default;

@@ -24,7 +24,8 @@ void write(ByteWriter& out, const Detection& d) {
   layout(out, d.covariance);
   out(d.diameter_sd);
   out(d.shadow_reach.has_value());
-  if (d.shadow_reach) out(d.shadow_reach->value), out(d.shadow_reach->sd), out(d.reach_follows);
+  if (d.shadow_reach)
+    out(d.shadow_reach->value), out(d.shadow_reach->sd), out(d.reach_follows), out(d.diameter_follows);
   out(d.confidence);
 }
 
@@ -36,7 +37,7 @@ Detection read_detection(ByteReader& in) {
   in(d.diameter_sd);
   if (in.get<bool>()) {
     d.shadow_reach.emplace();
-    in(d.shadow_reach->value), in(d.shadow_reach->sd), in(d.reach_follows);
+    in(d.shadow_reach->value), in(d.shadow_reach->sd), in(d.reach_follows), in(d.diameter_follows);
   }
   in(d.confidence);
   return d;

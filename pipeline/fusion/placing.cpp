@@ -95,10 +95,12 @@ Observation placed(const Detection& detection, const ImageView& image, const Ter
       outline->major *= std::exp(crest->growth), outline->minor *= std::exp(crest->growth);
       growth_sd = crest->growth_sd;
     }
-  const double diameter = outline->diameter();
+  double diameter = outline->diameter();
   if (!bowl && diameter > 2 * cell)
     if (const auto wider = local_ground(terrain, outline->centre.x(), outline->centre.y(), diameter))
       ground->gradient = wider->gradient;
+  if (detection.diameter_follows > 0 && image.sun)
+    diameter *= std::exp(detection.diameter_follows * log_steepness(*ground, *image.sun));
 
   const auto pixel_sd = detection.diameter_sd / std::max(detection.outline.diameter(), 1e-3);
   const auto range_sd = relative_scale_sd(image, *line, hit.range);

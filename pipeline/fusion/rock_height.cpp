@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/fusion/rock_height.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace waymark {
@@ -27,6 +28,14 @@ std::optional<Measured> height_from_shadow(const Measured& reach_px, const Image
   const double from_sun = length / cosine2 * to_radians(sun.sd).value;
   return Measured{length * per_metre,
                   std::hypot(per_metre * length_sd, std::hypot(from_sun, length * follows * slope_sd))};
+}
+
+double log_steepness(const GroundPlane& ground, const Sun& sun) {
+  const Eigen::Vector3d light = towards(sun).unit;
+  const double level = light.head<2>().norm();
+  if (!(light.z() > 0) || !(level > 1e-6)) return 0;
+  const double rise = -ground.gradient.dot(light.head<2>()) / level;
+  return std::log(std::clamp(1 + rise * level / light.z(), 0.5, 2.0));
 }
 
 }  // namespace waymark

@@ -18,4 +18,8 @@ std::optional<Measured> height_from_shadow(const Measured& reach_px, const Image
                                            const GroundPlane& ground, const Sun& sun, double slope_sd,
                                            double follows = 1);
 
+/// By how much the ground's slope shortens shadows: ln((tan e + g) / tan e), held within ln 2 either way; 0
+/// for a sun in the zenith or not above level ground.
+double log_steepness(const GroundPlane& ground, const Sun& sun);
+
 }  // namespace waymark

@@ -26,6 +26,9 @@ constexpr double kAside = 0.35;
 // (landings 303, 304, 401, 402 and 512; 0.3 to 0.5 spread heights alike, docs/rocks.md).
 constexpr double kReachFollows = 0.4;
 
+// The same of widths, which follow by 0.2 to 0.36 there and on landings 901 to 906; 0.15 to 0.25 do alike.
+constexpr double kDiameterFollows = 0.2;
+
 // Share of rocks among the dark spots the confidence was fitted on, and how far towards the image's own share
 // the confidences are moved (chosen on landings 301 and 302, docs/rocks.md).
 constexpr double kShareTrust = 0.6;
@@ -75,6 +78,7 @@ Detection detection_of(const JudgedRock& judged, const RockSearch& search, const
   const double reach = scale * rock.size.reach * std::exp(say.log_reach);
   found.shadow_reach = Measured{reach, reach * say.log_reach_sd};
   found.reach_follows = kReachFollows;
+  found.diameter_follows = kDiameterFollows;
   found.confidence = judged.confidence;
   return found;
 }

@@ -67,7 +67,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 7,
+            .version = 8,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};

@@ -24,6 +24,7 @@ TEST(FusionCodecs, Detections) {
   d.covariance << 0.1, 0.02, 0.02, 0.3;
   d.shadow_reach = Measured{7.5, 0.25};
   d.reach_follows = 0.4;
+  d.diameter_follows = 0.2;
   d.confidence = 0.8;
   const std::vector<Detection> all{d, Detection{}};
   expect_round_trip(all);

@@ -205,6 +205,24 @@ TEST(Placed, HeightIsCorrectedForTheSlopeAsFarAsTheReachFollowsIt) {
   EXPECT_NEAR(height(0.4), 4 * (std::tan(30 * kDegree) - 0.4 * std::tan(10 * kDegree)), 0.01);
 }
 
+// Ground that falls away from the sun lengthens shadows: what was taken for a larger rock is made smaller.
+TEST(Placed, WidthIsCorrectedForTheSlopeAsFarAsItFollows) {
+  ImageView image = camera();
+  image.sun = Sun{Degrees{90}, Degrees{30}};
+  Detection d = at(199.5, 149.5);
+  d.shadow_reach = Measured{20, 1};
+  const auto radius = [&](double follows, double east) {
+    d.diameter_follows = follows;
+    return placed(d, image, plane(0, east), kRock, {}).features[feature_index(kRock, "radius")].value;
+  };
+  const double half = std::tan(30 * kDegree) / 2;
+  const auto factor = [&](double east) { return radius(0.2, east) / radius(0, east); };
+  EXPECT_NEAR(factor(0), 1, 1e-12);
+  EXPECT_NEAR(factor(half), std::pow(0.5, 0.2), 1e-5);  // heights are floats
+  EXPECT_NEAR(factor(-half), std::pow(1.5, 0.2), 1e-5);
+  EXPECT_NEAR(factor(1.8 * half), std::pow(0.5, 0.2), 1e-5);  // hardly lit: held
+}
+
 TEST(Footprint, OfACameraStraightDownIsARectangle) {
   const Footprint f = footprint(camera(), plane(0));
   ASSERT_EQ(f.rings.size(), 1u);

@@ -117,7 +117,7 @@ TEST(FindRocks, EverythingItSaysIsANumber) {
 }
 
 // What is measured follows a slope in full; what leans on what is expected of rocks, in part.
-TEST(FindRocks, TellsHowFarReachesFollowSlopes) {
+TEST(FindRocks, TellsHowFarSizesFollowSlopes) {
   RockSearch search = search_of(kField);
   const auto leaning = find_rocks(field().pixels, search);
   search.method = RockMethod::classic;
@@ -125,7 +125,9 @@ TEST(FindRocks, TellsHowFarReachesFollowSlopes) {
   ASSERT_FALSE(leaning.empty());
   ASSERT_FALSE(measured.empty());
   EXPECT_EQ(leaning.front().reach_follows, 0.4);
+  EXPECT_EQ(leaning.front().diameter_follows, 0.2);
   EXPECT_EQ(measured.front().reach_follows, 1);
+  EXPECT_EQ(measured.front().diameter_follows, 0);
 }
 
 TEST(FindRocks, ImagesWithoutRocksHaveNone) {
