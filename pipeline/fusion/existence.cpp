@@ -8,7 +8,7 @@ namespace waymark {
 
 ExistenceRules existence_rules(std::string_view type) {
   if (type == "rock") return {.further_detection = 0.2, .missed_image = 0.5, .doubt = 1.5, .least = 0.5};
-  if (type == "crater") return {.further_detection = 0.45, .missed_image = 0.3};
+  if (type == "crater") return {.further_detection = 0.2, .missed_image = 0.15};
   return {};
 }
 

@@ -14,9 +14,9 @@ struct ExistenceRules {
   double least = 0;                ///< a landmark less probable than this is none
 };
 
-/// By likelihood on testbed landings 303 and 304 (docs/qualities.md): what is mistaken for a rock is mistaken
-/// in every image, and one that more probably is none is left out; craters are often missed. Other types: the
-/// defaults.
+/// By likelihood on testbed landings (docs/qualities.md): what is mistaken for a rock is mistaken in every
+/// image, and one that more probably is none is left out; craters are often missed, and where a DEM is known
+/// all their observations share its evidence. Other types: the defaults.
 ExistenceRules existence_rules(std::string_view type);
 
 /// Probability that a landmark exists, from the confidences of its observations, each in (0, 1], and the

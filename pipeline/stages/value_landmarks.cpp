@@ -45,7 +45,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
-            .version = 3,
+            .version = 4,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};

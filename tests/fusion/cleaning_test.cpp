@@ -194,6 +194,13 @@ TEST(Existence, RocksAreDoubtedMoreThanCraters) {
   EXPECT_NEAR(existence_probability(one, 0, existence_rules("mountain_top")), 0.9, 1e-12);
 }
 
+// Other images of a crater say little more, and one that misses it little against it.
+TEST(Existence, CratersAreSeenThroughTheSameDemInEveryImage) {
+  const double three[] = {0.9, 0.8, 0.5};
+  const double logit = std::log(9) + 0.2 * std::log(4) - 2 * 0.15;
+  EXPECT_NEAR(existence_probability(three, 2, existence_rules("crater")), 1 / (1 + std::exp(-logit)), 1e-12);
+}
+
 TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {
   std::vector<Landmark> all(3);
   for (std::size_t i = 0; i < 3; ++i)
