@@ -49,7 +49,7 @@ struct ProjectToGround {
               .min = 0,
               .max = 1});
       option("least_crater", least_crater,
-             {.help = "Craters less probable than this, by image and DEM together, are left out",
+             {.help = "Craters less probable than this, by image and DEM together, are rejected",
               .min = 0,
               .max = 1});
       option("match_ground", match_ground,
@@ -67,7 +67,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Places detections on the DEM through the camera, with covariance; footprints",
-            .version = 8,
+            .version = 9,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -102,20 +102,24 @@ struct ProjectToGround {
         all.push_back(placed(detection, image, terrain, types[detection.type], rules));
         all.back().position.xyz.head<2>() /= metres_per_unit;
       }
-    if (rules.heights_known) weigh_by_rims(all, types, terrain, metres_per_unit);
-    std::erase_if(all, [&](const Observation& o) {
-      const bool doubtful = types[o.type].drawn_as == Solid::bowl && o.confidence < options.least_crater;
-      if (o.rejected.empty() && !doubtful) return false;
-      unit.reject(o.rejected.empty() ? "more probably no crater" : o.rejected);
-      return true;
+    std::erase_if(all, [&](const Observation& o) {  // no place on the map
+      if (!o.rejected.empty()) unit.reject(o.rejected);
+      return !o.rejected.empty();
     });
+    if (rules.heights_known) weigh_by_rims(all, types, terrain, metres_per_unit);
+    std::int64_t kept = 0;
+    for (Observation& o : all) {
+      if (types[o.type].drawn_as == Solid::bowl && o.confidence < options.least_crater)
+        o.rejected = "more probably no crater";
+      o.rejected.empty() ? void(++kept) : unit.reject(o.rejected);
+    }
     if (options.match_ground && rules.heights_known && image.view && image.view->covariance.trace() > 0) {
       const Pixels pixels = unit.read(image_set)
                                 .at(static_cast<std::size_t>(unit.image().index))
                                 ->read({0, 0, info.columns, info.rows});
       image.on_ground = match_ground(pixels, image, terrain, metres_per_unit);
     }
-    unit.count_in(0), unit.count_out(static_cast<std::int64_t>(all.size()));
+    unit.count_in(0), unit.count_out(kept);
     unit.write(placed_observations, std::move(all));
     unit.write(image_view, std::move(image));
   }
