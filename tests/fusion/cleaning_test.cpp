@@ -6,16 +6,10 @@
 #include "pipeline/fusion/merging.hpp"
 #include "pipeline/fusion/rejections.hpp"
 #include "pipeline/fusion/valuing.hpp"
+#include "tests/fusion/own_types.hpp"
 
 namespace waymark::testing {
 namespace {
-
-TypeRegistry all_types() {
-  TypeRegistry types;
-  register_landmark_types(types);
-  return types;
-}
-const TypeRegistry kTypes = all_types();
 
 Observation rock(double x, double y, double radius, double height = 0, std::string source = "a") {
   Observation o;

@@ -5,15 +5,10 @@
 
 #include <cmath>
 
+#include "tests/fusion/own_types.hpp"
+
 namespace waymark::testing {
 namespace {
-
-TypeRegistry all_types() {
-  TypeRegistry types;
-  register_landmark_types(types);
-  return types;
-}
-const TypeRegistry kTypes = all_types();
 
 // Ground that rises to the north, heights every metre; every 40 m, in the lower half only, a bowl 12 m wide
 // whose rim is 1.2 m above its floor; `shown` of all that.

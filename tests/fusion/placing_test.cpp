@@ -12,6 +12,7 @@
 #include "pipeline/fusion/local_ground.hpp"
 #include "pipeline/fusion/place_covariance.hpp"
 #include "pipeline/fusion/rock_height.hpp"
+#include "tests/fusion/own_types.hpp"
 
 namespace waymark::testing {
 namespace {
@@ -49,12 +50,6 @@ Detection at(double x, double y, double diameter = 10) {
   return d;
 }
 
-TypeRegistry all_types() {
-  TypeRegistry types;
-  register_landmark_types(types);
-  return types;
-}
-const TypeRegistry kTypes = all_types();
 const LandmarkType& kRock = *kTypes.find("rock");
 const LandmarkType& kCrater = *kTypes.find("crater");
 

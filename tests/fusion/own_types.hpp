@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "landmarks/landmark_type.hpp"
+namespace waymark::testing {
+
+/// The landmark types of this program.
+inline const TypeRegistry kTypes = [] {
+  TypeRegistry types;
+  register_landmark_types(types);
+  return types;
+}();
+
+}  // namespace waymark::testing
