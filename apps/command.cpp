@@ -11,6 +11,12 @@ Argument Argument::needed() const {
   return same;
 }
 
+Argument Argument::alone() const {
+  Argument same = *this;
+  same.waives_required = true;
+  return same;
+}
+
 Argument Argument::one_of(std::vector<std::string> only) const {
   Argument same = *this;
   same.choices = std::move(only);
@@ -32,6 +38,12 @@ Argument Argument::offering(Offer paths) const {
 Argument Argument::or_else(std::string value_not_given) const {
   Argument same = *this;
   same.otherwise = std::move(value_not_given);
+  return same;
+}
+
+Argument Argument::formerly(std::string name) const {
+  Argument same = *this;
+  same.former = std::move(name);
   return same;
 }
 

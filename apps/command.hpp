@@ -10,38 +10,42 @@ namespace waymark {
 
 struct Session;
 
-/// Where the words of an argument go. A bool is a flag; a vector of texts takes the argument again and again.
+/// Variable that receives the words of an argument. A bool is a flag; a vector of texts makes it repeatable.
 using Target = std::variant<bool*, std::int64_t*, double*, std::string*, std::vector<double>*,
                             std::vector<std::string>*>;
 
-/// What the shell offers for a value that has no choices.
+/// Completion of a value that has no choices.
 enum class Offer { nothing, file, folder };
 
-/// One word or option of a command. Parsing, help, completion and man page read this and nothing else.
+/// Positional word or option of a command. Parsing, help, completion and man page are made from it alone.
 struct Argument {
-  std::string names;  ///< "-o,--output"; a positional word has none of its own: ""
-  std::string value;  ///< what stands for the value: "MAP.gpkg"; "X Y RADIUS" takes three; "DEM..." one or
-                      ///< more; empty for a flag
+  std::string names;  ///< "-o,--output"; "" for a positional word
+  std::string value;  ///< placeholder: "MAP.gpkg"; "X Y RADIUS" takes three values, "DEM..." one or more;
+                      ///< empty for a flag
   Target into;
   std::string help;  ///< the effect, one sentence without a full stop
   bool required = false;
   std::vector<std::string> choices = {};      ///< the only values allowed; empty: any
   std::vector<std::string> suggestions = {};  ///< values the shell offers, others are allowed
   Offer offer = Offer::nothing;
-  std::string otherwise = {};  ///< what holds where it is not given; empty: nothing to tell
+  bool waives_required = false;  ///< a flag with which the required arguments are not needed
+  std::string otherwise = {};    ///< effective value if not given; empty: none to show
+  std::string former = {};       ///< earlier name, "--share", still accepted with a warning; empty: none
 
   bool positional() const { return names.empty(); }
   bool flag() const { return std::holds_alternative<bool*>(into); }
 
-  // The same argument with one more thing said about it.
+  // Return a copy with one property changed.
   Argument needed() const;
+  Argument alone() const;
   Argument one_of(std::vector<std::string> only) const;
   Argument offering(std::vector<std::string> words) const;
   Argument offering(Offer paths) const;
   Argument or_else(std::string value_not_given) const;
+  Argument formerly(std::string name) const;
 };
 
-/// A word that names a file and must be there.
+/// Returns a required positional word that names a file.
 Argument file_word(std::string placeholder, Target into, std::string help);
 
 struct Example {
@@ -49,10 +53,10 @@ struct Example {
   std::string says;  ///< what it does, one line
 };
 
-/// Under which heading `waymark --help` lists a command.
+/// Heading under which `waymark --help` lists a command.
 enum class Group { make, use, look_up };
 
-/// Everything said about a command, once.
+/// Declaration of a command.
 struct CommandSpec {
   std::string name;
   Group group = Group::use;
@@ -62,12 +66,12 @@ struct CommandSpec {
   std::vector<Example> examples = {};
 };
 
-/// A subcommand: a file of apps/commands. The targets of its arguments are its own members.
+/// Subcommand, a file of apps/commands. Its members receive its arguments.
 class Command {
  public:
   virtual ~Command() = default;
   virtual CommandSpec describe() = 0;
-  /// Exit code of interface.md. Called once, after the arguments have their values.
+  /// Returns the exit code (interface.md). Called once, after parsing.
   virtual int run(const Session& session) = 0;
 };
 
@@ -77,9 +81,9 @@ class CommandTable {
   void add() {
     commands_.push_back(std::make_unique<T>());
   }
-  /// Throws Error{usage} with the nearest name where there is no such command.
+  /// Throws Error{usage} with the nearest name if there is no such command.
   Command& find(std::string_view name) const;
-  /// Of every command, sorted by name.
+  /// Returns the declarations of all commands, sorted by name.
   std::vector<CommandSpec> describe() const;
 
  private:

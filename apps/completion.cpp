@@ -29,7 +29,7 @@ constexpr auto kTail = R"(  esac
 complete -F _waymark waymark
 )";
 
-/// Assignments that make the script offer values for these arguments.
+/// Returns assignments that make the script offer values for these arguments.
 std::string offer(std::span<const Argument> arguments) {
   std::vector<std::string> words;
   std::string path;
@@ -54,7 +54,7 @@ std::string options(std::span<const Argument> arguments) {
   return all;
 }
 
-/// Branches on the word before: the value of an option, else options or positional words.
+/// Returns branches on the previous word: the value of an option, else options or positional words.
 std::string branches(std::span<const Argument> arguments) {
   std::string text;
   std::vector<Argument> words, named;

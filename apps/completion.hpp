@@ -5,7 +5,7 @@
 #include "apps/command.hpp"
 namespace waymark {
 
-/// A script for bash that completes commands, options, choices and paths. It never calls the program.
+/// Returns a bash script that completes commands, options, choices and paths without calling the program.
 std::string bash_completion(std::span<const CommandSpec> commands, std::span<const Argument> globals);
 
 }  // namespace waymark

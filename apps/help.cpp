@@ -8,13 +8,14 @@
 
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
+#include "workflows/provenance.hpp"
 
 namespace waymark {
 namespace {
 
 constexpr std::size_t kWidth = 100, kTextColumn = 26;
 
-/// Paragraphs of `text` broken at kWidth, every line after `indent` blanks.
+/// Wraps paragraphs at kWidth and indents every line by `indent` blanks.
 std::string wrapped(const std::string& text, std::size_t indent) {
   std::string result, line;
   const auto flush = [&] {
@@ -31,7 +32,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
   return result;
 }
 
-/// A name with its explanation beside it, or below where the name is long.
+/// Returns a name with its explanation beside it, or below a long name.
 std::string entry(const std::string& name, const std::string& text) {
   const std::string left = "  " + name;
   std::string right = wrapped(text, kTextColumn);
@@ -79,6 +80,7 @@ std::string full_help(const Argument& argument) {
   std::string text = argument.help;
   if (!argument.choices.empty()) text += fmt::format(": {}", fmt::join(argument.choices, ", "));
   if (!argument.otherwise.empty()) text += " (default: " + argument.otherwise + ")";
+  if (!argument.former.empty()) text += " (formerly " + argument.former + ")";
   return text;
 }
 

@@ -5,13 +5,13 @@
 #include "apps/command.hpp"
 namespace waymark {
 
-/// What `waymark --help` prints: the commands by group, and the global options.
+/// Returns the text of `waymark --help`: commands by group, and global options.
 std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals);
 
-/// What `waymark NAME --help` prints.
+/// Returns the text of `waymark NAME --help`.
 std::string command_help(const CommandSpec& command, std::span<const Argument> globals);
 
-/// Help of an argument with its choices.
+/// Returns the help of an argument with its choices.
 std::string full_help(const Argument& argument);
 
 struct ExitCode {

@@ -7,10 +7,15 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
+#include "core/printable.hpp"
+#include "exporters/formatting.hpp"
+
 namespace waymark {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxCell = 200;  // bytes of a text in a table for people
 
 Json json_of(const AttributeValue& value) {
   return std::visit(
@@ -23,13 +28,6 @@ Json json_of(const AttributeValue& value) {
       value);
 }
 
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) c == '"' ? quoted += "\"\"" : quoted += c;
-  return quoted + "\"";
-}
-
 std::string csv_cell(const AttributeValue& value) {
   if (const auto* real = std::get_if<double>(&value)) return fmt::format("{}", *real);
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
@@ -37,9 +35,10 @@ std::string csv_cell(const AttributeValue& value) {
   return "";
 }
 
-/// Degrees to about a decimetre, metres to a decimetre, pure numbers to three places.
+/// Rounds degrees and metres to about a decimetre, other numbers to three places.
 std::string table_cell(const RowColumn& column, const AttributeValue& value, bool degrees) {
   const auto* real = std::get_if<double>(&value);
+  if (const auto* text = std::get_if<std::string>(&value)) return printable(*text, kMaxCell);
   if (!real) return std::holds_alternative<std::monostate>(value) ? "-" : csv_cell(value);
   const bool position = column.name == "x" || column.name == "y";
   return fmt::format("{:.{}f}", *real, position && degrees ? 6 : position || column.unit == "m" ? 1 : 3);
@@ -99,7 +98,7 @@ void print_json(std::ostream& out, std::span<const RowColumn> columns, std::span
   for (const Landmark& landmark : landmarks) {
     Json object = Json::object();
     for (const RowColumn& column : columns) object[column.name] = json_of(column.value(landmark));
-    out << before << object.dump();
+    out << before << object.dump(-1, ' ', false, Json::error_handler_t::replace);
     before = ",\n";
   }
   out << "\n]\n";
@@ -121,7 +120,7 @@ void print_geojson(std::ostream& out, std::span<const RowColumn> columns,
                        {"id", landmark.uid},
                        {"geometry", {{"type", "Point"}, {"coordinates", coordinates}}},
                        {"properties", properties}};
-    out << before << feature.dump();
+    out << before << feature.dump(-1, ' ', false, Json::error_handler_t::replace);
     before = ",\n";
   }
   out << "\n]}\n";

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "exporters/export_columns.hpp"
+#include "exporters/vector/export_columns.hpp"
 
 namespace waymark {
 namespace {
@@ -21,7 +21,7 @@ Value coordinate(int axis) {
   return [axis](const Landmark& landmark) { return or_null(landmark.position.xyz[axis]); };
 }
 
-/// The columns of one name, by type; a landmark of another type has no value.
+/// Joins columns of one name, by type; a landmark of another type has no value.
 Value by_type(std::map<TypeId, Value> values) {
   return [values = std::move(values)](const Landmark& landmark) {
     const auto found = values.find(landmark.type);
@@ -60,7 +60,10 @@ std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const
       if (column.name == "uid") continue;
       if (!values.contains(column.name))
         more.push_back(
-            {column.name, column.unit, is_feature(types[id], column.name) || column.name == "quality", {}});
+            {column.name,
+             column.unit,
+             is_feature(types[id], column.name) || column.name == "quality" || column.name == "confidence",
+             {}});
       values[column.name][id] = column.name == "quality" ? quality_column(context) : column.value;
     }
   }

@@ -9,14 +9,14 @@
 #include "landmarks/sensor_profile.hpp"
 namespace waymark {
 
-/// A column of printed landmarks of one type or several.
+/// Column of printed landmarks.
 struct RowColumn {
   std::string name, unit;
-  bool brief = false;                                    ///< worth its place in a table for people
-  std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate where the landmark has none
+  bool brief = false;                                    ///< shown in the table for people
+  std::function<AttributeValue(const Landmark&)> value;  ///< std::monostate if the landmark has none
 };
 
-/// What the columns depend on beside the types.
+/// Input of the columns besides the chosen types.
 struct RowContext {
   const TypeRegistry* types = nullptr;    ///< of the map
   const SensorProfile* sensor = nullptr;  ///< whose quality is shown; null: equal weights
@@ -24,8 +24,8 @@ struct RowContext {
       {};  ///< metres, from the point asked for; empty: no such column
 };
 
-/// type, uid, x, y, z, then the columns of the map for every type that is chosen, equal names once;
-/// `distance` last. The registry and the sensor must outlive them.
+/// Returns type, uid, x, y, z, the map's columns of every chosen type (equal names once), and `distance`. The
+/// registry and the sensor must outlive them.
 std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const RowContext& context);
 
 }  // namespace waymark

@@ -6,8 +6,12 @@
 
 #include <cstdio>
 
+#include "core/printable.hpp"
+
 namespace waymark {
 namespace {
+
+constexpr std::size_t kMaxMessage = 4000;  // bytes: about a screen
 
 spdlog::logger& log() {
   static const auto logger = [] {
@@ -33,17 +37,19 @@ bool quiet_log() {
 }
 
 void log_error(std::string_view text) {
-  log().error(text);
+  log().error(printable(text, kMaxMessage));
 }
 void log_warning(std::string_view text) {
-  log().warn(text);
+  log().warn(printable(text, kMaxMessage));
 }
 void log_detail(std::string_view text) {
-  log().debug(text);
+  log().debug(printable(text));
 }
 
-void say(std::string_view text) {
-  if (!quiet_log()) std::fwrite(text.data(), 1, text.size(), stderr);
+void log_summary(std::string_view text) {
+  if (quiet_log()) return;
+  const std::string safe = printable(text);
+  std::fwrite(safe.data(), 1, safe.size(), stderr);
 }
 
 }  // namespace waymark

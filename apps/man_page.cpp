@@ -6,11 +6,12 @@
 #include "apps/help.hpp"
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
+#include "workflows/provenance.hpp"
 
 namespace waymark {
 namespace {
 
-/// Text that roff prints as it is: no escapes, no requests, hyphens that can be copied.
+/// Escapes text so that roff prints it literally, with hyphens that can be copied.
 std::string plain(const std::string& text) {
   std::string safe;
   for (const char c : text) {

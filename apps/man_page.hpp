@@ -5,7 +5,7 @@
 #include "apps/command.hpp"
 namespace waymark {
 
-/// waymark(1) as roff for man(1), all commands on one page.
+/// Returns waymark(1) as roff, all commands on one page.
 std::string man_page(std::span<const CommandSpec> commands, std::span<const Argument> globals);
 
 }  // namespace waymark

@@ -3,10 +3,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "core/error.hpp"
+#include "workflows/parse_number.hpp"
 
 namespace waymark {
 namespace {
@@ -19,16 +18,6 @@ int words_of(const Argument& argument) {
 
 bool repeatable(const Argument& argument) {
   return std::holds_alternative<std::vector<std::string>*>(argument.into);
-}
-
-template <class Number>
-Number number(const std::string& what, const std::string& word, const char* kind) {
-  Number value{};
-  const char* end = word.data() + word.size();
-  const auto [stop, fault] = std::from_chars(word.data() + (word.starts_with('+') ? 1 : 0), end, value);
-  if (fault != std::errc{} || stop != end || !std::isfinite(static_cast<double>(value)))
-    throw Error(ErrorCode::usage, what + " must be a " + kind + ", is '" + word + "'");
-  return value;
 }
 
 std::string one_of(const Argument& argument, const std::string& word) {
@@ -45,14 +34,12 @@ struct Store {
   const std::vector<std::string>& words;
 
   void operator()(bool* flag) const { *flag = true; }
-  void operator()(std::int64_t* into) const {
-    *into = number<std::int64_t>(display_name(argument), words[0], "whole number");
-  }
-  void operator()(double* into) const { *into = to_number(display_name(argument), words[0]); }
+  void operator()(std::int64_t* into) const { *into = parse_integer(display_name(argument), words[0]); }
+  void operator()(double* into) const { *into = parse_number(display_name(argument), words[0]); }
   void operator()(std::string* into) const { *into = one_of(argument, words[0]); }
   void operator()(std::vector<double>* into) const {
     into->clear();
-    for (const auto& word : words) into->push_back(to_number(display_name(argument), word));
+    for (const auto& word : words) into->push_back(parse_number(display_name(argument), word));
   }
   void operator()(std::vector<std::string>* into) const {
     for (const auto& word : words) into->push_back(one_of(argument, word));
@@ -72,7 +59,7 @@ std::vector<std::string> names_of(const Argument& argument) {
   return CLI::detail::split(argument.names, ',');
 }
 
-/// GDAL's `-of`, which CLI11 would read as `-o f`.
+/// Matches GDAL's `-of`, which CLI11 would read as `-o f`.
 bool gdal_style(const std::string& name) {
   return name.size() > 2 && name[0] == '-' && name[1] != '-';
 }
@@ -112,7 +99,7 @@ std::vector<std::string> option_names(std::span<const Argument> arguments) {
   return names;
 }
 
-/// The words CLI11 did not know.
+/// Returns the words that CLI11 did not recognise.
 std::vector<std::string> leftover(CLI::App& app, std::span<const Argument> arguments,
                                   std::vector<std::string> words) {
   const std::vector<std::string> names = option_names(arguments);
@@ -127,6 +114,22 @@ std::vector<std::string> leftover(CLI::App& app, std::span<const Argument> argum
     throw Error(ErrorCode::usage, problem.what());
   }
   return app.remaining();
+}
+
+/// Replaces the former names of options by their present ones. Returns a warning for each.
+std::vector<std::string> rename_options(std::span<const Argument> arguments,
+                                        std::vector<std::string>& words) {
+  std::vector<std::string> warnings;
+  for (std::string& word : words) {
+    const std::size_t end = std::min(word.find('='), word.size());
+    const std::string name = word.substr(0, end);
+    const auto renamed = std::ranges::find_if(
+        arguments, [&](const Argument& argument) { return !name.empty() && argument.former == name; });
+    if (renamed == arguments.end()) continue;
+    word = display_name(*renamed) + word.substr(end);
+    warnings.push_back(name + " was renamed: use " + display_name(*renamed));
+  }
+  return warnings;
 }
 
 [[noreturn]] void refuse_unknown(const std::string& who, std::span<const Argument> arguments,
@@ -157,25 +160,25 @@ std::vector<std::string> parse_leading(std::span<const Argument> options,
   return rest;
 }
 
-void parse(const std::string& name, std::span<const Argument> arguments,
-           const std::vector<std::string>& words) {
+std::vector<std::string> parse(const std::string& name, std::span<const Argument> arguments,
+                               std::vector<std::string> words) {
+  const std::vector<std::string> warnings = rename_options(arguments, words);
   CLI::App app;
   app.allow_extras();
   const std::vector<std::string> rest = leftover(app, arguments, words);
-  if (rest.empty()) return;
+  if (rest.empty()) return warnings;
   const auto option = std::ranges::find_if(rest, [](const auto& word) { return word.starts_with("-"); });
   refuse_unknown("waymark " + name, arguments, option != rest.end() ? *option : rest[0]);
 }
 
 void require(const std::string& name, std::span<const Argument> arguments) {
   for (const Argument& argument : arguments)
+    if (const auto* flag = std::get_if<bool*>(&argument.into); flag && **flag && argument.waives_required)
+      return;
+  for (const Argument& argument : arguments)
     if (argument.required && empty(argument.into))
       throw Error(ErrorCode::usage, "waymark " + name + " needs " + synopsis(argument), "",
                   argument.help + "; `waymark " + name + " --help` shows examples");
-}
-
-double to_number(const std::string& what, const std::string& word) {
-  return number<double>(what, word, "number");
 }
 
 std::string synopsis(const Argument& argument) {

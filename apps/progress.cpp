@@ -82,7 +82,7 @@ void print_json(const Progress& progress) {
   fmt::print(stderr, "{}\n", line.dump());
 }
 
-/// For logs: a line when half a minute has passed.
+/// Prints a line every half minute, for logs.
 class SparseLines {
  public:
   void operator()(const Progress& progress) {
@@ -97,7 +97,7 @@ class SparseLines {
   Clock::time_point last_ = Clock::now();
 };
 
-/// Passes on what is news: a stage may be told twice that it is done.
+/// Drops repeats: the end of a stage may be reported twice.
 std::function<void(const Progress&)> without_repeats(std::function<void(const Progress&)> draw) {
   return [draw = std::move(draw), last = Progress()](const Progress& progress) mutable {
     if (progress.stage == last.stage && !(progress.done > last.done)) return;

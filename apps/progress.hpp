@@ -7,15 +7,15 @@ namespace waymark {
 
 struct Session;
 
-/// Draws the progress of a run on standard error in the way `--progress` names: a bar, GDAL's dots, JSON
-/// lines, or nothing. `auto` is a bar on a terminal and else a line every half minute; with --quiet it is
-/// nothing. Empty where nothing is to be drawn.
+/// Returns a function that draws progress on standard error as `--progress` says: a bar, GDAL's dots, JSON
+/// lines or nothing. `auto` is a bar on a terminal, a line every half minute elsewhere, and nothing with
+/// --quiet. Empty if nothing is drawn.
 std::function<void(const Progress&)> progress_renderer(const Session& session);
 
-/// Seconds until the stage is done at its present rate; negative where that is not known yet.
+/// Returns seconds until the stage is done at its present rate; negative if not known yet.
 double seconds_left(const Progress& progress);
 
-/// "0:07", "1:02:09"; "-:--" for a negative time.
+/// Returns "0:07" or "1:02:09"; "-:--" for a negative time.
 std::string clock_time(double seconds);
 
 }  // namespace waymark

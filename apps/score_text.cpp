@@ -34,10 +34,10 @@ std::string as_text(const Score& s) {
         fmt::format("{:g} - {}", bin.from, std::isfinite(bin.to) ? fmt::format("{:g}", bin.to) : ""), bin);
   text += counts_line("all", s.all);
   if (std::isfinite(s.average_precision)) text += "average precision " + number(s.average_precision) + "\n";
-  text += fmt::format("found twice {}\n", s.doubled);
+  text += fmt::format("found twice {}\n", s.duplicates);
   text += fmt::format("position error: median {}, 90 % {}, RMS {}; median {} of the diameter\n",
                       number(s.position_median), number(s.position_p90), number(s.position_rmse),
-                      percent(s.position_median_of_diameter));
+                      percent(s.relative_position_median));
   if (s.with_covariance)
     text += fmt::format("inside the 90 % ellipse {} of {}; NEES {} (2 is honest)\n", percent(s.inside_90),
                         s.with_covariance, number(s.nees, 2));
@@ -79,11 +79,11 @@ json as_json(const std::vector<CalibrationBin>& bins) {
 json as_json(const Score& s) {
   json object = as_json(s.all);
   object["average_precision"] = finite(s.average_precision);
-  object["found_twice"] = s.doubled;
+  object["found_twice"] = s.duplicates;
   object["position_median"] = finite(s.position_median);
   object["position_p90"] = finite(s.position_p90);
   object["position_rmse"] = finite(s.position_rmse);
-  object["position_median_of_diameter"] = finite(s.position_median_of_diameter);
+  object["position_median_of_diameter"] = finite(s.relative_position_median);
   object["inside_90"] = finite(s.inside_90);
   object["nees"] = finite(s.nees);
   object["by_size"] = json::array();
@@ -105,6 +105,31 @@ json as_json(const Score& s) {
   return object;
 }
 
+nlohmann::ordered_json as_json(const TrackScore& s, const std::string& align) {
+  nlohmann::ordered_json all;
+  all["poses"] = s.poses;
+  all["align"] = align;
+  all["ate_rmse"] = s.ate_rmse;
+  all["ate_median"] = s.ate_median;
+  all["ate_largest"] = s.ate_largest;
+  all["rpe"] = s.rpe;
+  all["heading_rmse_deg"] = s.heading_rmse_deg ? nlohmann::ordered_json(*s.heading_rmse_deg) : nullptr;
+  const auto& c = s.consistency;
+  all["anees"] = c ? nlohmann::ordered_json(c->anees) : nullptr;
+  all["anees_band"] = c ? nlohmann::ordered_json{c->low, c->high} : nullptr;
+  all["anees_independent"] = c ? nlohmann::ordered_json(c->independent) : nullptr;
+  const auto& v = s.innovations;
+  all["anis"] = v ? nlohmann::ordered_json(v->anees) : nullptr;
+  all["anis_band"] = v ? nlohmann::ordered_json{v->low, v->high} : nullptr;
+  all["matches"] = s.matches;
+  all["rejected"] = s.rejected;
+  all["wrong_matches"] = s.wrong_matches ? nlohmann::ordered_json(*s.wrong_matches) : nullptr;
+  all["lost"] = s.lost;
+  // Known if `waymark localize` ran with --timing.
+  all["time_per_update_us"] = s.update_seconds ? nlohmann::ordered_json(1e6 * *s.update_seconds) : nullptr;
+  return all;
+}
+
 }  // namespace
 
 std::string scores_as_text(const std::map<std::string, Score>& scores) {
@@ -117,6 +142,22 @@ std::string scores_as_json(const std::map<std::string, Score>& scores) {
   json all = json::object();
   for (const auto& [type, s] : scores) all[type] = as_json(s);
   return all.dump(2) + "\n";
+}
+
+std::string track_score_as_json(const TrackScore& score, const std::string& align) {
+  return as_json(score, align).dump(2) + "\n";
+}
+
+std::string track_score_as_text(const TrackScore& score, const std::string& align) {
+  const nlohmann::ordered_json all = as_json(score, align);
+  std::string text;
+  for (const auto& [name, value] : all.items())
+    text += fmt::format("{:20} {}\n", name,
+                        value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
+                        : value.is_null()       ? "not known"
+                        : value.is_string()     ? value.get<std::string>()
+                                                : value.dump());
+  return text;
 }
 
 }  // namespace waymark

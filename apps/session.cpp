@@ -2,9 +2,12 @@
 #include "apps/session.hpp"
 
 #include <cpl_conv.h>
+#include <cpl_error.h>
+#include <fmt/chrono.h>
 
 #include "apps/log.hpp"
 #include "core/error.hpp"
+#include "core/source_date.hpp"
 
 namespace waymark {
 namespace {
@@ -15,6 +18,14 @@ std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) c == '\'' ? text += "'\\''" : text += c;
   return text + "'";
+}
+
+/// Receives what GDAL reports outside of every listener, as from its threads. Our own message says what
+/// failed and in which file; GDAL's line is a detail.
+void log_gdal(CPLErr level, CPLErrorNum number, const char* text) {
+  if (level == CE_Debug) return CPLDefaultErrorHandler(level, number, text);
+  if (level == CE_Fatal) return log_error(std::string("GDAL: ") + text);
+  log_detail(std::string("GDAL: ") + text);
 }
 
 }  // namespace
@@ -36,10 +47,13 @@ std::vector<Argument> global_arguments(Session& session) {
 }
 
 void begin(const Session& session) {
+  CPLSetErrorHandler(log_gdal);
   set_log_level(session.quiet ? LogLevel::errors : session.verbose ? LogLevel::all : LogLevel::warnings);
   if (session.threads < 0)
     throw Error(ErrorCode::usage, "--threads must be 1 or more, or 0 for one per processor, is " +
                                       std::to_string(session.threads));
+  if (const auto fixed = source_date())  // the time that GDAL writes into files
+    CPLSetConfigOption("OGR_CURRENT_DATE", fmt::format("{:%FT%T}.000Z", *fixed).c_str());
   for (const std::string& setting : session.gdal_config) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos || equals == 0)
@@ -53,10 +67,6 @@ std::string quoted(const std::vector<std::string>& words) {
   std::string line;
   for (const std::string& word : words) line += (line.empty() ? "" : " ") + quoted(word);
   return line;
-}
-
-std::string program_version() {
-  return "waymark " WAYMARK_VERSION;
 }
 
 }  // namespace waymark

@@ -3,7 +3,8 @@
 
 #include <iostream>
 
-#include "apps/registries.hpp"
+#include "apps/map_arguments.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 
@@ -21,7 +22,7 @@ int Shortcut::run(const Session& session) {
   add_stages(pipeline);
   options_.apply(pipeline);
   const Job job{describe_own().name, std::move(pipeline)};
-  if (!print_job_) return make_map(job, request_, run_options(session), session);
+  if (!print_job_) return make_map_command(job, request_, session);
   std::cout << job_as_json(job.name, job.pipeline) << '\n';
   return 0;
 }

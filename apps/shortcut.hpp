@@ -3,28 +3,28 @@
 #include <string_view>
 #include <vector>
 #include "apps/command.hpp"
-#include "apps/make_map.hpp"
 #include "apps/stage_options.hpp"
 #include "pipeline/engine/pipeline.hpp"
+#include "workflows/mapping/make_map.hpp"
 namespace waymark {
 
-/// A command that builds a job from files and a few options of its stages, and runs it as `waymark run`
-/// would: the same code path, and --print-job shows the job.
+/// Command that builds a job from files and a few options of its stages, then runs it as `waymark run` does.
+/// --print-job prints the job instead.
 class Shortcut : public Command {
  public:
   CommandSpec describe() final;
   int run(const Session& session) final;
 
  protected:
-  /// `options`: of stages, as "load_dem.tile_cells".
+  /// `options`: names of stage options, e.g. "load_dem.tile_cells".
   explicit Shortcut(const std::vector<std::string_view>& options) : options_(options) {}
   Shortcut(const Shortcut&) = delete;
   Shortcut& operator=(const Shortcut&) = delete;
 
  private:
-  /// Without the arguments every shortcut has.
+  /// Returns the declaration without the arguments that all shortcuts share.
   virtual CommandSpec describe_own() = 0;
-  /// Throws Error{usage} where the files given make no job.
+  /// Appends the stages of the job. Throws Error{usage} where the given files make no job.
   virtual void add_stages(Pipeline& pipeline) const = 0;
 
   MapRequest request_;

@@ -7,8 +7,10 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "apps/registries.hpp"
 #include "core/error.hpp"
+#include "pipeline/engine/registry.hpp"
+#include "pipeline/engine/step_options.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
@@ -24,7 +26,7 @@ std::string in_capitals(std::string text) {
   return text;
 }
 
-/// What stands for the value: its unit, its name, or N for a bare number.
+/// Returns the placeholder of the value: its unit, its name, or N for a bare number.
 std::string placeholder(const OptionRow& row) {
   if (!row.unit.empty()) return in_capitals(row.unit);
   return json_type(row.value) == "string" ? in_capitals(row.name) : "N";
@@ -38,7 +40,7 @@ std::string default_text(const OptionRow& row) {
   return "";
 }
 
-/// The engine's message with the option as it was typed: --min-prominence, not
+/// Returns the engine's message with the option as it was typed: --min-prominence, not
 /// find_mountain_tops.min_prominence.
 Error as_typed(const Error& error, const std::string& place, const std::string& flag) {
   std::string problem = error.problem();
@@ -65,7 +67,8 @@ std::vector<Argument> StageOptions::arguments() {
     all.push_back(
         Argument{flag_name(option.row.name), placeholder(option.row), &option.given, option.row.field.help}
             .one_of(option.row.field.choices)
-            .or_else(default_text(option.row)));
+            .or_else(default_text(option.row))
+            .formerly(option.row.field.formerly.empty() ? "" : flag_name(option.row.field.formerly)));
   return all;
 }
 

@@ -4,20 +4,20 @@
 #include <string_view>
 #include <vector>
 #include "apps/command.hpp"
-#include "pipeline/engine/option_table.hpp"
+#include "core/options/option_table.hpp"
 #include "pipeline/engine/pipeline.hpp"
 namespace waymark {
 
-/// Options of stages that a shortcut offers on its command line: load_dem.tile_cells as --tile-cells. Unit,
-/// range, choices, default and help are the stage's own.
+/// Options of stages on the command line of a shortcut: load_dem.tile_cells as --tile-cells. Unit, range,
+/// choices, default and help are the stage's.
 class StageOptions {
  public:
-  /// "load_dem.tile_cells"; throws std::logic_error where the stage has no such option.
+  /// Takes names such as "load_dem.tile_cells". Throws std::logic_error for an unknown option.
   explicit StageOptions(const std::vector<std::string_view>& names);
 
-  /// They point into this object.
+  /// Returns arguments that point into this object.
   std::vector<Argument> arguments();
-  /// Sets those that were given. Throws Error{usage} naming the option as it was typed.
+  /// Sets the options that were given. Throws Error{usage} that names an option as it was typed.
   void apply(Pipeline& pipeline) const;
 
  private:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <signal.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <iostream>
 #include <new>
@@ -11,6 +13,7 @@
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
+#include "workflows/provenance.hpp"
 
 namespace waymark {
 namespace {
@@ -22,13 +25,14 @@ int run_command(const CommandTable& commands, Session& session, const std::vecto
   const std::vector<Argument> globals = global_arguments(session);
   std::vector<Argument> arguments = spec.arguments;
   arguments.insert(arguments.end(), globals.begin(), globals.end());
-  parse(spec.name, arguments, {words.begin() + 1, words.end()});
+  const std::vector<std::string> warnings = parse(spec.name, arguments, {words.begin() + 1, words.end()});
   if (session.help) {
     std::cout << command_help(spec, globals);
     return 0;
   }
   require(spec.name, arguments);
   begin(session);
+  for (const std::string& warning : warnings) log_warning(warning);
   // For libraries below a command that start threads of their own accord, too.
   std::optional<tbb::global_control> at_most;
   if (session.threads > 0)
@@ -72,11 +76,23 @@ int guarded(const std::vector<std::string>& words) {
   return 1;
 }
 
+/// Reports an interrupted run, and ends as by the default action, so that shells and makefiles see it.
+void report_interrupt(int signal) {
+  constexpr char text[] =
+      "\nerror: interrupted; an output that was not finished is not put in place\n  with --work, the same "
+      "command "
+      "again continues where it stopped\n";
+  static_cast<void>(!::write(STDERR_FILENO, text, sizeof text - 1));
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
 }  // namespace
 }  // namespace waymark
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
+  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, waymark::report_interrupt);
   std::vector<std::string> words(argv, argv + argc);
   words[0] = "waymark";
   return waymark::guarded(words);

@@ -9,19 +9,20 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <memory>
 
-#include "bench/judged_localizer.hpp"
+#include "bench/scored_localizer.hpp"
 #include "bench/tables.hpp"
+#include "core/text_file.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
-#include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
-#include "localization/play_log.hpp"
+#include "localization/replay_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/track_score.hpp"
 #include "testbed/drive/drive_log.hpp"
@@ -30,11 +31,6 @@
 
 namespace waymark {
 namespace {
-
-std::string whole(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 struct Site {
   std::string name;
@@ -45,8 +41,8 @@ struct Site {
 };
 
 Site open_site(const std::string& name, const std::string& scenario_file, const std::string& map_file) {
-  Scenario scenario = read_scenario(whole(scenario_file), scenario_file);
-  scenario.ground = sized_for(scenario, plan_shots(scenario));
+  Scenario scenario = read_scenario(read_text(scenario_file, "the scenario"), scenario_file);
+  scenario.ground = size_site(scenario, plan_shots(scenario));
   Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
   Site site{name, scenario, std::move(scene), MapStore::open(map_file), {}};
   const LocalFrame frame(site.store.crs(), Point<MapCrs>{});
@@ -55,7 +51,7 @@ Site open_site(const std::string& name, const std::string& scenario_file, const 
   for (const Landmark& l : site.store.query({.types = {"rock"}}))
     site.landmarks.push_back(
         map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
-  // A map that is worse than any of ours: as many false rocks as true ones, which it knows to be doubtful.
+  // A map worse than any of the testbed: as many false rocks as true ones, with low confidence.
   if (name.find("false rocks added") == std::string::npos) return site;
   Eigen::AlignedBox2d box;
   for (const MapLandmark& l : site.landmarks) box.extend(l.at);
@@ -83,7 +79,7 @@ SensorKind kind_of(const LogEvent& e) {
   return ranges ? SensorKind::stereo : SensorKind::camera;
 }
 
-RobotLog only(const RobotLog& log, const std::string& sensor, bool features, const ScanTypes& types) {
+RobotLog filter_log(const RobotLog& log, const std::string& sensor, bool features, const ScanTypes& types) {
   RobotLog some = log;
   std::erase_if(some.events, [&](const LogEvent& e) {
     if (!std::holds_alternative<LaserScan>(e.what) && !std::holds_alternative<SightingSet>(e.what))
@@ -94,7 +90,7 @@ RobotLog only(const RobotLog& log, const std::string& sensor, bool features, con
              : sensor == "stereo"       ? kind == SensorKind::stereo
                                         : kind == SensorKind::camera);
   });
-  // Scans are searched once, so that all methods see the same and only the update is timed.
+  // Detectors run once per scan, so that all methods get the same sightings and only the update is timed.
   for (LogEvent& e : some.events) {
     if (const auto* scan = std::get_if<LaserScan>(&e.what)) {
       SightingSet set = sightings_of_scan(*scan, types, {});
@@ -140,34 +136,34 @@ std::unique_ptr<Localizer> make(const Variant& v, const PoseEstimate& start, con
   if (v.method == "ukf") return std::make_unique<UnscentedKalman>(start, LandmarkWindow(map), scales, id);
   if (v.method == "ekf, one Gaussian")
     return std::make_unique<ExtendedKalman>(start, LandmarkWindow(map), scales, id);
-  return std::make_unique<HypothesesFilter>(start, LandmarkWindow(map), scales, id);
+  return std::make_unique<MultiHypothesisFilter>(start, LandmarkWindow(map), scales, id);
 }
 
 void run(const Variant& v, const RobotLog& log, const Site& site, const LandmarkGrid& map, Sum& sum) {
   PoseEstimate start{*log.start, Eigen::Matrix3d::Zero()};
   start.covariance.diagonal() << 0.02, 0.02, 0.0008;
   const auto localizer = make(v, start, map, site.store.types());
-  Judged judged(*localizer, log, map);
-  PlayOptions how;
-  // Wheels that slip by some per cent, a gyro: closer to what drives than the defaults.
+  ScoredLocalizer scored(*localizer, log, map);
+  ReplayOptions how;
+  // Wheels that slip by some per cent, and a gyro: closer to the vehicle than the defaults.
   how.odometry = {.along_per_metre = 0.01,
                   .across_per_metre = 0.003,
                   .yaw_per_metre = 1e-4,
                   .yaw_per_radian = 0.002,
                   .position_per_second = 1e-6,
                   .yaw_per_second = 1e-6};
-  const Track track = play(log, judged, how);
+  const Track track = replay(log, scored, how);
   const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
   sum.rmse.push_back(s.ate_rmse);
   sum.median.push_back(s.ate_median);
   sum.rpe.push_back(s.rpe);
   sum.heading.push_back(s.heading_rmse_deg.value_or(0));
   sum.anees.push_back(s.consistency ? s.consistency->anees : 0);
-  sum.spent += judged.spent;
-  sum.updates += judged.updates;
-  sum.matched += judged.matched;
-  sum.correct += judged.correct;
-  sum.findable += judged.findable;
+  sum.spent += scored.spent;
+  sum.updates += scored.updates;
+  sum.matched += scored.matched;
+  sum.correct += scored.correct;
+  sum.findable += scored.findable;
 }
 
 }  // namespace
@@ -220,7 +216,7 @@ int main(int argc, char** argv) {
         const Variant& v = variants[i];
         if (laser_only && (v.sensor != "laser" || v.method == "slam" || v.method == "pf, recovery")) continue;
         const auto [at, made] = logs.try_emplace({v.sensor, v.features});
-        if (made) at->second = only(log, v.sensor, v.features, types);
+        if (made) at->second = filter_log(log, v.sensor, v.features, types);
         run(v, at->second, site, v.quality ? with : without, sums[i]);
         if (r == 0)
           fmt::print(stderr,

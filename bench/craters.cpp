@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Craters in a made-up scene: pixels per second. Target: 1.5 Mpx/s per core.
+// Craters in a synthetic scene: pixels per second. Target: 1.5 Mpx/s per core.
 #include <benchmark/benchmark.h>
 
 #include "pipeline/craters/find_craters.hpp"
@@ -9,8 +9,8 @@ namespace {
 
 using namespace waymark;
 
-const KnownScene& scene() {
-  static const KnownScene made = shaded_scene(5001, 1024);
+const LabelledScene& scene() {
+  static const LabelledScene made = shaded_scene(5001, 1024);
   return made;
 }
 

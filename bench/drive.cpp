@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 Scene site(double rocks) {
-  MadeGround ground;
+  SiteModel ground;
   ground.width = ground.height = 150;
   ground.cell = 0.3;
   ground.relief = {.rms = 2, .longest = 250, .roughness = 0.5};
@@ -20,12 +20,12 @@ Scene site(double rocks) {
   return make_scene(ground, 11);
 }
 
-void scan_from_everywhere(benchmark::State& state, const LaserTargets& targets, double height) {
+void scan_at_random_poses(benchmark::State& state, const LaserTargets& targets, double height) {
   const LaserModel laser{.field = Degrees{240}};
   Random random(1);
   for (auto _ : state) {
     const double x = random.uniform(-50, 50), y = random.uniform(-50, 50);
-    const RayFan fan(targets, {x, y, *targets.terrain().height(x, y) + height}, laser.most_range);
+    const RayFan fan(targets, {x, y, *targets.terrain().height(x, y) + height}, laser.max_range);
     benchmark::DoNotOptimize(sweep(fan, Eigen::Matrix3d::Identity(), laser, random));
   }
   state.SetItemsProcessed(state.iterations() * laser.beams() * laser.rays);
@@ -33,7 +33,7 @@ void scan_from_everywhere(benchmark::State& state, const LaserTargets& targets, 
 
 void rover_scan(benchmark::State& state) {
   const Scene scene = site(0.16);
-  scan_from_everywhere(state, LaserTargets(scene.terrain, scene.solids), 0.3);
+  scan_at_random_poses(state, LaserTargets(scene.terrain, scene.solids), 0.3);
 }
 BENCHMARK(rover_scan)->Unit(benchmark::kMillisecond);
 
@@ -50,7 +50,7 @@ void harvester_scan(benchmark::State& state) {
                      .crown_base = 9});
   }
   ForestSolids solids = forest_solids(trees, {}, scene.terrain, 3);
-  scan_from_everywhere(state, LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
+  scan_at_random_poses(state, LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
 }
 BENCHMARK(harvester_scan)->Unit(benchmark::kMillisecond);
 

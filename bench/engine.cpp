@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the engine itself costs: a run whose units do nothing.
+// Overhead of the engine: a run whose units do nothing.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -75,7 +75,7 @@ void run_in_memory(benchmark::State& state) {
 }
 BENCHMARK(run_in_memory)->Arg(1)->Arg(16)->Arg(64)->Arg(10'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-void run_into_a_work_folder(benchmark::State& state) {
+void run_with_work_folder(benchmark::State& state) {
   const Registry registry;
   const Pipeline pipeline = pipeline_of(registry, state.range(0));
   const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
@@ -84,9 +84,9 @@ void run_into_a_work_folder(benchmark::State& state) {
     benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
   }
 }
-BENCHMARK(run_into_a_work_folder)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(run_with_work_folder)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-void resume_what_is_done(benchmark::State& state) {
+void resume_finished_run(benchmark::State& state) {
   const Registry registry;
   const Pipeline pipeline = pipeline_of(registry, state.range(0));
   const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
@@ -94,7 +94,7 @@ void resume_what_is_done(benchmark::State& state) {
   run(pipeline, {.work = work});
   for (auto _ : state) benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
 }
-BENCHMARK(resume_what_is_done)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(resume_finished_run)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace waymark

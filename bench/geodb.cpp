@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing and asking a map of a million landmarks with ten features each.
+// Writing and querying a map of a million landmarks with ten features each.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -34,19 +34,20 @@ MapContents million(std::int64_t count) {
     landmark.position.xyz = {400'000 + place(random), 5'000'000 + place(random), value(random)};
     landmark.features.resize(10);
     for (FeatureValue& feature : landmark.features) feature = {value(random), 0.25, 3};
-    landmark.quality = {.seen = 3, .visible = 4, .of_feature = std::vector<std::optional<double>>(10, 0.9)};
+    landmark.quality = {
+        .seen = 3, .visible = 4, .feature_confidences = std::vector<std::optional<double>>(10, 0.9)};
     landmark.observations = 3;
   }
   return map;
 }
 
-const MapContents& the_million() {
+const MapContents& million_map() {
   static const MapContents map = million(1'000'000);
   return map;
 }
 
 void WriteMap(benchmark::State& state) {
-  const MapContents& map = the_million();
+  const MapContents& map = million_map();
   for (auto _ : state) write_map(kMap, map);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(map.landmarks.size()));
   state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(kMap)) / 1e6;
@@ -55,7 +56,7 @@ BENCHMARK(WriteMap)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(3);
 
 /// Boxes that hold state.range(0) landmarks on average, at random places.
 void BoxQuery(benchmark::State& state) {
-  static const MapStore map = (write_map(kMap, the_million()), MapStore::open(kMap));
+  static const MapStore map = (write_map(kMap, million_map()), MapStore::open(kMap));
   const double side = kSide * std::sqrt(static_cast<double>(state.range(0)) / 1e6);
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> place(0, kSide - side);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast heights come out of a GeoTIFF: 3601 x 3601 Int16, read in tiles of 1024 cells with a border of
+// Reading heights from a GeoTIFF: 3601 x 3601 Int16, read in tiles of 1024 cells with a border of
 // one.
 #include <benchmark/benchmark.h>
 #include <gdal_priv.h>
@@ -20,7 +20,7 @@ constexpr std::int64_t kTile = 1024;
 
 // Hills with a little roughness: deflate shrinks them about as much as SRTM. Every 20th block of cells is
 // void.
-std::string made_dem(const char* name, std::vector<const char*> options) {
+std::string make_dem(const char* name, std::vector<const char*> options) {
   GDALAllRegister();
   options.push_back(nullptr);
   const std::string path = std::string("/vsimem/") + name + ".tif";
@@ -68,14 +68,14 @@ void count_cells(benchmark::State& state) {
                                                  benchmark::Counter::kIsRate);
 }
 
-// Opened anew each time: decompression included.
+// Opens the file each time: decompression included.
 void from_file(benchmark::State& state, const std::string& path, NodataPolicy policy) {
   for (auto _ : state)
     read_all(*import_dem({.files = {path}, .nodata = policy}), static_cast<int>(state.range(0)));
   count_cells(state);
 }
 
-// Blocks at hand: what it costs to make doubles of them.
+// Cached blocks: cost of the conversion to double.
 void from_cache(benchmark::State& state, const std::string& path) {
   const auto dem = import_dem({.files = {path}});
   read_all(*dem, 1);
@@ -86,9 +86,9 @@ void from_cache(benchmark::State& state, const std::string& path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string tiled = made_dem("tiled", {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2"});
-  const std::string strips = made_dem("strips", {"COMPRESS=DEFLATE"});
-  const std::string plain = made_dem("plain", {"TILED=YES"});
+  const std::string tiled = make_dem("tiled", {"TILED=YES", "COMPRESS=DEFLATE", "PREDICTOR=2"});
+  const std::string strips = make_dem("strips", {"COMPRESS=DEFLATE"});
+  const std::string plain = make_dem("plain", {"TILED=YES"});
   const auto bench = [](const char* name, auto&&... arguments) {
     benchmark::RegisterBenchmark(name, arguments...)
         ->Arg(1)

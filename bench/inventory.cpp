@@ -12,7 +12,7 @@ std::vector<StandTree> forest() {
   Random random(1);
   std::vector<StandTree> trees;
   for (int i = 0; i < 50'000; ++i) {
-    StandTree t{.place = {random.uniform(0, 1000), random.uniform(0, 1000)}, .place_sd = 0.5};
+    StandTree t{.position = {random.uniform(0, 1000), random.uniform(0, 1000)}, .position_sd = 0.5};
     t.height = random.uniform(8, 32), t.height_sd = 0.8;
     t.diameter = random.uniform(0.1, 0.5), t.diameter_sd = 0.05;
     t.volume = stem_volume(built_in_volume()[0], t.diameter, t.height);
@@ -26,20 +26,21 @@ StandPolygon square(double x, double y, double side) {
   return {{{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}}}};
 }
 
-void inventory_of_hectares(benchmark::State& state) {
+void inventory_per_hectare(benchmark::State& state) {
   const std::vector<StandTree> trees = forest();
   for (auto _ : state)
     for (int i = 0; i < 100; ++i)
       benchmark::DoNotOptimize(inventory(trees, square(100.0 * (i % 10), 100.0 * (i / 10), 100)));
 }
-BENCHMARK(inventory_of_hectares)->Unit(benchmark::kMillisecond);
+BENCHMARK(inventory_per_hectare)->Unit(benchmark::kMillisecond);
 
-void cover_of_a_square_kilometre(benchmark::State& state) {
+void canopy_cover_square_kilometre(benchmark::State& state) {
   std::vector<StandCrown> crowns;
-  for (const StandTree& t : forest()) crowns.push_back({.place = t.place, .diameter = 4, .confidence = 0.9});
-  for (auto _ : state) benchmark::DoNotOptimize(cover(crowns, square(0, 0, 1000)));
+  for (const StandTree& t : forest())
+    crowns.push_back({.position = t.position, .diameter = 4, .confidence = 0.9});
+  for (auto _ : state) benchmark::DoNotOptimize(canopy_cover(crowns, square(0, 0, 1000)));
 }
-BENCHMARK(cover_of_a_square_kilometre)->Unit(benchmark::kMillisecond);
+BENCHMARK(canopy_cover_square_kilometre)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark

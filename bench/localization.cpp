@@ -13,6 +13,7 @@
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/particle_filter.hpp"
+#include "localization/filters/sighting_score.hpp"
 #include "localization/global/constellation.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "tests/localization/made_look.hpp"
@@ -39,14 +40,14 @@ SightingSet sightings(std::size_t count) {
 }
 
 LandmarkGrid map_of(std::size_t landmarks) {
-  auto all = strewn(landmarks, std::sqrt(static_cast<double>(landmarks) / kDensity), 1);
+  auto all = scatter_landmarks(landmarks, std::sqrt(static_cast<double>(landmarks) / kDensity), 1);
   Random random(1, "features");
   for (MapLandmark& l : all) l.features.value[0] = random.uniform(0.2, 1);
   return LandmarkGrid(std::move(all));
 }
 
-/// Weighing of particles within a metre of each other, features compared.
-void weigh(benchmark::State& state) {
+/// Likelihoods of particles within a metre of each other, features compared.
+void weight(benchmark::State& state) {
   const LandmarkGrid map = map_of(static_cast<std::size_t>(state.range(0)));
   const auto particles = static_cast<std::size_t>(state.range(1));
   const SightingSet seen = sightings(static_cast<std::size_t>(state.range(2)));
@@ -56,8 +57,8 @@ void weigh(benchmark::State& state) {
   const FeatureScales scales;
   std::vector<double> fit(particles);
   for (auto _ : state) {
-    SightingScore score(seen, map, scales, {}, false);
-    score.gather(poses);
+    SightingScore score(seen, map, scales, {}, {.use_identities = false});
+    score.prefetch(poses);
     score(poses, fit);
     benchmark::DoNotOptimize(fit.data());
     benchmark::ClobberMemory();
@@ -66,7 +67,7 @@ void weigh(benchmark::State& state) {
       static_cast<double>(particles * seen.sightings.size()) * static_cast<double>(state.iterations()),
       benchmark::Counter::kIsRate);
 }
-BENCHMARK(weigh)
+BENCHMARK(weight)
     ->ArgNames({"landmarks", "particles", "sightings"})
     ->Args({1000, 1000, 8})
     ->Args({100000, 1000, 8})
@@ -75,9 +76,9 @@ BENCHMARK(weigh)
     ->Args({50000, 1000, 3})
     ->Unit(benchmark::kMicrosecond);
 
-/// Looks of a robot that drives in a circle, 0.5 m from one to the next, at three landmarks of `map` each,
-/// with the errors they state.
-std::vector<SightingSet> looks_of_a_round(const LandmarkGrid& map, std::size_t count, bool ranges) {
+/// Sightings of a robot that drives in a circle, one set every 0.5 m, three landmarks of `map` each, with
+/// errors as stated.
+std::vector<SightingSet> round_trip_sightings(const LandmarkGrid& map, std::size_t count, bool ranges) {
   Random random(1, "looks");
   std::vector<SightingSet> looks(count);
   Pose2 robot;
@@ -87,13 +88,13 @@ std::vector<SightingSet> looks_of_a_round(const LandmarkGrid& map, std::size_t c
     std::vector<std::uint32_t> near;
     map.near(robot.at(), 20, [&](std::uint32_t i) { near.push_back(i); });
     for (int i = 0; i < 3 && !near.empty(); ++i) {
-      const auto chosen = near.begin() + static_cast<std::ptrdiff_t>(random.below(near.size()));
+      const auto chosen = near.begin() + static_cast<std::ptrdiff_t>(random.uniform_index(near.size()));
       const MapLandmark& l = map[*chosen];
       near.erase(chosen);
       const Eigen::Vector2d to = l.at - robot.at();
       SeenLandmark s;
       s.type = l.type;
-      s.bearing = wrapped(std::atan2(to.y(), to.x()) - robot.yaw + s.bearing_sd * random.normal());
+      s.bearing = wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw + s.bearing_sd * random.normal());
       if (ranges) s.range = std::max(to.norm() + s.range_sd * random.normal(), 0.1);
       s.features.value[0] = l.features.value[0] + 0.1 * random.normal();
       s.features.variance[0] = 0.01;
@@ -107,7 +108,7 @@ std::vector<SightingSet> looks_of_a_round(const LandmarkGrid& map, std::size_t c
 /// sightings, 50,000 landmarks in memory. `error_m`: mean, so that a filter that is lost shows.
 void particle_update(benchmark::State& state) {
   const LandmarkGrid map = map_of(50000);
-  const std::vector<SightingSet> looks = looks_of_a_round(map, 200, state.range(0) != 0);
+  const std::vector<SightingSet> looks = round_trip_sightings(map, 200, state.range(0) != 0);
   const BodyMotion step = twist_motion(0.5, 0, 2 * std::numbers::pi / 200, 1, {});
   PoseEstimate start;
   start.covariance = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal();
@@ -120,8 +121,8 @@ void particle_update(benchmark::State& state) {
   std::size_t updates = 0;
   for (auto _ : state) {
     truth = truth * step.step;
-    filter.move(step);
-    benchmark::DoNotOptimize(filter.see(looks[updates++ % looks.size()]).size());
+    filter.predict(step);
+    benchmark::DoNotOptimize(filter.update(looks[updates++ % looks.size()]).size());
     error += (filter.estimate().pose.at() - truth.at()).norm();
   }
   state.counters["error_m"] = error / static_cast<double>(updates);
@@ -129,23 +130,23 @@ void particle_update(benchmark::State& state) {
 BENCHMARK(particle_update)->ArgName("ranges")->Arg(1)->Unit(benchmark::kMicrosecond);
 BENCHMARK(particle_update)->ArgName("ranges")->Arg(0)->Unit(benchmark::kMillisecond);
 
-/// What a window of a map of any size costs once it is cached: the same question to a window of 200 m.
-void weigh_in_window(benchmark::State& state) {
+/// Cost of the update in a cached window of 200 m, which does not depend on the size of the map.
+void weight_in_window(benchmark::State& state) {
   LandmarkWindow window(
       [](const Eigen::AlignedBox2d& box) {
-        return strewn(static_cast<std::size_t>(kDensity * box.volume()), box.sizes().x(), 1);
+        return scatter_landmarks(static_cast<std::size_t>(kDensity * box.volume()), box.sizes().x(), 1);
       },
       100);
   const SightingSet seen = sightings(8);
   const FeatureScales scales;
   double sum = 0;
   for (auto _ : state) {
-    const SightingScore score(seen, window.around({0, 0}, 30), scales, {}, false);
+    const SightingScore score(seen, window.landmarks_near({0, 0}, 30), scales, {}, {.use_identities = false});
     for (int i = 0; i < 1000; ++i) sum += score({0.001 * i, 0, 0});
   }
   benchmark::DoNotOptimize(sum);
 }
-BENCHMARK(weigh_in_window)->Unit(benchmark::kMicrosecond);
+BENCHMARK(weight_in_window)->Unit(benchmark::kMicrosecond);
 
 /// A map file of rocks at the density above, made once; removed at the end.
 struct MapFile {
@@ -166,7 +167,7 @@ struct MapFile {
       l.position.xyz = {random.uniform(0, side), random.uniform(0, side), 0};
       l.covariance = Eigen::Matrix3d::Identity() * 0.01;
       l.features = {{random.uniform(0.2, 1), 0.01, 3}, {random.uniform(0.2, 1), 0.01, 3}};
-      l.quality = {.seen = 3, .visible = 4, .of_feature = {0.9, 0.9}};
+      l.quality = {.seen = 3, .visible = 4, .feature_confidences = {0.9, 0.9}};
       l.observations = 3;
     }
     write_map(path, map);
@@ -176,7 +177,7 @@ struct MapFile {
   double side;
 };
 
-/// A robot set down anywhere: 70 m x 70 m of the map from the file into a grid, nothing cached by us. The
+/// A robot at a random position: reads 70 m x 70 m of the map from the file into a grid, uncached. The
 /// median and the 99th percentile of the times are counters, microseconds.
 void cold_window(benchmark::State& state) {
   const MapFile file(state.range(0));
@@ -208,12 +209,12 @@ BENCHMARK(cold_window)
     ->Iterations(2000)
     ->Unit(benchmark::kMicrosecond);
 
-/// Where is the robot, of all a map: 15 rocks with radii, 10 % wrong, 70 % of those in reach.
+/// Global localization in the whole map: 15 rocks with radii, 10 % wrong, 70 % of those in range.
 void constellation(benchmark::State& state) {
-  auto map = strewn(static_cast<std::size_t>(state.range(0)),
-                    std::sqrt(static_cast<double>(state.range(0)) / kDensity), 1, 0.05);
+  auto map = scatter_landmarks(static_cast<std::size_t>(state.range(0)),
+                               std::sqrt(static_cast<double>(state.range(0)) / kDensity), 1, 0.05);
   Random random(1, "radius");
-  std::vector<PlacedLandmark> places;
+  std::vector<LandmarkPosition> places;
   for (MapLandmark& l : map) {
     l.features.value[0] = random.log_uniform(0.2, 1);
     places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
@@ -221,8 +222,9 @@ void constellation(benchmark::State& state) {
   const ConstellationIndex index(map, FeatureScales{});
   std::vector<SightingSet> sets;
   for (int i = 0; i < 20; ++i)
-    sets.push_back(
-        look(map, places, {.origin = places[random.below(places.size())].at}, {}, {.reach = 18}, random).set);
+    sets.push_back(look(map, places, {.origin = places[random.uniform_index(places.size())].at}, {},
+                        {.reach = 18}, random)
+                       .set);
   std::size_t found = 0, tries = 0;
   for (auto _ : state) found += index.find(sets[tries++ % sets.size()]).fix.has_value();
   state.counters["found"] = static_cast<double>(found) / static_cast<double>(tries);
@@ -235,7 +237,7 @@ void kalman_update(benchmark::State& state) {
   landmark.at = {8, 2};
   const SightingSet seen = sightings(1);
   PoseEstimate e{{}, Eigen::Matrix3d::Identity() * 0.1};
-  for (auto _ : state) benchmark::DoNotOptimize(kalman_updated(e, seen.sightings[0], {}, landmark));
+  for (auto _ : state) benchmark::DoNotOptimize(ekf_update(e, seen.sightings[0], {}, landmark));
 }
 BENCHMARK(kalman_update);
 
@@ -247,15 +249,15 @@ void identify_eight(benchmark::State& state) {
 }
 BENCHMARK(identify_eight)->Unit(benchmark::kMicrosecond);
 
-void stems_of_a_scan(benchmark::State& state) {
+void stems_in_scan(benchmark::State& state) {
   Random random(1, "scan");
   LaserScan scan{
-      .robot_from_sensor = {}, .first_angle = -1.57, .angle_step = 0.0087, .ranges = {}, .most_range = 80};
+      .robot_from_sensor = {}, .first_angle = -1.57, .angle_step = 0.0087, .ranges = {}, .max_range = 80};
   for (int i = 0; i < 361; ++i)
-    scan.ranges.push_back(static_cast<float>(random.chance(0.7) ? 81.9 : random.uniform(3, 60)));
+    scan.ranges.push_back(static_cast<float>(random.bernoulli(0.7) ? 81.9 : random.uniform(3, 60)));
   for (auto _ : state) benchmark::DoNotOptimize(find_stems(scan, {}).size());
 }
-BENCHMARK(stems_of_a_scan)->Unit(benchmark::kMicrosecond);
+BENCHMARK(stems_in_scan)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace waymark::testing

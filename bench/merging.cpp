@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Merging of observations into landmarks: rocks seen five times each on average, errors of 5 to 60 cm, rocks
 // 5 m apart; all threads and one.
-#include "pipeline/fusion/merging.hpp"
+#include "pipeline/fusion/association/merging.hpp"
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "tests/fusion/made_sightings.hpp"
+#include "tests/pipeline/fusion/made_objects.hpp"
 
 namespace waymark::testing {
 namespace {
 
 std::vector<Observation> observations(std::uint32_t count) {
   const auto made =
-      made_sightings({.seed = 1, .things = count / 5, .images = 8, .spacing = 5, .recall = 0.625});
+      made_objects({.seed = 1, .things = count / 5, .images = 8, .spacing = 5, .recall = 0.625});
   TypeRegistry types;
   register_landmark_types(types);
   std::vector<Observation> all;
-  for (const Sighting& s : made.seen) {
+  for (const ObservedObject& s : made.seen) {
     Observation o;
     o.type = types.id("rock");
     o.source = "image_" + std::to_string(s.source);

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "pipeline/terrain/isolation.hpp"
-#include "tests/pipeline/survey.hpp"
+#include "tests/pipeline/terrain/survey.hpp"
 
 namespace waymark::testing {
 namespace {
@@ -59,7 +59,7 @@ void prominence(benchmark::State& state) {
 }
 BENCHMARK(prominence)->Arg(1000)->Arg(2000)->Arg(4000)->Arg(8000)->Unit(benchmark::kMillisecond);
 
-void isolation_of_all_summits(benchmark::State& state) {
+void all_isolations(benchmark::State& state) {
   const auto& dem = dem_of(state.range(0));
   std::vector<HighPoint> points;
   for (const Summit& s : survey(dem, 1024)) points.push_back({s.cell, s.height});
@@ -72,7 +72,7 @@ void isolation_of_all_summits(benchmark::State& state) {
   state.counters["summits/s"] =
       benchmark::Counter(static_cast<double>(points.size()), benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(isolation_of_all_summits)->Arg(1000)->Arg(2000)->Arg(4000)->Unit(benchmark::kMillisecond);
+BENCHMARK(all_isolations)->Arg(1000)->Arg(2000)->Arg(4000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::testing

@@ -6,24 +6,24 @@
 
 #include "core/random.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
-#include "pipeline/rocks/rock_picture.hpp"
+#include "pipeline/rocks/synthetic_rock.hpp"
 #include "pipeline/vision/local_background.hpp"
 #include "pipeline/vision/sun_angle.hpp"
 namespace waymark {
 namespace {
 
-// Noisy ground with drawn rocks, `per_megapixel` of them.
+// A noisy image with drawn rocks, `per_megapixel` of them.
 Pixels field(std::int64_t side, double per_megapixel) {
   Pixels image(side, side);
   Random random(1);
   for (float& value : image.cells()) value = static_cast<float>(random.normal(120, 1.5));
   const auto count = static_cast<int>(per_megapixel * static_cast<double>(side * side) * 1e-6);
   for (int i = 0; i < count; ++i) {
-    RockPicture rock{.radius = random.log_uniform(0.8, 6), .reach = 0, .x = 16, .y = 16};
+    SyntheticRock rock{.radius = random.log_uniform(0.8, 6), .reach = 0, .x = 16, .y = 16};
     rock.reach = rock.radius * random.uniform(0.8, 1.6);
-    const Grid<float> picture = draw_rock(rock, 40, 32);
-    const auto x0 = static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(side - 40)));
-    const auto y0 = static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(side - 32)));
+    const Grid<float> picture = render_rock_shadow(rock, 40, 32);
+    const auto x0 = static_cast<std::int64_t>(random.uniform_index(static_cast<std::uint64_t>(side - 40)));
+    const auto y0 = static_cast<std::int64_t>(random.uniform_index(static_cast<std::uint64_t>(side - 32)));
     for (std::int64_t y = 0; y < 32; ++y)
       for (std::int64_t x = 0; x < 40; ++x) image(x0 + x, y0 + y) -= 100 * picture(x, y);
   }

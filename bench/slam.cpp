@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SLAM among ever more landmarks, and graphs of ever more poses. One thread.
+// SLAM with increasing numbers of landmarks, and graphs with increasing numbers of poses. One thread.
 #include <benchmark/benchmark.h>
 
 #include "localization/slam/ekf_slam.hpp"
@@ -9,21 +9,22 @@
 namespace waymark::testing {
 namespace {
 
-/// A set of sightings in a made world with so many landmarks on 50 m by 50 m, of which about a tenth is seen.
+/// A set of sightings in a synthetic world with so many landmarks on 50 m by 50 m, about a tenth of them
+/// seen.
 void slam_set(benchmark::State& state) {
   MadeDrive drive(1, static_cast<std::size_t>(state.range(0)));
   SlamOptions options;
-  options.most_range = 12;
+  options.max_range = 12;
   options.nearest = 0.3;
   EkfSlam slam({drive.truth(), Eigen::Matrix3d::Identity() * 1e-9}, options);
-  for (int i = 0; i < 150; ++i) slam.move(drive.drive()), slam.see(drive.look());
+  for (int i = 0; i < 150; ++i) slam.predict(drive.drive()), slam.update(drive.look());
   for (auto _ : state) {
     state.PauseTiming();
     const BodyMotion step = drive.drive();
     const SightingSet seen = drive.look();
     state.ResumeTiming();
-    slam.move(step);
-    benchmark::DoNotOptimize(slam.see(seen).size());
+    slam.predict(step);
+    benchmark::DoNotOptimize(slam.update(seen).size());
   }
   state.counters["landmarks"] = static_cast<double>(slam.landmarks().size());
 }
@@ -40,7 +41,7 @@ PoseGraph rounds(std::size_t poses) {
     constexpr std::size_t kRound = 126;  // poses
     if (i >= kRound && i % 10 == 0)
       graph.steps.push_back(
-          {i - kRound, i, {0, 0, wrapped(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
+          {i - kRound, i, {0, 0, wrap_angle(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
   }
   return graph;
 }

@@ -8,7 +8,7 @@
 #include <vector>
 namespace waymark {
 
-/// Tables with the same columns, as Markdown and as a page of HTML.
+/// Tables with the same columns, as Markdown and as an HTML page.
 class Tables {
  public:
   explicit Tables(std::vector<std::string> columns) : columns_(std::move(columns)) {}

@@ -6,7 +6,7 @@
 
 #include "core/random.hpp"
 #include "geo/terrain.hpp"
-#include "testbed/landing/lit_ground.hpp"
+#include "testbed/landing/lit_terrain.hpp"
 #include "testbed/noise.hpp"
 #include "testbed/render.hpp"
 
@@ -51,7 +51,7 @@ BENCHMARK(build_terrain)->Unit(benchmark::kMillisecond);
 
 const Scene& site() {
   static const Scene scene = [] {
-    MadeGround ground;
+    SiteModel ground;
     ground.width = ground.height = 800;
     ground.cell = 0.4;
     return make_scene(ground, 1);
@@ -60,7 +60,7 @@ const Scene& site() {
 }
 
 void make_ground(benchmark::State& state) {
-  MadeGround ground;
+  SiteModel ground;
   ground.width = ground.height = 800;
   ground.cell = 0.4;
   for (auto _ : state) benchmark::DoNotOptimize(make_scene(ground, 1));
@@ -70,7 +70,7 @@ BENCHMARK(make_ground)->Unit(benchmark::kMillisecond)->UseRealTime();
 // 1 Mpx of descent image: rays, shading, cast shadows, rocks, point spread, noise.
 void render_descent(benchmark::State& state) {
   const Exposure exposure;
-  const LitGround ground(site(), exposure.sun);
+  const LitTerrain ground(site(), exposure.sun);
   PosedCamera camera;
   camera.camera = {.columns = 1000, .rows = 1000, .fx = 1000, .fy = 1000, .cx = 499.5, .cy = 499.5};
   camera.grid_from_camera.transform.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;

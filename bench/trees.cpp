@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trees: whole rasters in and out on one thread; results in bench/results.
+// Trees: whole rasters on one thread.
 #include <benchmark/benchmark.h>
 #include <gdal_priv.h>
 
@@ -100,7 +100,7 @@ BENCHMARK(TreesWithCrowns)->Unit(benchmark::kMillisecond);
 
 void LocalMaxima(benchmark::State& state) {
   TreeSearch how{.crowns = false};
-  how.forest = as_local_maxima(how.forest);
+  how.forest = local_maxima_preset(how.forest);
   search(state, how);
 }
 BENCHMARK(LocalMaxima)->Unit(benchmark::kMillisecond);

@@ -11,19 +11,20 @@ string(REPLACE " REQUIRED" "" WAYMARK_FIND_DEPENDENCIES "${WAYMARK_FIND_DEPENDEN
 configure_package_config_file(cmake/WaymarkConfig.cmake.in WaymarkConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(WaymarkConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(EXPORT WaymarkTargets NAMESPACE Waymark:: DESTINATION ${package_dir} COMPONENT development)
+export(EXPORT WaymarkTargets NAMESPACE Waymark:: FILE ${PROJECT_BINARY_DIR}/WaymarkTargets.cmake)
+foreach(file Catalogue FindOpenCVParts)  # the build tree is a package, too: -DWaymark_DIR=build/release
+  configure_file(cmake/${file}.cmake ${PROJECT_BINARY_DIR}/${file}.cmake COPYONLY)
+endforeach()
+install(CODE "set(source \"${PROJECT_SOURCE_DIR}\")
+              set(stage \"${PROJECT_BINARY_DIR}/public_headers\")
+              set(destination \"${CMAKE_INSTALL_INCLUDEDIR}\")" COMPONENT development)
+install(SCRIPT cmake/InstallHeaders.cmake COMPONENT development)
 install(FILES ${PROJECT_BINARY_DIR}/WaymarkConfig.cmake ${PROJECT_BINARY_DIR}/WaymarkConfigVersion.cmake
               cmake/Catalogue.cmake cmake/FindOpenCVParts.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
-# The program writes its own man page and completion, so that they cannot disagree with it.
+# apps/CMakeLists.txt makes these with the program, so that all that is installed exists once the program is built.
 set(pages ${PROJECT_BINARY_DIR}/pages)
-add_custom_command(OUTPUT ${pages}/waymark.1.gz ${pages}/waymark
-  COMMAND waymark man > ${pages}/waymark.1
-  COMMAND gzip -9nf ${pages}/waymark.1
-  COMMAND waymark completion bash > ${pages}/waymark
-  DEPENDS waymark VERBATIM)
-file(MAKE_DIRECTORY ${pages})
-add_custom_target(waymark_pages ALL DEPENDS ${pages}/waymark.1.gz)
 install(FILES ${pages}/waymark.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${pages}/waymark DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)

@@ -5,14 +5,13 @@ function(waymark_folder)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "FOLDERS;USES;PRIVATE")
   foreach(folder IN LISTS arg_FOLDERS)
     cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
+    string(REGEX REPLACE "/$" "" folder ${folder})
     file(GLOB found_sources CONFIGURE_DEPENDS ${folder}/*.cpp)
     file(GLOB found_headers CONFIGURE_DEPENDS ${folder}/*.hpp)
     list(APPEND sources ${found_sources})
     foreach(header IN LISTS found_headers)
       cmake_path(REPLACE_EXTENSION header cpp OUTPUT_VARIABLE its_source)
-      if(its_source IN_LIST found_sources)
-        list(APPEND headers ${header})
-      else()
+      if(NOT its_source IN_LIST found_sources)
         list(APPEND lone_headers ${header})
       endif()
     endforeach()
@@ -24,19 +23,26 @@ function(waymark_folder)
   set(target waymark_${arg_NAME})
   add_library(${target} STATIC ${sources})
   add_library(Waymark::${arg_NAME} ALIAS ${target})
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATE})
+  # Not linked: an exported static library names all that it links.
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:waymark_build_rules,INTERFACE_COMPILE_OPTIONS>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME})
   # A header stands alone: its own .cpp includes it first (which the asan preset, without precompiled headers,
   # proves); a header without one is compiled by itself.
-  target_sources(${target} PUBLIC
-    FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${headers}
-    FILE_SET lone TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${lone_headers})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME} VERIFY_INTERFACE_HEADER_SETS ON
-                        INTERFACE_HEADER_SETS_TO_VERIFY lone)
-  target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE $<BUILD_INTERFACE:waymark_build_rules> ${arg_PRIVATE})
-  target_compile_features(${target} PUBLIC cxx_std_20)
+  waymark_verify_headers(${target} ${PROJECT_SOURCE_DIR} ${lone_headers})
+  waymark_unity(${target})
   if(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
     waymark_use_precompiled(${target} waymark_precompiled)
   endif()
-  install(TARGETS ${target} EXPORT WaymarkTargets ARCHIVE COMPONENT development
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development
-          FILE_SET lone DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/waymark COMPONENT development)
+  install(TARGETS ${target} EXPORT WaymarkTargets ARCHIVE COMPONENT development)
+endfunction()
+
+# Compiles headers by themselves in the target all_verify_interface_header_sets.
+function(waymark_verify_headers TARGET FOLDER)
+  add_library(${TARGET}_headers INTERFACE)
+  target_sources(${TARGET}_headers INTERFACE FILE_SET HEADERS BASE_DIRS ${FOLDER} FILES ${ARGN})
+  target_link_libraries(${TARGET}_headers INTERFACE ${TARGET})
+  set_target_properties(${TARGET}_headers PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
 endfunction()

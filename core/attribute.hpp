@@ -6,8 +6,8 @@
 #include <vector>
 namespace waymark {
 
-/// A fact about a landmark that is not an observed feature: it has no spread and is never merged,
-/// e.g. where the key saddle of a summit lies. A column of its own in the map.
+/// Fact about a landmark that is not an observed feature, e.g. the position of the key saddle of a summit.
+/// An attribute has no spread, is never merged, and has its own column in the map.
 struct AttributeSpec {
   enum class Kind { real, integer, text };
   std::string name, unit;
@@ -15,7 +15,7 @@ struct AttributeSpec {
   std::string summary;
 };
 
-/// std::monostate is NULL.
+/// Value of an attribute; std::monostate is NULL.
 using AttributeValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// One value per AttributeSpec of the type, in the order of the specs.

@@ -12,12 +12,12 @@ namespace waymark {
 
 static_assert(std::endian::native == std::endian::little, "artifacts are little-endian");
 
-/// A value whose bytes hold no address.
+/// Value whose bytes contain no address.
 template <class T>
 concept Plain = std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>;
 
-/// Appends plain values, each sequence behind its length. Numbers and characters are written as they lie in
-/// memory, so a struct must have no padding that is not zero: write its members one by one.
+/// Serializes plain values; each sequence is preceded by its length. Values are written as they lie in
+/// memory. Write a struct with padding member by member: padding bytes are undefined.
 class ByteWriter {
  public:
   template <Plain T>
@@ -39,7 +39,7 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter wrote. Throws std::runtime_error where the bytes end too early.
+/// Reads the output of a ByteWriter. Throws std::runtime_error if the bytes end too early.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -64,7 +64,8 @@ class ByteReader {
     (*this)(value);
     return value;
   }
-  /// The length of a sequence of items of at least `item_size` bytes each; checked against what is left.
+  /// Reads the length of a sequence of items of at least `item_size` bytes. Throws std::runtime_error if the
+  /// remaining bytes cannot contain it.
   std::size_t length(std::size_t item_size) {
     const auto size = get<std::uint64_t>();
     if (size > bytes_.size() / item_size) throw std::runtime_error("artifact ends too early");

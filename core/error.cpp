@@ -5,13 +5,18 @@
 #include <numeric>
 #include <vector>
 
+#include "core/printable.hpp"
+
 namespace waymark {
 namespace {
 
+// Bytes, so that a message fits on a screen; hints may list every option of a stage.
+constexpr std::size_t kMaxProblem = 600, kMaxHint = 1500;
+
 std::string whole_message(const std::string& problem, const std::string& where, const std::string& hint) {
-  std::string text = problem;
-  if (!where.empty()) text += "\n  " + where;
-  if (!hint.empty()) text += "\n  " + hint;
+  std::string text = printable(problem, kMaxProblem);
+  if (!where.empty()) text += "\n  " + printable(where, kMaxProblem);
+  if (!hint.empty()) text += "\n  " + printable(hint, kMaxHint);
   return text;
 }
 

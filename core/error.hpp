@@ -5,19 +5,18 @@
 #include <string_view>
 namespace waymark {
 
-/// What kind of thing went wrong; decides the exit code of the program.
+/// Category of an error; determines the exit code of the program.
 enum class ErrorCode {
   usage,        ///< wrong option, job file or argument: exit code 2
-  input,        ///< a file that is missing, damaged or not what it should be: exit code 1
-  output,       ///< a result that cannot be written: exit code 1
+  input,        ///< missing, damaged or unsuitable file: exit code 1
+  output,       ///< result cannot be written: exit code 1
   environment,  ///< missing library data, memory, permissions: exit code 1
 };
 
-/// A problem the caller can mend. what() is the whole message, three parts on up to three lines:
-/// what went wrong, where, and what to do.
+/// Problem that the caller can fix. what() returns problem, location and hint, printable and cut to a screen.
 class Error : public std::runtime_error {
  public:
-  /// `problem` is one line; `where` (a file, an option, a place in it) and `hint` may be empty.
+  /// `problem` is one line; `where` (a file, an option, a position in it) and `hint` may be empty.
   Error(ErrorCode code, std::string problem, std::string where = {}, std::string hint = {});
 
   ErrorCode code() const { return code_; }
@@ -30,18 +29,18 @@ class Error : public std::runtime_error {
   std::string problem_, where_, hint_;
 };
 
-/// Exit code of interface.md for an error: 2 for usage, 1 for all else.
+/// Returns the exit code of the program (interface.md): 2 for usage, 1 otherwise.
 int exit_code(ErrorCode code);
 
-/// Why an algorithm dropped an item; counted by reason in the report.
+/// Reason for which an algorithm rejected an item; the report counts items by reason.
 struct Rejection {
   std::string reason;
 };
 
-/// The candidate closest to `word` by edit distance, or empty if none is within a third of its length.
+/// Returns the candidate closest to `word` by edit distance; empty if none is closer than 2 + length / 3.
 std::string nearest_name(std::string_view word, const auto& candidates);
 
-/// Levenshtein distance; O(a b) time.
+/// Computes the Levenshtein distance in O(a b) time.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 std::string nearest_name(std::string_view word, const auto& candidates) {

@@ -15,8 +15,8 @@ double weighted_mean(std::span<const WeightedValue> seen, double total) {
   return sum / total;
 }
 
-// An axis at 1 deg and one at 179 deg are 2 deg apart. Doubling the angle turns axes into directions,
-// whose mean is the direction of the summed unit vectors.
+// Axes at 1 deg and 179 deg are 2 deg apart. Doubling the angles maps axes to directions, whose mean is the
+// direction of the sum of their unit vectors.
 double weighted_axis(std::span<const WeightedValue> seen, double total) {
   std::complex<double> sum = 0;
   for (const auto& s : seen) sum += s.weight * std::polar(1.0, 2 * s.value);

@@ -6,29 +6,29 @@
 #include <vector>
 namespace waymark {
 
-/// What arithmetic a feature allows. The paper's formulas fail in silence where this is ignored.
+/// Scale of measurement of a feature. The paper's formulas give wrong values if it is ignored.
 enum class Scale {
   ratio,     ///< has a true zero: radius, height
   interval,  ///< zero is a convention: elevation above a datum
-  axis,      ///< direction without a head, period pi, radians: the long axis of an ellipse
+  axis,      ///< undirected axis, period pi, radians: the long axis of an ellipse
 };
 
-/// Declares one feature of a landmark type. Values outside [lowest, highest] are implausible.
+/// Declaration of one feature of a landmark type. Values outside [min_value, max_value] are implausible.
 struct FeatureSpec {
   std::string name;  ///< column name in the map: lower case, underscores
   std::string unit;  ///< "m", "rad", "" for pure numbers
   Scale scale = Scale::ratio;
-  double lowest = -std::numeric_limits<double>::infinity();
-  double highest = std::numeric_limits<double>::infinity();
-  std::string summary;  ///< one line for people
-  double reference =
-      0;  ///< interval and axis: the spread at which a value says nothing (see core/quality.hpp)
+  double min_value = -std::numeric_limits<double>::infinity();
+  double max_value = std::numeric_limits<double>::infinity();
+  std::string summary;  ///< one line for the user
+  /// Interval and axis: spread at which a value carries no information (see core/quality.hpp).
+  double reference = 0;
 };
 
-/// A merged feature. An absent value is NaN with observations = 0.
+/// Merged feature. An unknown value is NaN with observations = 0.
 struct FeatureValue {
   double value = std::numeric_limits<double>::quiet_NaN();
-  double variance = 0;  ///< of the observations, not of their mean; 0 where one observation gives no spread
+  double variance = 0;  ///< of the observations, not of their mean; 0 for a single observation
   int observations = 0;
 
   bool known() const { return observations > 0; }
@@ -37,20 +37,20 @@ struct FeatureValue {
 /// One value per FeatureSpec of the type, in the order of the specs.
 using FeatureSet = std::vector<FeatureValue>;
 
+/// One observation of a feature.
 struct WeightedValue {
   double value = 0;
   double weight = 1;  ///< detection quality q(d), > 0
 };
 
 /// Merges the observations of one feature of one landmark (Rossmann et al., eq. 3).
-/// The variance is the weighted spread about the merged value, unbiased for equal weights; it is 0 for a
-/// single observation, which therefore says nothing about confidence.
-/// Departure from the paper: an `axis` is averaged as a doubled angle, so 1 and 179 degrees give 0 and not
-/// 90; the result lies in (-pi/2, pi/2]. An axis whose doubled angles cancel has no mean: the first value is
-/// kept.
+/// - The variance is the weighted spread about the merged value, unbiased for equal weights.
+/// - The variance of a single observation is 0 and carries no information about confidence.
+/// - Departure from the paper: axes are averaged as doubled angles, so 1 and 179 degrees give 0 and not 90.
+/// - The merged axis lies in (-pi/2, pi/2]. If the doubled angles cancel, it is the first value.
 FeatureValue merge(std::span<const WeightedValue> seen, Scale scale);
 
-/// a - b as the scale understands it: the shortest way round for an axis.
+/// Returns a - b; for an axis the smallest signed angle between both, radians.
 double difference(double a, double b, Scale scale);
 
 }  // namespace waymark

@@ -6,29 +6,32 @@ namespace waymark {
 struct MapCrs;       ///< x, y in the units of the map's CRS (x = easting or longitude), z in metres
 struct MapFrame;     ///< east, north, up in metres about the map's origin
 struct GridFrame;    ///< x, y: easting and northing of a projected or local CRS, z: height; all metres,
-                     ///< taken as Cartesian. Where cameras, suns and rays live
+                     ///< taken as Cartesian. Frame of cameras, sun directions and rays
 struct CameraFrame;  ///< x right, y down, z forward, metres (OpenCV)
 struct RobotFrame;   ///< x forward, y left, z up, metres
 
+/// Position in a frame, in its units.
 template <class Frame>
 struct Point {
   Eigen::Vector3d xyz = Eigen::Vector3d::Zero();
   friend bool operator==(const Point&, const Point&) = default;
 };
 
+/// Unit vector in a frame.
 template <class Frame>
 struct Direction {
   Eigen::Vector3d unit = Eigen::Vector3d::UnitX();
 };
 
+/// Half-line from a point.
 template <class Frame>
 struct Ray {
   Point<Frame> origin;
-  Direction<Frame> along;
+  Direction<Frame> direction;
 };
 
-/// Rigid motion: Pose<To, From> turns a Point<From> into a Point<To>. Variables read `to_from_from`,
-/// e.g. `map_from_camera`. Chaining frames that do not meet does not compile.
+/// Rigid motion that maps a Point<From> to a Point<To>. Variables are named `to_from_from`, e.g.
+/// `map_from_camera`. Composing poses of different inner frames does not compile.
 template <class To, class From>
 struct Pose {
   Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();

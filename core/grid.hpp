@@ -8,8 +8,7 @@
 #include <vector>
 namespace waymark {
 
-/// A rectangle of cells: columns [column, column + columns), rows [row, row + rows). May reach outside a
-/// grid.
+/// Rectangle of cells: columns [column, column + columns), rows [row, row + rows). May extend beyond a grid.
 struct Window {
   std::int64_t column = 0, row = 0;
   std::int64_t columns = 0, rows = 0;
@@ -23,7 +22,7 @@ struct Window {
   friend bool operator==(const Window&, const Window&) = default;
 };
 
-/// Owned cells, row by row from the top. Row and column count from 0; cell (0, 0) is the first.
+/// Raster of cells in memory, row by row from the top. Rows and columns count from 0.
 template <class T>
 class Grid {
  public:
@@ -37,7 +36,7 @@ class Grid {
     return column >= 0 && column < columns_ && row >= 0 && row < rows_;
   }
 
-  /// Unchecked in release builds; `at` throws std::out_of_range.
+  /// Returns a cell, unchecked in release builds; `at` throws std::out_of_range.
   T& operator()(std::int64_t column, std::int64_t row) { return cells_[index(column, row)]; }
   const T& operator()(std::int64_t column, std::int64_t row) const { return cells_[index(column, row)]; }
   const T& at(std::int64_t column, std::int64_t row) const {

@@ -4,7 +4,7 @@
 #include <string>
 namespace waymark {
 
-/// A file a run has read: enough to tell later whether it is still the same.
+/// File that a run has read, with the hash that identifies its content.
 struct InputFile {
   std::string path;  ///< as the user gave it; may be a /vsi path
   std::uint64_t bytes = 0;

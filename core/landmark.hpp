@@ -10,15 +10,15 @@
 #include "core/observation.hpp"
 namespace waymark {
 
-/// How well a landmark was observed: raw counts, and one confidence per feature.
+/// Quality of the observations of a landmark: counts, and one confidence per feature.
 struct Quality {
   int seen = 0;     ///< images (or surveys) that detected it
-  int visible = 0;  ///< images (or surveys) that could have
-  std::vector<std::optional<double>>
-      of_feature;  ///< q_f (eq. 7); absent where one observation gives no spread
+  int visible = 0;  ///< images (or surveys) that could have detected it
+  /// q_f (eq. 7) per feature; `std::nullopt` for features with a single observation.
+  std::vector<std::optional<double>> feature_confidences;
 };
 
-/// A thing a person recognises: merged, valued, with its evidence.
+/// Landmark of a map: merged from its observations, with covariance, features and quality.
 struct Landmark {
   std::string uid;  ///< stable over runs, tiles and threads; see landmarks/uid.hpp
   TypeId type = 0;

@@ -9,19 +9,18 @@
 namespace waymark {
 
 using TypeId = std::uint16_t;  ///< index into the TypeRegistry
-using ImageId = std::uint32_t;
 
-/// A landmark seen once and placed on the ground.
+/// Single observation of a landmark, projected to the terrain.
 struct Observation {
   TypeId type = 0;
-  std::string landmark_uid;              ///< the landmark it is evidence of; empty if rejected
+  std::string landmark_uid;              ///< landmark that it supports; empty if rejected
   std::string source;                    ///< image name, or the DEM
   std::optional<Eigen::Vector2d> pixel;  ///< column, row; (0, 0) is the centre of the first pixel
   Point<MapCrs> position;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< east, north, up; square metres
   double confidence = 1;                                 ///< detection quality q(d), (0, 1]
   FeatureSet features;
-  std::string rejected;  ///< reason; empty if kept
+  std::string rejected;  ///< reason; empty if accepted
 };
 
 }  // namespace waymark

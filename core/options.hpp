@@ -9,18 +9,19 @@
 #include "core/units.hpp"
 namespace waymark {
 
-/// What is said about an option, once: help, JSON schema, Markdown, checks and canonical form follow from it.
+/// Declaration of an option; source of its help, JSON schema, Markdown, range check and canonical form.
 struct Field {
   std::string help;  ///< the effect, not the name: "Smallest rock kept"
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   std::vector<std::string> choices = {};  ///< of a text option; empty: any text
-  bool affects_result = true;             ///< false: threads, memory: left out of fingerprints
+  bool affects_result = true;             ///< false: excluded from fingerprints (threads, memory)
+  std::string formerly = {};              ///< earlier name, still read, with a warning; empty: none
 };
 
-/// Visits the options of a stage in the order they are declared. A stage's Options has
+/// Visitor of the options of a stage, in the order of declaration. The Options of a stage define
 ///   void describe(OptionVisitor& option) { option("min_height", min_height, {.help = "...", .min = 0}); }
-/// An abstract class and not a template, so that a stage compiles without JSON.
+/// The class is abstract rather than a template, so that a stage compiles without JSON.
 class OptionVisitor {
  public:
   virtual ~OptionVisitor() = default;

@@ -5,10 +5,10 @@
 
 namespace waymark {
 
-Eigen::Vector2d PrincipalAxes::along() const {
+Eigen::Vector2d PrincipalAxes::major_direction() const {
   return {std::cos(angle), std::sin(angle)};
 }
-Eigen::Vector2d PrincipalAxes::across() const {
+Eigen::Vector2d PrincipalAxes::minor_direction() const {
   return {-std::sin(angle), std::cos(angle)};
 }
 

@@ -17,7 +17,7 @@ std::optional<double> spread_confidence(const FeatureValue& feature, Scale scale
   if (!feature.known()) return std::nullopt;
   const double spread = std::sqrt(feature.variance);
   if (rule == SpreadRule::paper) {
-    if (spread == 0) return 1.0;
+    if (spread == 0 || feature.observations < 2) return 1.0;
     if (feature.value == 0) return std::nullopt;
     return std::clamp(1 - spread / feature.value, 0.0, 1.0);
   }
@@ -28,14 +28,14 @@ std::optional<double> spread_confidence(const FeatureValue& feature, Scale scale
 }
 
 std::optional<double> landmark_quality(std::optional<double> multiplicity,
-                                       std::span<const std::optional<double>> of_feature,
+                                       std::span<const std::optional<double>> feature_confidences,
                                        std::span<const double> weights) {
-  assert(of_feature.size() == weights.size());
+  assert(feature_confidences.size() == weights.size());
   if (!multiplicity) return std::nullopt;
   double sum = 0, total = 0;
-  for (std::size_t i = 0; i < of_feature.size(); ++i) {
-    if (!of_feature[i]) continue;
-    sum += weights[i] * *of_feature[i];
+  for (std::size_t i = 0; i < feature_confidences.size(); ++i) {
+    if (!feature_confidences[i]) continue;
+    sum += weights[i] * *feature_confidences[i];
     total += weights[i];
   }
   return *multiplicity * (total > 0 ? sum / total : 1.0);

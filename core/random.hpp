@@ -8,28 +8,28 @@
 #include <string_view>
 namespace waymark {
 
-/// Mixes the bits of a number (splitmix64, Steele, Lea & Flood 2014): neighbours become unrelated.
-constexpr std::uint64_t mixed(std::uint64_t x) {
+/// Scrambles the bits of a number (splitmix64, Steele, Lea & Flood 2014); neighbours become uncorrelated.
+constexpr std::uint64_t mix_bits(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15u;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
   return x ^ (x >> 31);
 }
 
-/// A seed of its own for each purpose ("rocks", "noise of descent_0042"): a stream that is drawn more often
-/// does not move the others. FNV-1a of the name, mixed with the seed.
+/// Derives the seed of an independent stream for one purpose ("rocks", "noise of descent_0042"). Draws from
+/// one stream do not shift the others. FNV-1a of the name, combined with the seed.
 constexpr std::uint64_t named_seed(std::uint64_t seed, std::string_view name) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char letter : name) hash = (hash ^ static_cast<unsigned char>(letter)) * 0x100000001b3u;
-  return mixed(mixed(seed) ^ hash);
+  return mix_bits(mix_bits(seed) ^ hash);
 }
 
-/// Random numbers that are the same with every compiler, library and thread count: xoshiro256++ (Blackman &
-/// Vigna 2019) and distributions written out here. Not for secrets.
+/// Generator of random numbers that do not depend on compiler, library and thread count: xoshiro256++
+/// (Blackman & Vigna 2019) and distributions implemented here. Not for cryptography.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t seed) {
-    for (auto& word : state_) word = seed = mixed(seed);
+    for (auto& word : state_) word = seed = mix_bits(seed);
   }
   constexpr Random(std::uint64_t seed, std::string_view name) : Random(named_seed(seed, name)) {}
 
@@ -45,23 +45,23 @@ class Random {
     return result;
   }
 
-  /// [0, 1), all 53 bits.
+  /// Draws from [0, 1) with 53 bits.
   constexpr double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   constexpr double uniform(double from, double to) { return from + (to - from) * uniform(); }
-  /// Equally likely on a logarithmic scale; 0 < from <= to.
+  /// Draws uniformly on a logarithmic scale; 0 < from <= to.
   double log_uniform(double from, double to) { return from * std::pow(to / from, uniform()); }
-  /// 0, ..., count - 1; count >= 1. The bias is below count / 2^53.
-  constexpr std::uint64_t below(std::uint64_t count) {
+  /// Draws from 0, ..., count - 1; count >= 1. The bias is less than count / 2^53.
+  constexpr std::uint64_t uniform_index(std::uint64_t count) {
     return static_cast<std::uint64_t>(uniform() * static_cast<double>(count));
   }
-  constexpr bool chance(double probability) { return uniform() < probability; }
-  /// Mean 0, standard deviation 1 (Box & Muller 1958; the second value is thrown away to keep no state).
+  constexpr bool bernoulli(double probability) { return uniform() < probability; }
+  /// Draws from N(0, 1) (Box & Muller 1958). The second value is discarded, so no state is needed.
   double normal() {
     const double radius = std::sqrt(-2 * std::log(1 - uniform()));
     return radius * std::cos(2 * std::numbers::pi * uniform());
   }
   double normal(double mean, double sd) { return mean + sd * normal(); }
-  /// Number of events where `mean` are expected; rounded normal above 50.
+  /// Draws from the Poisson distribution; a rounded normal approximation for `mean` > 50.
   std::uint64_t poisson(double mean) {
     if (!(mean > 0)) return 0;
     if (mean > 50)

@@ -5,7 +5,7 @@
 #include <vector>
 namespace waymark {
 
-/// Puts items[order[i]] at place i without a second array: along the cycles of the permutation. O(n) moves.
+/// Moves items[order[i]] to index i in place, by the cycles of the permutation, in O(n) moves.
 template <class T>
 void reorder(std::vector<T>& items, std::vector<std::uint32_t> order) {
   for (std::uint32_t start = 0; start < order.size(); ++start) {

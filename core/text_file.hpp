@@ -6,8 +6,8 @@
 #include "core/error.hpp"
 namespace waymark {
 
-/// All of a file. Throws Error{code}, "cannot read `what`", where there is none, it is a folder, or reading
-/// fails.
+/// Returns the content of a file. Throws Error{code}, "cannot read `what`", if the file does not exist, is a
+/// folder, or cannot be read.
 std::string read_text(const std::filesystem::path& file, std::string_view what,
                       ErrorCode code = ErrorCode::input, std::string_view hint = "check the path");
 

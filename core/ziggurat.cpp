@@ -4,7 +4,7 @@
 namespace waymark {
 namespace {
 
-// Of 128 layers (Doornik 2005): where the tail begins, and the area of each layer.
+// For 128 layers (Doornik 2005): start of the tail, and area of each layer.
 constexpr double kTail = 3.442619855899, kArea = 9.91256303526217e-3;
 
 double curve(double x) {
@@ -13,9 +13,9 @@ double curve(double x) {
 
 }  // namespace
 
-const Ziggurat& Ziggurat::shared() {
-  static const Ziggurat made;
-  return made;
+const Ziggurat& Ziggurat::instance() {
+  static const Ziggurat ziggurat;
+  return ziggurat;
 }
 
 Ziggurat::Ziggurat() {
@@ -27,7 +27,7 @@ Ziggurat::Ziggurat() {
   for (std::size_t i = 0; i < kLayers; ++i) inner_[i] = edge_[i + 1] / edge_[i];
 }
 
-double Ziggurat::beside(Random& random, std::size_t layer, double u) const {
+double Ziggurat::sample_edge(Random& random, std::size_t layer, double u) const {
   if (layer == 0) {  // the tail (Marsaglia 1964)
     for (;;) {
       const double x = -std::log(1 - random.uniform()) / kTail, y = -std::log(1 - random.uniform());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A landmark type of one's own: merging, quality, map columns, style and queries follow from one declaration.
+// Declares a landmark type; merging, quality, map columns, style and queries follow from it.
 #include <array>
 #include <iostream>
-#include <waymark/waymark.hpp>
+#include <waymark/map.hpp>
 using namespace waymark;
 
 namespace {
@@ -17,7 +17,7 @@ LandmarkType lamp_post() {
           .label_feature = "height"};
 }
 
-/// Three images saw the post; a fourth looked there and did not.
+/// Merges three sightings of a post; a fourth image shows its position, but not the post.
 Landmark merge_sightings(TypeId type, const LandmarkType& spec) {
   const std::array<WeightedValue, 3> heights{{{7.9, 0.8}, {8.2, 0.9}, {8.0, 0.5}}};
   const std::array<WeightedValue, 3> diameters{{{0.14, 0.8}, {0.16, 0.9}, {0.21, 0.5}}};
@@ -26,9 +26,9 @@ Landmark merge_sightings(TypeId type, const LandmarkType& spec) {
   post.position = {{13.3777, 52.5163, 34}};
   post.features = {merge(heights, Scale::ratio), merge(diameters, Scale::ratio)};
   post.observations = 3;
-  post.quality = {.seen = 3, .visible = 4, .of_feature = {}};
+  post.quality = {.seen = 3, .visible = 4, .feature_confidences = {}};
   for (std::size_t i = 0; i < spec.features.size(); ++i)
-    post.quality.of_feature.push_back(
+    post.quality.feature_confidences.push_back(
         spread_confidence(post.features[i], spec.features[i].scale, spec.features[i].reference));
   return post;
 }
@@ -43,7 +43,7 @@ int main() {
   assign_uids(map.types, map.crs, map.landmarks);
   write_map("lamp_posts.gpkg", map);
 
-  // The type travels in the file: a program that has never heard of lamp posts reads it back.
+  // The type is stored in the file, so programs without it can read the map.
   const MapStore store = MapStore::open("lamp_posts.gpkg");
   for (const LandmarkType& known : store.types()) std::cout << known.name << ": " << known.summary << '\n';
   for (const Landmark& post : store.query({.features = {{"height", 5, 10}}}))

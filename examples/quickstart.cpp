@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a DEM to a map file, and an answer out of it.
+// Maps the mountain tops of a DEM, writes the map and queries it.
 #include <iostream>
-#include <waymark/waymark.hpp>
+#include <waymark/map.hpp>
+#include <waymark/mapping.hpp>
 using namespace waymark;
 
 int main(int argc, char** argv) try {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run shared between processes, and resumed: whatever lies in the work folder is not done again.
+// Splits a run into shards and resumes it: results in the work folder are reused.
 #include <filesystem>
 #include <iostream>
-#include <waymark/waymark.hpp>
+#include <waymark/mapping.hpp>
 using namespace waymark;
 
 namespace {
 
-std::int64_t units_made(const RunReport& report) {
+std::int64_t units_computed(const RunReport& report) {
   std::int64_t made = 0;
   for (const StageReport& stage : report.stages) made += stage.made;
   return made;
@@ -31,20 +31,20 @@ int main(int argc, char** argv) try {
       .add("map_mountain_tops");
   std::cout << plan(mapping, {.work = work}).units.size() << " units of work\n";
 
-  // Three shares, in any order, at any time, on any machine that sees the folder.
+  // Three shards, in any order, on any machine with access to the folder.
   for (const int index : {3, 1, 2}) {
-    const RunResult share = run(mapping, {.work = work, .shard = Shard{index, 3}});
-    std::cout << "share " << index << " of 3 made " << units_made(share.report) << " units\n";
+    const RunResult shard = run(mapping, {.work = work, .shard = Shard{index, 3}});
+    std::cout << "shard " << index << " of 3 computed " << units_computed(shard.report) << " units\n";
   }
 
   const RunResult again = run(mapping, {.work = work});
-  std::cout << "again: made " << units_made(again.report) << ", found "
+  std::cout << "second run: computed " << units_computed(again.report) << ", found "
             << again.artifact<std::vector<Landmark>>("landmarks").size() << " landmarks\n";
 
-  mapping.set("join_mountain_tops.base=lowest");  // only what depends on it is made anew
+  mapping.set("join_mountain_tops.base=lowest");  // re-runs this stage and its dependents only
   const RunResult changed = run(mapping, {.work = work});
-  std::cout << "another base: made " << units_made(changed.report) << " units\n";
-  return units_made(again.report) == 0 && units_made(changed.report) > 0 ? 0 : 1;
+  std::cout << "other option: computed " << units_computed(changed.report) << " units\n";
+  return units_computed(again.report) == 0 && units_computed(changed.report) > 0 ? 0 : 1;
 } catch (const Error& error) {
   std::cerr << error.what() << '\n';
   return exit_code(error.code());

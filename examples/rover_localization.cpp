@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rover drives a round in a map of rocks. Its wheels slip; the rocks it sees say where it is.
+// Localizes a rover that drives in a circle in a map of rocks: wheel odometry drifts, the filter corrects it.
 #include <iostream>
-#include <waymark/waymark.hpp>
+#include <waymark/localization.hpp>
 using namespace waymark;
 
 namespace {
 
-// Sixty rocks of different sizes. A map of your own: MapStore::open("landing.gpkg").query({}).
-SemanticMap field_of_rocks(Random& random) {
+// Makes a map of sixty rocks of different sizes. For a map from a file:
+// MapStore::open("landing.gpkg").query({}).
+SemanticMap make_rock_map(Random& random) {
   TypeRegistry types;
   register_landmark_types(types);
   const TypeId rock = types.id("rock");
@@ -26,9 +27,8 @@ SemanticMap field_of_rocks(Random& random) {
   return SemanticMap(types, Crs::local(), std::move(rocks), {});
 }
 
-// What a laser with 25 m of reach would tell: range, bearing and radius, with their noise; not which rock it
-// is.
-SightingSet look_round(const Pose2& robot, const LandmarkGrid& rocks, Random& random) {
+// Simulates a laser with a range of 25 m: range, bearing and radius with noise, without identities.
+SightingSet observe(const Pose2& robot, const LandmarkGrid& rocks, Random& random) {
   SightingSet seen;
   for (const MapLandmark& rock : rocks.landmarks()) {
     const Eigen::Vector2d away = rock.at - robot.at();
@@ -38,7 +38,7 @@ SightingSet look_round(const Pose2& robot, const LandmarkGrid& rocks, Random& ra
     one.features = rock.features;
     one.range_sd = 0.05, one.bearing_sd = 0.01;
     one.range = away.norm() + random.normal(0, one.range_sd);
-    one.bearing = wrapped(std::atan2(away.y(), away.x()) - robot.yaw + random.normal(0, one.bearing_sd));
+    one.bearing = wrap_angle(std::atan2(away.y(), away.x()) - robot.yaw + random.normal(0, one.bearing_sd));
     one.features.value[0] *= random.normal(1, 0.1);
     seen.sightings.push_back(one);
   }
@@ -49,8 +49,8 @@ SightingSet look_round(const Pose2& robot, const LandmarkGrid& rocks, Random& ra
 
 int main() try {
   Random random(1, "rover");
-  const SemanticMap map = field_of_rocks(random);
-  const LandmarkGrid rocks(landmarks_of(map));
+  const SemanticMap map = make_rock_map(random);
+  const LandmarkGrid rocks(to_map_landmarks(map));
 
   Pose2 truth{0, -40, 0};
   const PoseEstimate start{truth, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
@@ -65,16 +65,16 @@ int main() try {
     truth = truth * twist_motion(speed, 0, turn, seconds, {}).step;
     const double slip = random.normal(0.97, 0.05), drift = random.normal(0.001, 0.005);
     const BodyMotion wheels = twist_motion(speed / slip, 0, turn + drift, seconds, {});
-    odometry.move(wheels);
-    filter.move(wheels);
-    for (const Match& match : filter.see(look_round(truth, rocks, random)))
+    odometry.predict(wheels);
+    filter.predict(wheels);
+    for (const Match& match : filter.update(observe(truth, rocks, random)))
       ++sightings, matched += match.verdict == Verdict::matched;
   }
   const auto error = [&](const Localizer& localizer) {
     return (localizer.estimate().pose.at() - truth.at()).norm();
   };
   std::cout << "after 250 m: odometry is " << error(odometry) << " m off, the filter " << error(filter)
-            << " m; " << matched << " of " << sightings << " sightings recognised\n";
+            << " m; " << matched << " of " << sightings << " sightings matched\n";
   return error(filter) < 0.3 && error(odometry) > 2 ? 0 : 1;
 } catch (const Error& error) {
   std::cerr << error.what() << '\n';

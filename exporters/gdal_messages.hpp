@@ -4,8 +4,8 @@
 #include <vector>
 namespace waymark {
 
-/// Collects what GDAL says on this thread while the object lives, so that nothing reaches standard error raw.
-/// They nest like scopes. GDAL's drivers are registered by the first one.
+/// Collects the messages of GDAL on this thread while the object lives, and keeps them off standard error.
+/// Objects nest like scopes. The first one registers the drivers.
 class GdalMessages {
  public:
   GdalMessages();
@@ -15,7 +15,8 @@ class GdalMessages {
 
   const std::vector<std::string>& failures() const { return failures_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// The first failure, which names the cause of the others; else the first warning; else `otherwise`.
+  /// Returns the first failure, which names the cause of the others; else the first warning; else
+  /// `otherwise`.
   std::string cause(const std::string& otherwise) const;
 
   void add_failure(std::string text);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "exporters/aside_folder.hpp"
+#include "exporters/staging_folder.hpp"
 
 namespace waymark {
 namespace {
@@ -27,7 +27,7 @@ void put_text(std::string& bytes, std::size_t at, std::string_view text, std::si
   std::memcpy(bytes.data() + at, text.data(), std::min(text.size(), room));
 }
 
-/// The one variable length record: the CRS as OGC WKT.
+/// Writes the only variable length record: the CRS as OGC WKT.
 std::string wkt_record(const Crs& crs) {
   if (crs.kind() == CrsKind::local) return "";
   const std::string wkt = (crs.wkt1().empty() ? crs.wkt2() : crs.wkt1()) + '\0';
@@ -43,7 +43,7 @@ std::string wkt_record(const Crs& crs) {
 
 struct LasFile::State {
   std::filesystem::path path;
-  AsideFolder aside;
+  StagingFolder staging;
   std::ofstream file;
   std::string record, buffer;
   std::array<double, 3> origin{}, low{}, high{};
@@ -51,10 +51,10 @@ struct LasFile::State {
   std::uint64_t count = 0;
 
   State(std::filesystem::path final_path, const Crs& crs, double x, double y)
-      : path(std::move(final_path)), aside(path), record(wkt_record(crs)), origin{x, y, 0} {
+      : path(std::move(final_path)), staging(path), record(wkt_record(crs)), origin{x, y, 0} {
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
-    file.open(aside.path() / path.filename(), std::ios::binary);
+    file.open(staging.path() / path.filename(), std::ios::binary);
     file << std::string(kHeader, '\0') << record;
   }
 
@@ -71,7 +71,8 @@ struct LasFile::State {
     h[24] = 1, h[25] = 4;
     put_text(h, 26, "Waymark testbed", 32);
     put_text(h, 58, "Waymark", 32);
-    put(h, 90, std::uint16_t{1}), put(h, 92, std::uint16_t{2026});  // a fixed day: the same bytes every time
+    put(h, 90, std::uint16_t{1}),
+        put(h, 92, std::uint16_t{2026});  // a fixed day, so that equal clouds give equal bytes
     put(h, 94, static_cast<std::uint16_t>(kHeader));
     put(h, 96, static_cast<std::uint32_t>(kHeader + record.size()));
     put(h, 100, static_cast<std::uint32_t>(record.empty() ? 0 : 1));
@@ -125,7 +126,7 @@ void LasFile::close() {
   s.file << s.header();
   s.file.close();
   if (!s.file) fail_output(s.path, "the point cloud was not written");
-  s.aside.publish();
+  s.staging.publish();
 }
 
 }  // namespace waymark

@@ -16,18 +16,19 @@ struct LasReturn {
   double time = 0;                  ///< seconds
 };
 
-/// Writes a point cloud as LAS 1.4, point format 6 (ASPRS 2019, R15), the CRS as WKT. Millimetres. Points go
-/// to the file as they come; the header follows at the end, so memory is bounded. Written aside and renamed.
+/// Writes a point cloud as LAS 1.4, point format 6 (ASPRS 2019, R15), the CRS as WKT. Resolution is a
+/// millimetre. Points are written as they come and the header at the end, so memory is bounded. Staged and
+/// renamed.
 class LasFile {
  public:
-  /// `origin` in the CRS: coordinates are stored as 32-bit millimetres from it. Throws Error{output}.
+  /// Coordinates are stored as 32-bit millimetres from `origin`, in the CRS. Throws Error{output}.
   LasFile(std::filesystem::path path, const Crs& crs, double origin_x, double origin_y);
   ~LasFile();
   LasFile(const LasFile&) = delete;
   LasFile& operator=(const LasFile&) = delete;
 
   void add(const LasReturn& point);
-  /// Writes the header and gives the file its name. Throws Error{output}.
+  /// Writes the header and renames the file. Throws Error{output}.
   void close();
 
  private:

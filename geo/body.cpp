@@ -20,7 +20,7 @@ Body mars() {
   return {"Mars", 3396190, (3396190.0 - 3376200.0) / 3396190.0};
 }
 
-Body body_of_ellipsoid(const std::string& name, double equatorial_radius, double flattening) {
+Body identify_body(const std::string& name, double equatorial_radius, double flattening) {
   for (const Body& known : {earth(), moon(), mars()})
     if (std::abs(equatorial_radius / known.equatorial_radius - 1) < 0.005)
       return {known.name, equatorial_radius, flattening};

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "geo/lens_field.hpp"
+#include "geo/distortion_limit.hpp"
 
 namespace waymark {
 namespace {
@@ -32,7 +32,7 @@ Distorted brown(const std::array<double, 8>& k, const Eigen::Vector2d& p) {
   return out;
 }
 
-// Kannala and Brandt 2006 as OpenCV has it: the angle from the axis, theta, lands at radius
+// Kannala and Brandt 2006 in OpenCV's form: the angle theta from the axis is imaged at radius
 // theta (1 + k1 theta^2 + ... + k4 theta^8).
 double fisheye_radius(const std::array<double, 8>& k, double theta) {
   const double s = theta * theta;
@@ -49,7 +49,7 @@ double radial_radius(const std::array<double, 8>& k, double r) {
   return r * (1 + s * (k[0] + s * (k[1] + s * k[4]))) / (1 + s * (k[5] + s * (k[6] + s * k[7])));
 }
 
-// The r in [0, field) with f(r) = target, f increasing: bisection, after the bracket is found by doubling.
+// Solves f(r) = target for r in [0, field), f increasing, by doubling and bisection.
 template <class Function>
 std::optional<double> invert_increasing(const Function& f, double target, double field) {
   double low = 0, high = std::min(field, std::max(target, 1e-3));
@@ -65,7 +65,8 @@ std::optional<double> invert_increasing(const Function& f, double target, double
   return (low + high) / 2;
 }
 
-// Newton from `p`, with steps halved until they stay on the branch that holds the centre and come closer.
+// Newton iterations from `p`. Steps are halved until they stay on the branch of the centre and reduce the
+// residual.
 std::optional<Eigen::Vector2d> refine_brown(const Camera& camera, const Eigen::Vector2d& goal,
                                             Eigen::Vector2d p, double field) {
   constexpr double kClose = 1e-13, kEnough = 1e-9;  // of the focal length
@@ -95,14 +96,14 @@ std::optional<Eigen::Vector2d> refine_brown(const Camera& camera, const Eigen::V
 
 std::optional<Eigen::Vector2d> undistort_brown(const Camera& camera, const Eigen::Vector2d& goal) {
   if (camera.distortion == std::array<double, 8>{}) return goal;
-  const double field = field_of(camera);
+  const double field = distortion_limit(camera);
   if (goal.norm() < field)
     if (const auto p = refine_brown(camera, goal, goal, field)) return p;
   const double radius = goal.norm();
   if (!(radius > 0)) return std::nullopt;
   const auto start =
       invert_increasing([&](double r) { return radial_radius(camera.distortion, r); }, radius, field);
-  // The tangential terms may reach a little beyond the largest radius of the radial ones.
+  // The tangential terms may extend slightly beyond the largest radius of the radial terms.
   const double from = start.value_or(std::isfinite(field) ? 0.95 * field : radius);
   return refine_brown(camera, goal, goal * (from / radius), field);
 }
@@ -111,7 +112,8 @@ std::optional<Eigen::Vector3d> undistort_fisheye(const Camera& camera, const Eig
   const auto& k = camera.distortion;
   const double radius = goal.norm();
   if (!(radius > 0)) return radius == 0 ? std::optional(Eigen::Vector3d(0, 0, 1)) : std::nullopt;
-  auto theta = invert_increasing([&](double t) { return fisheye_radius(k, t); }, radius, field_of(camera));
+  auto theta =
+      invert_increasing([&](double t) { return fisheye_radius(k, t); }, radius, distortion_limit(camera));
   if (!theta) return std::nullopt;
   const double slope = fisheye_slope(k, *theta);
   if (slope > 0) *theta -= (fisheye_radius(k, *theta) - radius) / slope;
@@ -127,10 +129,10 @@ std::optional<Eigen::Vector2d> project(const Camera& camera, const Point<CameraF
   Eigen::Vector2d seen = at.head<2>() / at.z();
   if (camera.lens == Camera::Lens::fisheye) {
     const double radius = seen.norm(), theta = std::atan(radius);
-    if (!(theta < field_of(camera))) return std::nullopt;
+    if (!(theta < distortion_limit(camera))) return std::nullopt;
     if (radius > 0) seen *= fisheye_radius(camera.distortion, theta) / radius;
   } else if (camera.distortion != std::array<double, 8>{}) {
-    if (!(seen.norm() < field_of(camera))) return std::nullopt;
+    if (!(seen.norm() < distortion_limit(camera))) return std::nullopt;
     const Distorted there = brown(camera.distortion, seen);
     if (!(there.jacobian.determinant() > 0)) return std::nullopt;
     seen = there.at;
@@ -161,7 +163,7 @@ std::optional<Ray<GridFrame>> ray(const PosedCamera& view, const Eigen::Vector2d
 }
 
 std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<GridFrame>& point) {
-  // Subtracting first keeps millimetres where northings have seven digits.
+  // Subtracting the centre first preserves millimetres for northings of seven digits.
   const Eigen::Vector3d away = point.xyz - view.grid_from_camera.transform.translation();
   return project(view.camera,
                  Point<CameraFrame>{view.grid_from_camera.transform.linear().transpose() * away});

@@ -27,7 +27,7 @@ GridGeometry common_grid(const Canopies& canopies) {
   return common;
 }
 
-Window part_of(const GridGeometry& grid, const GridGeometry& common, const Window& tile) {
+Window tile_window(const GridGeometry& grid, const GridGeometry& common, const Window& tile) {
   const auto column = [&](std::int64_t edge) {  // the first column whose centre lies right of the tile's edge
     const double at = grid.where.column(common.where.x(static_cast<double>(edge) - 0.5));
     return std::clamp<std::int64_t>(static_cast<std::int64_t>(std::ceil(at - 1e-6)), 0, grid.columns);

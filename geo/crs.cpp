@@ -23,7 +23,7 @@ struct Crs::Definition {
 namespace {
 
 pj_ctx* context() {
-  return ProjContext::of_this_thread().get();
+  return ProjContext::current().get();
 }
 
 std::string text_or_empty(const char* text) {
@@ -36,7 +36,7 @@ std::string text_or_empty(const char* text) {
               "give it as EPSG:4326, IAU_2015:49900, a PROJ string or WKT");
 }
 
-// The part that says where x and y are, of compound, bound and three-dimensional systems.
+// Returns the horizontal part of compound, bound and three-dimensional systems.
 ProjObject horizontal_part(ProjObject crs) {
   for (;;) {
     PJ* part = nullptr;
@@ -59,7 +59,7 @@ ProjObject horizontal_part(ProjObject crs) {
 }
 
 ProjObject parse(std::string_view definition) {
-  ProjContext& proj = ProjContext::of_this_thread();
+  ProjContext& proj = ProjContext::current();
   proj.take_message();
   std::string text(definition);
   if (text.starts_with('+') && text.find("+type=crs") == std::string::npos)
@@ -73,8 +73,8 @@ ProjObject parse(std::string_view definition) {
   return crs;
 }
 
-// GeoTIFF keeps names and numbers but drops the codes of planetary systems; PROJ finds them again. An
-// identity is believed only at 100 %: equal in every number and in name.
+// Restores the code of a planetary CRS, which GeoTIFF drops. Only a match of 100 % is accepted: equal in
+// every number and in name.
 ProjObject catalogued(ProjObject crs) {
   if (proj_get_id_code(crs.get(), 0)) return crs;
   int* confidence = nullptr;
@@ -108,8 +108,8 @@ Body body_of(const PJ* crs) {
   if (!ellipsoid || !proj_ellipsoid_get_parameters(context(), ellipsoid.get(), &equatorial, nullptr, nullptr,
                                                    &inverse_flattening))
     return {};
-  return body_of_ellipsoid(text_or_empty(proj_get_name(ellipsoid.get())), equatorial,
-                           inverse_flattening == 0 ? 0 : 1 / inverse_flattening);
+  return identify_body(text_or_empty(proj_get_name(ellipsoid.get())), equatorial,
+                       inverse_flattening == 0 ? 0 : 1 / inverse_flattening);
 }
 
 CrsKind kind_of(const PJ* crs, std::string_view definition) {
@@ -131,7 +131,7 @@ void check_degrees(const PJ* crs, std::string_view definition) {
     if (std::abs(axis.factor / kRadiansPerDegree - 1) > 1e-9)
       refuse(definition, "its angles are in " + axis.unit + ", not in degrees");
     if (axis.direction == "west" || axis.direction == "south")
-      refuse(definition, "its coordinates grow towards the " + axis.direction);
+      refuse(definition, "its coordinates increase to the " + axis.direction);
   }
 }
 
@@ -158,7 +158,7 @@ Crs Crs::from_text(std::string_view definition) {
   if (known->kind == CrsKind::geographic) check_degrees(crs.get(), definition);
   known->metres_per_unit = known->kind == CrsKind::geographic ? 0 : axis_of(crs.get(), 0).factor;
   if (known->kind != CrsKind::local) known->body = body_of(crs.get());
-  ProjContext::of_this_thread().take_message();  // what could not be expressed as WKT1 is no news
+  ProjContext::current().take_message();  // discards messages about WKT1
   return Crs(std::move(known));
 }
 
@@ -210,7 +210,7 @@ bool Crs::same_as(const Crs& other) const {
                                         PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS);
 }
 
-Crs geographic_of(const Crs& crs) {
+Crs geographic_crs(const Crs& crs) {
   if (crs.kind() == CrsKind::geographic) return crs;
   if (crs.kind() == CrsKind::local)
     throw Error(ErrorCode::input, "a local CRS has no longitude and latitude", crs.name(),

@@ -21,7 +21,7 @@ std::string place_of(const Crs& crs) {
   return crs.kind() == CrsKind::local ? "a local CRS" : crs.body().name;
 }
 
-// Two figures of one body may differ a little (a sphere for an ellipsoid); two bodies differ a lot.
+// Figures of one body may differ slightly (sphere and ellipsoid), those of two bodies by more than 1 %.
 bool same_body(const Body& a, const Body& b) {
   return std::abs(a.equatorial_radius / b.equatorial_radius - 1) < 0.01;
 }
@@ -29,7 +29,7 @@ bool same_body(const Body& a, const Body& b) {
 }  // namespace
 
 struct CrsTransform::Pipeline {
-  ProjContext context;   // its own: the object may be handed from thread to thread
+  ProjContext context;   // not shared: the object may move between threads
   ProjObject operation;  // null: nothing to do
 };
 

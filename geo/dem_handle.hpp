@@ -4,7 +4,7 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// A DEM as it is passed between stages.
+/// DEM as passed between stages.
 using DemHandle = std::shared_ptr<const DemSource>;
 
 }  // namespace waymark

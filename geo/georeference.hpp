@@ -4,9 +4,9 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// Where the cells of a grid lie. North-up, no rotation. The convention of the whole project, for rasters and
-/// images alike: column 0, row 0 is the *centre* of the first cell. GDAL's corner-based geotransforms are
-/// shifted by half a cell in importers/ when a file is opened, and nowhere else.
+/// Georeference of a north-up grid without rotation. Column 0, row 0 is the *centre* of the first cell, for
+/// rasters and images in the whole project. GDAL's corner-based geotransforms are shifted by half a cell in
+/// importers/ when a file is opened, and nowhere else.
 struct Georeference {
   Crs crs = Crs::local();
   double x0 = 0, y0 = 0;   ///< centre of cell (0, 0), CRS units
@@ -18,12 +18,12 @@ struct Georeference {
   double row(double at_y) const { return (at_y - y0) / dy; }
 };
 
-/// The cells of a DEM as the whole map sees them.
+/// Size, georeference and topology of a grid.
 struct GridGeometry {
   std::int64_t columns = 0, rows = 0;
   Georeference where;
   bool wraps = false;       ///< column 0 is the eastern neighbour of the last column: a global grid
-  bool north_pole = false;  ///< the top row is the last before the pole: nothing is hidden beyond it
+  bool north_pole = false;  ///< the top row is the last before the pole: no terrain lies beyond it
   bool south_pole = false;
 
   std::int64_t cells() const { return columns * rows; }

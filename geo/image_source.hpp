@@ -11,10 +11,10 @@
 #include "geo/sun.hpp"
 namespace waymark {
 
-/// Brightness, linear in the file's numbers; NaN where there is no data.
+/// Brightness, linear in the values of the file; NaN for pixels without data.
 using Pixels = Grid<float>;
 
-/// All that is known about an image but its pixels.
+/// Metadata of an image.
 struct ImageInfo {
   std::string name;  ///< unique in its set: file name without folders
   std::string path;  ///< anything GDAL opens
@@ -23,25 +23,26 @@ struct ImageInfo {
   std::optional<PosedCamera> view;    ///< a frame camera with its pose
   std::optional<Georeference> ortho;  ///< an orthophoto: pixel -> map
   std::optional<Sun> sun;
-  /// Towards the sun in the image, from x (right) towards y (down); for images without a pose.
+  /// Direction to the sun in the image, from x (right) to y (down); for images without a pose.
   std::optional<Degrees> image_sun_angle;
   std::optional<Meters> gsd;  ///< of an image without pose and georeference
-  double saturated = 0;       ///< pixels at or above are blown out; 0: unknown
+  double saturated = 0;       ///< pixels at or above this value are saturated; 0: unknown
   std::string taken_utc;      ///< ISO 8601; empty: unknown
 };
 
-/// An image that is read window by window. Safe to read from many threads.
+/// Image read by windows. Thread-safe.
 class ImageSource {
  public:
   virtual ~ImageSource() = default;
   virtual const ImageInfo& info() const = 0;
-  /// Pixels outside the image are NaN. Colour images give luminance (Rec. 709). Throws Error where the file
-  /// is damaged.
+  /// Returns the pixels of a window; NaN outside the image. Colour images give luminance (Rec. 709). Throws
+  /// Error if the file is damaged.
   virtual Pixels read(const Window& window) const = 0;
 };
 
-/// An image as it is passed between stages.
+/// Image as passed between stages.
 using ImageHandle = std::shared_ptr<const ImageSource>;
+/// Images of a job, in the order of their list.
 using ImageSet = std::vector<ImageHandle>;
 
 }  // namespace waymark

@@ -13,7 +13,7 @@ struct LocalFrame::Conversion {
       metres_per_unit = crs.metres_per_unit();
       return;
     }
-    const Crs geographic = geographic_of(crs);
+    const Crs geographic = geographic_crs(crs);
     if (crs.kind() == CrsKind::projected) {
       to_degrees.emplace(crs, geographic);
       from_degrees.emplace(geographic, crs);
@@ -23,7 +23,7 @@ struct LocalFrame::Conversion {
                   GeographicLib::Geocentric(crs.body().equatorial_radius, crs.body().flattening));
   }
 
-  // x and y through the transform, which is not to be used by two threads at once.
+  // The mutex guards the transform, which is not thread-safe.
   Eigen::Vector3d through(const std::optional<CrsTransform>& transform, const Eigen::Vector3d& point) const {
     if (!transform) return point;
     const std::scoped_lock lock(mutex);

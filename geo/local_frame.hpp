@@ -5,9 +5,11 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// East, north, up in metres about an origin: the frame robots drive in. On a body it is the plane that
-/// touches the ellipsoid there (GeographicLib::LocalCartesian), exact at any distance; in a local CRS it is a
-/// shift. z of the map is taken as height above the ellipsoid. May be asked from many threads.
+/// Local Cartesian frame: east, north, up in metres about an origin; the frame of the robot's pose.
+/// - On a body it is tangent to the ellipsoid at the origin (GeographicLib::LocalCartesian), exact at any
+///   distance. In a local CRS it is a translation.
+/// - z of the map is taken as height above the ellipsoid.
+/// - Thread-safe.
 class LocalFrame {
  public:
   LocalFrame(const Crs& crs, const Point<MapCrs>& origin);

@@ -7,7 +7,7 @@ namespace waymark {
 
 PlaneDem::PlaneDem(const Crs& crs, double height, double height_sd) : height_(height), height_sd_(height_sd) {
   if (crs.kind() == CrsKind::geographic)
-    throw Error(ErrorCode::usage, "level ground needs a CRS in metres, not degrees", crs.name(),
+    throw Error(ErrorCode::usage, "a flat terrain needs a CRS in metres, not degrees", crs.name(),
                 "name a projected CRS (UTM, +proj=tmerc ...) or local");
   constexpr std::int64_t kCells = 1001;
   const double step = 4e4 / crs.metres_per_unit();

@@ -3,11 +3,11 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// Level ground that somebody assumed where there is no DEM: 40 000 km either way in cells of 40 km.
+/// Horizontal plane assumed if there is no DEM: 40 000 km by 40 000 km, in cells of 40 km.
 class PlaneDem final : public DemSource {
  public:
-  /// `crs` is projected or local; height in metres. `height_sd`: of the real ground against the plane,
-  /// metres; it makes places seen from the side uncertain.
+  /// `crs` is projected or local; height in metres. `height_sd` is the standard deviation of the true terrain
+  /// from the plane, metres; it adds uncertainty to positions from oblique views.
   PlaneDem(const Crs& crs, double height, double height_sd);
 
   const GridGeometry& geometry() const override { return geometry_; }
@@ -22,7 +22,7 @@ class PlaneDem final : public DemSource {
   double height_, height_sd_;
 };
 
-/// Whether the heights are assumed and not measured.
+/// Returns whether the DEM is an assumed plane.
 bool is_assumed_plane(const DemSource& dem);
 
 }  // namespace waymark

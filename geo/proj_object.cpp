@@ -29,7 +29,7 @@ std::string ProjContext::take_message() {
   return text;
 }
 
-ProjContext& ProjContext::of_this_thread() {
+ProjContext& ProjContext::current() {
   thread_local ProjContext context;
   return context;
 }

@@ -10,10 +10,10 @@ struct ProjRelease {
   void operator()(PJconsts* object) const;
 };
 
-/// A PROJ object. It belongs to the thread that made it and must not outlive it.
+/// PROJ object. It belongs to the thread that created it and must not outlive it.
 using ProjObject = std::unique_ptr<PJconsts, ProjRelease>;
 
-/// PROJ's state for one thread, offline. What PROJ has to say is kept here and never printed.
+/// PROJ context of one thread, without network access. Stores PROJ's last message instead of printing it.
 class ProjContext {
  public:
   ProjContext();
@@ -21,11 +21,11 @@ class ProjContext {
   ProjContext(ProjContext&&) = delete;
 
   pj_ctx* get() const { return context_; }
-  /// PROJ's last message, without its "proj_create: " prefix; empties it.
+  /// Returns PROJ's last message without its "proj_create: " prefix, and clears it.
   std::string take_message();
 
-  /// The calling thread's own.
-  static ProjContext& of_this_thread();
+  /// Returns the context of the calling thread.
+  static ProjContext& current();
 
  private:
   pj_ctx* context_;

@@ -10,22 +10,22 @@ namespace waymark {
 namespace {
 
 namespace bg = boost::geometry;
-using Place = bg::model::point<double, 3, bg::cs::cartesian>;
-using Box = bg::model::box<Place>;
-using Entry = std::pair<Place, std::size_t>;
+using IndexPoint = bg::model::point<double, 3, bg::cs::cartesian>;
+using Box = bg::model::box<IndexPoint>;
+using Entry = std::pair<IndexPoint, std::size_t>;
 
-Place place_of(const Eigen::Vector3d& point) {
+IndexPoint to_index_point(const Eigen::Vector3d& point) {
   return {point.x(), point.y(), point.z()};
 }
 
-double squared_distance(const Place& a, const Eigen::Vector3d& b) {
+double squared_distance(const IndexPoint& a, const Eigen::Vector3d& b) {
   return (Eigen::Vector3d(bg::get<0>(a), bg::get<1>(a), bg::get<2>(a)) - b).squaredNorm();
 }
 
 std::vector<Entry> entries_of(std::span<const Eigen::Vector3d> points) {
   std::vector<Entry> entries;
   entries.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) entries.emplace_back(place_of(points[i]), i);
+  for (std::size_t i = 0; i < points.size(); ++i) entries.emplace_back(to_index_point(points[i]), i);
   return entries;
 }
 
@@ -50,7 +50,7 @@ struct SpatialIndex::Tree {
 
   std::vector<Entry> in_ball(const Eigen::Vector3d& centre, double radius) const {
     const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius);
-    std::vector<Entry> found = in({place_of(centre - reach), place_of(centre + reach)});
+    std::vector<Entry> found = in({to_index_point(centre - reach), to_index_point(centre + reach)});
     std::erase_if(found, [&](const Entry& e) { return squared_distance(e.first, centre) > radius * radius; });
     return found;
   }
@@ -68,7 +68,7 @@ std::size_t SpatialIndex::size() const {
 
 std::vector<std::size_t> SpatialIndex::in_box(const Eigen::AlignedBox3d& box) const {
   if (box.isEmpty()) return {};
-  return sorted_indices(tree_->in({place_of(box.min()), place_of(box.max())}));
+  return sorted_indices(tree_->in({to_index_point(box.min()), to_index_point(box.max())}));
 }
 
 std::vector<std::size_t> SpatialIndex::within(const Eigen::Vector3d& centre, double radius) const {
@@ -76,12 +76,13 @@ std::vector<std::size_t> SpatialIndex::within(const Eigen::Vector3d& centre, dou
   return sorted_indices(tree_->in_ball(centre, radius));
 }
 
-// The tree breaks ties as it likes: the distance of the last one counts, and all that near are put in order.
+// The tree breaks ties arbitrarily, so all points up to the distance of the last one are sorted again.
 std::vector<std::size_t> SpatialIndex::nearest(const Eigen::Vector3d& centre, std::size_t count) const {
   if (count == 0 || size() == 0) return {};
   std::vector<Entry> found;
-  tree_->entries.query(bg::index::nearest(place_of(centre), static_cast<unsigned>(std::min(count, size()))),
-                       std::back_inserter(found));
+  tree_->entries.query(
+      bg::index::nearest(to_index_point(centre), static_cast<unsigned>(std::min(count, size()))),
+      std::back_inserter(found));
   double furthest = 0;
   for (const Entry& entry : found) furthest = std::max(furthest, squared_distance(entry.first, centre));
   found = tree_->in_ball(centre, std::nextafter(std::sqrt(furthest), HUGE_VAL));

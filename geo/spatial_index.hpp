@@ -7,9 +7,9 @@
 #include <vector>
 namespace waymark {
 
-/// Points that do not move, found by where they are: a packed R-tree (Leutenegger et al. 1997, "STR", via
-/// Boost.Geometry). Points of a plane have z = 0. Results are indices into the points given.
-/// Building costs O(n log n), about 2 M points/s; queries may run in many threads.
+/// Spatial index of fixed points: a packed R-tree (Leutenegger et al. 1997, "STR", via Boost.Geometry).
+/// Points of a plane have z = 0. Queries return indices into the given points and are thread-safe. Building
+/// takes O(n log n), about 2 M points/s.
 class SpatialIndex {
  public:
   explicit SpatialIndex(std::span<const Eigen::Vector3d> points);
@@ -19,13 +19,13 @@ class SpatialIndex {
 
   std::size_t size() const;
 
-  /// Points inside the box or on its border, ascending.
+  /// Returns the points inside the box or on its border, ascending.
   std::vector<std::size_t> in_box(const Eigen::AlignedBox3d& box) const;
 
-  /// Points at most `radius` away, ascending.
+  /// Returns the points at most `radius` away, ascending.
   std::vector<std::size_t> within(const Eigen::Vector3d& centre, double radius) const;
 
-  /// The `count` nearest points, or all if there are fewer; nearest first, equal distances by index.
+  /// Returns the `count` nearest points, or all if there are fewer; nearest first, equal distances by index.
   std::vector<std::size_t> nearest(const Eigen::Vector3d& centre, std::size_t count) const;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace waymark {
 
-Direction<GridFrame> towards(const Sun& sun) {
+Direction<GridFrame> sun_direction(const Sun& sun) {
   const double azimuth = to_radians(sun.azimuth).value, elevation = to_radians(sun.elevation).value;
   const double level = std::cos(elevation);
   return {{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}};

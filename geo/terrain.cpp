@@ -11,8 +11,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kTouching = 1e-6;    // metres under the ground that still count as standing on it
-constexpr double kShadowLift = 1e-3;  // metres
+constexpr double kContactTolerance = 1e-6;  // metres below the terrain that count as on it
+constexpr double kShadowLift = 1e-3;        // metres
 
 }  // namespace
 
@@ -44,11 +44,11 @@ double Terrain::step_y() const {
 double Terrain::height_sd() const {
   return pyramid_->height_sd;
 }
-double Terrain::lowest() const {
-  return pyramid_->lowest;
+double Terrain::min_height() const {
+  return pyramid_->min_height;
 }
-double Terrain::highest() const {
-  return pyramid_->highest;
+double Terrain::max_height() const {
+  return pyramid_->max_height;
 }
 
 std::optional<double> Terrain::height(double x, double y) const {
@@ -69,20 +69,20 @@ std::optional<Eigen::Vector3d> Terrain::normal(double x, double y) const {
   return Eigen::Vector3d(-slope_x, -slope_y, 1).normalized();
 }
 
-RayHit Terrain::cast(const Ray<GridFrame>& ray, double most_range) const {
+RayHit Terrain::cast(const Ray<GridFrame>& ray, double max_range) const {
   const Pyramid& p = *pyramid_;
   const Eigen::Vector3d& origin = ray.origin.xyz;
-  const Eigen::Vector3d& along = ray.along.unit;
-  const GridRay line = p.in_cells(origin, along);
-  auto range = p.inside(line);
-  if (!range || !(range->from <= most_range)) return {};
-  range->to = std::min(range->to, most_range);
+  const Eigen::Vector3d& along = ray.direction.unit;
+  const GridRay line = p.to_grid_ray(origin, along);
+  auto range = p.clip_to_extent(line);
+  if (!range || !(range->from <= max_range)) return {};
+  range->to = std::min(range->to, max_range);
   const auto at = [&](RayEnd end, double t) { return RayHit{end, {origin + t * along}, t}; };
 
   const Eigen::Vector3d start = origin + range->from * along;
   const auto ground = height(std::clamp(start.x(), p.x0, p.x0 + p.step_x * double(p.heights.columns() - 1)),
                              std::clamp(start.y(), p.y0 - p.step_y * double(p.heights.rows() - 1), p.y0));
-  if (ground && start.z() < *ground - kTouching) return at(RayEnd::underground, range->from);
+  if (ground && start.z() < *ground - kContactTolerance) return at(RayEnd::underground, range->from);
 
   const PyramidHit hit = p.first_hit(line, *range, UnknownCells::stop);
   if (hit.end == RayEnd::sky) return {};
@@ -91,8 +91,8 @@ RayHit Terrain::cast(const Ray<GridFrame>& ray, double most_range) const {
 
 bool Terrain::in_shadow(const Point<GridFrame>& point, const Direction<GridFrame>& towards_light) const {
   const Eigen::Vector3d lifted = point.xyz + Eigen::Vector3d(0, 0, kShadowLift);
-  const GridRay line = pyramid_->in_cells(lifted, towards_light.unit);
-  const auto range = pyramid_->inside(line);
+  const GridRay line = pyramid_->to_grid_ray(lifted, towards_light.unit);
+  const auto range = pyramid_->clip_to_extent(line);
   return range && pyramid_->first_hit(line, *range, UnknownCells::pass).end == RayEnd::ground;
 }
 

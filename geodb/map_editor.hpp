@@ -6,36 +6,38 @@
 #include "geodb/map_store.hpp"
 namespace waymark {
 
-/// Changes a map file in place. Every call is a transaction of its own unless it runs inside together().
-/// A process killed meanwhile leaves the map as it was: whoever opens it next rolls it back.
-/// The RTree follows by the triggers any GeoPackage tool uses. One editor at a time; readers may stay.
+/// Editor of a map file in place.
+/// - Each call is a transaction, or part of the transaction of transact().
+/// - If the process is killed, the next process that opens the map rolls the transaction back.
+/// - GeoPackage triggers update the RTree.
+/// - One editor at a time; readers may have the file open.
 class MapEditor {
  public:
-  /// Migrates a map of an older schema version in place. Throws Error as MapStore::open does, and for a file
-  /// that cannot be written.
+  /// Opens a map and migrates an older schema version in place. Throws Error as MapStore::open, and if the
+  /// file cannot be written.
   static MapEditor open(const std::filesystem::path& path);
 
   const MapStore& map() const { return map_; }
 
-  /// The type must have a table in the map. Throws Error for a uid that is empty or taken.
+  /// Inserts a landmark. Throws Error if its type has no table in the map, or its uid is empty or taken.
   void insert(const Landmark& landmark);
-  /// Replaces the landmark of that uid and type. Throws Error where there is none.
+  /// Replaces the landmark of that uid and type. Throws Error if there is none.
   void update(const Landmark& landmark);
-  /// Its observations stay, as rejected ones with the reason "landmark removed".
+  /// Removes a landmark. Its observations remain, rejected with the reason "landmark removed".
   void remove(std::string_view uid);
-  /// Stores an observation of a landmark of the map and counts it there; merging is the caller's business.
+  /// Stores an observation of a landmark of the map and counts it there. The caller merges the values.
   void add_evidence(const Observation& observation);
   void add_image(const ImageRecord& image);
   void add_run(const RunRecord& run);
 
-  /// All changes made by `changes`, or none if it throws. Far faster than one by one: the disk is waited for
-  /// once.
-  void together(const std::function<void()>& changes);
+  /// Runs `changes` in one transaction; none is stored if it throws. Faster than separate calls, since the
+  /// disk is flushed once.
+  void transact(const std::function<void()>& changes);
 
  private:
   explicit MapEditor(MapStore map);
   MapStore map_;
-  bool together_ = false;
+  bool in_transaction_ = false;
 };
 
 }  // namespace waymark

@@ -2,11 +2,14 @@
 #include "geodb/map_query.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "core/error.hpp"
-#include "geodb/landmark_search.hpp"
+#include "geodb/layers/landmark_search.hpp"
+#include "geodb/layers/largest_index.hpp"
 #include "geodb/map_connection.hpp"
+#include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark {
 namespace {
@@ -21,65 +24,101 @@ Tables tables_for(MapStore::Connection& map, const MapQuery& query) {
   return tables;
 }
 
-/// A feature no type has is a slip of the pen, not an empty answer.
-void check_features(const MapQuery& query, const Tables& tables) {
-  std::set<std::string> known = {"quality"};
-  for (const LandmarkTable* table : tables)
-    for (const auto& feature : table->layout.type().features) known.insert(feature.name);
-  const auto check = [&](const std::string& feature) {
-    if (feature.empty() || known.contains(feature)) return;
-    const std::string nearest = nearest_name(feature, known);
-    throw Error(ErrorCode::usage, "no landmark type asked for has a feature '" + feature + "'", "",
+/// Throws Error{usage} for a name that no queried type has as a column of numbers: a typing error, not an
+/// empty result.
+void check_query_columns(const MapQuery& query, const Tables& tables) {
+  const auto check = [&](const std::string& name) {
+    if (name.empty()) return;
+    std::set<std::string> known;
+    for (const LandmarkTable* table : tables)
+      for (const LandmarkColumn& column : table->layout.columns())
+        if (number_column(table->layout, column.name)) known.insert(column.name);
+    if (known.contains(name)) return;
+    const std::string nearest = nearest_name(name, known);
+    throw Error(ErrorCode::usage, "no landmark type asked for has a feature '" + name + "'", "",
                 nearest.empty() ? "`waymark types` lists them" : "did you mean '" + nearest + "'?");
   };
   for (const auto& range : query.features) check(range.feature);
   check(query.largest_first);
 }
 
+/// Visits the rows with the largest values, largest first, by the index of write_map. Returns whether they
+/// are all that the query can need; if not, `best` is unusable.
+bool visit_largest(const MapStore::Connection& map, const LandmarkTable& table, const MapQuery& query,
+                   const LandmarkSearch& search, BestLandmarks& best) {
+  const auto column = number_column(table.layout, query.largest_first);
+  const std::string condition =
+      largest_condition(map.database, table.layout.type().name, query.largest_first);
+  if (!column || condition.empty()) return false;
+  sqlite::Statement row = map.database.prepare(table.layout.select(
+      "WHERE t." + condition + " ORDER BY t." + quote_identifier(query.largest_first) + " DESC"));
+  std::size_t found = 0;
+  double last = std::numeric_limits<double>::infinity();
+  while (row.step()) {
+    const double value = row.real(*column);
+    if (found >= best.limit() && value < last) return true;
+    if (!search.examine(row, best)) continue;
+    if (++found == best.limit()) last = value;  // equal values are ranked by row
+  }
+  return false;
+}
+
 BestLandmarks search(MapStore::Connection& map, const Tables& tables, const MapQuery& query,
                      const SearchWindows& windows) {
+  const bool whole = !query.near && !query.box, in_order = whole && query.largest_first.empty();
   BestLandmarks best(query.limit);
   for (LandmarkTable* table : tables) {
-    const LandmarkSearch one(map.crs, map.ruler, query, table->layout.type());
-    if (!one.possible()) continue;
-    map.visit(*table, windows, [&](const sqlite::Statement& row) { one.look_at(table->layout, row, best); });
+    if (in_order && best.full()) break;
+    const LandmarkSearch one(map.crs, map.map_distance, query, table->layout);
+    if (!one.has_queried_columns()) continue;
+    if (whole && !query.largest_first.empty()) {
+      BestLandmarks largest(query.limit);
+      if (visit_largest(map, *table, query, one, largest)) {
+        best.join(std::move(largest));
+        continue;
+      }
+    }
+    map.visit(*table, windows, [&](const sqlite::Statement& row) {
+      one.examine(row, best);
+      return !(in_order && best.full());
+    });
   }
   return best;
 }
 
-/// Circles about the place, each twice as wide, until one holds k landmarks; the last holds everything.
+/// Doubles the radius of the search until the circle contains k landmarks or the whole map.
 std::vector<Landmark> nearest(MapStore::Connection& map, const Tables& tables, MapQuery query) {
   const auto [x, y, k] = *query.nearest;
   query.limit = std::min(query.limit, k);
   const Envelope& extent = map.extent;
   const auto reach = [&](double from_x, double from_y) {
-    return map.ruler(from_x, from_y, extent.max_x, extent.max_y);
+    return map.map_distance(from_x, from_y, extent.max_x, extent.max_y);
   };
   const double across = extent.empty() ? 0 : reach(extent.min_x, extent.min_y);
   const double farthest = extent.empty() ? 0 : reach(x, y) + across;
   for (double radius = across / 1024; radius > 0 && radius < farthest; radius *= 2) {
     query.near = {x, y, Meters{radius}};
-    BestLandmarks best = search(map, tables, query, windows_of(map.crs, *query.near));
+    BestLandmarks best = search(map, tables, query, search_windows(map.crs, *query.near));
     if (best.full()) return best.take();
   }
   query.near = {x, y, Meters{std::numeric_limits<double>::infinity()}};
-  return search(map, tables, query, everywhere()).take();
+  return search(map, tables, query, whole_plane()).take();
 }
 
 }  // namespace
 
 std::vector<Landmark> MapStore::query(const MapQuery& query) const {
   const Tables tables = tables_for(*connection_, query);
-  check_features(query, tables);
+  check_query_columns(query, tables);
   if (query.nearest && (query.near || !query.largest_first.empty()))
     throw Error(ErrorCode::usage, "'nearest' cannot be combined with 'near' or an order", "",
                 "ask for one of them");
   if (query.nearest) return nearest(*connection_, tables, query);
-  SearchWindows windows = everywhere();
+  SearchWindows windows = whole_plane();
   if (query.near)
-    windows = windows_of(connection_->crs, *query.near);
+    windows = search_windows(connection_->crs, *query.near);
   else if (query.box)
-    windows = windows_of(connection_->crs, *query.box);
+    windows = search_windows(connection_->crs, *query.box);
   return search(*connection_, tables, query, windows).take();
 }
 

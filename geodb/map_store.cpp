@@ -6,21 +6,16 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "geodb/crs_table.hpp"
-#include "geodb/evidence.hpp"
+#include "geodb/geopackage/crs_table.hpp"
+#include "geodb/geopackage/layer_registration.hpp"
+#include "geodb/geopackage/provenance.hpp"
+#include "geodb/geopackage/type_catalogue.hpp"
+#include "geodb/layers/evidence.hpp"
 #include "geodb/map_connection.hpp"
-#include "geodb/provenance.hpp"
-#include "geodb/sql_text.hpp"
-#include "geodb/type_catalogue.hpp"
+#include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark {
 namespace {
-
-// The map's CRS is that of its images, a table every map has.
-std::int32_t srs_id_of_map(const sqlite::Database& database) {
-  return static_cast<std::int32_t>(
-      database.integer("SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = 'image'"));
-}
 
 Envelope extent_of_map(const sqlite::Database& database) {
   sqlite::Statement row = database.prepare(
@@ -31,7 +26,7 @@ Envelope extent_of_map(const sqlite::Database& database) {
 }
 
 std::string box_condition(const std::string& table) {
-  return fill_in(
+  return substitute_keys(
       R"(JOIN "rtree_{t}_geom" r ON r.id = t.id WHERE r.maxx >= ?1 AND r.maxy >= ?2 AND r.minx <= ?3 AND r.miny <= ?4)",
       {{"t", table}});
 }
@@ -39,7 +34,7 @@ std::string box_condition(const std::string& table) {
 std::string rows_in(const std::string& table, const MapQuery::Box& box) {
   return fmt::format(
       "SELECT id FROM {} WHERE maxx >= {:.17g} AND maxy >= {:.17g} AND minx <= {:.17g} AND miny <= {:.17g}",
-      sql_name("rtree_" + table + "_geom"), box.min_x, box.min_y, box.max_x, box.max_y);
+      quote_identifier("rtree_" + table + "_geom"), box.min_x, box.min_y, box.max_x, box.max_y);
 }
 
 bool bounded(const SearchWindows& windows) {
@@ -52,7 +47,7 @@ LandmarkTable::LandmarkTable(const sqlite::Database& database, const LandmarkTyp
     : layout(type, id),
       all(database.prepare(layout.select("ORDER BY t.id"))),
       in_box(database.prepare(layout.select(box_condition(type.name)))),
-      of_uid(database.prepare(layout.select("WHERE t.uid = ?"))) {}
+      by_uid(database.prepare(layout.select("WHERE t.uid = ?"))) {}
 
 MapStore::Connection::Connection(std::filesystem::path file, OpenMap map)
     : path(std::move(file)),
@@ -61,7 +56,7 @@ MapStore::Connection::Connection(std::filesystem::path file, OpenMap map)
       types(read_types(database)),
       srs_id(srs_id_of_map(database)),
       crs(read_crs(database, srs_id)),
-      ruler(crs),
+      map_distance(crs),
       extent(extent_of_map(database)) {
   for (TypeId id = 0; id < types.size(); ++id) tables.emplace_back(database, types[id], id);
 }
@@ -71,7 +66,8 @@ void MapStore::Connection::visit(LandmarkTable& table, const SearchWindows& wind
   sqlite::Statement& rows = boxes ? table.in_box : table.all;
   for (const MapQuery::Box& window : windows) {
     if (boxes) rows.bind_all(window.min_x, window.min_y, window.max_x, window.max_y);
-    while (rows.step()) visit(rows);
+    while (rows.step())
+      if (!visit(rows)) return rows.reset();
   }
 }
 
@@ -84,19 +80,20 @@ LandmarkTable& MapStore::Connection::table(std::string_view type) {
               path.string(), nearest.empty() ? "it has: " + names : "did you mean '" + nearest + "'?");
 }
 
-std::optional<MapStore::Connection::Found> MapStore::Connection::find(std::string_view uid) {
+std::optional<MapStore::Connection::StoredLandmark> MapStore::Connection::find(std::string_view uid) {
   for (LandmarkTable& table : tables) {
-    table.of_uid.bind(1, uid);
-    if (!table.of_uid.step()) continue;
-    Found found{LandmarkLayout::row_id(table.of_uid), &table, table.layout.read(table.of_uid)};
-    table.of_uid.reset();
+    table.by_uid.bind(1, uid);
+    if (!table.by_uid.step()) continue;
+    StoredLandmark found{LandmarkLayout::row_id(table.by_uid), &table, table.layout.read(table.by_uid)};
+    table.by_uid.reset();
     return found;
   }
   return std::nullopt;
 }
 
 MapStore MapStore::open(const std::filesystem::path& path) {
-  return MapStore(std::make_unique<Connection>(path, open_for_reading(path)));
+  OpenMap map = open_for_reading(path);
+  return with_map_name(path, [&] { return MapStore(std::make_unique<Connection>(path, std::move(map))); });
 }
 
 MapStore::MapStore(std::unique_ptr<Connection> connection) : connection_(std::move(connection)) {}
@@ -125,7 +122,7 @@ std::int64_t MapStore::count() const {
 
 std::int64_t MapStore::count(std::string_view type) const {
   const std::string& table = connection_->table(type).layout.type().name;
-  return connection_->database.integer("SELECT count(*) FROM " + sql_name(table));
+  return connection_->database.integer("SELECT count(*) FROM " + quote_identifier(table));
 }
 
 std::optional<Landmark> MapStore::find(std::string_view uid) const {
@@ -136,19 +133,23 @@ std::optional<Landmark> MapStore::find(std::string_view uid) const {
 
 double MapStore::distance(const Landmark& landmark, double x, double y) const {
   const auto& at = landmark.position.xyz;
-  return connection_->ruler(x, y, at.x(), at.y());
+  return connection_->map_distance(x, y, at.x(), at.y());
 }
 
 std::vector<Observation> MapStore::observations_of(std::string_view uid) const {
-  return read_evidence(connection_->database, types(), "WHERE o.uid = ? AND o.rejected IS NULL", uid);
+  return with_map_name(path(), [&] {
+    return read_evidence(connection_->database, types(), "WHERE o.uid = ? AND o.rejected IS NULL", uid);
+  });
 }
 std::vector<Observation> MapStore::observations() const {
-  return read_evidence(connection_->database, types(), "");
+  return with_map_name(path(), [&] { return read_evidence(connection_->database, types(), ""); });
 }
 void MapStore::visit(std::string_view type, const std::function<void(Landmark&&)>& visit) const {
   LandmarkTable& table = connection_->table(type);
-  connection_->visit(table, everywhere(),
-                     [&](const sqlite::Statement& row) { visit(table.layout.read(row)); });
+  connection_->visit(table, whole_plane(), [&](const sqlite::Statement& row) {
+    visit(table.layout.read(row));
+    return true;
+  });
 }
 void MapStore::visit(std::string_view type, const MapQuery::Box& box,
                      const std::function<void(Landmark&&)>& visit) const {
@@ -157,27 +158,27 @@ void MapStore::visit(std::string_view type, const MapQuery::Box& box,
       layout.select("WHERE t.id IN (" + rows_in(layout.type().name, box) + ") ORDER BY t.id"));
   while (row.step()) {
     Landmark landmark = layout.read(row);
-    const auto& at = landmark.position.xyz;  // boxes of the index are rounded outwards
+    const auto& at = landmark.position.xyz;  // the index rounds boxes outwards
     if (at.x() >= box.min_x && at.x() <= box.max_x && at.y() >= box.min_y && at.y() <= box.max_y)
       visit(std::move(landmark));
   }
 }
 void MapStore::visit_observations(const std::function<void(Observation&&)>& visit) const {
-  visit_evidence(connection_->database, types(), "", {}, visit);
+  with_map_name(path(), [&] { visit_evidence(connection_->database, types(), "", {}, visit); });
 }
 void MapStore::visit_observations(std::string_view type, const MapQuery::Box& box,
                                   const std::function<void(Observation&&)>& visit) const {
   const std::string& table = connection_->table(type).layout.type().name;
   const std::string where =
-      fill_in(R"(WHERE o.id IN (SELECT related_id FROM "{t}_observation" WHERE base_id IN ({rows})))",
-              {{"t", table}, {"rows", rows_in(table, box)}});
-  visit_evidence(connection_->database, types(), where, {}, visit);
+      substitute_keys(R"(WHERE o.id IN (SELECT related_id FROM "{t}_observation" WHERE base_id IN ({rows})))",
+                      {{"t", table}, {"rows", rows_in(table, box)}});
+  with_map_name(path(), [&] { visit_evidence(connection_->database, types(), where, {}, visit); });
 }
 std::vector<ImageRecord> MapStore::images() const {
-  return read_images(connection_->database);
+  return with_map_name(path(), [&] { return read_images(connection_->database); });
 }
 std::vector<RunRecord> MapStore::runs() const {
-  return read_runs(connection_->database);
+  return with_map_name(path(), [&] { return read_runs(connection_->database); });
 }
 bool MapStore::has_dem_coverage() const {
   return connection_->database.has_table("dem");

@@ -12,13 +12,13 @@
 #include "geodb/map_query.hpp"
 namespace waymark {
 
-/// A map file opened for reading; it is never written to, and nothing is left beside it. Any number of
-/// readers, and one MapEditor, may have the file open. Movable; one thread at a time: open one per thread.
+/// Map file opened for reading. It never writes the file or other files beside it. Any number of readers and
+/// one MapEditor may have the file open. Movable; not thread-safe: open one per thread.
 class MapStore {
  public:
-  /// A map of an older schema version is migrated in a private copy; one whose last update was killed is
-  /// rolled back there. Throws Error: no such file, not a GeoPackage, a GeoPackage that is not a Waymark map,
-  /// a map of a newer version.
+  /// Opens a map. A map of an older schema version, or with an interrupted transaction, is migrated or rolled
+  /// back in a private copy. Throws Error if the file is missing, not a GeoPackage, not a Waymark map, or of
+  /// a newer version.
   static MapStore open(const std::filesystem::path& path);
   ~MapStore();
   MapStore(MapStore&&) noexcept;
@@ -26,27 +26,30 @@ class MapStore {
 
   const std::filesystem::path& path() const;
   int schema_version() const;         ///< of the file, before any migration
-  const TypeRegistry& types() const;  ///< as the file declares them: also types this program does not know
+  const TypeRegistry& types() const;  ///< declared in the file, including types unknown to this program
   const Crs& crs() const;
   std::int64_t count() const;
-  std::int64_t count(std::string_view type) const;  ///< throws Error{usage} for a type the map does not have
+  std::int64_t count(std::string_view type) const;  ///< throws Error{usage} for a type that the map lacks
 
-  /// About 50 us for ten hits among a million landmarks. A feature no chosen type has is an Error{usage}.
+  /// Returns the landmarks of a query; about 50 us for ten hits among a million. Throws Error{usage} for a
+  /// feature that no queried type has.
   std::vector<Landmark> query(const MapQuery& query) const;
   std::optional<Landmark> find(std::string_view uid) const;
-  /// Ground distance in metres as the queries measure it.
+  /// Returns the horizontal distance in metres, as in queries.
   double distance(const Landmark& landmark, double x, double y) const;
 
-  std::vector<Observation> observations_of(std::string_view uid) const;  ///< kept ones, in order of storing
-  std::vector<Observation> observations() const;                         ///< all, rejected ones too
-  /// All landmarks of a type, or all observations, one at a time in order of storing: for maps larger than
-  /// memory. Throws Error{usage} for a type the map does not have.
+  /// Returns the accepted observations of a landmark, in order of storage.
+  std::vector<Observation> observations_of(std::string_view uid) const;
+  std::vector<Observation> observations() const;  ///< all, including rejected ones
+  /// Visits all landmarks of a type one at a time in order of storage, for maps larger than memory. Throws
+  /// Error{usage} for a type that the map lacks.
   void visit(std::string_view type, const std::function<void(Landmark&&)>& visit) const;
-  /// Those of a box on a plane (not across the antimeridian), edges included.
+  /// Visits the landmarks in a box, edges included; the box cannot cross the antimeridian.
   void visit(std::string_view type, const MapQuery::Box& box,
              const std::function<void(Landmark&&)>& visit) const;
   void visit_observations(const std::function<void(Observation&&)>& visit) const;
-  /// Kept ones of a type's landmarks in a box on a plane, and perhaps of some just outside.
+  /// Visits the accepted observations of a type's landmarks in a box, and possibly of landmarks slightly
+  /// outside.
   void visit_observations(std::string_view type, const MapQuery::Box& box,
                           const std::function<void(Observation&&)>& visit) const;
   std::vector<ImageRecord> images() const;

@@ -1,20 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include "geodb/sqlite.hpp"
+#include "core/error.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 namespace waymark {
 
+/// Connection to a map file.
 struct OpenMap {
   sqlite::Database database;
   int version = 0;  ///< of the file, before any migration
 };
 
-/// For reading. Where reading would have to write first - a map of an older version, a transaction that was
-/// killed, a write-ahead log in use - a private copy in the temporary folder is opened instead; it has no
-/// name and vanishes with the connection. Throws Error with the path in it.
+/// Opens a map for reading. Opens a private copy in the temporary folder if reading requires writing: an
+/// older schema version, an interrupted transaction, a write-ahead log. The copy is unlinked and vanishes
+/// with the connection. Throws Error that names the path.
 OpenMap open_for_reading(const std::filesystem::path& path);
 
-/// For changing, migrated in place.
-OpenMap open_for_changing(const std::filesystem::path& path);
+/// Opens a map for writing, and migrates it in place.
+OpenMap open_for_update(const std::filesystem::path& path);
+
+/// Returns the error with the path of the map in its location.
+Error add_map_name(const Error& error, const std::filesystem::path& map);
+
+/// Returns action(); an Error that it throws names the map.
+template <class Action>
+auto with_map_name(const std::filesystem::path& map, const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    throw add_map_name(error, map);
+  }
+}
 
 }  // namespace waymark

@@ -10,15 +10,15 @@
 
 #include "core/error.hpp"
 #include "core/reorder.hpp"
-#include "geodb/attribute_column.hpp"
-#include "geodb/hilbert.hpp"
-#include "geodb/layer_registration.hpp"
+#include "geodb/geopackage/layer_registration.hpp"
+#include "geodb/geopackage/provenance.hpp"
+#include "geodb/geopackage/shape_blob.hpp"
+#include "geodb/layers/shape_table.hpp"
 #include "geodb/open_map.hpp"
-#include "geodb/packed_rtree.hpp"
-#include "geodb/provenance.hpp"
-#include "geodb/shape_blob.hpp"
-#include "geodb/shape_table.hpp"
-#include "geodb/sql_text.hpp"
+#include "geodb/rtree/hilbert.hpp"
+#include "geodb/rtree/packed_rtree.hpp"
+#include "geodb/sqlite/attribute_column.hpp"
+#include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark {
 namespace {
@@ -35,23 +35,23 @@ bool is_name(std::string_view name) {
 
 void check_names(const ShapeLayer& layer) {
   if (!is_name(layer.name))
-    refuse("'" + layer.name + "' is no name for a layer", "", "use a-z, 0-9 and _, a letter first");
+    refuse("'" + layer.name + "' is not a valid layer name", "", "use a-z, 0-9 and _, a letter first");
   std::set<std::string> names{"id", "geom"};
   for (const AttributeSpec& column : layer.columns)
     if (!is_name(column.name) || !names.insert(column.name).second)
       refuse("layer " + layer.name + " cannot have a column '" + column.name + "'", "",
-             "names are a-z, 0-9 and _, each once; id and geom are made");
+             "use a-z, 0-9 and _, each name once; id and geom are reserved");
 }
 
 void check_row(const ShapeLayer& layer, const Shape& shape, std::size_t row) {
   const std::string where = fmt::format("layer {}, row {}", layer.name, row + 1);
-  const char* hint = "this comes from what made the shapes";
+  const char* hint = "check the source of the shapes";
   if (shape.values.size() != layer.columns.size())
     refuse(fmt::format("a shape has {} values for {} columns", shape.values.size(), layer.columns.size()),
            where, hint);
-  const std::size_t least = layer.kind == ShapeKind::point ? 1 : layer.kind == ShapeKind::line ? 2 : 3;
+  const std::size_t min_corners = layer.kind == ShapeKind::point ? 1 : layer.kind == ShapeKind::line ? 2 : 3;
   const auto check_ring = [&](const std::vector<Eigen::Vector2d>& ring) {
-    if (ring.size() < least || (layer.kind == ShapeKind::point && ring.size() > 1))
+    if (ring.size() < min_corners || (layer.kind == ShapeKind::point && ring.size() > 1))
       refuse(fmt::format("a part of a shape has {} corners", ring.size()), where, hint);
     for (const auto& corner : ring)
       if (!corner.allFinite()) refuse("a corner of a shape is not finite", where, hint);
@@ -66,7 +66,7 @@ void check_row(const ShapeLayer& layer, const Shape& shape, std::size_t row) {
 
 void remove_layer(const sqlite::Database& database, const std::string& name) {
   if (database.has_table(name))
-    database.execute(fill_in(
+    database.execute(substitute_keys(
         R"(DROP TABLE IF EXISTS "rtree_{t}_geom"; DROP TABLE "{t}";
            DELETE FROM gpkg_extensions WHERE table_name = '{t}'; DELETE FROM gpkg_data_columns WHERE table_name = '{t}';
            DELETE FROM gpkg_geometry_columns WHERE table_name = '{t}'; DELETE FROM layer_styles WHERE f_table_name = '{t}';
@@ -74,7 +74,7 @@ void remove_layer(const sqlite::Database& database, const std::string& name) {
         {{"t", name}}));
 }
 
-// Made with the first layer, so that maps without any stay as they were.
+// Created with the first layer, so that maps without layers do not change.
 void create_catalogue(const sqlite::Database& database) {
   if (database.has_table("waymark_layer")) return;
   database.execute(
@@ -86,7 +86,7 @@ void create_catalogue(const sqlite::Database& database) {
       "'read-write')");
 }
 
-void make_room(const sqlite::Database& database, const ShapeLayer& layer) {
+void reserve_name(const sqlite::Database& database, const ShapeLayer& layer) {
   create_catalogue(database);
   sqlite::Statement ours = database.prepare("SELECT 1 FROM waymark_layer WHERE name = ?");
   ours.bind(1, layer.name);
@@ -103,34 +103,34 @@ void make_room(const sqlite::Database& database, const ShapeLayer& layer) {
 void create_table(const sqlite::Database& database, const ShapeLayer& layer) {
   std::string columns;
   for (const AttributeSpec& column : layer.columns)
-    columns += fmt::format(",\n  {} {}", sql_name(column.name), sql_type(column.kind));
+    columns += fmt::format(",\n  {} {}", quote_identifier(column.name), sql_type(column.kind));
   database.execute(fmt::format("CREATE TABLE {} (\n  id INTEGER PRIMARY KEY,\n  geom {}{}\n)",
-                               sql_name(layer.name), geometry_name(layer.kind), columns));
+                               quote_identifier(layer.name), geometry_name(layer.kind), columns));
 }
 
-// Boxes that lie near each other share a node of the index.
+// Sorts boxes in Hilbert order, so that near boxes share a node of the index.
 void sort_boxes(std::vector<IndexedBox>& boxes, const Envelope& extent) {
   const double width = std::max({extent.max_x - extent.min_x, extent.max_y - extent.min_y, 1e-9});
   const auto cell = [&](double value, double low) {
     return static_cast<std::uint16_t>(std::clamp((value - low) / width, 0.0, 1.0) * 65535);
   };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> along;
-  along.reserve(boxes.size());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> curve_order;
+  curve_order.reserve(boxes.size());
   for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    along.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
-                                     cell((boxes[i].min_y + boxes[i].max_y) / 2, extent.min_y)),
-                       i);
-  std::ranges::sort(along);
+    curve_order.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
+                                           cell((boxes[i].min_y + boxes[i].max_y) / 2, extent.min_y)),
+                             i);
+  std::ranges::sort(curve_order);
   std::vector<std::uint32_t> order(boxes.size());
-  std::ranges::transform(along, order.begin(), [](const auto& place) { return place.second; });
+  std::ranges::transform(curve_order, order.begin(), [](const auto& entry) { return entry.second; });
   reorder(boxes, std::move(order));
 }
 
 Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, std::int32_t srs_id) {
-  std::string places = "?, ?";
-  for (std::size_t i = 0; i < layer.columns.size(); ++i) places += ", ?";
+  std::string placeholders = "?, ?";
+  for (std::size_t i = 0; i < layer.columns.size(); ++i) placeholders += ", ?";
   sqlite::Statement insert =
-      database.prepare(fmt::format("INSERT INTO {} VALUES ({})", sql_name(layer.name), places));
+      database.prepare(fmt::format("INSERT INTO {} VALUES ({})", quote_identifier(layer.name), placeholders));
   Envelope extent;
   std::vector<IndexedBox> boxes;
   std::int64_t row = 0;
@@ -146,13 +146,13 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
     if (shape.parts.empty()) return;
     const Envelope box = envelope_of(shape.parts);
     extent.add(box);
-    if (!layer.more) boxes.push_back({row, box.min_x, box.max_x, box.min_y, box.max_y});
+    if (!layer.generator) boxes.push_back({row, box.min_x, box.max_x, box.min_y, box.max_y});
   };
   std::ranges::for_each(layer.rows, add);
-  if (layer.more) layer.more(add);
+  if (layer.generator) layer.generator(add);
   create_spatial_index(database, layer.name);
   sort_boxes(boxes, extent);
-  if (layer.more)
+  if (layer.generator)
     fill_rtree(database, layer.name);
   else
     fill_rtree(database, layer.name, boxes);
@@ -182,11 +182,10 @@ const char* geometry_name(ShapeKind kind) {
 
 void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> layers,
                   std::string_view changed) {
-  const auto srs_id = static_cast<std::int32_t>(
-      database.integer("SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = 'image'"));
+  const std::int32_t srs_id = srs_id_of_map(database);
   for (const ShapeLayer& layer : layers) {
     check_names(layer);
-    make_room(database, layer);
+    reserve_name(database, layer);
     create_table(database, layer);
     const Envelope extent = insert_rows(database, layer, srs_id);
     register_layer(database, {.table = layer.name,
@@ -199,9 +198,10 @@ void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> 
   }
 }
 
-void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers, MapFile file) {
-  const OpenMap open = open_for_changing(map);
-  if (file == MapFile::own) open.database.execute("PRAGMA cache_spill = ON; PRAGMA cache_size = -65536");
+void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> layers, MapAccess file) {
+  const OpenMap open = open_for_update(map);
+  if (file == MapAccess::exclusive)
+    open.database.execute("PRAGMA cache_spill = ON; PRAGMA cache_size = -65536");
   sqlite::Transaction all(open.database);
   write_layers(open.database, layers, time_stamp_now());
   all.commit();

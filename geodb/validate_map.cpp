@@ -2,22 +2,22 @@
 #include "geodb/validate_map.hpp"
 
 #include "core/error.hpp"
-#include "geodb/crs_table.hpp"
-#include "geodb/map_checks.hpp"
+#include "geodb/checks/map_checks.hpp"
+#include "geodb/geopackage/crs_table.hpp"
+#include "geodb/geopackage/layer_registration.hpp"
+#include "geodb/geopackage/type_catalogue.hpp"
 #include "geodb/open_map.hpp"
-#include "geodb/type_catalogue.hpp"
 
 namespace waymark {
 
-std::vector<Finding> validate_map(const std::filesystem::path& path) {
-  const OpenMap map = open_for_reading(path);
-  const sqlite::Database& database = map.database;
+namespace {
+
+std::vector<Finding> findings_of(const sqlite::Database& database) {
   const TypeRegistry types = read_types(database);
   FindingList findings;
   check_file(database, types, findings);
 
-  const auto srs_id = static_cast<std::int32_t>(
-      database.integer("SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = 'image'"));
+  const std::int32_t srs_id = srs_id_of_map(database);
   try {
     read_crs(database, srs_id);
   } catch (const Error& error) {
@@ -36,6 +36,23 @@ std::vector<Finding> validate_map(const std::filesystem::path& path) {
   check_shapes(database, srs_id, findings);
   if (whole) check_evidence(database, types, findings);
   return findings.take();
+}
+
+}  // namespace
+
+std::vector<Finding> validate_map(const std::filesystem::path& path) {
+  const OpenMap map = open_for_reading(path);
+  return with_map_name(path, [&] { return findings_of(map.database); });
+}
+
+void check_before_copy(const std::filesystem::path& map) {
+  const std::vector<Finding> findings = validate_map(map);
+  if (findings.empty()) return;
+  const Finding& first = findings.front();
+  const std::string table = first.table.empty() ? "" : ", table " + first.table;
+  const std::string row = first.row ? ", row " + std::to_string(*first.row) : "";
+  throw Error(ErrorCode::input, "the map has errors that its copy would have, too: " + first.text,
+              map.string() + table + row, "`waymark validate` lists them; run its job again");
 }
 
 }  // namespace waymark

@@ -7,7 +7,7 @@
 #include <vector>
 namespace waymark {
 
-/// A promise a map file breaks.
+/// Error in a map file, found by validate_map().
 struct Finding {
   std::string code;                 ///< stable, for scripts: "rtree.missing", "quality.range"
   std::string table;                ///< empty: the file as a whole
@@ -16,9 +16,12 @@ struct Finding {
   friend bool operator==(const Finding&, const Finding&) = default;
 };
 
-/// Checks the promises of interface.md that a GeoPackage validator does not know, and the RTree.
-/// At most 100 findings per code and table, then one that counts the rest. Empty: the map is
-/// sound. Never writes. Throws Error where the file cannot be opened as a map at all.
+/// Checks a map for errors that a GeoPackage validator does not detect (interface.md), and its RTree. Returns
+/// at most 100 findings per code and table, then one that counts the others; empty if the map is valid. Never
+/// writes. Throws Error if the file cannot be opened as a map.
 std::vector<Finding> validate_map(const std::filesystem::path& path);
+
+/// Throws Error{input} with the first finding if a map has errors: a map made from it would have them, too.
+void check_before_copy(const std::filesystem::path& map);
 
 }  // namespace waymark

@@ -9,20 +9,21 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
-#include "geodb/aside_file.hpp"
-#include "geodb/crs_table.hpp"
-#include "geodb/dem_coverage.hpp"
-#include "geodb/evidence.hpp"
-#include "geodb/geometry_blob.hpp"
-#include "geodb/landmark_layout.hpp"
-#include "geodb/landmark_order.hpp"
-#include "geodb/layer_registration.hpp"
-#include "geodb/layer_style.hpp"
-#include "geodb/migrations.hpp"
-#include "geodb/packed_rtree.hpp"
-#include "geodb/provenance.hpp"
-#include "geodb/sql_text.hpp"
-#include "geodb/type_catalogue.hpp"
+#include "geodb/atomic_file.hpp"
+#include "geodb/geopackage/crs_table.hpp"
+#include "geodb/geopackage/dem_coverage.hpp"
+#include "geodb/geopackage/geometry_blob.hpp"
+#include "geodb/geopackage/layer_registration.hpp"
+#include "geodb/geopackage/migrations.hpp"
+#include "geodb/geopackage/provenance.hpp"
+#include "geodb/geopackage/type_catalogue.hpp"
+#include "geodb/layers/evidence.hpp"
+#include "geodb/layers/landmark_layout.hpp"
+#include "geodb/layers/largest_index.hpp"
+#include "geodb/layers/layer_style.hpp"
+#include "geodb/rtree/landmark_order.hpp"
+#include "geodb/rtree/packed_rtree.hpp"
+#include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/uid_index.hpp"
 
 namespace waymark {
@@ -30,59 +31,64 @@ namespace {
 
 [[noreturn]] void refuse(std::string problem, std::string where) {
   throw Error(ErrorCode::input, std::move(problem), std::move(where),
-              "this comes from the stage that made the landmarks");
+              "check the stage that made the landmarks");
 }
 
-/// What there is of a type.
-struct Stock {
+/// Statistics of the landmarks of one type.
+struct TypeStatistics {
   std::int64_t count = 0;
   Envelope extent;
-  std::vector<std::uint32_t> held = {};  ///< positions in MapContents::landmarks
+  std::vector<std::uint32_t> in_memory = {};  ///< positions in MapContents::landmarks
+  LargestValues largest{0};
 };
 
-void take_stock(std::vector<Stock>& of_type, const std::vector<Landmark>& landmarks, bool held) {
+void add_statistics(std::vector<TypeStatistics>& of_type, const std::vector<Landmark>& landmarks,
+                    bool in_memory) {
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& landmark = landmarks[i];
     if (landmark.uid.empty()) refuse("a landmark has no uid", fmt::format("landmark {}", i));
     if (!landmark.position.xyz.allFinite())
       refuse("a landmark's position is not finite", "landmark " + landmark.uid);
-    Stock& stock = of_type.at(landmark.type);
-    ++stock.count;
-    stock.extent.add(landmark.position.xyz.x(), landmark.position.xyz.y());
-    if (held) stock.held.push_back(i);
+    TypeStatistics& statistics = of_type.at(landmark.type);
+    ++statistics.count;
+    statistics.extent.add(landmark.position.xyz.x(), landmark.position.xyz.y());
+    statistics.largest.add(landmark.features);
+    if (in_memory) statistics.in_memory.push_back(i);
   }
 }
 
-std::vector<Stock> stock_of(const MapContents& contents) {
-  std::vector<Stock> of_type(contents.types.size());
-  take_stock(of_type, contents.landmarks, true);
+std::vector<TypeStatistics> type_statistics(const MapContents& contents) {
+  std::vector<TypeStatistics> of_type(contents.types.size());
+  for (TypeId id = 0; id < of_type.size(); ++id)
+    of_type[id].largest = LargestValues(contents.types[id].features.size());
+  add_statistics(of_type, contents.landmarks, true);
   for (std::size_t part = 0; part < contents.parts.count; ++part)
-    take_stock(of_type, *contents.parts.landmarks(part), false);
+    add_statistics(of_type, *contents.parts.landmarks(part), false);
   return of_type;
 }
 
+constexpr std::int64_t kLarge = 50'000;                       // landmarks of a large map
 constexpr const char* kCache = "PRAGMA cache_size = -65536";  // kB
 
-// Large pages save a quarter of the time of a large map; small ones keep a small map small. SQLite counts the
-// cache in pages of the size they had when it was told, so it is told anew.
-void set_page_size(const sqlite::Database& database, const std::vector<Stock>& stock) {
-  constexpr std::int64_t kLarge = 50'000;  // landmarks
+// Large pages save a quarter of the time for large maps; small pages save space for small maps. SQLite
+// converts the cache size to pages when it is set, so it is set again after the page size.
+void set_page_size(const sqlite::Database& database, const std::vector<TypeStatistics>& statistics) {
   std::int64_t count = 0;
-  for (const Stock& type : stock) count += type.count;
+  for (const TypeStatistics& type : statistics) count += type.count;
   database.execute(count < kLarge ? "PRAGMA page_size = 4096" : "PRAGMA page_size = 16384");
   database.execute(kCache);
 }
 
 class MapWriter {
  public:
-  MapWriter(const sqlite::Database& database, const MapContents& contents, const std::vector<Stock>& stock,
-            const WriteMapOptions& options)
+  MapWriter(const sqlite::Database& database, const MapContents& contents,
+            const std::vector<TypeStatistics>& statistics, const WriteMapOptions& options)
       : database_(&database),
         contents_(&contents),
-        stock_(&stock),
-        at_once_(options.landmarks_at_once),
+        statistics_(&statistics),
+        max_in_memory_(options.max_landmarks_in_memory),
         changed_(time_stamp(contents.run.started_utc)),
-        held_place_(contents.landmarks.size()) {
+        row_index_(contents.landmarks.size()) {
     choose_types(options.empty_tables);
   }
 
@@ -102,13 +108,15 @@ class MapWriter {
 
  private:
   void choose_types(const std::vector<std::string>& wanted) {
-    const bool all =
-        wanted.empty() && std::ranges::all_of(*stock_, [](const Stock& type) { return type.count == 0; });
-    std::vector<char> evident(contents_->types.size());
-    for (const auto& o : contents_->observations) evident.at(o.type) = 1;
+    const bool all = wanted.empty() && std::ranges::all_of(*statistics_, [](const TypeStatistics& type) {
+                       return type.count == 0;
+                     });
+    std::vector<char> has_observations(contents_->types.size());
+    for (const auto& o : contents_->observations) has_observations.at(o.type) = 1;
     for (TypeId id = 0; id < contents_->types.size(); ++id) {
       const LandmarkType& type = contents_->types[id];
-      if (all || evident[id] || (*stock_)[id].count > 0 || std::ranges::count(wanted, type.name) > 0) {
+      if (all || has_observations[id] || (*statistics_)[id].count > 0 ||
+          std::ranges::count(wanted, type.name) > 0) {
         kept_.push_back(id);
         new_id_[id] = types_.add(type);
       }
@@ -118,11 +126,14 @@ class MapWriter {
   void write_landmarks(TypeId old_id) {
     const LandmarkType& type = types_[new_id_.at(old_id)];
     const LandmarkLayout layout(type, new_id_.at(old_id));
-    const Envelope& extent = (*stock_)[old_id].extent;
-    orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, at_once_));
+    const Envelope& extent = (*statistics_)[old_id].extent;
+    orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, max_in_memory_));
     database_->execute(layout.create_table());
+    if ((*statistics_)[old_id].count >= kLarge)
+      create_largest_indexes(*database_, type, (*statistics_)[old_id].largest);
     insert_rows(layout, old_id);
     create_uid_index(type.name);
+    create_edit_triggers(*database_, type.name);
     create_spatial_index(*database_, type.name);
     fill_rtree(*database_, type.name);
 
@@ -141,23 +152,23 @@ class MapWriter {
 
   void insert_rows(const LandmarkLayout& layout, TypeId old_id) {
     sqlite::Statement insert = database_->prepare(layout.insert());
-    const std::span<const Landmark> held = contents_->landmarks;
-    orders_.at(old_id).visit([&](const Landmark& landmark, std::int64_t place) {
+    const std::span<const Landmark> in_memory = contents_->landmarks;
+    orders_.at(old_id).visit([&](const Landmark& landmark, std::int64_t row_index) {
       const PointBlob geometry = point_blob(landmark.position.xyz, srs_id_);
-      layout.bind(insert, row_at(old_id, place), landmark, geometry);
+      layout.bind(insert, row_at(old_id, row_index), landmark, geometry);
       insert.run();
       const std::less<const Landmark*> before;
-      if (!before(&landmark, held.data()) && before(&landmark, held.data() + held.size()))
-        held_place_[static_cast<std::size_t>(&landmark - held.data())] = static_cast<std::uint32_t>(place);
+      if (!before(&landmark, in_memory.data()) && before(&landmark, in_memory.data() + in_memory.size()))
+        row_index_[static_cast<std::size_t>(&landmark - in_memory.data())] =
+            static_cast<std::uint32_t>(row_index);
     });
   }
 
-  std::int64_t row_at(TypeId old_id, std::int64_t place) const {
-    return new_id_.at(old_id) * kRowsPerType + 1 + place;
+  std::int64_t row_at(TypeId old_id, std::int64_t row_index) const {
+    return new_id_.at(old_id) * kRowsPerType + 1 + row_index;
   }
 
-  /// The sorter works in runs as large as the cache: small ones are sorted beside the scan by a second
-  /// thread.
+  /// Sets a small cache: the sorter works in runs of its size, which a second thread sorts during the scan.
   void create_index(const std::string& definition) {
     database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
     database_->execute("CREATE " + definition);
@@ -166,10 +177,10 @@ class MapWriter {
 
   void create_uid_index(const std::string& table) {
     try {
-      create_index(fill_in("UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
+      create_index(substitute_keys("UNIQUE INDEX \"{t}_uid\" ON \"{t}\" (uid)", {{"t", table}}));
     } catch (const Error&) {
-      sqlite::Statement twice =
-          database_->prepare("SELECT uid FROM " + sql_name(table) + " GROUP BY uid HAVING count(*) > 1");
+      sqlite::Statement twice = database_->prepare("SELECT uid FROM " + quote_identifier(table) +
+                                                   " GROUP BY uid HAVING count(*) > 1");
       if (twice.step()) refuse("two landmarks have the same uid", table + " " + std::string(twice.text(0)));
       throw;
     }
@@ -195,30 +206,32 @@ class MapWriter {
       if (kept) row = row_of(observation, rows[observation.type]);
       if (kept && !row)
         refuse(
-            "an observation is evidence of a landmark that is not there",
+            "an observation refers to a missing landmark",
             fmt::format("observation from {}, landmark '{}'", observation.source, observation.landmark_uid));
       observation.type = new_id_.at(observation.type);
       writer.add(observation, row);
     }
     for (const TypeId type : kept_)
-      orders_.at(type).visit_evidence([&](Observation observation, std::int64_t place) {
+      orders_.at(type).visit_evidence([&](Observation observation, std::int64_t row_index) {
         observation.type = new_id_.at(type);
-        writer.add(observation, row_at(type, place));
+        writer.add(observation, row_at(type, row_index));
       });
     create_index("INDEX observation_uid ON observation (uid)");
   }
 
-  /// Of the landmark an observation is evidence of; `rows` finds those of its type, and is made here.
+  /// Returns the row of an observation's landmark; creates `rows`, the index of its type, on first use.
   std::optional<std::int64_t> row_of(const Observation& observation, std::optional<UidIndex>& rows) const {
-    const std::vector<std::uint32_t>& held = (*stock_)[observation.type].held;
-    if (held.empty()) return {};
-    if (!rows) rows.emplace(contents_->landmarks, held);
+    const std::vector<std::uint32_t>& in_memory = (*statistics_)[observation.type].in_memory;
+    if (in_memory.empty()) return {};
+    if (!rows) rows.emplace(contents_->landmarks, in_memory);
     const auto found = rows->find(observation.landmark_uid);
     if (!found) return {};
-    return row_at(observation.type, held_place_[held[*found]]);
+    return row_at(observation.type, row_index_[in_memory[*found]]);
   }
 
+  /// Registers the layer only if there are images, or nothing else that carries the map's CRS.
   void write_images() {
+    if (contents_->images.empty() && !kept_.empty()) return;
     create_spatial_index(*database_, "image");
     Envelope extent;
     for (const ImageRecord& image : contents_->images) {
@@ -228,23 +241,18 @@ class MapWriter {
       }
       write_image(*database_, image, srs_id_);
     }
-    register_layer(*database_, {.table = "image",
-                                .description = "Images, with the ground they show",
-                                .geometry_type = "MULTIPOLYGON",
-                                .extent = extent,
-                                .srs_id = srs_id_,
-                                .changed = changed_});
+    register_images(*database_, extent, srs_id_, changed_);
   }
 
   const sqlite::Database* database_;
   const MapContents* contents_;
-  const std::vector<Stock>* stock_;  ///< by type of the contents
-  std::size_t at_once_;
+  const std::vector<TypeStatistics>* statistics_;  ///< by type of the contents
+  std::size_t max_in_memory_;
   std::string changed_;
-  std::vector<std::uint32_t> held_place_;      ///< in the order of rows, of each of MapContents::landmarks
-  std::map<TypeId, LandmarkOrder> orders_;     ///< by type of the contents
-  TypeRegistry types_;                         ///< of the map: those of the contents that get a table
-  std::vector<TypeId> kept_;                   ///< their ids in the contents
+  std::vector<std::uint32_t> row_index_;    ///< index in the order of rows of each of MapContents::landmarks
+  std::map<TypeId, LandmarkOrder> orders_;  ///< by type of the contents
+  TypeRegistry types_;                      ///< of the map: those of the contents that get a table
+  std::vector<TypeId> kept_;                ///< their ids in the contents
   std::unordered_map<TypeId, TypeId> new_id_;  ///< id in the contents -> id in the map
   Envelope whole_extent_;
   std::int32_t srs_id_ = 0;
@@ -257,22 +265,22 @@ std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path,
   if (!options.replace && std::filesystem::exists(path))
     throw Error(ErrorCode::output, "the file exists already", path.string(),
                 "choose another name, or allow replacing it");
-  AsideFile file(path);
+  AtomicFile file(path);
   std::map<std::string, std::int64_t> counts;
   try {
-    const std::vector<Stock> stock = stock_of(contents);
-    for (TypeId type = 0; type < stock.size(); ++type)
-      if (stock[type].count > 0) counts[contents.types[type].name] = stock[type].count;
+    const std::vector<TypeStatistics> statistics = type_statistics(contents);
+    for (TypeId type = 0; type < statistics.size(); ++type)
+      if (statistics[type].count > 0) counts[contents.types[type].name] = statistics[type].count;
     sqlite::Database database(file.path(), sqlite::OpenMode::create);
-    set_page_size(database, stock);
+    set_page_size(database, statistics);
     sqlite::Transaction all(database);
-    MapWriter(database, contents, stock, options).write();
+    MapWriter(database, contents, statistics, options).write();
     all.commit();
     database.close();
-  } catch (const Error& e) {  // name the map, not the file aside
+  } catch (const Error& e) {  // name the map, not the temporary file
     throw Error(e.code(), e.problem(), e.where().ends_with(".part") ? path.string() : e.where(), e.hint());
   }
-  file.keep();
+  file.commit();
   return counts;
 }
 

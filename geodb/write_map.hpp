@@ -8,25 +8,25 @@
 #include "geodb/map_contents.hpp"
 namespace waymark {
 
+/// Options of write_map().
 struct WriteMapOptions {
   bool replace = true;  ///< false: an existing file is an error
-  /// Types that get a table though they have no landmark. A map without any landmark and without this gets a
-  /// table for every type of the contents.
+  /// Types that get a table although they have no landmarks. A map without landmarks gets a table for every
+  /// type of the contents if this is empty.
   std::vector<std::string> empty_tables = {};
-  /// Of landmarks in parts so many are held together, and one part. The map does not
-  /// depend on it.
-  std::size_t landmarks_at_once = 100'000;
+  /// Number of landmarks of parts that are in memory at once, besides one part. Does not affect the map.
+  std::size_t max_landmarks_in_memory = 100'000;
 };
 
-/// Writes a map as a GeoPackage 1.3 (tables: geodb/sql/schema.sql, docs of interface.md).
-/// Rows lie along a Hilbert curve and the RTree is packed: 5 us of processor time per landmark with ten
-/// features, and box queries touch few pages. Memory: about 60 bytes per landmark and 90 per shape above the
-/// contents; what the contents give in parts and shapes made while they are written take none for long. The
-/// file is written aside in the same folder in one transaction, flushed and renamed, so `path` is always the
-/// old map or the new one, whole. The same contents give the same bytes. Throws Error: a folder that is
-/// missing or cannot be written, a full disk, an existing file that may not be replaced, a uid that is empty
-/// or used twice in a type, a position that is not finite, evidence for a landmark that is not there. The old
-/// map is kept then. Returns how many landmarks of which type it wrote.
+/// Writes a map as a GeoPackage 1.3 (tables: geodb/sql/schema.sql). Returns the number of landmarks by type.
+/// - Atomic: the file is written in the same folder in one transaction, flushed and renamed.
+/// - Deterministic: equal contents give equal bytes.
+/// - Rows are in Hilbert order and the RTree is packed, so that box queries read few pages.
+/// - Costs 5 us of processor time per landmark with ten features. Memory: about 60 bytes per landmark and 90
+///   per shape in addition to the contents; none for parts and generated shapes.
+/// - Throws Error, and leaves an old map unchanged, for: a folder that is missing or not writable; a full
+///   disk; an existing file that may not be replaced; an empty or duplicate uid; a position that is not
+///   finite; an observation of a missing landmark.
 std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path, const MapContents& contents,
                                               const WriteMapOptions& options = {});
 

@@ -7,11 +7,12 @@
 #include <mutex>
 
 #include "core/error.hpp"
+#include "importers/standard_input.hpp"
 
 namespace waymark {
 namespace {
 
-// Not every path names a file: "NETCDF:a.nc:height" and "<VRTDataset>..." are for GDAL alone to judge.
+// Not every path names a file: "NETCDF:a.nc:height" and "<VRTDataset>..." only GDAL can check.
 bool is_plain_path(const std::string& path) {
   return path.starts_with('/') || path.find_first_of(":<") == std::string::npos;
 }
@@ -59,8 +60,8 @@ std::string GdalListener::error_about(const std::string& path) const {
 
 GdalDataset open_raster(const std::string& path) {
   const GdalListener gdal;
-  GdalDataset dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  GdalDataset dataset(GDALDataset::Open(seekable_path(path).c_str(),
+                                        GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) refuse(path, gdal.error_about(path));
   return dataset;
 }

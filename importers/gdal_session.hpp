@@ -9,26 +9,26 @@ struct GdalClose {
   void operator()(GDALDataset* dataset) const;
 };
 
-/// An open file of GDAL. To be used by one thread at a time.
+/// A file opened by GDAL. One thread at a time may use it.
 using GdalDataset = std::unique_ptr<GDALDataset, GdalClose>;
 
-/// Keeps what GDAL says in this thread while it lives, so that nothing leaks to the terminal. Registers the
-/// drivers when first used.
+/// Collects GDAL's messages of this thread while it lives and keeps them off the terminal. Registers the
+/// drivers at first use.
 class GdalListener {
  public:
   GdalListener();
   ~GdalListener();
   GdalListener(GdalListener&&) = delete;
 
-  /// The first error, which names the cause; empty if there was none. A leading `path` is left out.
+  /// Returns the first error, which names the cause; empty if there was none. Removes a leading `path`.
   std::string error_about(const std::string& path) const;
 
  private:
   std::string first_error_;
 };
 
-/// Opens a raster for reading. Throws Error{input} that says whether the file is missing, empty or of no kind
-/// that GDAL knows, and what GDAL said.
+/// Opens a raster for reading; /vsistdin/ any number of times. Throws Error{input} if the file is missing,
+/// empty or of no format that GDAL knows, with GDAL's message.
 GdalDataset open_raster(const std::string& path);
 
 }  // namespace waymark

@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "importers/gdal_session.hpp"
 #include "importers/images/find_images.hpp"
+#include "importers/standard_input.hpp"
 #include "pipeline/engine/sha256.hpp"
 
 namespace waymark {
@@ -30,15 +31,16 @@ void collect(const std::string& raster, std::vector<std::string>& files, std::se
   const std::unique_ptr<char*, decltype(&CSLDestroy)> list(dataset->GetFileList(), &CSLDestroy);
   for (char** file = list.get(); file && *file; ++file) {
     if (!known.insert(*file).second) continue;
+    if (seekable_path(raster) != raster) return files.push_back(raster);  // the copy's name says nothing
     files.emplace_back(*file);
     if (files.back().ends_with(".vrt")) collect(files.back(), files, known);
   }
 }
 
-// A file that is no raster stands for itself; if it should have been one, its reader will say so.
+// A file that is no raster is listed alone; if it should have been one, its reader throws.
 std::vector<std::string> parts_of(const std::string& path) {
   try {
-    return files_behind(path);
+    return raster_file_list(path);
   } catch (const Error&) {
     return {path};
   }
@@ -46,7 +48,7 @@ std::vector<std::string> parts_of(const std::string& path) {
 
 std::uint64_t add_content(const std::string& path, Sha256& sum) {
   const GdalListener gdal;
-  const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
+  const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(seekable_path(path).c_str(), "rb"));
   if (!file)
     throw Error(ErrorCode::input, "the file cannot be read", path, "check that it exists and may be read");
   std::uint64_t bytes = 0;
@@ -65,7 +67,7 @@ bool is_folder(const std::string& path) {
   return VSIStatL(path.c_str(), &status) == 0 && VSI_ISDIR(status.st_mode);
 }
 
-// Which files there are and how large they are.
+// Names and sizes of the files.
 void add_listing(const std::string& folder, Sha256& sum) {
   for (const std::string& path : image_files_in(folder)) {
     VSIStatBufL status;
@@ -88,7 +90,7 @@ std::vector<std::string> files_in(const std::string& folder) {
 InputFile hash_file(const std::string& path) {
   Sha256 sum;
   InputFile input{.path = path, .bytes = 0, .sha256 = {}};
-  if (path.ends_with('/')) {
+  if (path.ends_with('/') && seekable_path(path) == path) {
     add_listing(path, sum);
     input.sha256 = sum.hex();
     return input;
@@ -98,13 +100,13 @@ InputFile hash_file(const std::string& path) {
     input.sha256 = sum.hex();
     return input;
   }
-  for (const std::string& file : matching(path))
+  for (const std::string& file : expand_pattern(path))
     for (const std::string& part : parts_of(file)) input.bytes += add_content(part, sum);
   input.sha256 = sum.hex();
   return input;
 }
 
-std::vector<std::string> files_behind(const std::string& raster) {
+std::vector<std::string> raster_file_list(const std::string& raster) {
   std::vector<std::string> files;
   std::set<std::string> known;
   collect(raster, files, known);

@@ -5,16 +5,15 @@
 #include "core/input_file.hpp"
 namespace waymark {
 
-/// Size and SHA-256 (FIPS 180-4) of a file, `/vsi...` paths included; a FileHasher of the engine. A raster
-/// that is made of several files (a VRT and its sources, masks, `.aux.xml`) is hashed as all of them, one
-/// after the other. A folder is hashed as the files in it; a path that ends in '/' as the names and sizes of
-/// the images in that folder, if there is one; a pattern (*.tsai) as the
-/// files it matches. Read in pieces: about 400 MB/s, 1 MiB of memory. Throws
-/// Error{input} where a file cannot be read.
+/// Returns size and SHA-256 (FIPS 180-4) of a file, `/vsi...` paths included; a FileHasher of the engine.
+/// - A raster of several files (a VRT and its sources, masks, `.aux.xml`) is hashed as their concatenation.
+/// - A folder is hashed as its files; a path that ends in '/' as the names and sizes of the images in it.
+/// - A pattern (*.tsai) is hashed as the files it matches.
+/// Reads in pieces: about 400 MB/s, 1 MiB of memory. Throws Error{input} if a file cannot be read.
 InputFile hash_file(const std::string& path);
 
-/// The files a raster is made of, in the order GDAL lists them, itself first where it is a file.
-/// Throws Error{input} where GDAL cannot open it.
-std::vector<std::string> files_behind(const std::string& raster);
+/// Lists the files of a raster in GDAL's order, the raster itself first if it is a file. Throws Error{input}
+/// if GDAL cannot open it.
+std::vector<std::string> raster_file_list(const std::string& raster);
 
 }  // namespace waymark

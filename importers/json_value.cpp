@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "importers/gdal_session.hpp"
 
 namespace waymark {
@@ -30,21 +31,15 @@ struct JsonValue::Document {
 };
 
 JsonValue JsonValue::from_file(const std::string& path, const std::vector<std::string>& skipped) {
-  const std::string content = content_of(path);
+  const std::string content = read_vsi_text(path);
+  checked_json(content, path);
   auto document = std::make_shared<Document>();
   document->path = path;
   const auto keep = [&](int, Json::parse_event_t event, Json& key) {
     return event != Json::parse_event_t::key ||
            std::ranges::find(skipped, key.get<std::string>()) == skipped.end();
   };
-  try {
-    document->root = skipped.empty() ? Json::parse(content) : Json::parse(content, keep);
-  } catch (const Json::exception& e) {
-    std::string why = e.what();
-    if (const auto after = why.find("] "); after != std::string::npos) why.erase(0, after + 2);
-    throw Error(ErrorCode::input, "this is not valid JSON: " + why, path,
-                "a damaged file must be written again");
-  }
+  document->root = skipped.empty() ? Json::parse(content) : Json::parse(content, keep);
   const Json* root = &document->root;
   return {std::move(document), root, ""};
 }
@@ -63,7 +58,8 @@ bool JsonValue::is_number() const {
 }
 
 void JsonValue::refuse(const std::string& problem, const std::string& hint) const {
-  throw Error(ErrorCode::input, problem, document_->path + (place_.empty() ? "" : ", at " + place_), hint);
+  throw Error(ErrorCode::input, problem, document_->path + (location_.empty() ? "" : ", at " + location_),
+              hint);
 }
 
 bool JsonValue::has(const std::string& key) const {
@@ -74,14 +70,14 @@ bool JsonValue::has(const std::string& key) const {
 JsonValue JsonValue::operator[](const std::string& key) const {
   if (!is_object()) refuse(fmt::format("this must be an object with a member '{}'", key));
   if (!has(key))
-    refuse(fmt::format("'{}' is missing", key), "add it; docs/camera_file.md says what it means");
-  return {document_, &json(value_)[key], place_ + "/" + key};
+    refuse(fmt::format("'{}' is missing", key), "add it; docs/reference/camera_file.md describes it");
+  return {document_, &json(value_)[key], location_ + "/" + key};
 }
 
 JsonValue JsonValue::operator[](std::size_t index) const {
   if (!is_array() || index >= size())
     refuse(fmt::format("this must be an array of at least {} values", index + 1));
-  return {document_, &json(value_)[index], fmt::format("{}/{}", place_, index)};
+  return {document_, &json(value_)[index], fmt::format("{}/{}", location_, index)};
 }
 
 std::size_t JsonValue::size() const {
@@ -150,7 +146,7 @@ void JsonValue::expect_only(const std::vector<std::string>& known) const {
   }
 }
 
-std::string head_of(const std::string& path, std::size_t bytes) {
+std::string read_vsi_head(const std::string& path, std::size_t bytes) {
   const GdalListener gdal;
   VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
   if (!file)
@@ -167,8 +163,8 @@ std::string head_of(const std::string& path, std::size_t bytes) {
   return content;
 }
 
-std::string content_of(const std::string& path) {
-  return head_of(path, std::numeric_limits<std::size_t>::max() / 4);
+std::string read_vsi_text(const std::string& path) {
+  return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
 }
 
 }  // namespace waymark

@@ -9,12 +9,12 @@
 #include <vector>
 namespace waymark {
 
-/// A value of a JSON file that knows its place, so that every complaint names file and JSON path. Asking for
-/// what is not there or of another kind throws Error{input}.
+/// A value of a JSON file with its location, so that every error names the file and the JSON path. Access to
+/// a missing member or one of another kind throws Error{input}.
 class JsonValue {
  public:
-  /// Reads a file, `/vsi` paths too. Members named `skipped`, at any depth, are left out while reading: point
-  /// clouds of gigabytes.
+  /// Reads a file, `/vsi` paths included. Skips members named in `skipped` at any depth while reading, such
+  /// as point clouds of gigabytes.
   static JsonValue from_file(const std::string& path, const std::vector<std::string>& skipped = {});
 
   bool is_object() const;
@@ -22,7 +22,7 @@ class JsonValue {
   bool is_text() const;
   bool is_number() const;
 
-  bool has(const std::string& key) const;  ///< and it is not null
+  bool has(const std::string& key) const;  ///< false for a missing or null member
   JsonValue operator[](const std::string& key) const;
   JsonValue operator[](std::size_t index) const;
   std::size_t size() const;
@@ -34,29 +34,29 @@ class JsonValue {
   std::string text() const;
   std::vector<double> numbers() const;
   Eigen::Vector3d vector3() const;
-  /// Rows of numbers, or all in one array row by row.
+  /// Returns a matrix given as rows of numbers, or as one array row by row.
   Eigen::Matrix3d matrix3() const;
 
-  /// Refuses members that are not in `known`, naming the nearest that is.
+  /// Throws Error{input} for a member that is not in `known`, with the nearest name.
   void expect_only(const std::vector<std::string>& known) const;
   [[noreturn]] void refuse(const std::string& problem, const std::string& hint = {}) const;
-  const std::string& place() const { return place_; }  ///< "/images/3/centre"
+  const std::string& location() const { return location_; }  ///< "/images/3/centre"
 
  private:
   struct Document;
-  JsonValue(std::shared_ptr<const Document> document, const void* value, std::string place)
-      : document_(std::move(document)), value_(value), place_(std::move(place)) {}
+  JsonValue(std::shared_ptr<const Document> document, const void* value, std::string location)
+      : document_(std::move(document)), value_(value), location_(std::move(location)) {}
 
   std::shared_ptr<const Document> document_;
   const void* value_;
-  std::string place_;
+  std::string location_;
 };
 
-/// The first bytes of a file, `/vsi` paths too; fewer where it is shorter. Throws Error{input} where it
-/// cannot be read.
-std::string head_of(const std::string& path, std::size_t bytes = 4096);
+/// Returns the first bytes of a file, `/vsi` paths included; fewer if the file is shorter. Throws
+/// Error{input} if it cannot be read.
+std::string read_vsi_head(const std::string& path, std::size_t bytes = 4096);
 
-/// The whole file.
-std::string content_of(const std::string& path);
+/// Returns the whole file. Throws Error{input} if it cannot be read.
+std::string read_vsi_text(const std::string& path);
 
 }  // namespace waymark

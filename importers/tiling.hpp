@@ -5,8 +5,8 @@
 #include "pipeline/engine/tile.hpp"
 namespace waymark {
 
-/// Cuts a grid into squares of `side` cells, row by row from the top left; the last of a row and the last row
-/// may be smaller. `side` > 0.
+/// Cuts a grid into squares of `side` > 0 cells, row by row from the top left. The last tile of a row and the
+/// last row may be smaller.
 std::vector<Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t side);
 
 }  // namespace waymark

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "landmarks/colour.hpp"
 
 namespace waymark {
 namespace {
@@ -20,8 +21,9 @@ bool is_column_name(std::string_view name) {
 
 TypeId TypeRegistry::add(LandmarkType type) {
   if (!is_column_name(type.name))
-    throw std::logic_error("'" + type.name + "' is no name for a landmark type");
+    throw std::logic_error("'" + type.name + "' is not a valid name for a landmark type");
   if (find(type.name)) throw std::logic_error("two landmark types named " + type.name);
+  if (!is_colour(type.colour)) throw std::logic_error(type.name + ": its colour is not #rrggbb");
   std::set<std::string> columns;
   for (const auto& feature : type.features)
     if (!is_column_name(feature.name) || !columns.insert(feature.name).second)

@@ -7,14 +7,14 @@
 #include <unordered_map>
 
 #include "geo/spatial_index.hpp"
-#include "landmarks/ground.hpp"
+#include "landmarks/surface_distance.hpp"
 
 namespace waymark {
 namespace {
 
-Point<MapCrs> middle_of(const Crs& crs, const std::vector<Landmark>& landmarks) {
+Point<MapCrs> centroid(const Crs& crs, const std::vector<Landmark>& landmarks) {
   if (landmarks.empty()) return {};
-  // Longitudes are averaged about the first one, so that a map across the antimeridian has its middle there.
+  // Longitudes are averaged about the first one, so that the mean is correct across the antimeridian.
   const bool geographic = crs.kind() == CrsKind::geographic;
   const double first = landmarks[0].position.xyz.x();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -25,31 +25,32 @@ Point<MapCrs> middle_of(const Crs& crs, const std::vector<Landmark>& landmarks) 
   return {sum / static_cast<double>(landmarks.size())};
 }
 
-double turned_home(double longitude) {  // into [-180, 180)
+double wrap_longitude(double longitude) {  // into [-180, 180)
   return longitude - 360 * std::floor((longitude + 180) / 360);
 }
 
-// Landmarks as a flat map has them, for boxes.
-std::vector<Eigen::Vector3d> flat_places(const Crs& crs, const std::vector<Landmark>& landmarks) {
-  std::vector<Eigen::Vector3d> places;
+// Returns positions in the map plane, for box queries.
+std::vector<Eigen::Vector3d> planar_positions(const Crs& crs, const std::vector<Landmark>& landmarks) {
+  std::vector<Eigen::Vector3d> positions;
   for (const Landmark& landmark : landmarks) {
     const Eigen::Vector3d& at = landmark.position.xyz;
-    places.emplace_back(crs.kind() == CrsKind::geographic ? turned_home(at.x()) : at.x(), at.y(), 0);
+    positions.emplace_back(crs.kind() == CrsKind::geographic ? wrap_longitude(at.x()) : at.x(), at.y(), 0);
   }
-  return places;
+  return positions;
 }
 
-std::vector<Eigen::Vector2d> ground_places(const Ground& ground, const std::vector<Landmark>& landmarks) {
-  std::vector<Eigen::Vector2d> places;
-  for (const Landmark& landmark : landmarks) places.push_back(ground.place(landmark.position));
-  return places;
+std::vector<Eigen::Vector2d> positions_on_surface(const SurfaceDistance& surface,
+                                                  const std::vector<Landmark>& landmarks) {
+  std::vector<Eigen::Vector2d> positions;
+  for (const Landmark& landmark : landmarks) positions.push_back(surface.position(landmark.position));
+  return positions;
 }
 
-std::vector<Eigen::Vector3d> space_places(const Ground& ground,
-                                          const std::vector<Eigen::Vector2d>& on_ground) {
-  std::vector<Eigen::Vector3d> places;
-  for (const Eigen::Vector2d& place : on_ground) places.push_back(ground.in_space(place));
-  return places;
+std::vector<Eigen::Vector3d> cartesian_positions(const SurfaceDistance& surface,
+                                                 const std::vector<Eigen::Vector2d>& surface_positions) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const Eigen::Vector2d& position : surface_positions) positions.push_back(surface.cartesian(position));
+  return positions;
 }
 
 }  // namespace
@@ -60,14 +61,14 @@ struct SemanticMap::Content {
         crs(std::move(map_crs)),
         landmarks(std::move(all)),
         frame(crs, origin),
-        ground(crs),
-        on_ground(ground_places(ground, landmarks)),
-        in_space(space_places(ground, on_ground)),
-        flat(flat_places(crs, landmarks)) {
+        surface(crs),
+        surface_positions(positions_on_surface(surface, landmarks)),
+        cartesian_index(cartesian_positions(surface, surface_positions)),
+        planar_index(planar_positions(crs, landmarks)) {
     for (std::size_t i = 0; i < landmarks.size(); ++i) by_uid.emplace(landmarks[i].uid, i);
   }
 
-  bool keeps(const LandmarkFilter& filter, const Landmark& landmark) const {
+  bool passes(const LandmarkFilter& filter, const Landmark& landmark) const {
     const LandmarkType& type = types[landmark.type];
     if (!filter.type.empty() && type.name != filter.type) return false;
     if (!(filter.min_quality > 0)) return true;
@@ -76,17 +77,17 @@ struct SemanticMap::Content {
     return quality && *quality >= filter.min_quality;
   }
 
-  // Those of `candidates` at most `radius` from the centre, nearest first.
-  Found nearest_first(const Eigen::Vector2d& centre, const std::vector<std::size_t>& candidates,
-                      double radius, const LandmarkFilter& filter) const {
+  // Returns the candidates at most `radius` from the centre, nearest first.
+  LandmarkRefs sort_by_distance(const Eigen::Vector2d& centre, const std::vector<std::size_t>& candidates,
+                                double radius, const LandmarkFilter& filter) const {
     std::vector<std::pair<double, std::size_t>> at;
     for (const std::size_t i : candidates) {
-      if (!keeps(filter, landmarks[i])) continue;
-      const double distance = ground.distance(centre, on_ground[i]);
+      if (!passes(filter, landmarks[i])) continue;
+      const double distance = surface.distance(centre, surface_positions[i]);
       if (distance <= radius) at.emplace_back(distance, i);
     }
     std::ranges::sort(at);
-    Found found;
+    LandmarkRefs found;
     for (const auto& [distance, i] : at) found.emplace_back(landmarks[i]);
     return found;
   }
@@ -95,14 +96,14 @@ struct SemanticMap::Content {
   Crs crs;
   std::vector<Landmark> landmarks;
   LocalFrame frame;
-  Ground ground;
-  std::vector<Eigen::Vector2d> on_ground;
-  SpatialIndex in_space, flat;
+  SurfaceDistance surface;
+  std::vector<Eigen::Vector2d> surface_positions;
+  SpatialIndex cartesian_index, planar_index;
   std::unordered_map<std::string_view, std::size_t> by_uid;
 };
 
 SemanticMap::SemanticMap(TypeRegistry types, Crs crs, std::vector<Landmark> landmarks)
-    : SemanticMap(std::move(types), crs, std::move(landmarks), middle_of(crs, landmarks)) {}
+    : SemanticMap(std::move(types), crs, std::move(landmarks), centroid(crs, landmarks)) {}
 
 SemanticMap::SemanticMap(TypeRegistry types, Crs crs, std::vector<Landmark> landmarks,
                          const Point<MapCrs>& origin)
@@ -127,64 +128,66 @@ const Landmark* SemanticMap::find(std::string_view uid) const {
   return found == content_->by_uid.end() ? nullptr : &content_->landmarks[found->second];
 }
 
-SemanticMap::Found SemanticMap::where(const LandmarkFilter& filter) const {
-  Found found;
+SemanticMap::LandmarkRefs SemanticMap::select(const LandmarkFilter& filter) const {
+  LandmarkRefs found;
   for (const Landmark& landmark : content_->landmarks)
-    if (content_->keeps(filter, landmark)) found.emplace_back(landmark);
+    if (content_->passes(filter, landmark)) found.emplace_back(landmark);
   return found;
 }
 
-SemanticMap::Found SemanticMap::in_box(const MapBox& box, const LandmarkFilter& filter) const {
+SemanticMap::LandmarkRefs SemanticMap::in_box(const MapBox& box, const LandmarkFilter& filter) const {
   const auto between = [&](double west, double east) {
-    return content_->flat.in_box({Eigen::Vector3d(west, box.south, 0), Eigen::Vector3d(east, box.north, 0)});
+    return content_->planar_index.in_box(
+        {Eigen::Vector3d(west, box.south, 0), Eigen::Vector3d(east, box.north, 0)});
   };
   std::vector<std::size_t> inside;
   if (crs().kind() != CrsKind::geographic) {
     inside = between(box.west, box.east);
   } else if (box.east - box.west >= 360) {
     inside = between(-180, 180);
-  } else if (const double west = turned_home(box.west), east = turned_home(box.east); west <= east) {
+  } else if (const double west = wrap_longitude(box.west), east = wrap_longitude(box.east); west <= east) {
     inside = between(west, east);
   } else {
     inside = between(west, 180);
     std::ranges::copy(between(-180, east), std::back_inserter(inside));
     std::ranges::sort(inside);
   }
-  Found found;
+  LandmarkRefs found;
   for (const std::size_t i : inside)
-    if (content_->keeps(filter, content_->landmarks[i])) found.emplace_back(content_->landmarks[i]);
+    if (content_->passes(filter, content_->landmarks[i])) found.emplace_back(content_->landmarks[i]);
   return found;
 }
 
-// A chord is never longer than the way over the ground, so the ball in space holds all that are near enough.
-SemanticMap::Found SemanticMap::near(const Point<MapCrs>& centre, Meters radius,
-                                     const LandmarkFilter& filter) const {
-  const Eigen::Vector2d at = content_->ground.place(centre);
+// A chord is never longer than the geodesic, so the ball of chords contains all landmarks within the radius.
+SemanticMap::LandmarkRefs SemanticMap::near(const Point<MapCrs>& centre, Meters radius,
+                                            const LandmarkFilter& filter) const {
+  const Eigen::Vector2d at = content_->surface.position(centre);
   const auto candidates =
-      content_->in_space.within(content_->ground.in_space(at), radius.value * (1 + 1e-12));
-  return content_->nearest_first(at, candidates, radius.value, filter);
+      content_->cartesian_index.within(content_->surface.cartesian(at), radius.value * (1 + 1e-12));
+  return content_->sort_by_distance(at, candidates, radius.value, filter);
 }
 
-SemanticMap::Found SemanticMap::near(const Point<MapFrame>& centre, Meters radius,
-                                     const LandmarkFilter& filter) const {
+SemanticMap::LandmarkRefs SemanticMap::near(const Point<MapFrame>& centre, Meters radius,
+                                            const LandmarkFilter& filter) const {
   return near(frame().crs_from_map_frame(centre), radius, filter);
 }
 
-// Asks for more and more until enough pass the filter. The last of them is at a distance within which nothing
-// is missed, although chords and ways over the ground may rank landmarks differently.
-SemanticMap::Found SemanticMap::nearest(const Point<MapCrs>& centre, std::size_t count,
-                                        const LandmarkFilter& filter) const {
+// Increases the number of candidates until enough pass the filter. Chords and geodesics may rank landmarks
+// differently, so the result is the query within the geodesic distance of the last one.
+SemanticMap::LandmarkRefs SemanticMap::nearest(const Point<MapCrs>& centre, std::size_t count,
+                                               const LandmarkFilter& filter) const {
   if (count == 0) return {};
-  const Eigen::Vector2d at = content_->ground.place(centre);
-  Found found;
+  const Eigen::Vector2d at = content_->surface.position(centre);
+  LandmarkRefs found;
   for (std::size_t asked = count; found.size() < count; asked *= 4) {
-    const auto candidates = content_->in_space.nearest(content_->ground.in_space(at), asked);
-    found = content_->nearest_first(at, candidates, HUGE_VAL, filter);
+    const auto candidates = content_->cartesian_index.nearest(content_->surface.cartesian(at), asked);
+    found = content_->sort_by_distance(at, candidates, HUGE_VAL, filter);
     if (candidates.size() == size()) break;
   }
   if (found.size() < count) return found;
   const Landmark& last = found[count - 1];
-  found = near(centre, Meters{content_->ground.distance(at, content_->ground.place(last.position))}, filter);
+  found =
+      near(centre, Meters{content_->surface.distance(at, content_->surface.position(last.position))}, filter);
   found.erase(found.begin() + static_cast<std::ptrdiff_t>(std::min(count, found.size())), found.end());
   return found;
 }

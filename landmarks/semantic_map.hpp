@@ -13,27 +13,28 @@
 #include "landmarks/sensor_profile.hpp"
 namespace waymark {
 
-/// Which landmarks a query keeps.
+/// Conditions of a query on landmarks.
 struct LandmarkFilter {
   std::string type = {};                  ///< empty: all types
-  double min_quality = 0;                 ///< 0 keeps landmarks of unknown quality too
-  const SensorProfile* sensor = nullptr;  ///< whose quality (eq. 8); null: equal weights
+  double min_quality = 0;                 ///< 0 accepts landmarks of unknown quality too
+  const SensorProfile* sensor = nullptr;  ///< sensor that weights the quality (eq. 8); null: equal weights
 };
 
-/// Corners of a box in the map's CRS, inclusive. In degrees, west > east goes across the antimeridian.
+/// Box in the map's CRS, edges included. In degrees, west > east crosses the antimeridian.
 struct MapBox {
   double west = 0, south = 0, east = 0, north = 0;
 };
 
-/// Landmarks in memory, immutable, to be asked from many threads; copies share everything.
-/// Distances are horizontal, in metres: geodesics of the body's ellipsoid, so they hold across the
-/// antimeridian and at the poles; plane distances in a local CRS.
+/// Semantic map in memory, immutable and thread-safe; copies share the landmarks. Distances are horizontal,
+/// in metres: geodesics on the body's ellipsoid, also across the antimeridian and the poles; planar in a
+/// local CRS.
 class SemanticMap {
  public:
-  /// For `for (const Landmark& rock : map.near(...))`. Valid as long as a copy of the map lives.
-  using Found = std::vector<std::reference_wrapper<const Landmark>>;
+  /// Result of a query, e.g. `for (const Landmark& rock : map.near(...))`. Valid while a copy of the map
+  /// exists.
+  using LandmarkRefs = std::vector<std::reference_wrapper<const Landmark>>;
 
-  /// The map frame's origin is the middle of the landmarks, at the ellipsoid's surface.
+  /// The origin of the map frame is the centroid of the landmarks, at height 0.
   SemanticMap(TypeRegistry types, Crs crs, std::vector<Landmark> landmarks);
   SemanticMap(TypeRegistry types, Crs crs, std::vector<Landmark> landmarks, const Point<MapCrs>& origin);
 
@@ -43,16 +44,18 @@ class SemanticMap {
   std::span<const Landmark> landmarks() const;
   std::size_t size() const { return landmarks().size(); }
 
+  /// Returns the landmark of a uid; null if there is none.
   const Landmark* find(std::string_view uid) const;
-  /// All that pass the filter, in the map's order.
-  Found where(const LandmarkFilter& filter) const;
-  /// In the map's order.
-  Found in_box(const MapBox& box, const LandmarkFilter& filter = {}) const;
-  /// Nearest first.
-  Found near(const Point<MapCrs>& centre, Meters radius, const LandmarkFilter& filter = {}) const;
-  Found near(const Point<MapFrame>& centre, Meters radius, const LandmarkFilter& filter = {}) const;
-  /// The `count` nearest that pass the filter, nearest first.
-  Found nearest(const Point<MapCrs>& centre, std::size_t count, const LandmarkFilter& filter = {}) const;
+  /// Returns the landmarks that pass the filter, in the order of the map.
+  LandmarkRefs select(const LandmarkFilter& filter) const;
+  /// Returns the landmarks in a box, in the order of the map.
+  LandmarkRefs in_box(const MapBox& box, const LandmarkFilter& filter = {}) const;
+  /// Returns the landmarks at most `radius` from `centre`, nearest first.
+  LandmarkRefs near(const Point<MapCrs>& centre, Meters radius, const LandmarkFilter& filter = {}) const;
+  LandmarkRefs near(const Point<MapFrame>& centre, Meters radius, const LandmarkFilter& filter = {}) const;
+  /// Returns the `count` nearest landmarks that pass the filter, nearest first.
+  LandmarkRefs nearest(const Point<MapCrs>& centre, std::size_t count,
+                       const LandmarkFilter& filter = {}) const;
 
  private:
   struct Content;

@@ -8,15 +8,17 @@
 
 #include "core/error.hpp"
 #include "core/quality.hpp"
+#include "landmarks/assessed_quality.hpp"
 
 namespace waymark {
 namespace {
 
 std::optional<double> weighted_quality(const Landmark& landmark, const std::vector<double>& weights) {
-  std::vector<std::optional<double>> of_feature = landmark.quality.of_feature;
-  of_feature.resize(weights.size());  // a landmark nobody valued has no confidence in its features
+  if (!is_quality_assessed(landmark.quality, weights)) return std::nullopt;
+  std::vector<std::optional<double>> feature_confidences = landmark.quality.feature_confidences;
+  feature_confidences.resize(weights.size());  // landmarks without valuation have no feature confidences
   return landmark_quality(multiplicity_confidence(landmark.quality.seen, landmark.quality.visible),
-                          of_feature, weights);
+                          feature_confidences, weights);
 }
 
 }  // namespace
@@ -42,7 +44,7 @@ std::optional<double> quality_of(const LandmarkType& type, const Landmark& landm
 
 void SensorRegistry::add(SensorProfile profile) {
   if (profile.name.empty() || find(profile.name))
-    throw std::logic_error(fmt::format("a sensor without a name of its own: '{}'", profile.name));
+    throw std::logic_error(fmt::format("the name of a sensor is empty or taken: '{}'", profile.name));
   for (const FeatureWeight& weight : profile.weights)
     if (!(weight.weight >= 0))
       throw std::logic_error(fmt::format("{}: the weight of {}.{} is {}", profile.name, weight.type,

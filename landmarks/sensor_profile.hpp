@@ -9,36 +9,36 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
-/// How much one feature of one landmark type helps a sensor to tell landmarks apart (w_f of eq. 8), >= 0.
+/// Weight of one feature of one landmark type for a sensor (w_f of eq. 8), >= 0.
 struct FeatureWeight {
   std::string type, feature;
   double weight = 1;
 };
 
-/// What a sensor sees of landmarks. Of a type that is listed, features that are not listed weigh nothing;
-/// a type that is not listed has equal weights, so new types work with old sensors.
+/// Feature weights of a sensor. Unlisted features of a listed type have weight 0. An unlisted type has equal
+/// weights, so that new types work with existing sensors.
 struct SensorProfile {
   std::string name;     ///< lower case, underscores
-  std::string summary;  ///< one line for people
+  std::string summary;  ///< one line for the user
   std::vector<FeatureWeight> weights;
 };
 
-/// Weights in the order of the type's features; only their ratios matter.
+/// Returns the weights in the order of the type's features; only their ratios matter.
 std::vector<double> weights_for(const SensorProfile& profile, const LandmarkType& type);
 
-/// Quality of a landmark as this sensor sees it (eq. 8), [0, 1]; absent where no image could have shown it.
+/// Computes the quality of a landmark for a sensor (eq. 8), [0, 1]; `std::nullopt` if none was assessed.
 std::optional<double> quality_for(const SensorProfile& profile, const LandmarkType& type,
                                   const Landmark& landmark);
 
-/// The same for nobody in particular: equal weights. The map's column `quality`.
+/// Computes the quality with equal weights: the map's column `quality`.
 std::optional<double> quality_of(const LandmarkType& type, const Landmark& landmark);
 
-/// Profiles by name, in order of registration.
+/// Registry of sensor profiles by name, in order of registration.
 class SensorRegistry {
  public:
-  /// Throws std::logic_error for a name taken, and for a weight that is negative or no number.
+  /// Throws std::logic_error for a name that is empty or taken, and for a weight that is negative or NaN.
   void add(SensorProfile profile);
-  /// Throws Error{usage} with the nearest name where there is no such sensor.
+  /// Throws Error{usage} with the nearest name if there is no such sensor.
   const SensorProfile& at(std::string_view name) const;
   const SensorProfile* find(std::string_view name) const;
   std::vector<std::string> names() const;

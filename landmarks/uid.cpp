@@ -9,7 +9,8 @@
 namespace waymark {
 namespace {
 
-// FNV-1a (Fowler, Noll, Vo), 64 bits, then MurmurHash3's finaliser: near positions differ in all digits.
+// FNV-1a (Fowler, Noll, Vo), 64 bits, then MurmurHash3's finaliser, so that near positions differ in all
+// digits.
 std::uint64_t hash(std::string_view text) {
   std::uint64_t h = 0xcbf29ce484222325u;
   for (const char c : text) h = (h ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -18,7 +19,7 @@ std::uint64_t hash(std::string_view text) {
   return h ^ (h >> 33);
 }
 
-std::string base32(std::uint64_t number) {  // 13 digits hold 65 bits
+std::string base32(std::uint64_t number) {  // 13 digits contain 65 bits
   std::string digits(13, '0');
   for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, number >>= 5)
     *digit = "0123456789abcdefghjkmnpqrstvwxyz"[number & 31];
@@ -33,11 +34,11 @@ std::string initials(std::string_view name) {
   return letters.size() > 1 ? letters : std::string(name.substr(0, 2));
 }
 
-struct Rounded {
+struct RoundedPosition {
   std::int64_t x = 0, y = 0;
 };
 
-Rounded rounded(const Crs& crs, const Point<MapCrs>& position) {
+RoundedPosition round_position(const Crs& crs, const Point<MapCrs>& position) {
   if (crs.kind() == CrsKind::geographic) {
     constexpr std::int64_t turn = 3600000000;  // 360 degrees
     const auto x = std::llround(position.xyz.x() * 1e7) % turn;
@@ -50,7 +51,7 @@ Rounded rounded(const Crs& crs, const Point<MapCrs>& position) {
 }  // namespace
 
 std::string make_uid(const LandmarkType& type, const Crs& crs, const Point<MapCrs>& position) {
-  const Rounded at = rounded(crs, position);
+  const RoundedPosition at = round_position(crs, position);
   const std::string what =
       type.name + '|' + crs.id() + '|' + std::to_string(at.x) + '|' + std::to_string(at.y);
   return initials(type.name) + '-' + base32(hash(what));

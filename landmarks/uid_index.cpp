@@ -10,15 +10,15 @@ UidIndex::UidIndex(std::span<const Landmark> landmarks) : landmarks_(landmarks) 
   fill(landmarks.size());
 }
 
-UidIndex::UidIndex(std::span<const Landmark> landmarks, std::span<const std::uint32_t> some)
-    : landmarks_(landmarks), some_(some) {
-  fill(some.size());
+UidIndex::UidIndex(std::span<const Landmark> landmarks, std::span<const std::uint32_t> subset)
+    : landmarks_(landmarks), subset_(subset) {
+  fill(subset.size());
 }
 
 void UidIndex::fill(std::size_t count) {
   slots_.assign(std::bit_ceil(3 * count / 2 + 1), kFree);
   for (std::uint32_t i = 0; i < count; ++i)
-    if (std::uint32_t& held = slots_[slot(uid(i))]; held == kFree) held = i;
+    if (std::uint32_t& entry = slots_[slot(uid(i))]; entry == kFree) entry = i;
 }
 
 std::size_t UidIndex::slot(std::string_view uid) const {
@@ -29,8 +29,8 @@ std::size_t UidIndex::slot(std::string_view uid) const {
 }
 
 std::optional<std::uint32_t> UidIndex::find(std::string_view uid) const {
-  const std::uint32_t held = slots_[slot(uid)];
-  return held == kFree ? std::nullopt : std::optional(held);
+  const std::uint32_t entry = slots_[slot(uid)];
+  return entry == kFree ? std::nullopt : std::optional(entry);
 }
 
 }  // namespace waymark

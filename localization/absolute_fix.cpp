@@ -27,26 +27,26 @@ FixUpdate linear_update(const PoseEstimate& e, const Eigen::Matrix<double, Rows,
 
 }  // namespace
 
-FixUpdate updated(const PoseEstimate& estimate, const GnssFix& fix) {
+FixUpdate update_pose(const PoseEstimate& estimate, const GnssFix& fix) {
   Eigen::Matrix<double, 2, 3> h = Eigen::Matrix<double, 2, 3>::Zero();
   h(0, 0) = h(1, 1) = 1;
   return linear_update<2>(estimate, h, fix.at - estimate.pose.at(), fix.sd * fix.sd);
 }
 
-FixUpdate updated(const PoseEstimate& estimate, const HeadingFix& fix) {
-  const Eigen::Matrix<double, 1, 1> v(wrapped(fix.yaw - estimate.pose.yaw));
+FixUpdate update_pose(const PoseEstimate& estimate, const HeadingFix& fix) {
+  const Eigen::Matrix<double, 1, 1> v(wrap_angle(fix.yaw - estimate.pose.yaw));
   return linear_update<1>(estimate, {0, 0, 1}, v, fix.sd * fix.sd);
 }
 
 bool FixGate::pass(double squares, int rows) {
   static const double kGates[] = {chi_square_quantile(0.9999, 1), chi_square_quantile(0.9999, 2)};
-  overruled_ = false;
+  forced_ = false;
   if (squares <= kGates[rows - 1]) {
     rejected_ = 0;
     return true;
   }
   if (++rejected_ < kPatience) return false;
-  overruled_ = true;
+  forced_ = true;
   rejected_ = 0;
   return true;
 }

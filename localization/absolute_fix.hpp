@@ -4,38 +4,42 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
-/// A position measured from outside, e.g. by satellites.
+/// A position measured by an absolute sensor such as a GNSS receiver.
 struct GnssFix {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double sd = 1;  ///< m, of each coordinate
 };
 
-/// A heading measured from outside: compass, sun, stars.
+/// A heading measured by an absolute sensor: compass, sun or stars.
 struct HeadingFix {
   double yaw = 0, sd = 0.1;  ///< rad
 };
 
-/// What a filter makes of a fix.
+/// Result of a Kalman update by a fix.
 struct FixUpdate {
   PoseEstimate estimate;   ///< Joseph form
   double squares = 0;      ///< v' S^-1 v before the update
   double log_density = 0;  ///< ln N(v; 0, S)
 };
-FixUpdate updated(const PoseEstimate& estimate, const GnssFix& fix);
-FixUpdate updated(const PoseEstimate& estimate, const HeadingFix& fix);
+/// Updates a pose by a measured position (Kalman).
+FixUpdate update_pose(const PoseEstimate& estimate, const GnssFix& fix);
+/// Updates a pose by a measured heading (Kalman).
+FixUpdate update_pose(const PoseEstimate& estimate, const HeadingFix& fix);
 
-/// Whether fixes are believed: a single wild one is left out, but what all of them say in turn is right.
+/// Gate for fixes. Rejects a single outlier, and accepts a fix after ten rejections in a row.
 class FixGate {
  public:
-  /// `squares` of a fix of `rows` numbers. After `patience` rejections in a row the next is let in.
+  /// Returns whether a fix of `rows` numbers with this squared distance passes. After `kPatience`
+  /// rejections in a row the next fix passes.
   bool pass(double squares, int rows);
-  /// The last fix was let in although it contradicts: the filter should forget what it believed.
-  bool overruled() const { return overruled_; }
+  /// Returns whether the last fix passed although it contradicts the estimate. The filter should then widen
+  /// its covariance.
+  bool was_forced() const { return forced_; }
 
  private:
   static constexpr int kPatience = 10;
   int rejected_ = 0;
-  bool overruled_ = false;
+  bool forced_ = false;
 };
 
 }  // namespace waymark

@@ -18,22 +18,22 @@ MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
   return j;
 }
 
-PoseEstimate moved(const PoseEstimate& estimate, const BodyMotion& motion) {
+PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
   const MotionJacobians j = motion_jacobians(estimate.pose, motion.step);
   const Eigen::Matrix3d p = j.by_pose * estimate.covariance * j.by_pose.transpose() +
                             j.by_step * motion.covariance * j.by_step.transpose();
   return {estimate.pose * motion.step, (p + p.transpose()) / 2};
 }
 
-BodyMotion then(const BodyMotion& first, const BodyMotion& second) {
-  const PoseEstimate both = moved({first.step, first.covariance}, second);
+BodyMotion compose(const BodyMotion& first, const BodyMotion& second) {
+  const PoseEstimate both = predict_pose({first.step, first.covariance}, second);
   return {both.pose, both.covariance};
 }
 
-SeenAfter::SeenAfter(const BodyMotion& motion)
+MotionCompensation::MotionCompensation(const BodyMotion& motion)
     : motion_(motion), back_(Eigen::Rotation2Dd(-motion.step.yaw).toRotationMatrix()) {}
 
-void SeenAfter::move(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const {
+void MotionCompensation::apply(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const {
   at = back_ * (at - motion_.step.at());
   Eigen::Matrix<double, 2, 3> by_step;
   by_step << -back_, Eigen::Vector2d(at.y(), -at.x());
@@ -44,7 +44,7 @@ Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance) {
   Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
   for (int j = 0; j < 3; ++j) {
     double left = covariance(j, j) - root.row(j).head(j).squaredNorm();
-    if (!(left > 1e-14 * covariance(j, j))) continue;  // nothing new in this direction
+    if (!(left > 1e-14 * covariance(j, j))) continue;  // no variance in this direction
     root(j, j) = std::sqrt(left);
     for (int i = j + 1; i < 3; ++i)
       root(i, j) = (covariance(i, j) - root.row(i).head(j).dot(root.row(j).head(j))) / root(j, j);

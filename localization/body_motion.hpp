@@ -4,29 +4,31 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
-/// How the robot moved, seen from where it stood: new_from_old of its frame, with covariance (x forward, y
-/// left, yaw). Every motion model ends in one of these, and every filter begins with one.
+/// Motion of the robot, new_from_old of its frame, with covariance (x forward, y left, yaw). Every motion
+/// model returns one, and every filter predicts with one.
 struct BodyMotion {
   Pose2 step;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// Derivatives of pose * step by the pose and by the step.
+/// Derivatives of pose * step with respect to the pose and to the step.
 struct MotionJacobians {
   Eigen::Matrix3d by_pose, by_step;
 };
+/// Computes the derivatives at a pose and a step.
 MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step);
 
-/// First one, then the other, to first order in the errors, which are taken as independent.
-BodyMotion then(const BodyMotion& first, const BodyMotion& second);
+/// Composes two motions, `first` before `second`, to first order in the errors. Takes the errors as
+/// independent.
+BodyMotion compose(const BodyMotion& first, const BodyMotion& second);
 
-/// What was seen from the old place, as it is seen from the new one.
-class SeenAfter {
+/// Transforms points from the robot's frame before a motion to its frame after it (motion compensation).
+class MotionCompensation {
  public:
   /// `motion` must outlive it.
-  explicit SeenAfter(const BodyMotion& motion);
-  /// A point in the robot's frame and its covariance, which grows by that of the motion.
-  void move(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const;
+  explicit MotionCompensation(const BodyMotion& motion);
+  /// Transforms a point in the robot's frame and its covariance, which grows by that of the motion.
+  void apply(Eigen::Vector2d& at, Eigen::Matrix2d& covariance) const;
 
  private:
   const BodyMotion& motion_;
@@ -34,10 +36,10 @@ class SeenAfter {
 };
 
 /// Prediction step of an extended Kalman filter.
-PoseEstimate moved(const PoseEstimate& estimate, const BodyMotion& motion);
+PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);
 
-/// Lower triangular L with L L' = covariance + tiny; zero rows where there is no noise. For covariances that
-/// are only positive semidefinite, as those of a robot that cannot slip sideways.
+/// Returns lower triangular L with L L' = covariance + tiny, with zero rows where there is no noise.
+/// Accepts positive semidefinite covariances, such as those of a robot that cannot slip sideways.
 Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance);
 
 }  // namespace waymark

@@ -18,7 +18,7 @@ double mean(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
-// The value that held at each of equally spaced times: autocorrelations are by lag in time, not in rows.
+// Resamples to equally spaced times, holding values: autocorrelations are by lag in time, not in rows.
 std::vector<double> evenly(std::span<const double> t, std::span<const double> values) {
   const std::size_t count = std::min(values.size(), kMost);
   const double step = (t.back() - t.front()) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);

@@ -5,17 +5,17 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
-/// One sweep of a line scanner. Beam i points at first_angle + i angle_step, radians from the sensor's x axis
-/// (forward) to the left.
+/// One sweep of a line scanner. Beam i points at first_angle + i angle_step, radians from the sensor's x
+/// axis (forward) to the left.
 struct LaserScan {
   Pose2 robot_from_sensor;
   double first_angle = 0, angle_step = 0;
-  std::vector<float> ranges;  ///< m; not finite, <= 0 or >= most_range: nothing was hit
-  double most_range = 80;     ///< m
+  std::vector<float> ranges;  ///< m; not finite, <= 0 or >= max_range: no return
+  double max_range = 80;      ///< m
   double roll = 0,
          pitch = 0;  ///< rad, of the vehicle, if the scanner tilts with it: Rz(yaw) Ry(pitch) Rx(roll)
-  /// rad: by how much a thing looks wider than it is, because a beam is no line and needs only a part of its
-  /// width to return.
+  /// Angle, rad, by which an object looks wider than it is: a beam has a width and returns if part of it
+  /// hits.
   std::optional<double> beam_width = {};
 };
 

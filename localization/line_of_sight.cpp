@@ -5,21 +5,21 @@
 
 namespace waymark {
 
-void SightOptions::describe(OptionVisitor& option) {
+void LineOfSightOptions::describe(OptionVisitor& option) {
   option("sensor_height", sensor_height,
-         {.help = "With --dem: metres of the sensor above the ground, for what hides landmarks",
+         {.help = "With --dem: height of the sensor above the ground, metres, for occlusion",
           .min = 0,
           .max = 100});
-  option(
-      "landmark_height", landmark_height,
-      {.help = "With --dem: metres of a landmark above the ground that must be seen", .min = 0, .max = 100});
-  option("sight_step", step,
-         {.help = "With --dem: metres between the places looked at along a line of sight",
+  option("landmark_height", landmark_height,
+         {.help = "With --dem: height of a landmark that must be visible, metres", .min = 0, .max = 100});
+  option("line_of_sight_step", step,
+         {.help = "With --dem: metres between terrain samples along a line of sight",
           .min = 0.01,
-          .max = 100});
+          .max = 100,
+          .formerly = "sight_step"});
 }
 
-LineOfSight sight_over(GroundHeight ground, const SightOptions& options) {
+LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions& options) {
   if (!ground) return {};
   return [ground = std::move(ground), options](const Pose2& sensor, const Eigen::Vector2d& landmark) {
     const auto from = ground(sensor.at()), to = ground(landmark);
@@ -27,7 +27,7 @@ LineOfSight sight_over(GroundHeight ground, const SightOptions& options) {
     const double distance = (landmark - sensor.at()).norm();
     const double eye = *from + options.sensor_height;
     const double rise = (*to + options.landmark_height - eye) / std::max(distance, 1e-9);
-    // The last step belongs to the landmark: the ground it stands on does not hide it.
+    // The last step belongs to the landmark: the ground below it does not hide it.
     for (double t = options.step; t < distance - options.step; t += options.step) {
       const auto height = ground(sensor.at() + (landmark - sensor.at()) * (t / distance));
       if (height && *height > eye + rise * t) return false;

@@ -4,27 +4,29 @@
 #include <functional>
 #include <vector>
 #include "core/options.hpp"
-#include "localization/ground.hpp"
 #include "localization/identification/landmark_grid.hpp"
+#include "localization/terrain_pose.hpp"
 namespace waymark {
 
-/// Whether the ground lets a sensor at a pose see a landmark; none given: always.
+/// Returns whether the terrain leaves the line of sight from a sensor pose to a landmark free. Empty:
+/// always free.
 using LineOfSight = std::function<bool(const Pose2& sensor, const Eigen::Vector2d& landmark)>;
 
-struct SightOptions {
+/// Options of a line-of-sight test on a DEM.
+struct LineOfSightOptions {
   double sensor_height = 1;      ///< m above the ground
-  double landmark_height = 0.3;  ///< m above the ground that must be seen of a landmark
-  double step = 0.5;             ///< m between the places where the ground is looked at
+  double landmark_height = 0.3;  ///< m of a landmark above the ground that must be visible
+  double step = 0.5;             ///< m between the samples of the terrain
 
   void describe(OptionVisitor& option);
 };
 
-/// By the heights of a DEM. What the ground is not known of does not hide; curvature is left out, so for a
-/// few kilometres. Heights of a DEM of 1 m cells are good to see hills hide landmarks, not to see rocks do.
-/// Empty where `ground` is.
-LineOfSight sight_over(GroundHeight ground, const SightOptions& options);
+/// Returns a line-of-sight test on the heights of a DEM; empty if `ground` is empty. Unknown terrain does
+/// not occlude. Ignores curvature, so it holds for a few kilometres. A DEM of 1 m cells resolves hills that
+/// hide landmarks, not rocks that do.
+LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions& options);
 
-/// Landmarks within `range` metres of the sensor that it cannot see, ascending.
+/// Returns the landmarks within `range` metres of the sensor that it cannot see, ascending.
 std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkGrid& map, double range,
                                             const LineOfSight& visible);
 

@@ -6,35 +6,36 @@
 #include "localization/identification/identification.hpp"
 namespace waymark {
 
-/// What a localizer knows beside its estimate.
-enum class Trust {
-  sure,   ///< sightings agree with the map, or there were none
-  lost,   ///< all sightings of the last sets were rejected; it is searching
-  unset,  ///< no start was given and nothing seen yet
+/// Status of a localizer.
+enum class LocalizationStatus {
+  tracking,       ///< sightings agree with the map, or there were none
+  lost,           ///< all sightings of the last sets were rejected; it is searching
+  uninitialized,  ///< no start was given and no landmark was seen yet
 };
 
-/// A method that follows a robot. Steps are given in the order of time.
+/// A method that tracks the pose of a robot. Predictions and updates are given in the order of time.
 class Localizer {
  public:
   virtual ~Localizer() = default;
-  virtual void move(const BodyMotion& motion) = 0;
-  /// Uses what one sensor saw at this moment; says what became of each sighting.
-  virtual std::vector<Match> see(const SightingSet& seen) = 0;
-  /// Uses a position or heading measured from outside; false: not used, since the method cannot or since it
-  /// contradicts all the robot knows.
+  /// Predicts the pose after a motion.
+  virtual void predict(const BodyMotion& motion) = 0;
+  /// Updates the pose with the sightings of one sensor at this moment. Returns one match per sighting.
+  virtual std::vector<Match> update(const SightingSet& seen) = 0;
+  /// Updates the pose with an absolute position or heading. Returns false if the fix was not used: the
+  /// method does not support fixes, or the fix failed the gate.
   virtual bool fix(const GnssFix&) { return false; }
   virtual bool fix(const HeadingFix&) { return false; }
-  /// Always finite.
+  /// Returns the current estimate; always finite.
   virtual PoseEstimate estimate() const = 0;
-  virtual Trust trust() const { return Trust::sure; }
+  virtual LocalizationStatus status() const { return LocalizationStatus::tracking; }
 };
 
-/// Odometry alone: what all others are compared with.
+/// Odometry alone: the baseline of all other methods.
 class DeadReckoning final : public Localizer {
  public:
   explicit DeadReckoning(const PoseEstimate& start) : estimate_(start) {}
-  void move(const BodyMotion& motion) override { estimate_ = moved(estimate_, motion); }
-  std::vector<Match> see(const SightingSet&) override { return {}; }
+  void predict(const BodyMotion& motion) override { estimate_ = predict_pose(estimate_, motion); }
+  std::vector<Match> update(const SightingSet&) override { return {}; }
   PoseEstimate estimate() const override { return estimate_; }
 
  private:

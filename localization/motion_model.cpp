@@ -43,7 +43,7 @@ BodyMotion twist_motion(double speed, double sideways, double turn, double secon
   if (!(seconds >= 0)) throw std::invalid_argument("time runs backwards between two odometry readings");
   const double angle = turn * seconds, dx = speed * seconds, dy = sideways * seconds;
   const double s = sinc(angle), c = cosc(angle);
-  return {{s * dx - c * dy, c * dx + s * dy, wrapped(angle)},
+  return {{s * dx - c * dy, c * dx + s * dy, wrap_angle(angle)},
           noise_of(std::hypot(dx, dy), std::abs(angle), seconds, noise)};
 }
 

@@ -27,18 +27,18 @@ bool usable(const LogEvent& e) {
 
 }  // namespace
 
-void tidy(RobotLog& log, double longest_gap) {
+void clean_log(RobotLog& log, double max_gap) {
   const auto remark = [&](std::size_t count, const char* what) {
     if (count) log.remarks.push_back(fmt::format("{} {}", count, what));
   };
   remark(std::erase_if(log.events, [](const LogEvent& e) { return !usable(e); }),
-         "readings that are no numbers are left out");
+         "readings that are not finite are omitted");
   remark(
       std::erase_if(log.truth, [](const StampedPose& p) { return !std::isfinite(p.t) || !p.pose.finite(); }),
-      "true poses that are no numbers are left out");
+      "true poses that are not finite are omitted");
   std::size_t backwards = 0, twice = 0, gaps = 0;
   for (std::size_t i = 1; i < log.events.size(); ++i) backwards += log.events[i].t < log.events[i - 1].t;
-  remark(backwards, "times run backwards; the log is sorted by time");
+  remark(backwards, "times run backwards; the log was sorted by time");
   std::ranges::stable_sort(log.events, {}, &LogEvent::t);
   std::ranges::stable_sort(log.truth, {}, &StampedPose::t);
   std::ranges::stable_sort(log.felled, {}, &FelledReading::t);
@@ -48,18 +48,18 @@ void tidy(RobotLog& log, double longest_gap) {
     if (!drives(e)) continue;
     if (last) {
       twice += e.t == last->t;
-      gaps += e.t - last->t > longest_gap;
+      gaps += e.t - last->t > max_gap;
       widest = std::max(widest, e.t - last->t);
     }
     last = &e;
   }
-  remark(twice, "odometry readings have the time of the one before; the last one holds");
+  remark(twice, "odometry readings repeat the time of the previous one; the last one is used");
   if (gaps)
     log.remarks.push_back(fmt::format("{} gaps of more than {} s in the odometry, the longest {:.1f} s", gaps,
-                                      longest_gap, widest));
+                                      max_gap, widest));
 }
 
-void place_in(RobotLog& log, const LocalFrame& frame) {
+void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
   if (!log.in_crs) return;
   const auto placed = [&](double x, double y) -> Eigen::Vector2d {
     return frame.map_frame_from_crs({{x, y, frame.origin().xyz.z()}}).xyz.head<2>();
@@ -75,16 +75,16 @@ void place_in(RobotLog& log, const LocalFrame& frame) {
   log.in_crs = false;
 }
 
-std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double longest_gap) {
+std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double max_gap) {
   const auto after = std::ranges::lower_bound(truth, t, {}, &StampedPose::t);
   if (after == truth.end()) return {};
   if (after->t == t) return after->pose;
   if (after == truth.begin()) return {};
   const StampedPose &a = *(after - 1), &b = *after;
-  if (b.t - a.t > longest_gap) return {};
+  if (b.t - a.t > max_gap) return {};
   const double k = (t - a.t) / (b.t - a.t);
   return Pose2{a.pose.x + k * (b.pose.x - a.pose.x), a.pose.y + k * (b.pose.y - a.pose.y),
-               wrapped(a.pose.yaw + k * wrapped(b.pose.yaw - a.pose.yaw))};
+               wrap_angle(a.pose.yaw + k * wrap_angle(b.pose.yaw - a.pose.yaw))};
 }
 
 }  // namespace waymark

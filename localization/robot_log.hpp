@@ -16,15 +16,15 @@
 #include "localization/slam/graph.hpp"
 namespace waymark {
 
-/// Speeds of a differential drive; they hold until the next reading.
+/// Speeds of a differential drive, valid until the next reading.
 struct TwistReading {
   double speed = 0, sideways = 0, turn = 0;  ///< m/s forward, m/s left, rad/s left
 };
-/// Encoder and steering of a car; they hold until the next reading.
+/// Encoder and steering of a car, valid until the next reading.
 struct CarReading {
   double wheel_speed = 0, steering = 0;  ///< m/s, rad to the left
 };
-/// How the robot moved since the last such reading.
+/// Motion of the robot since the previous reading of this kind.
 struct StepReading {
   Pose2 step;
 };
@@ -41,43 +41,44 @@ struct StampedPose {
   Pose2 pose;
 };
 
-/// A tree that a harvester's crane took hold of, seen from the machine.
+/// A tree that a harvester's crane gripped, measured from the machine.
 struct FelledReading {
   double t = 0;
   double range = 0, bearing = 0;  ///< m, rad
   double range_sd = 0.1, bearing_sd = 0.01;
-  double diameter = 0, height = 0;  ///< m, measured by the head; 0: not
+  double diameter = 0, height = 0;  ///< m, measured by the head; 0: not measured
 };
 
-/// Uids of landmarks that said who they are.
+/// Uids of landmarks by the keys that sightings carry.
 using LandmarkNames = std::unordered_map<LandmarkKey, std::string>;
 
-/// What a robot measured on one drive, in the order of time.
+/// Measurements of one drive of a robot, in the order of time.
 struct RobotLog {
   std::vector<LogEvent> events;
-  std::vector<StampedPose> truth;     ///< where it really was, as far as that is known; ascending
+  std::vector<StampedPose> truth;     ///< true poses, as far as known; ascending
   std::vector<FelledReading> felled;  ///< ascending
   std::optional<Pose2> start;
-  double start_sd = 0, start_yaw_sd = 0.05;  ///< m, rad: how well it is known; 0: the log does not say
+  double start_sd = 0, start_yaw_sd = 0.05;  ///< m, rad: standard deviations of the start; 0: unknown
   Ackermann car;
-  /// Positions (truth, start, fixes) are in the map's CRS and not yet in metres of the map frame.
+  /// Whether positions (truth, start, fixes) are in the map's CRS, not yet in metres of the map frame.
   bool in_crs = false;
-  std::string crs;  ///< of positions `in_crs`, if the log says; any text Crs understands
+  std::string crs;  ///< CRS of positions if `in_crs` and given; any text Crs accepts
   LandmarkNames names;
   ErrorMemory error_memory;                ///< of its sensors
-  std::optional<OdometryNoise> odometry;   ///< what the reader knows of this vehicle's odometry
-  std::shared_ptr<const PoseGraph> graph;  ///< where the log is a graph; the events are drawn from it
-  std::vector<std::string> remarks;        ///< what the reader had to mend or leave out, for people
+  std::optional<OdometryNoise> odometry;   ///< odometry noise of this vehicle, if the reader knows it
+  std::shared_ptr<const PoseGraph> graph;  ///< if the log is a graph; the events are derived from it
+  std::vector<std::string> remarks;        ///< what the reader corrected or omitted, for people
 };
 
-/// Sorts by time (stable), drops events and truth that are not finite, and remarks on that, on gaps in the
-/// odometry above `longest_gap` seconds and on times that occur twice.
-void tidy(RobotLog& log, double longest_gap = 1);
+/// Sorts the log by time (stable) and drops events and true poses that are not finite. Adds remarks on
+/// these, on gaps in the odometry above `max_gap` seconds and on duplicate times.
+void clean_log(RobotLog& log, double max_gap = 1);
 
-/// Positions from the map's CRS into its frame; nothing where they are there already.
-void place_in(RobotLog& log, const LocalFrame& frame);
+/// Converts positions from the map's CRS to its frame. Does nothing if they are in the frame already.
+void convert_to_map_frame(RobotLog& log, const LocalFrame& frame);
 
-/// Pose at a time between two known ones at most `longest_gap` seconds apart, linear, yaw the short way.
-std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double longest_gap = 0.5);
+/// Interpolates the pose at a time linearly between two known poses, yaw the short way round.
+/// `std::nullopt` if they are more than `max_gap` seconds apart or do not enclose the time.
+std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double max_gap = 0.5);
 
 }  // namespace waymark

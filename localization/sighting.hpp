@@ -7,35 +7,35 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
-/// Type of a sighting of something of which the map has no type.
+/// Type of a sighting whose landmark type is not in the map.
 inline constexpr TypeId kNoSuchType = 0xFFFF;
 
-/// A landmark seen by the robot: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
-/// the left; ranges are metres on the ground to the middle of the landmark, absent for a camera that measures
-/// directions only. Features lie in the order of the type.
+/// A sighting of one landmark: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
+/// the left. Ranges are metres on the ground to the landmark's centre, absent for a camera that measures
+/// directions only. Features are in the order of the type.
 struct SeenLandmark {
-  std::optional<TypeId> type;  ///< absent: could be of any type; features are not compared then
+  std::optional<TypeId> type;  ///< absent: any type; features are not compared then
   double bearing = 0, bearing_sd = 0.02;
   std::optional<double> range;
-  double range_sd = 0.1;  ///< m; of no meaning without a range
-  /// rad above the horizontal, of a summit on the horizon; absent where only directions are measured.
+  double range_sd = 0.1;  ///< m; ignored without a range
+  /// rad above the horizontal, of a summit on the horizon; absent otherwise.
   std::optional<double> elevation = {};
   double elevation_sd = 0.002;
   KnownFeatures features;
-  std::optional<LandmarkKey> identity;  ///< where the landmark says who it is
-  double confidence = 1;                ///< probability that it is one, (0, 1]
+  std::optional<LandmarkKey> identity;  ///< of a landmark that identifies itself, e.g. a bar code
+  double confidence = 1;                ///< probability that it is a landmark, (0, 1]
 
-  /// Whether every number can be used: finite, range > 0, standard deviations > 0.
-  bool sound() const;
+  /// Returns whether every number can be used: finite, range > 0, standard deviations > 0.
+  bool is_valid() const;
 };
 
-/// What a sensor saw at one time. Sightings of one set belong to different landmarks.
+/// Sightings of one sensor at one time. They belong to different landmarks.
 struct SightingSet {
   Pose2 robot_from_sensor;
   std::vector<SeenLandmark> sightings;
 };
 
-inline bool SeenLandmark::sound() const {
+inline bool SeenLandmark::is_valid() const {
   if (elevation && !(std::abs(*elevation) < 1.6 && elevation_sd > 0)) return false;
   return std::isfinite(bearing) && std::isfinite(bearing_sd) && bearing_sd > 0 && confidence > 0 &&
          confidence <= 1 &&

@@ -6,27 +6,28 @@
 #include "localization/localizer.hpp"
 namespace waymark {
 
-/// Where a localizer believed the robot to be after one event of a log.
+/// Estimate of a localizer after one event of a log.
 struct TrackRow {
   double t = 0;  ///< s
   PoseEstimate at;
-  double z = 0, roll = 0, pitch = 0;  ///< 0 where the ground is not known
+  double z = 0, roll = 0, pitch = 0;  ///< 0 where the terrain is unknown
   int matched = 0, rejected = 0;      ///< sightings of this event
-  int wrong = 0;                      ///< matched with another landmark than the log says
+  int wrong = 0;                      ///< matches that contradict the landmark given in the log
   bool lost = false;
-  double nis = 0;      ///< normalized innovation squared of all matches: v' S^-1 v, from the estimate before
-  int nis_rows = 0;    ///< its degrees of freedom; 0 without matches, of particles and SLAM
-  double seconds = 0;  ///< in the update, if it was measured
+  double nis = 0;      ///< normalized innovation squared of all matches: v' S^-1 v, from the prediction
+  int nis_rows = 0;    ///< its degrees of freedom; 0 without matches, and for particles and SLAM
+  double seconds = 0;  ///< of the update, if timed
 };
 
+/// Estimates along a log, with counts over all events.
 struct Track {
   std::vector<TrackRow> rows;
-  std::array<std::int64_t, kVerdicts> verdicts{};  ///< sightings by what became of them
-  std::int64_t named = 0;                          ///< matched sightings of which the log knows the landmark
-  std::int64_t wrong = 0;                          ///< of these, matched with another
+  std::array<std::int64_t, kVerdicts> verdicts{};  ///< sightings by verdict
+  std::int64_t named = 0;                          ///< matched sightings with a landmark given in the log
+  std::int64_t wrong = 0;                          ///< matches among these with another landmark
   std::int64_t updates = 0;                        ///< sets of sightings
   std::int64_t fixes = 0, fixes_rejected = 0;      ///< GNSS and compass readings
-  double seconds = 0;                              ///< in updates, if it was measured
+  double seconds = 0;                              ///< of all updates, if timed
 };
 
 }  // namespace waymark

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/track_score.hpp"
+#include "localization/robot_log.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -39,7 +40,7 @@ double relative_error(const std::vector<Pair>& pairs, double seconds) {
   return root_mean_square(errors);
 }
 
-// Without headings the motion is compared in the aligned frame.
+// Without headings, compares the motion in the aligned frame.
 double relative_place_error(const std::vector<Pair>& pairs, double seconds, const PlaneAlignment& aligned) {
   std::vector<double> errors;
   std::size_t j = 0;
@@ -85,7 +86,7 @@ PlaneAlignment align(std::span<const Eigen::Vector2d> from, std::span<const Eige
 
 namespace {
 
-// Both need no truth.
+// Scores innovations and times, which need no truth.
 void score_updates(TrackScore& s, const Track& track) {
   std::vector<double> times, squares;
   double rows = 0, seconds = 0, updates = 0;
@@ -102,21 +103,26 @@ void score_updates(TrackScore& s, const Track& track) {
 }  // namespace
 
 TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAlignment alignment,
-                 bool headings, double rpe_seconds, double longest_gap) {
+                 bool headings, double rpe_seconds, double max_gap) {
   TrackScore s;
   std::vector<Pair> pairs;
   std::vector<Eigen::Vector2d> from, to;
+  std::int64_t wrong = 0;
   for (const TrackRow& row : track.rows) {
     s.matches += row.matched;
     s.rejected += row.rejected;
-    s.wrong_matches += row.wrong;
+    wrong += row.wrong;
     s.lost += row.lost;
-    if (const auto real = pose_at(truth, row.t, longest_gap)) {
+    if (const auto real = pose_at(truth, row.t, max_gap)) {
       pairs.push_back({&row, *real});
       from.push_back(row.at.pose.at());
       to.push_back(real->at());
     }
   }
+  if (s.matches == 0 || track.named > 0)
+    s.wrong_matches = wrong;
+  else
+    s.wrong_matches.reset();
   if (!track.rows.empty()) s.lost /= static_cast<double>(track.rows.size());
   score_updates(s, track);
   s.poses = pairs.size();
@@ -126,7 +132,7 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAl
   for (const Pair& p : pairs) {
     const Eigen::Vector2d off = aligned(p.row->at.pose.at()) - p.truth.at();
     places.push_back(off.norm());
-    const double turn = wrapped(p.row->at.pose.yaw + aligned.motion.yaw - p.truth.yaw);
+    const double turn = wrap_angle(p.row->at.pose.yaw + aligned.motion.yaw - p.truth.yaw);
     turns.push_back(turn / kRadiansPerDegree);
     const Eigen::Vector3d e(off.x(), off.y(), turn);
     const Eigen::LLT<Eigen::Matrix3d> cholesky(p.row->at.covariance);

@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-// 64 directions, so that the hash of a lattice point needs no trigonometry.
+// Table of 64 directions, so that lattice points need no trigonometry.
 struct Directions {
   std::array<double, 64> x, y;
   Directions() {
@@ -34,7 +34,7 @@ std::uint32_t lattice_hash(std::int32_t x, std::int32_t y, std::uint32_t seed) {
 constexpr std::uint32_t kOctaveSeed = 0x51ed270bu;
 constexpr double kUnitSpread = 4.66;  // measured: gradient noise itself has a standard deviation of 0.215
 
-Grid<float> enlarged(const Grid<float>& coarse, std::int64_t columns, std::int64_t rows) {
+Grid<float> upsample_by_two(const Grid<float>& coarse, std::int64_t columns, std::int64_t rows) {
   // Fine node i lies at coarse node 2 + i / 2.
   const auto between = [](float a, float b, float c, float d) { return (9 * (b + c) - a - d) / 16; };
   Grid<float> wide(columns, coarse.rows());
@@ -58,7 +58,7 @@ Grid<float> enlarged(const Grid<float>& coarse, std::int64_t columns, std::int64
 
 namespace {
 
-// The cell of the lattice that holds a point, with the offsets of its corners along their directions.
+// Lattice cell that contains a point, with the projections of its corner offsets on their directions.
 struct Lattice {
   double u, v;
   NoiseValue a, b, c, d;  // lower left, lower right, upper left, upper right
@@ -124,7 +124,7 @@ NoiseValue Fractal::at(double x, double y) const {
 }
 
 Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes) {
-  constexpr double kEnough = 16;  // nodes per wavelength above which a grid twice as coarse will do
+  constexpr double kEnough = 16;  // nodes per wavelength above which a grid twice as coarse suffices
   Fractal here = fractal;
   Grid<float> result(nodes.columns, nodes.rows, 0.0F);
   if (fractal.longest > kEnough * nodes.step) {
@@ -135,7 +135,7 @@ Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes) {
     coarser.shortest = shortest;
     const NodeGrid twice{nodes.columns / 2 + 5, nodes.rows / 2 + 5, nodes.x0 - 4 * nodes.step,
                          nodes.y0 + 4 * nodes.step, 2 * nodes.step};
-    result = enlarged(fractal_grid(coarser, twice), nodes.columns, nodes.rows);
+    result = upsample_by_two(fractal_grid(coarser, twice), nodes.columns, nodes.rows);
     here.longest = shortest;
     here.amplitude *= std::exp2(-fractal.hurst * octaves);
   }

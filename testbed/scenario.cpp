@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
+#include "core/options/option_reader.hpp"
 #include "testbed/drive/scenario_drive.hpp"
-#include "testbed/scenario_fields.hpp"
 #include "testbed/scenario_sections.hpp"
 
 namespace waymark {
@@ -19,24 +20,25 @@ constexpr int kVersion = 1;
 
 const Json kNothing = Json::object();
 
-void read_flights(Scenario& scenario, const Json& file, const std::string& source) {
+void read_flights(Scenario& scenario, const Json& file, const std::string& source,
+                  const OptionWarning& warn) {
   const auto given = file.find("flights");
   if (given == file.end()) return;
   if (!given->is_array() || (given->empty() && !scenario.drive.on))
     throw Error(ErrorCode::usage, "flights must be a list with at least one flight", source,
-                "only a site for a drive (section drive) may go without");
+                "only a scenario with the section drive may omit them");
   scenario.flights.clear();
   for (std::size_t i = 0; i < given->size(); ++i) {
     const std::string place = fmt::format("flights[{}]", i);
     if (!(*given)[i].is_object()) throw Error(ErrorCode::usage, place + " must be an object", source);
     Flight flight;
-    read_fields([&](OptionVisitor& field) { describe_flight(flight, field); }, (*given)[i].dump(), place,
-                source);
+    read_and_warn([&](OptionVisitor& field) { describe_flight(flight, field); }, (*given)[i].dump(),
+                  {.owner = place, .prefix = place + ".", .where = source}, warn);
     for (const Flight& other : scenario.flights)
       if (other.name == flight.name)
         throw Error(ErrorCode::usage,
                     fmt::format("{} and an earlier flight are both called '{}'", place, flight.name), source,
-                    "their images would overwrite each other: give them names");
+                    "their images would overwrite each other: give them different names");
     if (flight.name.empty() || flight.name.find('/') != std::string::npos)
       throw Error(ErrorCode::usage, fmt::format("{}.name cannot begin a file name: '{}'", place, flight.name),
                   source, "use letters and digits");
@@ -46,16 +48,11 @@ void read_flights(Scenario& scenario, const Json& file, const std::string& sourc
 
 }  // namespace
 
-Scenario read_scenario(std::string_view json, const std::string& source) {
-  Json file;
-  try {
-    file = Json::parse(json);
-  } catch (const Json::parse_error& error) {
-    throw Error(ErrorCode::usage, fmt::format("not JSON: {}", error.what()), source);
-  }
+Scenario read_scenario(std::string_view json, const std::string& source, const OptionWarning& warn) {
+  Json file = Json::parse(checked_json(json, source, ErrorCode::usage));
   if (!file.is_object() || !file.contains("waymark_scenario"))
     throw Error(ErrorCode::usage, "not a scenario: \"waymark_scenario\" is missing", source,
-                "a scenario begins with {\"waymark_scenario\": 1, ...}; see docs/testbed.md");
+                "a scenario begins with {\"waymark_scenario\": 1, ...}; see docs/reference/scenario.md");
   if (file["waymark_scenario"] != kVersion)
     throw Error(ErrorCode::usage,
                 fmt::format("waymark_scenario is {}, this program reads {}", file["waymark_scenario"].dump(),
@@ -71,14 +68,16 @@ Scenario read_scenario(std::string_view json, const std::string& source) {
     if (!section.name.empty()) object = file.contains(section.name) ? &file[section.name] : &kNothing;
     if (!object->is_object())
       throw Error(ErrorCode::usage, fmt::format("{} must be an object", section.name), source, section.help);
-    read_fields([&](OptionVisitor& field) { section.describe(scenario, field); }, object->dump(),
-                section.name, source, section.name.empty() ? sections : std::vector<std::string>{});
+    OptionLocation location{.owner = section.name, .prefix = section.name + ".", .where = source};
+    if (section.name.empty()) location = {.owner = "the scenario", .where = source, .also = sections};
+    read_and_warn([&](OptionVisitor& field) { section.describe(scenario, field); }, object->dump(), location,
+                  warn);
   }
   if (scenario.bits != 8 && scenario.bits != 16)
     throw Error(ErrorCode::usage, fmt::format("picture.bits must be 8 or 16, is {}", scenario.bits), source);
-  if (file.contains("drive")) read_drive(scenario.drive, file["drive"].dump(), source);
+  if (file.contains("drive")) read_drive(scenario.drive, file["drive"].dump(), source, warn);
   scenario.forest.on = file.contains("forest");
-  read_flights(scenario, file, source);
+  read_flights(scenario, file, source, warn);
   return scenario;
 }
 
@@ -87,7 +86,8 @@ std::string scenario_json(const Scenario& scenario) {
   Json file{{"waymark_scenario", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
     if (section.name == "forest" && !scenario.forest.on) continue;
-    const Json fields = Json::parse(written_fields([&](OptionVisitor& v) { section.describe(copy, v); }));
+    const Json fields =
+        Json::parse(options_as_json(option_table([&](OptionVisitor& v) { section.describe(copy, v); })));
     if (section.name.empty())
       file.update(fields);
     else
@@ -95,10 +95,9 @@ std::string scenario_json(const Scenario& scenario) {
   }
   if (scenario.drive.on) file["drive"] = Json::parse(drive_json(scenario.drive));
   file["flights"] = Json::array();
-  for (Flight& flight : copy.flights) {
+  for (Flight& flight : copy.flights)
     file["flights"].push_back(
-        Json::parse(written_fields([&](OptionVisitor& field) { describe_flight(flight, field); })));
-  }
+        Json::parse(options_as_json(option_table([&](OptionVisitor& v) { describe_flight(flight, v); }))));
   return file.dump(2) + "\n";
 }
 
@@ -114,7 +113,7 @@ std::string scenario_schema() {
   properties["waymark_scenario"] = {{"const", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
     const Json fields =
-        Json::parse(schema_of_fields([&](OptionVisitor& v) { section.describe(defaults, v); }));
+        Json::parse(option_schemas(option_table([&](OptionVisitor& v) { section.describe(defaults, v); })));
     if (section.name.empty())
       properties.update(fields);
     else
@@ -126,7 +125,7 @@ std::string scenario_schema() {
   properties["drive"] = Json::parse(drive_schema());
   Flight flight;
   const Json fields =
-      Json::parse(schema_of_fields([&](OptionVisitor& field) { describe_flight(flight, field); }));
+      Json::parse(option_schemas(option_table([&](OptionVisitor& v) { describe_flight(flight, v); })));
   properties["flights"] = {
       {"type", "array"},
       {"items", {{"type", "object"}, {"additionalProperties", false}, {"properties", fields}}}};

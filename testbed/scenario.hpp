@@ -4,14 +4,14 @@
 #include <string>
 #include <string_view>
 #include <vector>
-#include "core/options.hpp"
+#include "core/options/option_reader.hpp"
 #include "testbed/drive/drive_settings.hpp"
-#include "testbed/forest/forest_law.hpp"
-#include "testbed/ground.hpp"
+#include "testbed/forest/forest_model.hpp"
 #include "testbed/render.hpp"
+#include "testbed/site_model.hpp"
 namespace waymark {
 
-/// The camera every flight carries: Brown's lens model, square pixels, principal point in the middle.
+/// Camera of all flights: Brown distortion model, square pixels, principal point in the centre.
 struct Lens {
   std::int64_t columns = 800, rows = 800;
   Degrees field_of_view{50};  ///< across the columns, without the distortion
@@ -19,8 +19,8 @@ struct Lens {
 };
 Camera camera_of(const Lens& lens);
 
-/// Pictures along a straight path, or along parallel ones. Places in metres from the middle of the site,
-/// altitudes above its height `up`. Where the altitude changes it does so by equal factors, as in a descent.
+/// Images along one straight path or several parallel ones. Positions in metres from the centre of the
+/// site, altitudes above its height `up`. Altitude changes geometrically, as in a descent.
 struct Flight {
   std::string name = "descent";  ///< its images are <name>_0001.png, ...
   std::int64_t images = 16;      ///< per line
@@ -29,46 +29,47 @@ struct Flight {
   double from_east = -100, from_north = -100, from_altitude = 500;
   double to_east = 60, to_north = 60, to_altitude = 120;
   Degrees tilt{0};           ///< of the view, from straight down towards the heading
-  Degrees attitude_sd{1.5};  ///< how much the attitude wavers, about each camera axis
-  double track_sd = 2;       ///< metres, how much the path wavers
+  Degrees attitude_sd{1.5};  ///< variation of the attitude about each camera axis
+  double track_sd = 2;       ///< metres, variation of the path
 };
 
-/// What is told about the poses: truth plus errors of these standard deviations.
+/// Errors of the reported poses: standard deviations.
 struct PoseErrors {
   double position_sd = 0;  ///< metres, each axis
   Degrees attitude_sd{0};  ///< about each camera axis
 };
 
-/// The DEM that goes with the images: coarser than the ground and not exact.
+/// DEM supplied with the images: coarser than the terrain and inexact.
 struct DemModel {
   double cell = 2;          ///< metres
   double height_sd = 0.1;   ///< metres
-  double correlation = 10;  ///< metres over which its errors agree
+  double correlation = 10;  ///< correlation length of its errors, metres
 };
 
 struct Scenario {
   std::string name = "A made landing site";
-  std::string crs = "local";  ///< of the grid frame: local, or a projected CRS
+  std::string crs = "local";  ///< CRS of the grid frame: local, or projected
   std::int64_t seed = 1;
-  MadeGround ground;  ///< width or height 0: as much as the images see
+  SiteModel ground;  ///< width or height 0: the extent of the images
   Exposure exposure;
   std::int64_t bits = 8;  ///< of the images: 8 or 16
   Lens lens;
   std::vector<Flight> flights = {Flight{}};
   PoseErrors pose_errors;
   DemModel dem;
-  DriveSettings drive;  ///< `on` where the file has the section
-  ForestLaw forest;     ///< `on` where the file has the section
+  DriveSettings drive;  ///< `on` if the file has the section
+  ForestModel forest;   ///< `on` if the file has the section
 };
 
-/// Reads a scenario (docs/testbed.md). `source` names the file in messages. Throws Error{usage} with the JSON
-/// path for what is missing, unknown, out of range or of the wrong kind.
-Scenario read_scenario(std::string_view json, const std::string& source);
+/// Reads a scenario (docs/reference/scenario.md). `source` names the file in messages. Throws Error{usage}
+/// with the JSON path for fields that are missing, unknown, out of range or of the wrong kind. Warns of
+/// fields that are given by their former names.
+Scenario read_scenario(std::string_view json, const std::string& source, const OptionWarning& warn = {});
 
-/// Every section with its fields, defaults, units and ranges as a JSON schema.
+/// Returns the JSON schema of all sections: fields, defaults, units and ranges.
 std::string scenario_schema();
 
-/// The scenario with every value written out.
+/// Returns the scenario with all values as JSON.
 std::string scenario_json(const Scenario& scenario);
 
 }  // namespace waymark

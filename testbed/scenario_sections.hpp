@@ -6,14 +6,14 @@
 #include "testbed/scenario.hpp"
 namespace waymark {
 
-/// A part of a scenario file: its fields, declared once for reader, writer and schema.
+/// Section of a scenario; its fields are declared once for reader, writer and schema.
 struct ScenarioSection {
-  std::string name;  ///< empty: fields of the file itself
+  std::string name;  ///< empty: top-level fields
   std::string help;
   std::function<void(Scenario&, OptionVisitor&)> describe;
 };
 
-/// In the order of the file; flights are apart.
+/// Returns the sections in the order of the file, without flights.
 const std::vector<ScenarioSection>& scenario_sections();
 void describe_forest(Scenario& scenario, OptionVisitor& field);
 void describe_flight(Flight& flight, OptionVisitor& field);

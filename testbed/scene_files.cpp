@@ -31,7 +31,7 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
       {"distortion", std::vector<double>(camera.distortion.begin(), camera.distortion.begin() + 5)}};
   Json& images = file["images"] = Json::array();
   for (const Shot& shot : shots) {
-    const Eigen::Isometry3d& pose = (exact ? shot.view.grid_from_camera : shot.told).transform;
+    const Eigen::Isometry3d& pose = (exact ? shot.view.grid_from_camera : shot.reported).transform;
     const Eigen::Matrix3d& r = pose.linear();
     Json image{{"name", shot.name}, {"camera", "lens"}};
     image["centre"] = {pose.translation().x(), pose.translation().y(), pose.translation().z()};
@@ -63,19 +63,20 @@ std::string job_file(const Scenario& scenario) {
   return Json{{"name", scenario.name}, {"stages", stages}}.dump(2) + "\n";
 }
 
-GivenDem given_dem(const Scenario& scenario, const Scene& scene) {
+SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
   const Terrain& ground = scene.terrain;
   const double cell = scenario.dem.cell;
   const auto count = [&](std::int64_t nodes) {
     return static_cast<std::int64_t>(std::floor(double(nodes - 1) * ground.step_x() / cell)) + 1;
   };
-  GivenDem dem{Grid<float>(count(ground.heights().columns()), count(ground.heights().rows())), 0, 0, cell};
-  // Centred, so that what is left over falls on both sides.
+  SimulatedDem dem{Grid<float>(count(ground.heights().columns()), count(ground.heights().rows())), 0, 0,
+                   cell};
+  // Centred, so that the remainder is split between both sides.
   dem.x0 = scene.ground.east - double(dem.heights.columns() - 1) * cell / 2;
   dem.y0 = scene.ground.north + double(dem.heights.rows() - 1) * cell / 2;
   const double length = std::max(scenario.dem.correlation, 2 * cell);
   const auto seed = static_cast<std::uint32_t>(named_seed(scene.seed, "dem errors"));
-  // A cell is the mean of the ground within it, as stereo matching makes it.
+  // A cell is the mean of the terrain within it, as in stereo matching.
   const int samples = std::max(1, static_cast<int>(std::lround(cell / ground.step_x())));
   for (std::int64_t j = 0; j < dem.heights.rows(); ++j)
     for (std::int64_t i = 0; i < dem.heights.columns(); ++i) {

@@ -5,27 +5,29 @@
 #include "testbed/landing/flight.hpp"
 namespace waymark {
 
-/// The camera file (docs/camera_file.md). `exact`: with the true poses and no standard deviations.
+/// Returns the camera file (docs/reference/camera_file.md). `exact`: with true poses and without standard
+/// deviations.
 std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots, bool exact);
 
-/// The job that makes a map of the files; names relative to its own place.
+/// Returns the job that maps the files; names are relative to its own folder.
 std::string job_file(const Scenario& scenario);
 
-/// Truth lists as CSV. `landmarks`: every rock and every crater still to be seen. `ignored`: craters so worn
-/// or overprinted that nobody is blamed for missing or praised for finding them. Columns: type, x, y, z, then
-/// the features of both types (empty where the type has none), `images` (that show all of it), `pixels` (its
-/// greatest diameter in any of them), then `shape` (rocks), `preserved` (craters).
+/// Truth tables as CSV.
+/// - `landmarks`: every rock and every crater still visible.
+/// - `ignored`: craters too degraded or overprinted to count in evaluation.
+/// - Columns: type, x, y, z, the features of both types (empty if the type has none), `images` (that show
+///   all of it), `pixels` (maximum diameter in any of them), `shape` (rocks), `preserved` (craters).
 struct TruthTables {
   std::string landmarks, ignored;
-  std::string detections;  ///< image,type,x,y,diameter,major,minor,angle,landmark: as each image shows it
+  std::string detections;  ///< image,type,x,y,diameter,major,minor,angle,landmark, per image
 };
 TruthTables truth_tables(const Scenario& scenario, const Scene& scene, const std::vector<Shot>& shots);
 
-/// The DEM that is given away: the ground at its cells, with smooth errors.
-struct GivenDem {
+/// DEM supplied with the images: the terrain at its cells, with correlated errors.
+struct SimulatedDem {
   Grid<float> heights;
-  double x0 = 0, y0 = 0, cell = 1;  ///< GridFrame of the first cell's centre, metres
+  double x0 = 0, y0 = 0, cell = 1;  ///< GridFrame of the centre of the first cell, metres
 };
-GivenDem given_dem(const Scenario& scenario, const Scene& scene);
+SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene);
 
 }  // namespace waymark

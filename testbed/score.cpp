@@ -20,13 +20,13 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-double quantile(std::vector<double> values, double share) {
+double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return kNan;
   std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
+  const double rank = fraction * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(rank);
   const std::size_t above = std::min(below + 1, values.size() - 1);
-  return std::lerp(values[below], values[above], place - static_cast<double>(below));
+  return std::lerp(values[below], values[above], rank - static_cast<double>(below));
 }
 
 ErrorSummary summary(const std::vector<double>& found, const std::vector<double>& truth, Scale scale) {
@@ -46,10 +46,10 @@ ErrorSummary summary(const std::vector<double>& found, const std::vector<double>
   return s;
 }
 
-using Claim = std::function<std::optional<double>(const ScoredThing&)>;
+using Claim = std::function<std::optional<double>(const EvaluatedObject&)>;
 
-// Ten bins of what finds claim, and the mean distance of claim and truth.
-std::pair<std::vector<CalibrationBin>, double> calibration(std::span<const ScoredThing> found,
+// Ten bins of claimed values, and the expected calibration error.
+std::pair<std::vector<CalibrationBin>, double> calibration(std::span<const EvaluatedObject> found,
                                                            const std::vector<int>& match,
                                                            const Claim& claim) {
   std::vector<CalibrationBin> bins(10);
@@ -74,8 +74,8 @@ std::pair<std::vector<CalibrationBin>, double> calibration(std::span<const Score
   return {bins, error};
 }
 
-// Area under precision over recall, each precision the best at that recall or beyond.
-double average_precision(std::span<const ScoredThing> found, const std::vector<int>& match, int truth) {
+// Area under the precision-recall curve, with precision interpolated as the maximum at this recall or above.
+double average_precision(std::span<const EvaluatedObject> found, const std::vector<int>& match, int truth) {
   std::vector<std::pair<double, bool>> ranked;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (!found[f].confidence) return kNan;
@@ -95,7 +95,7 @@ double average_precision(std::span<const ScoredThing> found, const std::vector<i
   return area / truth;
 }
 
-void count(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
+void count(Score& s, std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
            std::span<const double> edges) {
   for (std::size_t i = 0; i < edges.size(); ++i)
     s.by_size.push_back(
@@ -105,7 +105,7 @@ void count(Score& s, std::span<const ScoredThing> found, std::span<const ScoredT
     for (ScoreCounts& bin : s.by_size)
       if (diameter >= bin.from && diameter < bin.to) change(bin);
   };
-  for (const ScoredThing& t : truth)
+  for (const EvaluatedObject& t : truth)
     if (!t.ignored) each(t.diameter, [](ScoreCounts& c) { ++c.truth; });
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] == -2) continue;
@@ -116,13 +116,14 @@ void count(Score& s, std::span<const ScoredThing> found, std::span<const ScoredT
   }
 }
 
-void measure_places(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth) {
+void measure_positions(Score& s, std::span<const EvaluatedObject> found,
+                       std::span<const EvaluatedObject> truth) {
   std::vector<double> errors, shares;
   double squares = 0, nees = 0;
   int inside = 0;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] < 0) continue;
-    const ScoredThing& t = truth[at(s.match[f])];
+    const EvaluatedObject& t = truth[at(s.match[f])];
     const Eigen::Vector2d error = found[f].at - t.at;
     errors.push_back(error.norm());
     squares += error.squaredNorm();
@@ -135,17 +136,17 @@ void measure_places(Score& s, std::span<const ScoredThing> found, std::span<cons
   }
   s.position_median = quantile(errors, 0.5), s.position_p90 = quantile(errors, 0.9);
   s.position_rmse = errors.empty() ? kNan : std::sqrt(squares / static_cast<double>(errors.size()));
-  s.position_median_of_diameter = quantile(shares, 0.5);
+  s.relative_position_median = quantile(shares, 0.5);
   s.inside_90 = s.with_covariance ? static_cast<double>(inside) / s.with_covariance : kNan;
   s.nees = s.with_covariance ? nees / s.with_covariance : kNan;
 }
 
-void measure_features(Score& s, std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
-                      const std::map<std::string, Scale>& scales) {
+void measure_features(Score& s, std::span<const EvaluatedObject> found,
+                      std::span<const EvaluatedObject> truth, const std::map<std::string, Scale>& scales) {
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> values;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] < 0) continue;
-    const ScoredThing& t = truth[at(s.match[f])];
+    const EvaluatedObject& t = truth[at(s.match[f])];
     const auto add = [&](const std::string& name, double a, double b) {
       if (std::isfinite(a) && std::isfinite(b))
         values[name].first.push_back(a), values[name].second.push_back(b);
@@ -173,29 +174,29 @@ double ScoreCounts::f1() const {
   return truth + found ? 2.0 * matched / (truth + found) : kNan;
 }
 
-Score score(std::span<const ScoredThing> found, std::span<const ScoredThing> truth, const MatchRules& rules,
-            std::span<const double> size_edges) {
-  std::vector<ScoredThing> things(truth.begin(), truth.end());
-  for (ScoredThing& t : things) t.ignored = t.ignored || t.diameter < rules.min_diameter;
-  const Pairing pairing = pair_up(found, things, rules);
+Score score(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
+            const MatchRules& rules, std::span<const double> size_edges) {
+  std::vector<EvaluatedObject> things(truth.begin(), truth.end());
+  for (EvaluatedObject& t : things) t.ignored = t.ignored || t.diameter < rules.min_diameter;
+  const ObjectMatching pairing = match_objects(found, things, rules);
   Score s;
-  s.match = pairing.truth_of;
+  s.match = pairing.truth_index;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] >= 0 && things[at(s.match[f])].ignored) s.match[f] = -2;
     if (s.match[f] != -1) continue;
     if (found[f].diameter < rules.min_diameter)
       s.match[f] = -2;
     else
-      s.doubled += pairing.near[f];
+      s.duplicates += pairing.near[f];
   }
   count(s, found, things, size_edges);
   s.average_precision = average_precision(found, s.match, s.all.truth);
-  measure_places(s, found, things);
+  measure_positions(s, found, things);
   measure_features(s, found, things, rules.scales);
   std::tie(s.by_confidence, s.confidence_error) =
-      calibration(found, s.match, [](const ScoredThing& f) { return f.confidence; });
+      calibration(found, s.match, [](const EvaluatedObject& f) { return f.confidence; });
   std::tie(s.by_quality, s.quality_error) =
-      calibration(found, s.match, [](const ScoredThing& f) { return f.quality; });
+      calibration(found, s.match, [](const EvaluatedObject& f) { return f.quality; });
   return s;
 }
 

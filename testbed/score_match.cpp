@@ -18,9 +18,9 @@ std::vector<int> order_by(std::size_t count, const auto& key) {
   return order;
 }
 
-std::vector<Eigen::Vector3d> places(std::span<const ScoredThing> things) {
+std::vector<Eigen::Vector3d> places(std::span<const EvaluatedObject> things) {
   std::vector<Eigen::Vector3d> all;
-  for (const ScoredThing& t : things) all.emplace_back(t.at.x(), t.at.y(), 0);
+  for (const EvaluatedObject& t : things) all.emplace_back(t.at.x(), t.at.y(), 0);
   return all;
 }
 
@@ -33,39 +33,39 @@ std::size_t at(int index) {
   return static_cast<std::size_t>(index);
 }
 
-Pairing by_distance(std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
-                    const MatchRules& rules) {
-  Pairing pairing{std::vector<int>(found.size(), -1), std::vector<bool>(found.size(), false)};
+ObjectMatching by_distance(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
+                           const MatchRules& rules) {
+  ObjectMatching pairing{std::vector<int>(found.size(), -1), std::vector<bool>(found.size(), false)};
   const SpatialIndex index(places(found));
   const auto size = [&](int t) { return std::isnan(truth[at(t)].diameter) ? 0 : truth[at(t)].diameter; };
   for (const int t : order_by(truth.size(), size)) {
-    const ScoredThing& thing = truth[at(t)];
-    const double radius = std::max(rules.share * size(t), rules.least);
+    const EvaluatedObject& thing = truth[at(t)];
+    const double radius = std::max(rules.distance_fraction * size(t), rules.min_distance);
     int best = -1;
     double nearest = radius;
     for (const std::size_t f : index.within({thing.at.x(), thing.at.y(), 0}, radius)) {
       if (!alike(found[f].diameter, thing.diameter, rules.size_ratio)) continue;
       pairing.near[f] = true;
-      if (pairing.truth_of[f] >= 0) continue;
+      if (pairing.truth_index[f] >= 0) continue;
       const double distance = (found[f].at - thing.at).norm();
       if (distance < nearest || best < 0) best = static_cast<int>(f), nearest = distance;
     }
-    if (best >= 0) pairing.truth_of[at(best)] = t;
+    if (best >= 0) pairing.truth_index[at(best)] = t;
   }
   return pairing;
 }
 
-Pairing by_overlap(std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
-                   const MatchRules& rules) {
-  Pairing pairing{std::vector<int>(found.size(), -1), std::vector<bool>(found.size(), false)};
+ObjectMatching by_overlap(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
+                          const MatchRules& rules) {
+  ObjectMatching pairing{std::vector<int>(found.size(), -1), std::vector<bool>(found.size(), false)};
   const SpatialIndex index(places(truth));
   double largest = 0;
-  for (const ScoredThing& t : truth)
+  for (const EvaluatedObject& t : truth)
     if (t.diameter > largest) largest = t.diameter;
   std::vector<bool> taken(truth.size(), false);
   const auto confidence = [&](int f) { return found[at(f)].confidence.value_or(0); };
   for (const int f : order_by(found.size(), confidence)) {
-    const ScoredThing& find = found[at(f)];
+    const EvaluatedObject& find = found[at(f)];
     if (std::isnan(find.diameter)) continue;
     const double reach = std::min(find.diameter, largest) / 2 + find.diameter / 2;
     int best = -1;
@@ -73,15 +73,15 @@ Pairing by_overlap(std::span<const ScoredThing> found, std::span<const ScoredThi
     for (const std::size_t t : index.within({find.at.x(), find.at.y(), 0}, reach)) {
       if (std::isnan(truth[t].diameter)) continue;
       const double overlap = circle_overlap((find.at - truth[t].at).norm(), find.diameter, truth[t].diameter);
-      if (overlap < rules.least_overlap) continue;
+      if (overlap < rules.min_overlap) continue;
       pairing.near[at(f)] = true;
-      // One that counts goes before one that is ignored.
+      // Counted objects take precedence over ignored ones.
       const double worth = overlap + (truth[t].ignored ? 0 : 1);
       if (!taken[t] && worth > most) best = static_cast<int>(t), most = worth;
     }
     if (best < 0) continue;
     taken[at(best)] = true;
-    pairing.truth_of[at(f)] = best;
+    pairing.truth_index[at(f)] = best;
   }
   return pairing;
 }
@@ -104,8 +104,8 @@ double circle_overlap(double distance, double diameter_a, double diameter_b) {
   return all > 0 ? shared / all : 0;
 }
 
-Pairing pair_up(std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
-                const MatchRules& rules) {
+ObjectMatching match_objects(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
+                             const MatchRules& rules) {
   return rules.by == MatchRules::By::distance ? by_distance(found, truth, rules)
                                               : by_overlap(found, truth, rules);
 }

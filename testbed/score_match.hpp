@@ -5,15 +5,15 @@
 #include "testbed/score.hpp"
 namespace waymark {
 
-/// Per find the index of its true thing or -1. Deterministic: ties by index.
-struct Pairing {
-  std::vector<int> truth_of;  ///< per find
-  std::vector<bool> near;     ///< per find: lies in the match radius of some true thing of like size
+/// Matching of detections to true objects. Deterministic: ties by index.
+struct ObjectMatching {
+  std::vector<int> truth_index;  ///< per detection: index of its true object, or -1
+  std::vector<bool> near;  ///< per detection: within the matching radius of a true object of similar size
 };
-Pairing pair_up(std::span<const ScoredThing> found, std::span<const ScoredThing> truth,
-                const MatchRules& rules);
+ObjectMatching match_objects(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
+                             const MatchRules& rules);
 
-/// Intersection over union of two circles.
+/// Returns the intersection over union of two circles.
 double circle_overlap(double distance, double diameter_a, double diameter_b);
 
 }  // namespace waymark

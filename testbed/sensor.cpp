@@ -16,7 +16,7 @@ std::vector<double> gaussian(double sd) {
   std::vector<double> weights;
   double sum = 0;
   for (int i = -reach; i <= reach; ++i) {
-    // Integrated over the pixel, not sampled: a blur of a third of a pixel keeps its width.
+    // Integrated over the pixel, so that a blur of a third of a pixel keeps its width.
     const auto below = [sd](double x) { return 0.5 * std::erfc(-x / (sd * std::sqrt(2.0))); };
     weights.push_back(below(i + 0.5) - below(i - 0.5));
     sum += weights.back();
@@ -51,14 +51,14 @@ Pixels blurred_along(const Pixels& image, const std::vector<double>& weights, st
 
 }  // namespace
 
-Pixels blurred(const Pixels& image, double sd) {
+Pixels gaussian_blur(const Pixels& image, double sd) {
   if (!(sd > 0)) return image;
   const std::vector<double> weights = gaussian(sd);
   return blurred_along(blurred_along(image, weights, 1, 0), weights, 0, 1);
 }
 
-Pixels exposed(const Pixels& light, const Exposure& exposure, double sunlit, std::uint64_t noise_seed) {
-  Pixels image = blurred(light, exposure.psf_sd);
+Pixels apply_sensor(const Pixels& light, const Exposure& exposure, double sunlit, std::uint64_t noise_seed) {
+  Pixels image = gaussian_blur(light, exposure.psf_sd);
   const double air = exposure.haze * sunlit;
   double sum = 0;
   std::int64_t count = 0;
@@ -71,7 +71,7 @@ Pixels exposed(const Pixels& light, const Exposure& exposure, double sunlit, std
   const double mean = sum / double(count);
   const double gain = exposure.level > 0 && mean > 0 ? exposure.level / mean : 1;
   tbb::parallel_for(std::int64_t{0}, image.rows(), [&](std::int64_t j) {
-    Random random(mixed(noise_seed) ^ mixed(static_cast<std::uint64_t>(j)));
+    Random random(mix_bits(noise_seed) ^ mix_bits(static_cast<std::uint64_t>(j)));
     for (float& p : image.row(j)) {
       const double noise = random.normal();
       if (std::isnan(p)) continue;

@@ -9,24 +9,25 @@
 namespace waymark {
 namespace {
 
-constexpr double kSmallestShown = 2;  // pixels; smaller outlines are not listed per image
+constexpr double kMinListed = 2;  // pixels; minimum size of an outline listed per image
 
-struct Sightings {
+struct Appearances {
   int images = 0;
   double pixels = 0;
 };
 
-// Lists the thing in every image that shows all of it.
+// Lists the object in every image that shows all of it.
 template <class Thing>
-Sightings sight(const Thing& thing, const char* type, std::size_t index, const std::vector<Shot>& shots,
-                const std::vector<View>& views, std::string& detections) {
-  Sightings seen;
+Appearances list_appearances(const Thing& thing, const char* type, std::size_t index,
+                             const std::vector<Shot>& shots, const std::vector<View>& views,
+                             std::string& detections) {
+  Appearances seen;
   for (std::size_t i = 0; i < shots.size(); ++i) {
-    const auto shape = outline_in(views[i], thing);
+    const auto shape = image_outline(views[i], thing);
     if (!shape) continue;
     ++seen.images;
     seen.pixels = std::max(seen.pixels, shape->diameter());
-    if (shape->diameter() >= kSmallestShown)
+    if (shape->diameter() >= kMinListed)
       detections += fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{}\n", shots[i].name, type,
                                 shape->x, shape->y, shape->diameter(), shape->major, shape->minor,
                                 shape->angle * 180 / std::numbers::pi, index);
@@ -45,18 +46,19 @@ TruthTables truth_tables(const Scenario&, const Scene& scene, const std::vector<
       "type,x,y,z,radius,height,depth,major_axis,minor_axis,orientation,images,pixels,shape,preserved\n";
   std::size_t row = 0;
   for (const TrueCrater& c : scene.craters) {
-    const bool kept = c.preserved() >= kErased;
+    const bool kept = c.preserved_fraction() >= kErased;
     std::string unlisted;
-    const Sightings seen = sight(c, "crater", row, shots, views, kept ? tables.detections : unlisted);
+    const Appearances seen =
+        list_appearances(c, "crater", row, shots, views, kept ? tables.detections : unlisted);
     (kept ? tables.landmarks : tables.ignored) +=
         fmt::format("crater,{:.3f},{:.3f},{:.3f},{:.3f},,{:.3f},{:.3f},{:.3f},{:.4f},{},{:.2f},,{:.2f}\n",
                     c.position.x(), c.position.y(), c.position.z(), c.diameter() / 2, c.depth, c.major,
-                    c.minor, c.orientation, seen.images, seen.pixels, c.preserved());
+                    c.minor, c.orientation, seen.images, seen.pixels, c.preserved_fraction());
     if (kept) ++row;
   }
   constexpr const char* kShapes[] = {"ellipsoid", "irregular", "cylinder"};
   for (const TrueRock& r : scene.rocks) {
-    const Sightings seen = sight(r, "rock", row, shots, views, tables.detections);
+    const Appearances seen = list_appearances(r, "rock", row, shots, views, tables.detections);
     tables.landmarks += fmt::format("rock,{:.3f},{:.3f},{:.3f},{:.4f},{:.4f},,,,,{},{:.2f},{},\n",
                                     r.position.x(), r.position.y(), r.position.z(), r.width / 2, r.height,
                                     seen.images, seen.pixels, kShapes[static_cast<std::size_t>(r.shape)]);

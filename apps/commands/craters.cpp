@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
-
 #include "apps/shortcut.hpp"
-#include "pipeline/craters/dem_blocks.hpp"
+#include "workflows/mapping/jobs.hpp"
 
 namespace waymark {
 namespace {
@@ -20,7 +18,7 @@ class Craters final : public Shortcut {
             .group = Group::make,
             .summary = "Find the craters of a DEM",
             .about =
-                "Dishes with rims are sought in the heights at every size from --min-diameter to "
+                "Bowls with rims are detected in the heights at every size from --min-diameter to "
                 "--max-diameter cells; each gets its ellipse, depth, rim height and a probability. "
                 "Craters of images: `waymark detect craters`, or a job with craters_from_bowls.",
             .arguments = {Argument{"--dem", "DEM...", &files_,
@@ -34,11 +32,7 @@ class Craters final : public Shortcut {
                           "The job, to change it and `waymark run` it"}}};
   }
 
-  void add_stages(Pipeline& pipeline) const override {
-    pipeline.add("load_dem",
-                 nlohmann::json{{"files", files_}, {"nodata", "unknown"}, {"tile_cells", kDemCore}}.dump());
-    for (const char* stage : {"craters_from_dem", "merge_observations", "value_surveys"}) pipeline.add(stage);
-  }
+  void add_stages(Pipeline& pipeline) const override { add_crater_stages(pipeline, files_); }
 
   std::vector<std::string> files_;
 };

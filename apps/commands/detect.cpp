@@ -1,67 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
-#include <cmath>
-#include <filesystem>
-
+#include "workflows/detection/detect.hpp"
 #include "apps/command.hpp"
-#include "apps/detect_request.hpp"
-#include "apps/find_in_image.hpp"
-#include "apps/log.hpp"
-#include "apps/progress.hpp"
-#include "apps/registries.hpp"
-#include "apps/session.hpp"
-#include "apps/write_detections.hpp"
+#include "apps/console.hpp"
 
 namespace waymark {
 namespace {
 
+std::vector<Argument> detect_arguments(DetectRequest& request) {
+  return {
+      Argument{"", "craters|rocks|trees", &request.kind, "What to detect"}.needed().offering(
+          {"craters", "rocks", "trees"}),
+      file_word("IMAGE", &request.image, "Image that GDAL opens, /vsi paths too"),
+      Argument{"-o,--output", "OUT", &request.output,
+               "Table to write: .csv, .geojson or .gpkg; an older one is replaced"}
+          .needed()
+          .offering(Offer::file),
+      Argument{"--method", "NAME", &request.method,
+               "Method: bowl or edges for craters, shadow or classic for "
+               "rocks; imagery (colour), peaks or lmf (heights above ground) for trees"}
+          .offering({"bowl", "edges", "shadow", "classic", "imagery", "peaks", "lmf"})
+          .or_else("bowl, shadow; of trees by the bands of the image"),
+      Argument{"--image-sun-angle", "DEG", &request.image_sun_angle,
+               "Direction towards the sun in the image, from x (right) towards y (down)"}
+          .or_else("estimated from the image"),
+      {"--sun-azimuth", "DEG", &request.sun_azimuth,
+       "Azimuth of the sun, clockwise from map north, of a georeferenced image"},
+      {"--sun-elevation", "DEG", &request.sun_elevation, "Sun above the horizon: gives rocks their heights"},
+      {"--gsd", "M", &request.gsd, "Size of a pixel on the ground, of an image without georeference"},
+      Argument{"--min-diameter", "PX", &request.min_diameter, "Smallest object detected"}.or_else(
+          "8 for craters, 1.5 for rocks"),
+      Argument{"--max-diameter", "PX", &request.max_diameter, "Largest object detected"}.or_else(
+          "0.6 of the shorter side for craters, 100 for rocks"),
+      Argument{"--min-confidence", "P", &request.min_confidence, "Drop less probable detections"}.or_else(
+          "0.5; nothing of trees found by heights"),
+      Argument{"--band", "N", &request.band, "Band of the image, from 1"}.or_else(
+          "brightness of a colour image, else the first"),
+      Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
+      Argument{"--tile-pixels", "N", &request.piece, "Side of the pieces a large image is searched in"}
+          .or_else("8192")};
+}
+
 class Detect final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "detect",
-            .group = Group::make,
-            .summary = "Find craters, rocks or trees in one image",
-            .about =
-                "Works on any image GDAL reads, whatever its size, without a camera or a DEM. Results are "
-                "pixels: "
-                "(0, 0) is the centre of the first pixel, x to the right, y down. An orthophoto gives map "
-                "units as "
-                "well, and so does --gsd.\n\n"
-                "CSV has the columns x, y, diameter, major, minor, angle (of the major axis, degrees from x "
-                "towards "
-                "y), confidence, then the features of the type in metres and radians where the size of a "
-                "pixel is "
-                "known, then map_x and map_y where the image is georeferenced. GeoJSON has the same as "
-                "properties; "
-                "a GeoPackage is a map like any other.\n\n"
-                "The direction of the light is estimated from the image where it is not told. Heights of "
-                "rocks need "
-                "--sun-elevation and the size of a pixel.",
-            .arguments = arguments(request_),
-            .examples = {
-                {"waymark detect craters mosaic.png -o craters.csv", "Pixels; the sun is estimated"},
-                {"waymark detect rocks ortho.tif -o rocks.gpkg --sun-azimuth 270 --sun-elevation 30",
-                 "A map with heights"},
-                {"waymark detect rocks descent.png -o rocks.csv --image-sun-angle 135 --sun-elevation 25 "
-                 "--gsd 0.05",
-                 "Metres without a georeference"},
-                {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
-                 "Another method, the surer ones only"},
-                {"waymark detect trees naip.tif -o trees.gpkg",
-                 "Crowns in an RGB or RGB + near infrared image"}}};
+    return {
+        .name = "detect",
+        .group = Group::make,
+        .summary = "Find craters, rocks or trees in one image",
+        .about =
+            "Works on any image GDAL reads, whatever its size, without a camera or a DEM. Results are "
+            "pixels: (0, 0) is the centre of the first pixel, x to the right, y down. An orthophoto gives "
+            "map units as well, and so does --gsd.\n\n"
+            "CSV has the columns x, y, diameter, major, minor, angle (of the major axis, degrees from x "
+            "towards y), confidence, then the features of the type in metres and radians if the size of a "
+            "pixel is known, then map_x and map_y if the image is georeferenced. GeoJSON has the same as "
+            "properties; a GeoPackage is a map like any other.\n\n"
+            "The direction of the light is estimated from the image unless it is given. Heights of rocks "
+            "need --sun-elevation and the size of a pixel.",
+        .arguments = detect_arguments(request_),
+        .examples = {
+            {"waymark detect craters mosaic.png -o craters.csv", "Pixels; the sun is estimated"},
+            {"waymark detect rocks ortho.tif -o rocks.gpkg --sun-azimuth 270 --sun-elevation 30",
+             "A map with heights"},
+            {"waymark detect rocks descent.png -o rocks.csv --image-sun-angle 135 --sun-elevation 25 "
+             "--gsd 0.05",
+             "Metres without a georeference"},
+            {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
+             "Another method, the surer ones only"},
+            {"waymark detect trees naip.tif -o trees.gpkg",
+             "Crowns in an RGB or RGB + near infrared image"}}};
   }
 
   int run(const Session& session) override {
-    const DetectPlan plan = plan_of(request_);
-    check_detection_output(request_.output);
-    const auto started = std::chrono::system_clock::now();
-    for (const std::string& warning : plan.warnings) log_warning(warning);
-    FoundInImage found = find_in_image(plan, static_cast<int>(session.threads), progress_renderer(session));
-    for (const std::string& warning : found.warnings) log_warning(warning);
-    if (!found.light.empty()) say(found.light + "\n");
-    write_detections(request_.output, found.detections, plan.image->info().path, session, started);
-    say(fmt::format("{}: {} {}\n", request_.output, found.detections.detections.size(), request_.kind));
+    request_.threads = static_cast<int>(session.threads);
+    request_.command_line = session.command_line;
+    detect(request_, console_callbacks(session));
     return 0;
   }
 

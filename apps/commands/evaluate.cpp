@@ -2,14 +2,35 @@
 #include <iostream>
 
 #include "apps/command.hpp"
-#include "apps/evaluate_track.hpp"
-#include "apps/registries.hpp"
+#include "apps/console.hpp"
 #include "apps/score_text.hpp"
-#include "apps/scored_table.hpp"
-#include "core/error.hpp"
+#include "workflows/evaluation/evaluate.hpp"
 
 namespace waymark {
 namespace {
+
+std::vector<Argument> track_arguments(TrackEvaluation& into) {
+  return {
+      Argument{"--align", "HOW", &into.align, "track: how it is aligned with the truth first"}
+          .one_of({"none", "se2", "sim2"})
+          .or_else("none"),
+      Argument{"--log-format", "FORMAT", &into.log_format.format, "track: format of a truth that is a log"}
+          .one_of({"waymark", "mrclam", "victoria-park"})
+          .or_else("recognised"),
+      Argument{"--robot", "K", &into.log_format.robot,
+               "track: which robot of an MRCLAM dataset is the truth"},
+      Argument{"--picture", "FILE.svg", &into.picture, "track: draw truth, track and their errors"}.offering(
+          Offer::file),
+      Argument{
+          "--map", "MAP", &into.map,
+          "track: map that the robot used; it is drawn, and a truth in CRS coordinates is put into its frame"}
+          .offering(Offer::file),
+      Argument{"--also", "NAME=TRACK", &into.also, "track: another track of the picture; may be repeated"},
+      Argument{"--max-gap", "S", &into.max_gap,
+               "track: seconds between two true poses that may be interpolated"}
+          .or_else("0.5")
+          .formerly("--longest-gap")};
+}
 
 class Evaluate final : public Command {
  public:
@@ -19,39 +40,46 @@ class Evaluate final : public Command {
         .group = Group::look_up,
         .summary = "Compare a map or a list of detections with the truth",
         .about =
-            "Both may be maps, CSV or anything GDAL reads as points; only numbers are compared, so both must "
-            "be in one coordinate system (pixels with pixels, metres with metres). Sizes come from the "
-            "column "
-            "diameter, or radius, or major_axis and minor_axis. Every other column of numbers that both have "
-            "is compared as a feature. Confidences, qualities and covariances of the result are checked "
-            "against what is true: the expected calibration error and the share of errors inside the 90 % "
-            "ellipses.\n\n"
-            "True things are matched one to one, largest first, with the nearest find within 0.75 diameters "
-            "(--by overlap: most confident find first, circles with intersection over union of 0.5). True "
-            "things that no image shows wholly, or none larger than --min-pixels, are not asked for (columns "
-            "images and pixels of a testbed's truth), nor are those of --ignore.",
+            "Both may be maps, CSV or anything GDAL reads as points. Only numbers are compared, so both "
+            "must be in one coordinate system (pixels with pixels, metres with metres). Sizes come from "
+            "the column diameter, or radius, or major_axis and minor_axis. Every other column of numbers "
+            "that both have is compared as a feature. Confidences, qualities and covariances of the "
+            "result are checked against the truth: the expected calibration error and the fraction of "
+            "errors inside the 90 % ellipses.\n\n"
+            "True objects are matched one to one, largest first, with the nearest detection within 0.75 "
+            "diameters (--by overlap: most confident detection first, circles with intersection over "
+            "union of 0.5). True objects that no image shows completely, or none larger than --min-"
+            "pixels, are not evaluated (columns images and pixels of a testbed's truth), nor are those of "
+            "--ignore.",
         .arguments =
             {Argument{"", "WHAT", &what_, "What is compared"}.one_of({"landmarks", "track"}).needed(),
-             file_word("RESULT", &result_, "Map or table of what was found"),
-             Argument{"--truth", "FILE", &truth_, "Map or table of what is there"}
+             file_word("RESULT", &landmarks_.result, "Map or table of detected objects"),
+             Argument{"--truth", "FILE", &landmarks_.truth, "Map or table of true objects"}
                  .offering(Offer::file)
                  .needed(),
-             Argument{"--ignore", "FILE", &ignore_,
-                      "More true things: finding or missing one of these counts neither way"}
+             Argument{"--ignore", "FILE", &landmarks_.ignore,
+                      "More true objects: detecting or missing one of these counts neither way"}
                  .offering(Offer::file),
-             Argument{"--type", "TYPE", &type_, "Compare one landmark type only"}.or_else(
+             Argument{"--type", "TYPE", &landmarks_.type, "Compare one landmark type only"}.or_else(
                  "all that the truth has"),
-             Argument{"--by", "RULE", &by_, "How pairs are found"}
+             Argument{"--by", "RULE", &landmarks_.match_by, "How pairs are found"}
                  .one_of({"distance", "overlap"})
                  .or_else("distance"),
-             Argument{"--share", "DIAMETERS", &share_, "Largest distance of a pair"}.or_else("0.75"),
-             Argument{"--least", "UNITS", &least_, "Distance that is always allowed"}.or_else("0"),
-             Argument{"--min-diameter", "UNITS", &min_diameter_, "Smaller things are not asked for"}.or_else(
-                 "0"),
-             Argument{"--min-pixels", "PIXELS", &min_pixels_,
-                      "Things smaller than this in every image are not asked for"}
+             Argument{"--tolerance", "DIAMETERS", &landmarks_.max_distance, "Largest distance of a pair"}
+                 .or_else("0.75")
+                 .formerly("--share"),
+             Argument{"--min-tolerance", "UNITS", &landmarks_.always_allowed_distance,
+                      "Distance that is always allowed"}
+                 .or_else("0")
+                 .formerly("--least"),
+             Argument{"--min-diameter", "UNITS", &landmarks_.min_diameter,
+                      "Smaller objects are not evaluated"}
+                 .or_else("0"),
+             Argument{"--min-pixels", "PIXELS", &landmarks_.min_pixels,
+                      "Objects smaller than this in every image are not evaluated"}
                  .or_else("3"),
-             Argument{"--size-edges", "D...", &edges_, "Diameters between which results are told apart"},
+             Argument{"--size-edges", "D...", &landmarks_.size_edges,
+                      "Diameters between which results are reported separately"},
              Argument{"--format", "FORMAT", &format_, "text or json"}
                  .one_of({"text", "json"})
                  .or_else("text")},
@@ -63,41 +91,24 @@ class Evaluate final : public Command {
     return spec;
   }
 
-  int run(const Session&) override {
+  int run(const Session& session) override {
     if (what_ == "track") {
-      std::cout << evaluate_track(result_, truth_, format_, track_);
+      track_.track = landmarks_.result;
+      track_.truth = landmarks_.truth;
+      const TrackScore score = evaluate(track_);
+      std::cout << (format_ == "json" ? track_score_as_json(score, track_.align)
+                                      : track_score_as_text(score, track_.align));
       return 0;
     }
-    if (!(share_ >= 0) || !(least_ >= 0) || !(min_diameter_ >= 0))
-      throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
-    const ScoredTables found = scored_things(result_, type_, 0);
-    ScoredTables truth = scored_things(truth_, type_, min_pixels_);
-    if (!ignore_.empty())
-      for (auto& [type, things] : scored_things(ignore_, type_, 0))
-        for (ScoredThing& thing : things) {
-          thing.ignored = true;
-          truth[type].push_back(thing);
-        }
-    std::map<std::string, Score> scores;
-    MatchRules rules{.by = by_ == "overlap" ? MatchRules::By::overlap : MatchRules::By::distance,
-                     .share = share_,
-                     .least = least_,
-                     .min_diameter = min_diameter_};
-    for (const auto& [type, things] : paired_types(found, truth, type_)) {
-      rules.scales.clear();
-      if (const LandmarkType* known = all_types().find(type))
-        for (const FeatureSpec& feature : known->features) rules.scales[feature.name] = feature.scale;
-      scores[type] = score(things.first, things.second, rules, edges_);
-    }
+    const auto scores = evaluate(landmarks_, console_callbacks(session));
     std::cout << (format_ == "json" ? scores_as_json(scores) : scores_as_text(scores));
     return 0;
   }
 
  private:
+  std::string what_, format_ = "text";
+  LandmarkEvaluation landmarks_;
   TrackEvaluation track_;
-  std::string what_, result_, truth_, ignore_, type_, by_ = "distance", format_ = "text";
-  double share_ = 0.75, least_ = 0, min_diameter_ = 0, min_pixels_ = 3;
-  std::vector<double> edges_;
 };
 
 }  // namespace

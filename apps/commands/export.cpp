@@ -4,8 +4,8 @@
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
-#include "apps/registries.hpp"
-#include "exporters/export_map.hpp"
+#include "exporters/vector/export_map.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
@@ -19,14 +19,13 @@ class Export final : public Command {
         .summary = "Write the landmarks of a map in another format",
         .about =
             "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.\n\n"
-            "Crater counts for craterstats: .scc has the craters with their places and the outline of the "
-            "area "
-            "they were counted on, .diam their diameters. The area is that of the images' footprints, or of "
+            "Crater counts for craterstats: .scc has the craters with their positions and the outline of "
+            "the counting area, .diam their diameters. The area is that of the images' footprints, or of "
             "the DEM.",
         .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
-                      file_word("OUT", &out_, "File to write; its extension tells the format"),
+                      file_word("OUT", &out_, "File to write; its extension selects the format"),
                       Argument{"-of,--format", "OGR_DRIVER", &options_.driver,
-                               "Format by GDAL's name, where the extension does not tell"}
+                               "Format by GDAL's name, if the extension is ambiguous"}
                           .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
                           .offering(all_types().names()),
@@ -45,8 +44,9 @@ class Export final : public Command {
   int run(const Session&) override {
     const ExportSummary done = export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
-    for (const ExportedLayer& layer : done.layers) say(fmt::format("{} {}\n", layer.landmarks, layer.type));
-    say(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
+    for (const ExportedLayer& layer : done.layers)
+      log_summary(fmt::format("{} {}\n", layer.landmarks, layer.type));
+    log_summary(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
     return 0;
   }
 

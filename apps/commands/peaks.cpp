@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
+#include <algorithm>
 
 #include "apps/shortcut.hpp"
+#include "workflows/mapping/jobs.hpp"
 
 namespace waymark {
 namespace {
@@ -9,10 +10,12 @@ namespace {
 class Peaks final : public Shortcut {
  public:
   Peaks()
-      : Shortcut({"find_mountain_tops.min_prominence", "map_mountain_tops.min_isolation", "load_dem.nodata",
-                  "join_mountain_tops.base", "measure_isolation.isolation", "measure_isolation.distance",
-                  "map_mountain_tops.visible_range", "load_dem.crs", "load_dem.height_sd",
-                  "load_dem.tile_cells", "load_dem.memory"}) {}
+      : Shortcut({"find_mountain_tops.min_prominence", "mountain_tops_of_tile.min_isolation",
+                  "load_dem.nodata", "join_mountain_tops.base", "measure_isolation.isolation",
+                  "measure_isolation.distance", "mountain_tops_of_tile.visible_range", "load_dem.aoi",
+                  "load_dem.crs", "load_dem.band", "load_dem.height_unit", "load_dem.height_scale",
+                  "load_dem.height_sd", "load_dem.fill_distance", "load_dem.tile_cells", "load_dem.memory"}) {
+  }
 
  private:
   CommandSpec describe_own() override {
@@ -23,9 +26,10 @@ class Peaks final : public Shortcut {
         .about =
             "Several files that touch or overlap are one DEM. The result does not depend on --threads or "
             "--tile-cells. Every height that hidden ground could change comes with a certified lower bound.",
-        .arguments = {file_word(
-            "DEM...", &files_,
-            "Elevation models that GDAL opens, /vsi paths too; where they overlap the first wins")},
+        .arguments = {file_word("DEM...", &files_,
+                                "Elevation models that GDAL opens, /vsi paths too, - for standard input; "
+                                "where they overlap the first "
+                                "wins")},
         .examples = {
             {"waymark peaks alps.tif -o alps.gpkg --min-prominence 30",
              "A map of the summits that rise 30 m"},
@@ -33,14 +37,15 @@ class Peaks final : public Shortcut {
              "Two tiles with voids filled"},
             {"waymark peaks mola.tif -o mars.gpkg --base lowest --min-isolation 50000",
              "A global grid of Mars"},
+            {"waymark peaks alps.tif -o valais.gpkg --aoi valais.geojson",
+             "Summits of a region, measured on the whole DEM"},
             {"waymark peaks alps.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
   }
 
   void add_stages(Pipeline& pipeline) const override {
-    pipeline.add("load_dem", nlohmann::json{{"files", files_}}.dump());
-    for (const char* stage :
-         {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
-      pipeline.add(stage);
+    std::vector<std::string> files = files_;
+    std::ranges::replace(files, "-", "/vsistdin/");
+    add_mountain_top_stages(pipeline, files);
   }
 
   std::vector<std::string> files_;

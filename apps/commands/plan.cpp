@@ -3,10 +3,10 @@
 
 #include <iostream>
 
-#include "apps/level_ground.hpp"
-#include "apps/make_map.hpp"
-#include "apps/registries.hpp"
+#include "apps/command.hpp"
+#include "apps/console.hpp"
 #include "core/error.hpp"
+#include "workflows/mapping/make_map.hpp"
 
 namespace waymark {
 namespace {
@@ -20,7 +20,7 @@ class PlanJob final : public Command {
         .summary = "Print the units of work of a job, for a scheduler",
         .about =
             "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines "
-            "that share the --work folder need nothing else in common.",
+            "that share the --work folder need share nothing else.",
         .arguments = {file_word("JOB.json", &job_, "Job file"),
                       Argument{"--as", "FORM", &as_, "JSON lines, a Snakefile, or a script of sbatch calls"}
                           .one_of({"jsonl", "snakemake", "slurm"})
@@ -41,12 +41,11 @@ class PlanJob final : public Command {
       throw Error(ErrorCode::usage,
                   "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
                   "write the options into " + job_);
-    Job job = read_job(job_, all_stages());
-    ask_for_metres(job.pipeline);
-    for (const std::string& setting : settings_) job.pipeline.set(setting);
-    RunOptions options = run_options(session);
-    options.work = work_;
-    const Plan units = plan(job.pipeline, options);
+    const Job job = load_job(job_, settings_);
+    const MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
+    const Callbacks callbacks = console_callbacks(session);
+    for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
+    const Plan units = plan(job.pipeline, run_options(request, callbacks));
     const PlanCommand call{.job = job_, .work = work_};
     std::cout << (as_ == "snakemake" ? plan_as_snakemake(units, call)
                   : as_ == "slurm"   ? plan_as_slurm(units, call)

@@ -1,15 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
-#include <unordered_map>
 
 #include "apps/command.hpp"
 #include "apps/landmark_formats.hpp"
-#include "apps/query_area.hpp"
-#include "apps/query_request.hpp"
-#include "exporters/vector_format.hpp"
+#include "workflows/query/query.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
+
+std::vector<Argument> query_arguments(QueryRequest& request) {
+  return {
+      Argument{"--type", "T", &request.types, "Landmarks of this type; may be repeated"}
+          .offering(all_types().names())
+          .or_else("all"),
+      {"--bbox", "X0 Y0 X1 Y1", &request.bbox, "Landmarks in this box; X0 > X1 crosses the antimeridian"},
+      {"--near", "X Y RADIUS", &request.near, "Landmarks within RADIUS metres of X Y, nearest first"},
+      {"--nearest", "X Y COUNT", &request.nearest, "The COUNT landmarks nearest to X Y"},
+      {"--min", "FEATURE=VALUE", &request.min_features,
+       "Landmarks whose feature, or confidence, quality, seen or other number, is at least this; may be "
+       "repeated"},
+      {"--max", "FEATURE=VALUE", &request.max_features,
+       "Landmarks whose feature or other number is at most this; may be repeated"},
+      Argument{"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed"}.or_else("the map's"),
+      Argument{"--sensor", "NAME", &request.sensor,
+               "Quality as this sensor sees it; `waymark sensors` lists them"}
+          .offering(all_sensors().names()),
+      {"--min-confidence", "P", &request.min_confidence,
+       "Landmarks that exist with at least this probability, 0 to 1"},
+      {"--min-quality", "Q", &request.min_quality,
+       "Landmarks of at least this quality, 0 to 1; leaves out those seen once of once, which have none"},
+      {"--largest", "FEATURE", &request.largest,
+       "Largest values of this feature, or of confidence or another number, first"},
+      {"--limit", "N", &request.limit, "At most this many"},
+  };
+}
 
 class Query final : public Command {
  public:
@@ -37,28 +62,17 @@ class Query final : public Command {
   }
 
   int run(const Session&) override {
-    const MapStore map = MapStore::open(map_);
-    const MapQuestion question(request_, map);
-    const Crs printed = format_ == "geojson" ? output_crs(kGeoJson, map.crs(), "", map_) : question.crs();
-    const std::vector<Landmark> found = question.answer(map);
-    RowContext context{.types = &map.types(), .sensor = question.sensor()};
-    if (question.from_point()) context.distance = distances(question, map, found);
-    print(row_columns(request_.types.empty() ? map.types().names() : request_.types, context),
-          in_crs(found, map.types(), map.crs(), printed), printed);
+    request_.wgs84 = format_ == "geojson";
+    const QueryResult found = query(map_, request_);
+    RowContext context{.types = &found.types, .sensor = found.sensor};
+    if (!request_.near.empty() || !request_.nearest.empty())
+      context.distance = [&](const Landmark& landmark) { return found.distances.at(landmark.uid); };
+    print(row_columns(request_.types.empty() ? found.types.names() : request_.types, context),
+          found.landmarks, found.crs);
     return 0;
   }
 
  private:
-  inline static const VectorFormat kGeoJson{.driver = "GeoJSON", .earth_only = true, .only_wgs84 = true};
-
-  /// Measured before the landmarks are moved to another CRS.
-  static std::function<double(const Landmark&)> distances(const MapQuestion& question, const MapStore& map,
-                                                          const std::vector<Landmark>& found) {
-    std::unordered_map<std::string, double> by_uid;
-    for (const Landmark& landmark : found) by_uid[landmark.uid] = question.distance(map, landmark);
-    return [by_uid = std::move(by_uid)](const Landmark& landmark) { return by_uid.at(landmark.uid); };
-  }
-
   void print(const std::vector<RowColumn>& columns, const std::vector<Landmark>& landmarks,
              const Crs& crs) const {
     if (format_ == "csv") return print_csv(std::cout, columns, landmarks);

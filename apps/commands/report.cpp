@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/command.hpp"
 #include "apps/log.hpp"
-#include "apps/scored_table.hpp"
-#include "core/error.hpp"
-#include "exporters/report_html.hpp"
+#include "exporters/report/report_html.hpp"
+#include "workflows/evaluation/evaluate.hpp"
 
 namespace waymark {
 namespace {
@@ -16,10 +15,10 @@ class Report final : public Command {
         .group = Group::use,
         .summary = "Write a report of a map as one HTML file",
         .about =
-            "Shaded relief with the landmarks, the foremost of each type, histograms, the size-frequency "
-            "distribution of craters, how good the landmarks are, images with what was found in them, "
-            "what the run read and did. It needs no network and no other file. Relief and images come from "
-            "the map, or from the run's input files where they are still there.",
+            "Shaded relief with the landmarks, the most important of each type, histograms, the size-"
+            "frequency distribution of craters, landmark quality, images with their detections, and what "
+            "the run read and did. The page needs no network and no other file. Relief and images come "
+            "from the map, or from the run's input files if they still exist.",
         .arguments =
             {file_word("MAP.gpkg", &map_, "Map to read"),
              Argument{"-o,--output", "REPORT.html", &html_, "Report to write; an older one is replaced"}
@@ -30,8 +29,8 @@ class Report final : public Command {
              Argument{"--images", "N", &options_.images, "Images shown with what was found in them"}.or_else(
                  "4"),
              Argument{"--truth", "FILE", &truth_,
-                      "Map or table of what is there: shows how far confidence and quality are "
-                      "right (see `waymark evaluate`)"}
+                      "Map or table of true objects: shows how reliable confidence and quality "
+                      "are (see `waymark evaluate`)"}
                  .offering(Offer::file)},
         .examples = {
             {"waymark report alps.gpkg -o alps.html", "A report to read and to print"},
@@ -39,28 +38,13 @@ class Report final : public Command {
   }
 
   int run(const Session&) override {
-    if (!truth_.empty()) compare_with_truth();
+    if (!truth_.empty()) options_.checks = check_quality(map_, truth_);
     write_report(map_, html_, options_);
-    say(html_ + "\n");
+    log_summary(html_ + "\n");
     return 0;
   }
 
  private:
-  void compare_with_truth() {
-    constexpr double least_pixels = 3;  // as evaluate has it
-    const auto pairs = paired_types(scored_things(map_, "", 0), scored_things(truth_, "", least_pixels), "");
-    for (const auto& [type, things] : pairs) {
-      const Score result = score(things.first, things.second, {});
-      for (const auto& [claim, bins, error] :
-           {std::tuple{"confidence", result.by_confidence, result.confidence_error},
-            {"quality", result.by_quality, result.quality_error}}) {
-        QualityCheck check{.type = type, .claim = claim, .bins = {}, .expected_error = error};
-        for (const CalibrationBin& bin : bins) check.bins.push_back({bin.mean, bin.found, bin.right});
-        options_.checks.push_back(std::move(check));
-      }
-    }
-  }
-
   std::string map_, html_, truth_;
   ReportOptions options_;
 };

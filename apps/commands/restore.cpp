@@ -13,18 +13,18 @@ class Restore final : public Command {
   CommandSpec describe() override {
     return {.name = "restore",
             .group = Group::make,
-            .summary = "Take back the last update of a map",
+            .summary = "Undo the last update of a map",
             .about =
                 "Puts back the state a map had before `waymark localize --update-map` last changed it. "
                 "That state lies beside the map as MAP.gpkg.before-run-N, N the number of the run; it "
-                "is used up. Earlier updates can be taken back in turn.",
+                "is used up. Earlier updates can be undone in turn.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to restore")},
-            .examples = {{"waymark restore site.gpkg", "Take back what the last drive changed"}}};
+            .examples = {{"waymark restore site.gpkg", "Undo the changes of the last drive"}}};
   }
 
   int run(const Session&) override {
     const auto backup = restore_map(map_);
-    say(fmt::format("{}: as it was in {}\n", map_, backup.string()));
+    log_summary(fmt::format("{}: as it was in {}\n", map_, backup.string()));
     return 0;
   }
 

@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 
-#include "apps/level_ground.hpp"
-#include "apps/make_map.hpp"
-#include "apps/registries.hpp"
+#include "apps/map_arguments.hpp"
 #include "core/error.hpp"
 
 namespace waymark {
 namespace {
 
-Shard shard_of(const std::string& text) {
+Shard parse_shard(const std::string& text) {
   Shard shard;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 || shard.index < 1 ||
       shard.index > shard.count)
     throw Error(ErrorCode::usage, "--shard must be I/N with 1 <= I <= N, is '" + text + "'", "",
-                "e.g. --shard 3/8 for the third of eight shares");
+                "e.g. --shard 3/8 for the third of eight shards");
   return shard;
 }
 
@@ -28,8 +26,8 @@ class Run final : public Command {
     all.push_back(
         {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
     all.push_back(
-        {"--shard", "I/N", &shard_, "Do the I-th of N shares; all shares use the same --work folder"});
-    all.push_back({"--unit", "ID", &unit_, "Do this unit of work only; `waymark plan` lists them"});
+        {"--shard", "I/N", &shard_, "Run the I-th of N shards; all shards use the same --work folder"});
+    all.push_back({"--unit", "ID", &request_.unit, "Run this unit of work only; `waymark plan` lists them"});
     return {
         .name = "run",
         .group = Group::make,
@@ -48,17 +46,13 @@ class Run final : public Command {
   }
 
   int run(const Session& session) override {
-    Job job = read_job(job_, all_stages());
-    ask_for_metres(job.pipeline);
-    for (const std::string& setting : settings_) job.pipeline.set(setting);
-    RunOptions options = run_options(session);
-    if (!shard_.empty()) options.shard = shard_of(shard_);
-    options.unit = unit_;
-    return make_map(job, request_, options, session);
+    const Job job = load_job(job_, settings_);
+    if (!shard_.empty()) request_.shard = parse_shard(shard_);
+    return make_map_command(job, request_, session);
   }
 
  private:
-  std::string job_, shard_, unit_;
+  std::string job_, shard_;
   std::vector<std::string> settings_;
   MapRequest request_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/described.hpp"
-#include "apps/registries.hpp"
+#include "apps/registry_reference.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
@@ -13,19 +13,19 @@ class Sensors final : public Command {
         .group = Group::look_up,
         .summary = "List the sensor profiles, or describe one with its weights",
         .about =
-            "A sensor profile says how much each feature helps that sensor to tell landmarks apart. "
+            "A sensor profile says how much each feature helps that sensor to distinguish landmarks. "
             "`waymark query --sensor NAME` ranks landmarks by it.",
-        .arguments = describe_arguments(what_, all_sensors().names()),
+        .arguments = reference_arguments(what_, all_sensors().names()),
         .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
   }
 
   int run(const Session&) override {
-    print_described(described(all_sensors(), all_types()), "sensor", what_);
+    print_reference(registry_reference(all_sensors(), all_types()), "sensor", what_);
     return 0;
   }
 
  private:
-  DescribeWhat what_;
+  ReferenceRequest what_;
 };
 
 }  // namespace

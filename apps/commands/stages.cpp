@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/described.hpp"
-#include "apps/registries.hpp"
+#include "apps/registry_reference.hpp"
+#include "pipeline/engine/registry.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
@@ -12,18 +13,18 @@ class Stages final : public Command {
         .name = "stages",
         .group = Group::look_up,
         .summary = "List the stages a job can name, or describe one with all its options",
-        .arguments = describe_arguments(what_, all_stages().names()),
+        .arguments = reference_arguments(what_, all_stages().names()),
         .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
                      {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
   }
 
   int run(const Session&) override {
-    print_described(described(all_stages()), "stage", what_);
+    print_reference(registry_reference(all_stages()), "stage", what_);
     return 0;
   }
 
  private:
-  DescribeWhat what_;
+  ReferenceRequest what_;
 };
 
 }  // namespace

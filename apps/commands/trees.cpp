@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <nlohmann/json.hpp>
-
 #include "apps/shortcut.hpp"
-#include "core/error.hpp"
+#include "workflows/mapping/jobs.hpp"
 
 namespace waymark {
 namespace {
@@ -24,11 +22,11 @@ class Trees final : public Shortcut {
       return Argument{name, word, into, help}.offering(Offer::file);
     };
     std::vector<Argument> all{
-        files("--chm", "CHM...", &chm_, "Canopy height models, heights above ground, that GDAL opens"),
-        files("--dsm", "DSM...", &dsm_, "Surface models, with --dtm"),
-        files("--dtm", "DTM...", &dtm_, "Terrain models, on any grid"),
-        files("--las", "FILE...", &las_, "LAS 1.0 to 1.4 files, one catalogue, ground classified")};
-    all.push_back({"--flights", "", &flights_,
+        files("--chm", "CHM...", &files_.chm, "Canopy height models, heights above ground, that GDAL opens"),
+        files("--dsm", "DSM...", &files_.dsm, "Surface models, with --dtm"),
+        files("--dtm", "DTM...", &files_.dtm, "Terrain models, on any grid"),
+        files("--las", "FILE...", &files_.las, "LAS 1.0 to 1.4 files, one catalogue, ground classified")};
+    all.push_back({"--flights", "", &files_.flights,
                    "Each file is a survey of its own: trees that several saw are merged and valued"});
     all.push_back({"--no-crowns", "", &no_crowns_, "Treetops alone: no crowns, no crown diameters"});
     return {
@@ -36,13 +34,11 @@ class Trees final : public Shortcut {
         .group = Group::make,
         .summary = "Find the trees of a canopy, their crowns and stem diameters",
         .about =
-            "A treetop stands out by its height, its isolation and its prominence, like a mountain top; its "
-            "crown is the ground that drains towards it with the canopy upside down. Stem diameters come "
-            "from "
-            "an allometry table: --allometry, made by `waymark allometry fit`. The map has a point per tree "
-            "(height, diameter, crown_diameter) and a layer of crown polygons. It does not depend on "
-            "--threads "
-            "or --tile-cells.",
+            "A treetop is detected by its height, isolation and prominence, like a mountain top; its "
+            "crown is the area that drains towards it with the canopy upside down. Stem diameters come "
+            "from an allometry table: --allometry, made by `waymark allometry fit`. The map has a point "
+            "per tree (height, diameter, crown_diameter) and a layer of crown polygons. It does not "
+            "depend on --threads or --tile-cells.",
         .arguments = all,
         .examples = {
             {"waymark trees --chm chm.tif -o trees.gpkg --preset conifer", "A map of trees and crowns"},
@@ -57,35 +53,13 @@ class Trees final : public Shortcut {
   }
 
   void add_stages(Pipeline& pipeline) const override {
-    const bool surface = !dsm_.empty() || !dtm_.empty();
-    if (chm_.empty() && las_.empty() && !surface)
-      throw Error(ErrorCode::usage, "no canopy is given", "",
-                  "pass --chm CHM.tif, or --dsm DSM.tif --dtm DTM.tif, or --las POINTS.las");
-    if (!las_.empty() && (surface || !chm_.empty()))
-      throw Error(ErrorCode::usage, "--las is given together with rasters", "",
-                  "points make their own canopy model: leave out one or the other");
-    if (!chm_.empty() && surface)
-      throw Error(ErrorCode::usage, "--chm is given together with --dsm or --dtm", "",
-                  "a canopy height model needs no terrain: leave out one or the other");
-    if (surface && (dsm_.empty() || dtm_.empty()))
-      throw Error(ErrorCode::usage,
-                  dsm_.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
-                  "heights of trees are the surface less the terrain: give both");
-    pipeline.add(
-        "load_canopy",
-        nlohmann::json{{"chm", chm_}, {"dsm", dsm_}, {"dtm", dtm_}, {"las", las_}, {"flights", flights_}}
-            .dump());
-    pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", !no_crowns_}}.dump());
-    if (!flights_) {
-      pipeline.add("trees_of_survey");
-      return;
-    }
-    pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
-    pipeline.add("value_flights");
+    CanopyFiles files = files_;
+    files.crowns = !no_crowns_;
+    add_tree_stages(pipeline, files);
   }
 
-  std::vector<std::string> chm_, dsm_, dtm_, las_;
-  bool flights_ = false, no_crowns_ = false;
+  CanopyFiles files_;
+  bool no_crowns_ = false;
 };
 
 }  // namespace

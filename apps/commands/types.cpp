@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "apps/described.hpp"
-#include "apps/registries.hpp"
+#include "apps/registry_reference.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark {
 namespace {
@@ -11,18 +11,18 @@ class Types final : public Command {
     return {.name = "types",
             .group = Group::look_up,
             .summary = "List the landmark types, or describe one with its features",
-            .arguments = describe_arguments(what_, all_types().names()),
+            .arguments = reference_arguments(what_, all_types().names()),
             .examples = {{"waymark types mountain_top", "Its features with units and plausible ranges"},
                          {"waymark types rock --as json", "The same for a script"}}};
   }
 
   int run(const Session&) override {
-    print_described(described(all_types()), "landmark type", what_);
+    print_reference(registry_reference(all_types()), "landmark type", what_);
     return 0;
   }
 
  private:
-  DescribeWhat what_;
+  ReferenceRequest what_;
 };
 
 }  // namespace

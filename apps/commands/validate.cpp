@@ -15,7 +15,7 @@ class Validate final : public Command {
   CommandSpec describe() override {
     return {.name = "validate",
             .group = Group::use,
-            .summary = "Check that a map keeps its promises",
+            .summary = "Check a map for errors",
             .about =
                 "RTree against geometry, evidence links, quality ranges and all else a GeoPackage "
                 "validator does not know. Each fault is a line of tab-separated text: code, table, row, "
@@ -29,7 +29,8 @@ class Validate final : public Command {
     for (const Finding& finding : findings)
       std::cout << fmt::format("{}\t{}\t{}\t{}\n", finding.code, finding.table,
                                finding.row ? std::to_string(*finding.row) : "", finding.text);
-    say(findings.empty() ? map_ + ": sound\n" : fmt::format("{}: {} faults\n", map_, findings.size()));
+    log_summary(findings.empty() ? map_ + ": sound\n"
+                                 : fmt::format("{}: {} faults\n", map_, findings.size()));
     return findings.empty() ? 0 : 1;
   }
 

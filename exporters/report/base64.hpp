@@ -4,7 +4,7 @@
 #include <string_view>
 namespace waymark {
 
-/// RFC 4648, with padding, on one line.
+/// Encodes as RFC 4648, with padding, on one line.
 std::string base64(std::string_view bytes);
 
 }  // namespace waymark

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exporters/formatting.hpp"
 #include "exporters/report/map_view.hpp"
-#include "exporters/wording.hpp"
 
 namespace waymark {
 namespace {
@@ -22,7 +22,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// Where a value stands on the axis, drawing units.
+/// Returns the position of a value on the axis, drawing units.
 double place(const Histogram& histogram, double value) {
   const auto at = [&](double v) { return histogram.logarithmic ? std::log(v) : v; };
   const double from = at(histogram.edges.front()), to = at(histogram.edges.back());
@@ -44,7 +44,7 @@ std::vector<double> round_values(const Histogram& histogram) {
   return ticks;
 }
 
-std::string svg_bars(const Histogram& histogram, const Reading& read) {
+std::string svg_bars(const Histogram& histogram, const NumberFormat& read) {
   const auto most = *std::max_element(histogram.counts.begin(), histogram.counts.end());
   std::string bars;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
@@ -56,15 +56,15 @@ std::string svg_bars(const Histogram& histogram, const Reading& read) {
     bars += fmt::format(
         "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'><title>{} \u2013 {}: {}</title></rect>",
         left + 0.5, kHeight - height, std::max(1.0, right - left - 1), height,
-        read.number(histogram.edges[i]), read(histogram.edges[i + 1]),
+        read.number(histogram.edges[i]), escape_markup(read(histogram.edges[i + 1])),
         number_text(static_cast<double>(histogram.counts[i])));
   }
   return bars;
 }
 
 std::string svg_axis(const Histogram& histogram, const FeatureSpec& feature, double largest) {
-  Histogram shown = histogram;  // round numbers of the unit that is read, not of the one that is stored
-  const Reading read = reading_of(feature, largest);
+  Histogram shown = histogram;  // round numbers in the displayed unit, not in the stored one
+  const NumberFormat read = number_format(feature, largest);
   for (double& edge : shown.edges) edge *= read.factor;
   std::string axis;
   double free_from = -kTickGap;
@@ -89,7 +89,7 @@ std::string figure(const LandmarkSection& section, std::size_t f) {
   if (values.size() < 2) return {};
   const Histogram histogram = histogram_of(values, feature.scale);
   const double largest = *std::max_element(values.begin(), values.end());
-  const Reading read = reading_of(feature, largest);
+  const NumberFormat read = number_format(feature, largest);
   const double median = median_of(values), x = place(histogram, median);
   const std::string title = title_of(feature.name) + (read.unit.empty() ? "" : ", " + read.unit);
   return fmt::format(
@@ -99,13 +99,13 @@ std::string figure(const LandmarkSection& section, std::size_t f) {
       "</g><g class='median'><path d='M{:.1f} -2V{}'/><text x='{:.1f}' y='-6' text-anchor='{}'>median "
       "{}</text></g>"
       "</svg></figure>\n",
-      section.type.colour, escaped(title), escaped(feature.summary), kWidth + 28, kHeight + 42,
-      escaped(feature.name), svg_bars(histogram, read), kHeight, kWidth,
+      escape_markup(section.type.colour), escape_markup(title), escape_markup(feature.summary), kWidth + 28,
+      kHeight + 42, escape_markup(feature.name), svg_bars(histogram, read), kHeight, kWidth,
       svg_axis(histogram, feature, largest), x, kHeight, x,
       x < kWidth * 0.2   ? "start"
       : x > kWidth * 0.8 ? "end"
                          : "middle",
-      read(median));
+      escape_markup(read(median)));
 }
 
 }  // namespace

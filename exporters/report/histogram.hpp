@@ -13,11 +13,11 @@ struct Histogram {
   bool logarithmic = false;
 };
 
-/// Bins for finite values, at least one. Logarithmic for positive values of a ratio scale that span more than
-/// a factor of 30; the edges are then equal ratios, else equal steps.
+/// Computes at least one bin for finite values. Bins are logarithmic, with edges at equal ratios, for
+/// positive values of a ratio scale that span more than a factor of 30; else they have equal width.
 Histogram histogram_of(const std::vector<double>& values, Scale scale);
 
-/// One figure per feature of which at least two values are known: bars, the median, and what is counted.
+/// Returns one figure per feature with at least two known values: bars, the median, and the counts.
 std::string histogram_figures(const LandmarkSection& section);
 
 }  // namespace waymark

@@ -15,7 +15,7 @@ namespace waymark {
 namespace {
 
 constexpr double kLargePart = 1e8;  // pixels; beyond, averaging all of them costs seconds
-constexpr double kClipped = 0.005;  // share of pixels that become black, and white
+constexpr double kClipped = 0.005;  // fraction of pixels that become black, and white
 constexpr const char* kQuality = "82";
 
 using Dataset = std::unique_ptr<GDALDataset>;

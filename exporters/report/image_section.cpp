@@ -11,10 +11,10 @@
 #include <optional>
 #include <vector>
 
+#include "exporters/formatting.hpp"
 #include "exporters/report/base64.hpp"
 #include "exporters/report/image_picture.hpp"
 #include "exporters/report/landmark_section.hpp"
-#include "exporters/wording.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark {
@@ -22,27 +22,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kLongest = 900;       // pixels of a picture
-constexpr std::int64_t kDetail = 320;        // of the image, side of the detail
-constexpr std::size_t kMostOutlines = 4000;  // per picture: more hide what they outline
-constexpr double kLeastRadius = 1.5;         // image pixels, of an outline without a size
+constexpr std::int64_t kLongest = 900;      // pixels of a picture
+constexpr std::int64_t kDetail = 320;       // of the image, side of the detail
+constexpr std::size_t kMaxOutlines = 4000;  // per picture; more would hide the image
+constexpr double kMinOutlineRadius = 1.5;   // image pixels, of an outline without a size
 
-/// Colours that stand out from grey ground, by type. The map's own colours are made for paper.
+/// Returns a colour by type that stands out from a grey image; the map's own colours are for paper.
 const char* outline_colour(TypeId type) {
   constexpr std::array colours = {"#5ad1ff", "#ff9df2", "#ffd23f", "#7dff7a", "#ffa05a"};
   return colours[type % colours.size()];
 }
 
-/// What was seen in one image.
-struct SeenImage {
+/// Observations in one image.
+struct ImageObservations {
   const ImageRecord* record = nullptr;
   std::vector<const Observation*> seen;  ///< with a pixel
   std::int64_t used = 0;
 };
 
-std::vector<SeenImage> seen_images(const std::vector<ImageRecord>& images,
-                                   const std::vector<Observation>& observations) {
-  std::map<std::string, SeenImage> by_name;
+std::vector<ImageObservations> observed_images(const std::vector<ImageRecord>& images,
+                                               const std::vector<Observation>& observations) {
+  std::map<std::string, ImageObservations> by_name;
   for (const ImageRecord& image : images) by_name[image.name].record = &image;
   for (const Observation& one : observations) {
     const auto found = by_name.find(one.source);
@@ -50,10 +50,11 @@ std::vector<SeenImage> seen_images(const std::vector<ImageRecord>& images,
     found->second.seen.push_back(&one);
     found->second.used += one.rejected.empty();
   }
-  std::vector<SeenImage> all;
+  std::vector<ImageObservations> all;
   for (auto& [name, image] : by_name)
     if (!image.seen.empty()) all.push_back(std::move(image));
-  std::ranges::stable_sort(all, [](const SeenImage& a, const SeenImage& b) { return a.used > b.used; });
+  std::ranges::stable_sort(
+      all, [](const ImageObservations& a, const ImageObservations& b) { return a.used > b.used; });
   return all;
 }
 
@@ -76,13 +77,13 @@ double radius_in_pixels(const Observation& one, const LandmarkType& type, const 
   for (const auto& [name, factor] : {std::pair{"radius", 1.0}, {"crown_diameter", 0.5}, {"diameter", 0.5}}) {
     const auto feature = find_feature(type, name);
     if (feature && *feature < one.features.size() && one.features[*feature].known() && image.gsd)
-      return std::max(kLeastRadius, factor * one.features[*feature].value / image.gsd->value);
+      return std::max(kMinOutlineRadius, factor * one.features[*feature].value / image.gsd->value);
   }
-  return kLeastRadius;
+  return kMinOutlineRadius;
 }
 
-/// The square with the most that was used, whole inside the image.
-Window busiest(const SeenImage& image, const Window& extent) {
+/// Returns the square inside the image with the most used observations.
+Window densest_window(const ImageObservations& image, const Window& extent) {
   std::map<std::pair<std::int64_t, std::int64_t>, int> counts;
   for (const Observation* one : image.seen)
     if (one->rejected.empty())
@@ -96,7 +97,7 @@ Window busiest(const SeenImage& image, const Window& extent) {
           std::clamp<std::int64_t>(best.second * kDetail, 0, extent.rows - rows), columns, rows};
 }
 
-std::string outlines(const SeenImage& image, const TypeRegistry& types, const Window& part) {
+std::string outlines(const ImageObservations& image, const TypeRegistry& types, const Window& part) {
   std::string svg;
   std::size_t drawn = 0;
   for (const Observation* one : image.seen) {
@@ -108,28 +109,29 @@ std::string outlines(const SeenImage& image, const TypeRegistry& types, const Wi
     if (x < -r || y < -r || x > static_cast<double>(part.columns) + r ||
         y > static_cast<double>(part.rows) + r)
       continue;
-    if (++drawn > kMostOutlines) break;
+    if (++drawn > kMaxOutlines) break;
     const bool used = one->rejected.empty();
     svg += fmt::format(
         "<circle class='{}' cx='{:.1f}' cy='{:.1f}' r='{:.1f}' style='--type:{}'><title>{}</title></circle>",
         used ? "used" : "rejected", x, y, r, outline_colour(one->type),
-        escaped(used ? fmt::format("{} {}\nconfidence {:.2f}", type.name, one->landmark_uid, one->confidence)
-                     : fmt::format("{}, rejected: {}", type.name, one->rejected)));
+        escape_markup(
+            used ? fmt::format("{} {}\nconfidence {:.2f}", type.name, one->landmark_uid, one->confidence)
+                 : fmt::format("{}, rejected: {}", type.name, one->rejected)));
   }
   return svg;
 }
 
-std::string picture_html(const SeenImage& image, const TypeRegistry& types, const std::string& path,
+std::string picture_html(const ImageObservations& image, const TypeRegistry& types, const std::string& path,
                          const Window& part, const std::string& says) {
   const auto picture = image_picture(path, part, kLongest);
   if (!picture) return {};
   return fmt::format(
       "<figure class='image'><svg viewBox='0 0 {0} {1}' role='img' aria-label='{2}'><image width='{0}' "
       "height='{1}' href='data:image/jpeg;base64,{3}'/>{4}</svg><figcaption>{2}</figcaption></figure>\n",
-      part.columns, part.rows, escaped(says), base64(picture->jpeg), outlines(image, types, part));
+      part.columns, part.rows, escape_markup(says), base64(picture->jpeg), outlines(image, types, part));
 }
 
-std::string counts_html(const SeenImage& image, const TypeRegistry& types) {
+std::string counts_html(const ImageObservations& image, const TypeRegistry& types) {
   std::map<TypeId, std::int64_t> used;
   std::map<std::string, std::int64_t> rejected;
   for (const Observation* one : image.seen)
@@ -137,28 +139,28 @@ std::string counts_html(const SeenImage& image, const TypeRegistry& types) {
   std::string html;
   for (const auto& [type, count] : used)
     html += fmt::format("<span class='count' style='--type:{}'><i></i>{} {}</span>", outline_colour(type),
-                        number_text(static_cast<double>(count)), escaped(types[type].name));
+                        number_text(static_cast<double>(count)), escape_markup(types[type].name));
   for (const auto& [reason, count] : rejected)
     html += fmt::format("<span class='count rejected'><i></i>{} {}</span>",
-                        number_text(static_cast<double>(count)), escaped(reason));
+                        number_text(static_cast<double>(count)), escape_markup(reason));
   return html;
 }
 
-std::string image_html(const MapStore& map, const SeenImage& image) {
+std::string image_html(const MapStore& map, const ImageObservations& image) {
   std::string known;
   if (image.record->gsd) known += fmt::format("<span>{:.3g} m per pixel</span>", image.record->gsd->value);
   if (image.record->sun_elevation)
     known +=
         fmt::format("<span>sun {:.0f}\u00b0 above the ground</span>", image.record->sun_elevation->value);
   const std::string heading =
-      fmt::format("<h3>{}</h3><p class='counts'>{}{}</p>\n", escaped(image.record->name),
+      fmt::format("<h3>{}</h3><p class='counts'>{}{}</p>\n", escape_markup(image.record->name),
                   counts_html(image, map.types()), known);
   const auto path = file_of(map, image.record->name);
   const auto extent = path ? image_extent(*path) : std::nullopt;
-  if (!extent) return heading + "<p class='empty'>The image file is not there any more.</p>\n";
+  if (!extent) return heading + "<p class='empty'>The image file is missing.</p>\n";
   std::string pictures = picture_html(image, map.types(), *path, *extent, "The whole image");
   if (std::max(extent->columns, extent->rows) > kDetail * 5 / 4) {
-    const Window part = busiest(image, *extent);
+    const Window part = densest_window(image, *extent);
     pictures += picture_html(image, map.types(), *path, part,
                              fmt::format("Its busiest part: {} x {} pixels from column {}, row {}",
                                          part.columns, part.rows, part.column, part.row));
@@ -172,15 +174,14 @@ std::string image_figures(const MapStore& map, std::int64_t most) {
   const auto records = map.images();
   if (records.empty() || most < 1) return {};
   const auto observations = map.observations();
-  const auto images = seen_images(records, observations);
+  const auto images = observed_images(records, observations);
   if (images.empty()) return {};
   const std::size_t shown = std::min(images.size(), static_cast<std::size_t>(most));
   std::string html = "<p>";
   if (shown < records.size())
-    html += fmt::format("{} of {} images, those in which most was found. ", shown,
+    html += fmt::format("{} of {} images, those with the most detections. ", shown,
                         number_text(static_cast<double>(records.size())));
-  html +=
-      "Outlined is what was used, and dashed what was rejected; the reason stands beside the pointer.</p>\n";
+  html += "Used observations are outlined, rejected ones dashed; the tooltip gives the reason.</p>\n";
   for (std::size_t i = 0; i < shown; ++i) html += image_html(map, images[i]);
   return html;
 }

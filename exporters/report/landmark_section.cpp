@@ -5,18 +5,18 @@
 #include <cmath>
 #include <limits>
 
-#include "exporters/export_columns.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark {
 namespace {
 
-void put_foremost_first(LandmarkSection& section) {
+void sort_by_rank(LandmarkSection& section) {
   const auto by = find_feature(section.type, section.type.size_feature);
   std::vector<std::pair<double, Landmark>> ranked;
   ranked.reserve(section.landmarks.size());
   for (Landmark& landmark : section.landmarks) {
-    const double rank = by ? value_of(landmark, by) : equal_weight_quality(landmark).value_or(-1);
+    const double rank =
+        by ? certified_value(section.type, landmark, section.type.size_feature) : landmark.confidence;
     ranked.emplace_back(std::isnan(rank) ? -std::numeric_limits<double>::infinity() : rank,
                         std::move(landmark));
   }
@@ -32,7 +32,7 @@ std::vector<LandmarkSection> landmark_sections(const MapStore& map) {
   std::vector<LandmarkSection> sections;
   for (const LandmarkType& type : map.types()) {
     sections.push_back({type, map.query({.types = {type.name}})});
-    put_foremost_first(sections.back());
+    sort_by_rank(sections.back());
   }
   return sections;
 }
@@ -46,6 +46,21 @@ std::optional<std::size_t> find_feature(const LandmarkType& type, const std::str
 double value_of(const Landmark& landmark, std::optional<std::size_t> feature) {
   const bool known = feature && *feature < landmark.features.size() && landmark.features[*feature].known();
   return known ? landmark.features[*feature].value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<std::size_t> lower_bound_of(const LandmarkType& type, const std::string& feature) {
+  for (std::size_t i = 0; i < type.attributes.size(); ++i)
+    if (type.attributes[i].name == feature + "_low") return i;
+  return {};
+}
+
+double certified_value(const LandmarkType& type, const Landmark& landmark, const std::string& feature) {
+  const double value = value_of(landmark, find_feature(type, feature));
+  const auto bound = lower_bound_of(type, feature);
+  const double* low = bound && *bound < landmark.attributes.size()
+                          ? std::get_if<double>(&landmark.attributes[*bound])
+                          : nullptr;
+  return low != nullptr && *low < value ? *low : value;
 }
 
 std::vector<double> known_values(const LandmarkSection& section, std::size_t feature) {

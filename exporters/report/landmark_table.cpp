@@ -8,9 +8,9 @@
 #include <functional>
 #include <limits>
 
-#include "exporters/export_columns.hpp"
+#include "exporters/formatting.hpp"
 #include "exporters/report/map_view.hpp"
-#include "exporters/wording.hpp"
+#include "exporters/vector/export_columns.hpp"
 
 namespace waymark {
 namespace {
@@ -34,19 +34,15 @@ double largest(const std::vector<Landmark>& rows, const std::function<double(con
   return most;
 }
 
-std::string with_unit(const std::string& title, const Reading& read) {
-  return escaped(title) + (read.unit.empty() ? "" : fmt::format(" <small>{}</small>", escaped(read.unit)));
-}
-
-std::optional<std::size_t> lower_bound_of(const LandmarkType& type, const std::string& feature) {
-  for (std::size_t i = 0; i < type.attributes.size(); ++i)
-    if (type.attributes[i].name == feature + "_low") return i;
-  return {};
+std::string with_unit(const std::string& title, const NumberFormat& read) {
+  return escape_markup(title) +
+         (read.unit.empty() ? "" : fmt::format(" <small>{}</small>", escape_markup(read.unit)));
 }
 
 TableColumn feature_column(const LandmarkType& type, std::size_t i, const std::vector<Landmark>& rows) {
   const FeatureSpec& feature = type.features[i];
-  const Reading read = reading_of(feature, largest(rows, [i](const Landmark& l) { return value_of(l, i); }));
+  const NumberFormat read =
+      number_format(feature, largest(rows, [i](const Landmark& l) { return value_of(l, i); }));
   const auto bound = lower_bound_of(type, feature.name);
   return {with_unit(title_of(feature.name), read), feature.summary, [=](const Landmark& l) {
             std::string cell = read.number(value_of(l, i));
@@ -59,7 +55,7 @@ TableColumn feature_column(const LandmarkType& type, std::size_t i, const std::v
           }};
 }
 
-/// Positions and bounds stand elsewhere; texts are names of other landmarks.
+/// Returns false for positions and bounds, shown elsewhere, and for texts, which name other landmarks.
 bool is_plain(const LandmarkType& type, const AttributeSpec& attribute) {
   const std::string& name = attribute.name;
   const bool bound =
@@ -72,8 +68,8 @@ TableColumn attribute_column(const AttributeSpec& attribute, std::size_t i,
                              const std::vector<Landmark>& rows) {
   const FeatureSpec as_feature{
       .name = attribute.name, .unit = attribute.unit, .scale = Scale::interval, .summary = {}};
-  const Reading read =
-      reading_of(as_feature, largest(rows, [i](const Landmark& l) { return real_attribute(l, i); }));
+  const NumberFormat read =
+      number_format(as_feature, largest(rows, [i](const Landmark& l) { return real_attribute(l, i); }));
   return {with_unit(title_of(attribute.name), read), attribute.summary,
           [=](const Landmark& l) { return read.number(real_attribute(l, i)); }};
 }
@@ -84,15 +80,23 @@ std::vector<TableColumn> table_columns(const LandmarkType& type, const std::vect
   columns.push_back({"Place", "Position in " + crs.id(), [crs](const Landmark& l) {
                        return fmt::format("{}<small>{}</small>",
                                           position_text(crs, l.position.xyz.x(), l.position.xyz.y()),
-                                          escaped(l.uid));
+                                          escape_markup(l.uid));
                      }});
   for (std::size_t i = 0; i < type.features.size(); ++i) columns.push_back(feature_column(type, i, rows));
   for (std::size_t i = 0; i < type.attributes.size(); ++i)
     if (is_plain(type, type.attributes[i])) columns.push_back(attribute_column(type.attributes[i], i, rows));
-  columns.push_back({"Quality", "Landmark quality, all features weighing the same", [](const Landmark& l) {
-                       return number_text(equal_weight_quality(l).value_or(std::nan("")), 2);
-                     }});
+  columns.push_back({"Confidence", "Probability that it exists",
+                     [](const Landmark& l) { return number_text(l.confidence, 2); }});
+  columns.push_back(
+      {"Quality", "Landmark quality, equal weights; not assessed if seen once of once",
+       [](const Landmark& l) { return number_text(equal_weight_quality(l).value_or(std::nan("")), 2); }});
   return columns;
+}
+
+std::string rank_text(const LandmarkType& type) {
+  if (type.size_feature.empty()) return "";
+  return (lower_bound_of(type, type.size_feature) ? ", by certified " : ", by ") +
+         escape_markup(type.size_feature);
 }
 
 }  // namespace
@@ -107,10 +111,9 @@ std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::
   std::string html = fmt::format(
       "<div class='scroll'><table class='landmarks'><caption>The foremost {} of {}{}</caption>"
       "<thead><tr><th scope='col'>#</th>",
-      count, number_text(static_cast<double>(section.landmarks.size())),
-      section.type.size_feature.empty() ? "" : ", by " + escaped(section.type.size_feature));
+      count, number_text(static_cast<double>(section.landmarks.size())), rank_text(section.type));
   for (const TableColumn& column : columns)
-    html += fmt::format("<th scope='col' title='{}'>{}</th>", escaped(column.tip), column.heading);
+    html += fmt::format("<th scope='col' title='{}'>{}</th>", escape_markup(column.tip), column.heading);
   html += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < count; ++i) {
     html += fmt::format("<tr><th scope='row'>{}</th>", i + 1);

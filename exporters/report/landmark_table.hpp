@@ -6,9 +6,9 @@
 #include "geo/crs.hpp"
 namespace waymark {
 
-/// The first `top` landmarks as an HTML table: place, features with spread, plain attributes, quality. An
-/// attribute
-/// `<feature>_low` is a certified lower bound and stands below its feature where it is smaller.
+/// Returns the first `top` landmarks as an HTML table: position, features with spread, plain attributes,
+/// confidence, quality. An attribute `<feature>_low` is a certified lower bound and is shown below its
+/// feature if it is smaller.
 std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::int64_t top);
 
 }  // namespace waymark

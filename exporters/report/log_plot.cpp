@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exporters/wording.hpp"
+#include "exporters/formatting.hpp"
 
 namespace waymark {
 namespace {
@@ -15,7 +15,7 @@ constexpr double kWidth = 340, kHeight = 300;                       // of the fr
 constexpr double kLeft = 66, kTop = 10, kRight = 14, kBottom = 48;  // around it
 constexpr double kTickGap = 22;
 
-/// Logarithms of what an axis shows.
+/// Range of an axis, as logarithms.
 struct Axis {
   double from = 0, to = 1;
   double length = 1;
@@ -36,13 +36,13 @@ std::string superscript(int power) {
   return text;
 }
 
-/// Plain where that is short: 0.01, 20, 5000; else a power of ten.
+/// Formats a plain number if it is short: 0.01, 20, 5000; else a power of ten.
 std::string tick_text(int digit, int power) {
   if (power >= -2 && power <= 3) return number_text(digit * std::pow(10, power), std::max(0, -power));
   return (digit == 1 ? "" : std::to_string(digit) + "\u00b7") + ("10" + superscript(power));
 }
 
-/// Ticks of an axis: each decade, and 2 and 5 in between where there is room.
+/// Draws the ticks of an axis: each decade, and 2 and 5 in between if there is room.
 template <class Draw>
 void for_ticks(const Axis& axis, const Draw& draw) {
   const double decade = axis.length / (axis.to - axis.from);
@@ -75,7 +75,8 @@ std::string svg_axes(const Axis& x, const Axis& y, const LogPlot& plot) {
   texts += fmt::format(
       "<text x='{}' y='{}' text-anchor='middle'>{}</text><text transform='translate({} {}) rotate(-90)' "
       "text-anchor='middle'>{}</text>",
-      kWidth / 2, kHeight + 40, escaped(plot.x_label), 14 - kLeft, kHeight / 2, escaped(plot.y_label));
+      kWidth / 2, kHeight + 40, escape_markup(plot.x_label), 14 - kLeft, kHeight / 2,
+      escape_markup(plot.y_label));
   return fmt::format("<path class='grid' d='{}'/><g class='axis'><path d='M0 0V{}H{}{}'/>{}</g>", grid,
                      kHeight, kWidth, ticks, texts);
 }
@@ -89,7 +90,7 @@ std::string svg_points(const Axis& x, const Axis& y, const LogPlot& plot) {
         point.sd < point.y ? std::min(kHeight, kHeight - y.place(point.y - point.sd)) : kHeight;
     bars += fmt::format("M{:.1f} {:.1f}V{:.1f}", at, top, low);
     dots += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='3.4'><title>{}</title></circle>", at, height,
-                        escaped(point.tip));
+                        escape_markup(point.tip));
   }
   return fmt::format("<path class='deviation' d='{}'/>{}", bars, dots);
 }
@@ -104,8 +105,9 @@ std::string log_plot_figure(const LogPlot& plot) {
   return fmt::format(
       "<figure class='histogram plot' style='--type:{}'><figcaption><b>{}</b> {}</figcaption>"
       "<svg viewBox='{} {} {} {}' role='img' aria-label='{}'>{}<g class='points'>{}</g></svg></figure>\n",
-      plot.colour, escaped(plot.title), escaped(plot.about), -kLeft, -kTop, kWidth + kLeft + kRight,
-      kHeight + kTop + kBottom, escaped(plot.title), svg_axes(x, y, plot), svg_points(x, y, plot));
+      escape_markup(plot.colour), escape_markup(plot.title), escape_markup(plot.about), -kLeft, -kTop,
+      kWidth + kLeft + kRight, kHeight + kTop + kBottom, escape_markup(plot.title), svg_axes(x, y, plot),
+      svg_points(x, y, plot));
 }
 
 }  // namespace waymark

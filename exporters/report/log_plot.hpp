@@ -4,21 +4,21 @@
 #include <vector>
 namespace waymark {
 
-/// A point with its standard deviation, all > 0 but for the deviation.
+/// A point with its standard deviation; x, y > 0.
 struct LogPoint {
   double x = 0, y = 0, sd = 0;
-  std::string tip;  ///< shown beside the pointer
+  std::string tip;  ///< tooltip
 };
 
-/// What stands on and beside a plot.
+/// Points and texts of a plot.
 struct LogPlot {
   std::string title, about, x_label, y_label;
   std::string colour;  ///< of the points
   std::vector<LogPoint> points;
 };
 
-/// A plot with logarithmic axes and equal decades both ways, as an HTML figure; bars reach one deviation up
-/// and down, to the frame where y - sd is not above 0. Empty for fewer than two points.
+/// Returns a plot with logarithmic axes and equal decades both ways, as an HTML figure. Bars extend one
+/// deviation up and down, to the frame if y - sd is not above 0. Empty for fewer than two points.
 std::string log_plot_figure(const LogPlot& plot);
 
 }  // namespace waymark

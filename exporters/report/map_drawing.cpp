@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <system_error>
 
+#include "exporters/formatting.hpp"
 #include "exporters/report/base64.hpp"
 #include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/report/relief_picture.hpp"
-#include "exporters/wording.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark {
@@ -18,10 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Room around the frame for coordinates: left, top, right, bottom.
+/// Margin around the frame for coordinates: left, top, right, bottom.
 constexpr double kLeft = 78, kTop = 8, kRight = 26, kBottom = 34;
 
-std::string tint_legend(const HeightTint& tint) {
+std::string tint_legend(const HypsometricTint& tint) {
   std::string stops;
   constexpr int steps = 24;
   for (int i = 0; i <= steps; ++i) {
@@ -41,7 +41,7 @@ std::string legend(const std::vector<LandmarkSection>& sections, const MapMarker
     const std::string sized =
         section.type.size_feature.empty() ? "" : ", larger with " + section.type.size_feature;
     items += fmt::format("<span>{}{}{}</span>", svg_symbol(section.type, 16),
-                         escaped(title_of(section.type.name)), escaped(title_of(sized)));
+                         escape_markup(title_of(section.type.name)), escape_markup(title_of(sized)));
   }
   if (markers.drawn < markers.total)
     items += fmt::format("<span>the foremost {} of {} are drawn</span>",
@@ -63,7 +63,7 @@ std::vector<std::string> relief_names(const MapStore& map) {
       std::error_code missing;
       const bool there = input.path.starts_with("/vsi") || fs::exists(input.path, missing);
       const std::string name = there ? input.path : beside.string();
-      // The recorded size counts what belongs to the file too, such as the sources of a VRT.
+      // The recorded size includes associated files, such as the sources of a VRT.
       const bool another = !name.starts_with("/vsi") && fs::file_size(name, missing) > input.bytes;
       if (!another && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
@@ -80,11 +80,11 @@ std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& 
   const MapView view = view_of(map.crs(), relief ? relief->extent : *landmarks);
   std::string picture, ramp;
   if (relief) {
-    const HeightTint tint = tint_for(*relief, map.crs().body());
+    const HypsometricTint tint = hypsometric_tint(*relief, map.crs().body());
     picture = fmt::format(
         "<image width='{:.2f}' height='{:.2f}' preserveAspectRatio='none' "
         "href='data:image/png;base64,{}'/>",
-        view.width, view.height, base64(png_of(shade(*relief, tint))));
+        view.width, view.height, base64(encode_png(shade(*relief, tint))));
     ramp = tint_legend(tint);
   }
   const MapMarkers markers = draw_markers(view, sections);

@@ -9,13 +9,13 @@ namespace waymark {
 
 class MapStore;
 
-/// The map as an HTML figure: relief where a DEM can be had, landmarks, graticule, scale bar, north arrow,
-/// legend.
+/// Returns the map as an HTML figure: relief if a DEM is available, landmarks, graticule, scale bar, north
+/// arrow, legend.
 std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& sections,
                        std::int64_t relief_pixels);
 
-/// What GDAL may open to draw the relief: the DEM in the map, else the inputs of its runs, as they were named
-/// and beside the map.
+/// Returns the files that may hold the relief: the DEM in the map, else the inputs of its runs, at their
+/// recorded paths and beside the map.
 std::vector<std::string> relief_names(const MapStore& map);
 
 }  // namespace waymark

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "exporters/wording.hpp"
+#include "exporters/formatting.hpp"
 
 namespace waymark {
 namespace {
@@ -20,7 +20,7 @@ std::string degrees_text(double value, int decimals, const char* positive, const
 }
 
 std::string longitude_text(const Crs& crs, double x, int decimals) {
-  // Planetary longitudes run east from 0 to 360; on Earth nobody reads 290 E.
+  // Planetary longitudes run east from 0 to 360; on Earth they are E or W up to 180.
   const double lon = crs.body().name == earth().name ? std::remainder(x, 360) : x;
   return degrees_text(lon, decimals, "E", "W");
 }
@@ -29,7 +29,7 @@ int decimals_of(double step) {
   return step >= 1 ? 0 : static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
 }
 
-/// About `wanted` round steps over `length`: of degrees where `degrees`, which divide a quarter turn.
+/// Returns a round step that divides `length` into about `wanted` parts; for degrees one that divides 90.
 double graticule_step(double length, double wanted, bool degrees) {
   const double step = length / wanted;
   if (degrees)
@@ -46,11 +46,11 @@ std::string line_text(const MapView& view, double value, double step, bool is_x)
   return number_text(value, decimals_of(step));
 }
 
-/// Direction of true north in the middle of the view, degrees clockwise from up.
+/// Returns the direction of true north in the middle of the view, degrees clockwise from up.
 double north_of(const MapView& view) {
   if (view.crs.kind() != CrsKind::projected) return 0;
   try {
-    const Crs geographic = geographic_of(view.crs);
+    const Crs geographic = geographic_crs(view.crs);
     const double x = view.extent.west + view.extent.width() / 2,
                  y = view.extent.south + view.extent.height() / 2;
     const auto here = CrsTransform(view.crs, geographic)(x, y);
@@ -58,13 +58,13 @@ double north_of(const MapView& view) {
     const double angle = std::atan2(north.x - x, north.y - y) / kRadiansPerDegree;
     return !std::isfinite(angle) ? 0 : here.y > 89.98 ? angle + 180 : angle;
   } catch (const Error&) {
-    return 0;  // a CRS without a way back: the top of the map is as good a north as any
+    return 0;  // a CRS without inverse: up is taken as north
   }
 }
 
 }  // namespace
 
-double MapView::unwrapped(double map_x) const {
+double MapView::unwrap(double map_x) const {
   if (crs.kind() != CrsKind::geographic) return map_x;
   const double middle = extent.west + extent.width() / 2;
   return map_x - 360 * std::round((map_x - middle) / 360);
@@ -83,7 +83,7 @@ std::optional<Extent> extent_of(const std::vector<LandmarkSection>& sections, co
   for (const LandmarkSection& section : sections)
     for (const Landmark& landmark : section.landmarks) {
       const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
-      extent = extent ? extent->joined({x, y, x, y}) : Extent{x, y, x, y};
+      extent = extent ? extent->united({x, y, x, y}) : Extent{x, y, x, y};
     }
   if (!extent) return {};
   const double kilometre = crs.kind() == CrsKind::geographic

@@ -6,4 +6,9 @@ namespace waymark {
 /// The style sheet of a report: light, dark and print.
 extern const std::string_view kPageStyle;
 
+/// Element of the head that forbids a page scripts, forms and anything outside it.
+inline constexpr std::string_view kContentPolicy =
+    "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; style-src 'unsafe-inline'; "
+    "img-src data:; base-uri 'none'; form-action 'none';\">";
+
 }  // namespace waymark

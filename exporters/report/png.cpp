@@ -28,7 +28,7 @@ std::string taken_from_memory(const std::string& name) {
 
 }  // namespace
 
-std::string png_of(const Grid<Colour>& picture) {
+std::string encode_png(const Grid<Colour>& picture) {
   const GdalMessages messages;
   const int columns = static_cast<int>(picture.columns()), rows = static_cast<int>(picture.rows());
   GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");

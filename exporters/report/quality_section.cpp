@@ -8,8 +8,8 @@
 #include <map>
 
 #include "core/quality.hpp"
-#include "exporters/export_columns.hpp"
-#include "exporters/wording.hpp"
+#include "exporters/formatting.hpp"
+#include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark {
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kSide = 260;  // of a calibration plot, drawing units
 
-/// Mean of what is known.
+/// Mean of the known values.
 class Mean {
  public:
   void add(std::optional<double> value) {
@@ -44,10 +44,10 @@ std::string observed_row(const LandmarkSection& section) {
     multiplicity.add(multiplicity_confidence(l.quality.seen, l.quality.visible));
     quality.add(equal_weight_quality(l));
     confidence.add(l.confidence);
-    for (const auto& q : l.quality.of_feature) spread.add(q);
+    for (const auto& q : l.quality.feature_confidences) spread.add(q);
   }
   std::string row = fmt::format(
-      "<tr><th scope='row'>{}</th><td>{}</td><td>{}</td>", escaped(title_of(section.type.name)),
+      "<tr><th scope='row'>{}</th><td>{}</td><td>{}</td>", escape_markup(title_of(section.type.name)),
       number_text(static_cast<double>(section.landmarks.size())), number_text(static_cast<double>(several)));
   for (const Mean* mean : {&seen, &visible, &multiplicity, &spread, &quality, &confidence})
     row += "<td>" + mean->text() + "</td>";
@@ -66,28 +66,29 @@ std::string observed_table(const std::vector<LandmarkSection>& sections) {
          "<th scope='col' title='Images that could have shown it'>Visible</th>"
          "<th scope='col' title='Seen / visible (eq. 5)'>q<sub>#</sub></th>"
          "<th scope='col' title='Agreement of the observed features (eqs. 6, 7)'>q<sub>f</sub></th>"
-         "<th scope='col' title='Landmark quality, equal weights (eq. 8)'>Quality</th>"
-         "<th scope='col' title='Probability that it is there'>Confidence</th></tr></thead><tbody>\n" +
+         "<th scope='col' title='Landmark quality, equal weights (eq. 8), of those that were assessed: not "
+         "seen once of once'>Quality</th>"
+         "<th scope='col' title='Probability that it exists'>Confidence</th></tr></thead><tbody>\n" +
          rows + "</tbody></table></div>\n";
 }
 
 std::string rejection_table(const MapStore& map) {
   std::map<std::pair<std::string, std::string>, std::int64_t> counts;
   std::map<std::string, std::int64_t> used;
-  for (const Observation& one : map.observations()) {
+  map.visit_observations([&](Observation&& one) {
     const std::string& type = map.types()[one.type].name;
     one.rejected.empty() ? ++used[type] : ++counts[{type, one.rejected}];
-  }
+  });
   if (counts.empty()) return {};
   std::string rows;
   for (const auto& [what, count] : counts)
     rows += fmt::format("<tr><th scope='row'>{}</th><th scope='row'>{}</th><td>{}</td></tr>\n",
-                        escaped(title_of(what.first)), escaped(what.second),
+                        escape_markup(title_of(what.first)), escape_markup(what.second),
                         number_text(static_cast<double>(count)));
   std::string total;
   for (const auto& [type, count] : used)
     total += fmt::format("{}{} of {} were used", total.empty() ? "" : ", ",
-                         number_text(static_cast<double>(count)), type);
+                         number_text(static_cast<double>(count)), escape_markup(type));
   return fmt::format(
       "<div class='scroll'><table class='stages inputs'><caption>Observations that were "
       "rejected{}{}</caption>"
@@ -99,7 +100,7 @@ std::string rejection_table(const MapStore& map) {
 std::string calibration_figure(const QualityCheck& check, const std::string& colour) {
   std::string points, bars;
   int found = 0;
-  for (const ClaimBin& bin : check.bins) {
+  for (const ReliabilityBin& bin : check.bins) {
     if (bin.found == 0) continue;
     found += bin.found;
     const double share = static_cast<double>(bin.right) / bin.found;
@@ -126,11 +127,11 @@ std::string calibration_figure(const QualityCheck& check, const std::string& col
       "aria-label='Calibration of {2}'><path class='median' d='M0 {7}L{7} 0'/><g class='axis'><path d='M0 "
       "0V{7}H{7}'/>{8}<text x='{9}' y='{10}' text-anchor='middle'>{11} claimed</text><text "
       "transform='translate(-36 "
-      "{9}) rotate(-90)' text-anchor='middle'>share that is there</text></g><g class='points'><path "
+      "{9}) rotate(-90)' text-anchor='middle'>fraction that is correct</text></g><g class='points'><path "
       "class='deviation' d='{12}'/>{13}</g></svg></figure>\n",
-      colour, escaped(title_of(check.type)), escaped(check.claim), number_text(found), check.expected_error,
-      kSide + 66, kSide + 56, kSide, axis, kSide / 2, kSide + 38, escaped(title_of(check.claim)), bars,
-      points);
+      escape_markup(colour), escape_markup(title_of(check.type)), escape_markup(check.claim),
+      number_text(found), check.expected_error, kSide + 66, kSide + 56, kSide, axis, kSide / 2, kSide + 38,
+      escape_markup(title_of(check.claim)), bars, points);
 }
 
 std::string calibration_figures(const std::vector<LandmarkSection>& sections,

@@ -10,7 +10,7 @@ namespace waymark {
 namespace {
 
 constexpr Colour kDeepWater{92, 132, 163}, kShallowWater{176, 204, 219};
-constexpr double kSteep = 0.55;  // what the steep slopes of a picture are exaggerated to, about 29 degrees
+constexpr double kSteep = 0.55;  // slope to which the steep ones are exaggerated, about 29 degrees
 
 struct Slope {
   double east = 0, north = 0;  ///< rise over run
@@ -42,7 +42,7 @@ T percentile(std::vector<T> values, double share) {
   return *at;
 }
 
-/// Brightness in [-1, 1] of a slope, 0 on level ground, from three lights about the north-west.
+/// Returns the brightness in [-1, 1] of a slope, 0 on level ground, from three lights about the north-west.
 double brightness(const Slope& slope) {
   struct Light {
     double azimuth, weight;
@@ -60,7 +60,7 @@ double brightness(const Slope& slope) {
   return sum > level ? (sum - level) / (1 - level) : std::max(-1.0, (sum - level) / level);
 }
 
-/// Light and shadow of every cell, after its slopes are exaggerated together. 0 where there is no height.
+/// Computes the brightness of every cell with exaggerated slopes; 0 for cells without a height.
 Grid<float> lit(const Relief& relief, const Grid<float>& heights) {
   Grid<float> east(heights.columns(), heights.rows()), north = east;
   std::vector<float> steepness;
@@ -81,8 +81,7 @@ Grid<float> lit(const Relief& relief, const Grid<float>& heights) {
   return east;
 }
 
-/// Mean over a square of 2 * reach + 1 cells, of the cells that have a height; three passes are close to a
-/// Gaussian.
+/// Averages the known heights in a square of 2 * reach + 1 cells; three passes are close to a Gaussian.
 Grid<float> blurred(Grid<float> heights, std::int64_t reach) {
   const auto pass = [reach](auto cell, std::int64_t count) {
     std::vector<double> sum(static_cast<std::size_t>(count) + 1), known = sum;
@@ -116,7 +115,7 @@ Colour mix(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share)};
 }
 
-/// Shadows lean to a cool dark, lights to a warm white, as in painted relief.
+/// Tints shadows towards a cool dark and lights towards a warm white, as in painted relief.
 Colour lit_colour(const Colour& colour, double light) {
   constexpr Colour shadow{32, 36, 58}, sun{255, 251, 240};
   return light < 0 ? mix(colour, shadow, -0.62 * light) : mix(colour, sun, 0.55 * light);
@@ -124,7 +123,7 @@ Colour lit_colour(const Colour& colour, double light) {
 
 }  // namespace
 
-Colour HeightTint::operator()(double height) const {
+Colour HypsometricTint::operator()(double height) const {
   if (water && height <= 0)
     return mix(kShallowWater, kDeepWater, lowest < 0 ? std::min(1.0, height / lowest) : 0);
   const double from = water ? std::max(lowest, 0.0) : lowest;
@@ -134,11 +133,11 @@ Colour HeightTint::operator()(double height) const {
   return mix(land[step], land[step + 1], at - static_cast<double>(step));
 }
 
-HeightTint tint_for(const Relief& relief, const Body& body) {
+HypsometricTint hypsometric_tint(const Relief& relief, const Body& body) {
   std::vector<float> heights;
   for (const float height : relief.heights.cells())
     if (!std::isnan(height)) heights.push_back(height);
-  HeightTint tint;
+  HypsometricTint tint;
   tint.lowest = percentile(heights, 0.005);
   tint.highest = std::max<double>(percentile(std::move(heights), 0.995), tint.lowest + 1e-3);
   if (body.name == earth().name) {
@@ -156,7 +155,7 @@ HeightTint tint_for(const Relief& relief, const Body& body) {
   return tint;
 }
 
-Grid<Colour> shade(const Relief& relief, const HeightTint& tint) {
+Grid<Colour> shade(const Relief& relief, const HypsometricTint& tint) {
   const std::int64_t forms =
       std::max<std::int64_t>(2, std::max(relief.heights.columns(), relief.heights.rows()) / 90);
   const Grid<float> fine = lit(relief, relief.heights);

@@ -14,9 +14,9 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// Colours of heights, from `lowest` to `highest` metres; lower and higher ones take the end colours.
-/// On Earth, ground at or below 0 m is drawn as water, down to `lowest`.
-struct HeightTint {
+/// Hypsometric tints from `lowest` to `highest` metres; heights beyond take the end colours. On Earth,
+/// heights at or below 0 m are drawn as water, down to `lowest`.
+struct HypsometricTint {
   double lowest = 0, highest = 1;
   bool water = false;
   std::vector<Colour> land;  ///< evenly spaced, at least two
@@ -24,16 +24,16 @@ struct HeightTint {
   Colour operator()(double height) const;
 };
 
-/// Spans the heights of a picture without its most extreme percent, in colours that suit the body: greens to
-/// snow on Earth, greys on the Moon, ochres on Mars, slate elsewhere.
-HeightTint tint_for(const Relief& relief, const Body& body);
+/// Returns tints for the heights of a picture without its most extreme percent, in colours of the body:
+/// greens to snow on Earth, greys on the Moon, ochres on Mars, slate elsewhere.
+HypsometricTint hypsometric_tint(const Relief& relief, const Body& body);
 
-/// Shaded relief: tinted heights lit from the north-west, with the large forms lit once more for themselves
-/// so that they are not lost in detail. Slopes are exaggerated until the steep ones look steep, at any scale.
-/// Cells without a height are transparent.
-Grid<Colour> shade(const Relief& relief, const HeightTint& tint);
+/// Computes shaded relief: tinted heights lit from the north-west, with large forms lit separately so that
+/// detail does not hide them. Slopes are exaggerated until the steep ones look steep, at any scale. Cells
+/// without a height are transparent.
+Grid<Colour> shade(const Relief& relief, const HypsometricTint& tint);
 
-/// The bytes of a PNG file, written by GDAL.
-std::string png_of(const Grid<Colour>& picture);
+/// Returns the bytes of a PNG file, written by GDAL.
+std::string encode_png(const Grid<Colour>& picture);
 
 }  // namespace waymark

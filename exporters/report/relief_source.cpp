@@ -21,8 +21,8 @@ struct Raster {
   Extent extent;
 };
 
-bool on_same_body(const OGRSpatialReference* found, const Crs& crs) {
-  if (found == nullptr || crs.kind() == CrsKind::local) return true;  // the run was told the CRS by an option
+bool is_same_body(const OGRSpatialReference* found, const Crs& crs) {
+  if (found == nullptr || crs.kind() == CrsKind::local) return true;  // the run got the CRS from an option
   return std::abs(found->GetSemiMajor() / crs.body().equatorial_radius - 1) < 0.01 &&
          (found->IsGeographic() != 0) == (crs.kind() == CrsKind::geographic);
 }
@@ -34,7 +34,7 @@ std::optional<Raster> open_raster(const std::string& name, const Crs& crs, doubl
   double t[6];
   if (!raster.file || raster.file->GetRasterCount() != 1 || raster.file->GetGeoTransform(t) != CE_None)
     return {};
-  if (t[2] != 0 || t[4] != 0 || !(t[5] < 0) || !on_same_body(raster.file->GetSpatialRef(), crs)) return {};
+  if (t[2] != 0 || t[4] != 0 || !(t[5] < 0) || !is_same_body(raster.file->GetSpatialRef(), crs)) return {};
   const double turn =
       crs.kind() != CrsKind::geographic
           ? 0
@@ -44,7 +44,7 @@ std::optional<Raster> open_raster(const std::string& name, const Crs& crs, doubl
   return raster;
 }
 
-/// Pixels of a picture that lie wholly inside a raster, and which part of the raster they show.
+/// Pixels of a picture that lie wholly inside a raster, and the part of the raster they show.
 struct Part {
   Window pixels;
   double x = 0, y = 0, width = 0, height = 0;  ///< raster cells
@@ -127,7 +127,7 @@ Relief blank_relief(const Extent& extent, const Crs& crs, std::int64_t pixels) {
 
 }  // namespace
 
-Extent Extent::joined(const Extent& other) const {
+Extent Extent::united(const Extent& other) const {
   return {std::min(west, other.west), std::min(south, other.south), std::max(east, other.east),
           std::max(north, other.north)};
 }
@@ -147,7 +147,7 @@ std::optional<Relief> read_relief(const std::vector<std::string>& names, const C
     if (auto raster = open_raster(name, crs, near_x)) rasters.push_back(std::move(*raster));
   if (rasters.empty()) return {};
   Extent extent = rasters.front().extent;
-  for (const Raster& raster : rasters) extent = extent.joined(raster.extent);
+  for (const Raster& raster : rasters) extent = extent.united(raster.extent);
   Relief relief = blank_relief(extent, crs, pixels);
   for (const Raster& raster : rasters) paint(relief, raster);
   return relief;

@@ -5,16 +5,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "exporters/wording.hpp"
+#include "core/json_text.hpp"
+#include "exporters/formatting.hpp"
 
 namespace waymark {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// An older or foreign run may have left anything: what cannot be read is an empty object.
+/// Parses the report of a run; returns an empty object for an unreadable one, as of a foreign program.
 Json parsed(const std::string& text) {
-  Json json = Json::parse(text, nullptr, false);
+  Json json = Json::parse(json_or_empty(text), nullptr, false);
   return json.is_object() ? json : Json::object();
 }
 
@@ -49,7 +50,7 @@ std::string rejected_text(const Json& stage) {
   for (const auto& [reason, count] : reasons.items()) {
     if (!count.is_number()) continue;
     total += count.get<double>();
-    lines += fmt::format("<small>{} {}</small>", number_text(count.get<double>()), escaped(reason));
+    lines += fmt::format("<small>{} {}</small>", number_text(count.get<double>()), escape_markup(reason));
   }
   return number_text(total) + lines;
 }
@@ -69,8 +70,8 @@ std::string inputs_table(const RunRecord& run) {
   if (run.inputs.empty()) return {};
   std::string rows;
   for (const InputFile& input : run.inputs)
-    rows += fmt::format("<tr><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n", escaped(input.path),
-                        size_text(input.bytes), escaped(input.sha256));
+    rows += fmt::format("<tr><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
+                        escape_markup(input.path), size_text(input.bytes), escape_markup(input.sha256));
   return "<div class='scroll'><table class='inputs'><caption>Input files</caption><thead><tr><th "
          "scope='col'>File</th>"
          "<th scope='col'>Size</th><th scope='col'>SHA-256</th></tr></thead><tbody>" +
@@ -78,14 +79,14 @@ std::string inputs_table(const RunRecord& run) {
 }
 
 std::string code(const std::string& text) {
-  return text.empty() ? "" : "<code>" + escaped(text) + "</code>";
+  return text.empty() ? "" : "<code>" + escape_markup(text) + "</code>";
 }
 
 std::string job_details(const RunRecord& run) {
-  const Json job = Json::parse(run.job_json, nullptr, false);
+  const Json job = Json::parse(json_or_empty(run.job_json), nullptr, false);
   if (run.job_json.empty()) return {};
   return fmt::format("<details><summary>Job with every option</summary><pre>{}</pre></details>\n",
-                     escaped(job.is_discarded() ? run.job_json : job.dump(2)));
+                     escape_markup(job.is_discarded() ? run.job_json : job.dump(2)));
 }
 
 }  // namespace
@@ -94,14 +95,14 @@ std::string stage_table(const RunRecord& run) {
   const Json stages = list_at(parsed(run.report_json), "stages");
   if (stages.empty()) return {};
   std::string html =
-      "<div class='scroll'><table class='stages'><caption>What came in is what went out and what was rejected"
+      "<div class='scroll'><table class='stages'><caption>In = out + rejected"
       "</caption><thead><tr><th scope='col'>Stage</th><th scope='col'>In</th><th scope='col'>Out</th>"
       "<th scope='col'>Rejected</th><th scope='col'>Units</th><th "
       "scope='col'>Seconds</th></tr></thead><tbody>\n";
   for (const Json& stage : stages)
     html += fmt::format(
         "<tr><th scope='row'>{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-        escaped(title_of(text_at(stage, "stage"))), count_at(stage, "in"), count_at(stage, "out"),
+        escape_markup(title_of(text_at(stage, "stage"))), count_at(stage, "in"), count_at(stage, "out"),
         rejected_text(stage), units_text(stage), number_text(number_at(stage, "seconds"), 2));
   return html + "</tbody></table></div>\n";
 }
@@ -110,13 +111,13 @@ std::string warning_list(const RunRecord& run) {
   const Json report = parsed(run.report_json);
   std::string items;
   for (const Json& failure : list_at(report, "failures"))
-    items += fmt::format("<li><b>{} failed:</b> {}</li>", escaped(text_at(failure, "unit")),
-                         escaped(text_at(failure, "message")));
+    items += fmt::format("<li><b>{} failed:</b> {}</li>", escape_markup(text_at(failure, "unit")),
+                         escape_markup(text_at(failure, "message")));
   for (const Json& stage : list_at(report, "stages"))
     for (const Json& warning : list_at(stage, "warnings"))
       if (warning.is_string())
-        items += fmt::format("<li><b>{}:</b> {}</li>", escaped(title_of(text_at(stage, "stage"))),
-                             escaped(warning.get<std::string>()));
+        items += fmt::format("<li><b>{}:</b> {}</li>", escape_markup(title_of(text_at(stage, "stage"))),
+                             escape_markup(warning.get<std::string>()));
   return items.empty() ? "" : "<ul class='warnings'>" + items + "</ul>\n";
 }
 
@@ -125,10 +126,10 @@ std::string provenance(const std::vector<RunRecord>& runs) {
   std::string html;
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
     if (runs.size() > 1) html += fmt::format("<h3>Run {} of {}</h3>", runs.rend() - run, runs.size());
-    html += "<dl>" + fact("Started", escaped(run->started_utc)) +
+    html += "<dl>" + fact("Started", escape_markup(run->started_utc)) +
             fact("Took",
                  run->seconds > 0 ? number_text(run->seconds, run->seconds < 10 ? 2 : 0) + "\u00a0s" : "") +
-            fact("Waymark", escaped(run->version)) + fact("Command", code(run->command_line)) +
+            fact("Waymark", escape_markup(run->version)) + fact("Command", code(run->command_line)) +
             fact("Random seed", fmt::format("{}", run->seed)) + "</dl>\n" + inputs_table(*run) +
             job_details(*run);
   }

@@ -5,15 +5,14 @@
 #include "geodb/map_contents.hpp"
 namespace waymark {
 
-/// Per stage: in, out, rejected by reason, units, seconds, as an HTML table. Empty where the run left no
-/// report.
+/// Returns a table of the stages as HTML: in, out, rejected by reason, units, seconds. Empty if the run has
+/// no report.
 std::string stage_table(const RunRecord& run);
 
-/// What the stages warned of, and the units that failed, as an HTML list; empty where there is nothing to
-/// say.
+/// Returns the warnings of the stages and the failed units as an HTML list; empty if there are none.
 std::string warning_list(const RunRecord& run);
 
-/// Version, command, job, seed, time and input files with their hashes.
+/// Returns version, command, job, seed, time and input files with their hashes.
 std::string provenance(const std::vector<RunRecord>& runs);
 
 }  // namespace waymark

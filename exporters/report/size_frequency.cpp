@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exporters/formatting.hpp"
 #include "exporters/report/log_plot.hpp"
-#include "exporters/wording.hpp"
 
 namespace waymark {
 namespace {
 
-constexpr std::size_t kFewest = 5;
+constexpr std::size_t kMinCount = 5;
 
 std::string length_text(double metres) {
   const bool far = metres >= 1000;
@@ -52,13 +52,13 @@ double relative_density(const SizeBin& bin, double square_metres) {
   return std::pow(middle, 3) * static_cast<double>(bin.count) / (width * square_metres / 1e6);
 }
 
-std::string size_frequency_figures(const LandmarkSection& section, const std::optional<CountArea>& area) {
+std::string size_frequency_figures(const LandmarkSection& section, const std::optional<CountingArea>& area) {
   const auto radius = find_feature(section.type, "radius");
   if (section.type.drawn_as != Solid::bowl || !radius) return {};
   std::vector<double> diameters;
   for (const double r : known_values(section, *radius))
     if (r > 0) diameters.push_back(2 * r);
-  if (diameters.size() < kFewest) return {};
+  if (diameters.size() < kMinCount) return {};
   const auto bins = size_bins(diameters);
   const bool far = bins.back().to >= 2000;  // kilometres read better
   const double unit = far ? 1000 : 1;
@@ -70,16 +70,17 @@ std::string size_frequency_figures(const LandmarkSection& section, const std::op
                      .y_label = area ? "At least as large, per km\u00b2" : "At least as large",
                      .colour = section.type.colour,
                      .points = {}};
-  LogPlot relative{.title = "R-plot",
-                   .about =
-                       "Density against one that falls with the cube of the diameter; bins grow by "
-                       "\u221a2, bars are \u221aN",
-                   .x_label = x_label,
-                   .y_label = "R = D\u00b3 N / (A \u0394D)",
-                   .colour = section.type.colour,
-                   .points = {}};
-  cumulative.about = area ? fmt::format("Counted on {}: {}", area_text(area->square_metres), area->from)
-                          : "The area they were counted on is not known";
+  LogPlot relative{
+      .title = "R-plot",
+      .about =
+          "Density relative to a population that falls with the cube of the diameter; bins grow by "
+          "\u221a2, bars are \u221aN",
+      .x_label = x_label,
+      .y_label = "R = D\u00b3 N / (A \u0394D)",
+      .colour = section.type.colour,
+      .points = {}};
+  cumulative.about = area ? fmt::format("Counted on {}: {}", area_text(area->square_metres), area->source)
+                          : "The counting area is unknown";
   const double per_area = area ? 1e6 / area->square_metres : 1;
   for (const SizeBin& bin : bins) {
     if (bin.count == 0) continue;

@@ -1,5 +1,5 @@
 -- Spatial index of table {t} and its triggers, to the letter of GeoPackage 1.3, annex F.3
--- (https://www.geopackage.org/spec130/#extension_rtree). Readers and writers of any make keep it up with these.
+-- (https://www.geopackage.org/spec130/#extension_rtree). Every GeoPackage program updates the index through them.
 CREATE VIRTUAL TABLE "rtree_{t}_geom" USING rtree(id, minx, maxx, miny, maxy);
 CREATE TRIGGER "rtree_{t}_geom_insert" AFTER INSERT ON "{t}"
   WHEN (new."geom" NOT NULL AND NOT ST_IsEmpty(NEW."geom"))

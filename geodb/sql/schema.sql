@@ -1,4 +1,4 @@
--- A Waymark map, version 2: a GeoPackage 1.3 (OGC 12-128r18). Every landmark type adds a table of its own:
+-- A Waymark map, version 3: a GeoPackage 1.3 (OGC 12-128r18). Every landmark type adds a table of its own:
 -- see landmark_layout.cpp for its columns. Text in {braces} is filled in.
 
 -- GeoPackage core ------------------------------------------------------------------------------------------
@@ -121,7 +121,7 @@ CREATE TABLE waymark_schema (
   description TEXT NOT NULL
 );
 
--- Landmark types, so that a file explains itself also to a program that does not know them.
+-- Landmark types, so that programs can read a file with types unknown to them.
 CREATE TABLE waymark_type (
   id INTEGER PRIMARY KEY,           -- from 1; rows of its table have ids from (id - 1) * 1e9 + 1
   name TEXT NOT NULL UNIQUE,        -- of the table
@@ -159,7 +159,7 @@ CREATE TABLE waymark_attribute (
   UNIQUE (type, name), UNIQUE (type, position)
 );
 
--- The evidence: a landmark seen once and placed on the ground. Kept rows are linked to their landmark by
+-- Single observations of landmarks, projected to the terrain. Accepted rows are linked to their landmark by
 -- <type>_observation (related tables extension).
 CREATE TABLE observation (
   id INTEGER PRIMARY KEY,
@@ -180,7 +180,15 @@ CREATE TABLE observation (
   rejected TEXT                     -- reason; NULL if kept
 );
 
--- Images, with the ground they show.
+-- Landmarks that another program moved after Waymark measured them (triggers in edits.sql). A map from Waymark has
+-- none; `waymark validate` reports them, and an edit by Waymark takes the row out.
+CREATE TABLE waymark_moved (
+  id INTEGER PRIMARY KEY,           -- row of the landmark
+  type TEXT NOT NULL,               -- its table
+  moved DATETIME NOT NULL           -- UTC
+);
+
+-- Images and their footprints on the ground. A layer only if there are any.
 CREATE TABLE image (
   id INTEGER PRIMARY KEY,
   geom MULTIPOLYGON,                -- footprint; NULL: unknown
@@ -192,7 +200,7 @@ CREATE TABLE image (
   gsd DOUBLE                        -- m
 );
 
--- How the map came to be.
+-- Provenance of the map.
 CREATE TABLE run (
   id INTEGER PRIMARY KEY,
   version TEXT NOT NULL,            -- of Waymark
@@ -214,7 +222,8 @@ INSERT INTO gpkg_extensions VALUES
   ('waymark_schema', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write'),
   ('waymark_type', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write'),
   ('waymark_feature', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write'),
-  ('waymark_attribute', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write');
+  ('waymark_attribute', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write'),
+  ('waymark_moved', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write');
 
 INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) VALUES
   ('observation', 'attributes', 'observation', 'The evidence of every landmark', '{time}'),

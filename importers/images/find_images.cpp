@@ -10,10 +10,12 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <set>
 
+#include "core/error.hpp"
 #include "importers/gdal_session.hpp"
 
 namespace waymark {
@@ -35,14 +37,11 @@ bool is_pattern(const std::string& path) {
   return path.find_first_of("*?[") != std::string::npos && !exists(path);
 }
 
-// Where the files of a camera set are looked for.
+// Returns the folders to search for the images of a camera set.
 std::vector<std::string> folders_of(const std::vector<std::string>& files, const std::string& camera_file) {
   std::vector<std::string> folders;
   for (const std::string& file : files)
-    if (is_folder(file))
-      folders.push_back(file);
-    else if (is_pattern(file))
-      folders.push_back(fs::path(file).parent_path().string());
+    if (is_folder(file)) folders.push_back(file);
   if (!files.empty()) return folders;
   const fs::path folder =
       is_folder(camera_file) ? fs::path(camera_file) : fs::path(camera_file).parent_path();
@@ -52,7 +51,7 @@ std::vector<std::string> folders_of(const std::vector<std::string>& files, const
   return folders;
 }
 
-// The camera's image in one of the folders, with an extension where the camera file leaves it out.
+// Returns the camera's image in one of the folders, with an extension if the camera file omits it.
 std::string locate(const std::string& image, const std::vector<std::string>& folders,
                    const std::map<std::string, std::string>& by_stem) {
   for (const std::string& folder : folders)
@@ -63,8 +62,8 @@ std::string locate(const std::string& image, const std::vector<std::string>& fol
   return folders.empty() ? image : (fs::path(folders[0]) / image).string();
 }
 
-// A name with as many folders as it takes to tell the images apart.
-void name_apart(std::vector<FoundImage>& images) {
+// Prefixes names with folders until they are unique.
+void make_names_unique(std::vector<FoundImage>& images) {
   for (int folders = 0; folders < 8; ++folders) {
     std::map<std::string, int> uses;
     for (const FoundImage& image : images) ++uses[image.name];
@@ -90,7 +89,7 @@ bool is_image_name(const std::string& name) {
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
-std::vector<std::string> matching(const std::string& pattern) {
+std::vector<std::string> expand_pattern(const std::string& pattern) {
   if (!is_pattern(pattern)) return {pattern};
   const fs::path folder = fs::path(pattern).parent_path();
   const std::string wanted = fs::path(pattern).filename().string();
@@ -119,8 +118,13 @@ std::vector<FoundImage> find_images(const std::vector<std::string>& files, const
   for (const std::string& file : files)
     if (is_folder(file))
       for (std::string& image : image_files_in(file)) paths.push_back(std::move(image));
-    else
-      for (std::string& image : matching(file)) paths.push_back(std::move(image));
+    else {
+      std::vector<std::string> matches = expand_pattern(file);
+      if (matches.empty())
+        throw Error(ErrorCode::input, "no image matches the pattern", file,
+                    "patterns have * ? and [...] in the file name; check the folder and the spelling");
+      std::ranges::move(matches, std::back_inserter(paths));
+    }
   if (cameras) {
     const std::vector<std::string> folders = folders_of(files, camera_file);
     std::map<std::string, std::string> by_stem;
@@ -136,8 +140,8 @@ std::vector<FoundImage> find_images(const std::vector<std::string>& files, const
     if (known.insert(fs::path(path).lexically_normal().string()).second)
       found.push_back({.path = path,
                        .name = fs::path(path).filename().string(),
-                       .camera = cameras ? camera_of(*cameras, path) : nullptr});
-  name_apart(found);
+                       .camera = cameras ? find_camera(*cameras, path) : nullptr});
+  make_names_unique(found);
   std::ranges::sort(found, {}, &FoundImage::name);
   return found;
 }

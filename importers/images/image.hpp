@@ -7,9 +7,9 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// What is known of an image beside its file.
+/// Metadata of an image that its file does not hold.
 struct ImageImport {
-  /// A frame camera at a place: the file's own georeference, if any, is not looked at.
+  /// A posed frame camera; the file's own georeference is then ignored.
   std::optional<PosedCamera> view = {};
   std::string crs = {};      ///< of `view`; of an orthophoto instead of its own; "local": metres on no body
   bool georeference = true;  ///< false: pixels only, whatever the file says
@@ -21,26 +21,30 @@ struct ImageImport {
   int band = 0;  ///< from 1; 0: luminance of a colour image, else the first band
 };
 
-/// An image on a file that GDAL reads.
+/// An image in a file that GDAL reads.
 class ImportedImage : public ImageSource {
  public:
-  /// One line each, in a fixed order.
+  /// Returns one line per warning, in a fixed order.
   virtual const std::vector<std::string>& warnings() const = 0;
-  virtual int band() const = 0;  ///< as ImageImport has it
+  virtual int band() const = 0;  ///< as in ImageImport
 };
 
-/// Opens an image: GeoTIFF, COG, PNG, JPEG, PGM, PDS3/PDS4/ISIS and whatever else GDAL reads; 8, 16, 32 bit,
-/// float, palette. Only the header is read. Pixels are as the file stores them (EXIF orientation is ignored,
-/// as camera files do). No data: the no-data value (of a colour image: in every colour), mask, alpha 0, ISIS
-/// special values, NaN. An orthophoto has its Georeference in `info().ortho`, by GeoTIFF keys, world file or
-/// whatever GDAL knows; one in degrees, rotated or south-up is refused with the gdalwarp command that mends
-/// it, unless `georeference` is false. A georeferenced file that names no CRS is in Crs::local(), with a
-/// warning. Throws Error{input} for what is missing, damaged, complex or no image.
+/// Opens an image: GeoTIFF, COG, PNG, JPEG, PGM, PDS3/PDS4/ISIS and all other formats of GDAL; 8, 16, 32 bit,
+/// float, palette. Reads the header only.
+/// - Pixels are as the file stores them: EXIF orientation is ignored, as in camera files.
+/// - No data are the no-data value (of a colour image: in every colour), mask, alpha 0, ISIS special values
+///   and NaN.
+/// - An orthophoto has its Georeference in `info().ortho`, from GeoTIFF keys, world file or any source of
+///   GDAL.
+/// - An orthophoto in degrees, rotated or south-up is refused with the gdalwarp command that corrects it,
+///   unless `georeference` is false.
+/// - A georeferenced file without CRS is in Crs::local(), with a warning.
+/// Throws Error{input} for a file that is missing, damaged, complex or no image.
 std::shared_ptr<const ImportedImage> import_image(const std::string& path, const ImageImport& import = {});
 
-/// A definition (PROJ string, also for gdalwarp -t_srs) of a transverse Mercator on the body of `crs`, true
-/// to scale along the meridian of a place: better than 1e-4 within 90 km of it on Earth, 48 km on Mars.
-/// Degrees, rounded to 1e-4, so that it is short.
+/// Returns a transverse Mercator on the body of `crs`, true to scale along the meridian of a position, as a
+/// PROJ string that gdalwarp -t_srs takes. Scale error below 1e-4 within 90 km on Earth, 48 km on Mars.
+/// Degrees are rounded to 1e-4.
 std::string local_projection(const Crs& crs, double lon, double lat);
 
 }  // namespace waymark

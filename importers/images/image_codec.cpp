@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/json_text.hpp"
 #include "importers/images/image_set.hpp"
 
 namespace waymark {
@@ -10,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Copies of a CRS share its definition: a set is in few of them, and making one costs a millisecond.
+// Caches CRSs: a set has few of them, and making one costs a millisecond. Copies share the definition.
 class CrsMaker {
  public:
   Crs operator()(const std::string& text) {
@@ -118,7 +119,7 @@ std::string Codec<ImageSet>::encode(const ImageSet& images) {
   Json all = Json::array();
   for (const ImageHandle& image : images) {
     const auto* imported = dynamic_cast<const ImportedImage*>(image.get());
-    if (!imported) throw std::logic_error("only images on files can be kept in a work folder");
+    if (!imported) throw std::logic_error("only images in files can be stored in a work folder");
     Json one = json_of(imported->info());
     one["band"] = imported->band();
     all.push_back(std::move(one));
@@ -130,7 +131,7 @@ ImageSet Codec<ImageSet>::decode(std::string_view bytes) {
   CrsMaker crs;
   std::vector<ImageInfo> images;
   int band = 0;
-  for (const Json& one : Json::parse(bytes)) {
+  for (const Json& one : Json::parse(checked_json(bytes, "images"))) {
     images.push_back(info_of(one, crs));
     band = one.at("band");
   }

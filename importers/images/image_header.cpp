@@ -13,13 +13,13 @@
 namespace waymark {
 namespace {
 
-using GeoTransform = std::array<double, 6>;  // about the corner of the first pixel, as GDAL has it
+using GeoTransform = std::array<double, 6>;  // as in GDAL, about the corner of the first pixel
 
 [[noreturn]] void refuse(const std::string& problem, const std::string& path, const std::string& hint) {
   throw Error(ErrorCode::input, problem, path, hint);
 }
 
-// Programs write the identity where they know nothing.
+// Programs write the identity if they know no georeference.
 std::optional<GeoTransform> transform_of(GDALDataset& dataset) {
   GeoTransform t{};
   if (dataset.GetGeoTransform(t.data()) != CE_None) return std::nullopt;
@@ -48,7 +48,7 @@ Crs crs_of(const GDALDataset& dataset, const std::string& path, const std::strin
   const std::string definition = definition_of(dataset);
   if (!definition.empty()) return Crs::from_text(definition);
   warnings.push_back(fmt::format(
-      "{} has a georeference but names no CRS: taken as metres on no body; pass crs if it is on one", path));
+      "{} has a georeference but names no CRS: metres on no body are assumed; pass crs otherwise", path));
   return Crs::local();
 }
 
@@ -75,9 +75,8 @@ ImageHeader read_image_header(GDALDataset& dataset, const std::string& path, int
   const int bands = dataset.GetRasterCount();
   if (bands == 0) {
     const char* first = CSLFetchNameValue(dataset.GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
-    refuse(
-        "the file holds no image of its own", path,
-        first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows what it holds");
+    refuse("the file itself contains no image", path,
+           first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows its content");
   }
   if (band < 0 || band > bands)
     refuse(fmt::format("there is no band {}: the image has {}", band, bands), path,
@@ -90,12 +89,13 @@ ImageHeader read_image_header(GDALDataset& dataset, const std::string& path, int
   GeoTransform t{};
   return {.columns = dataset.GetRasterXSize(),
           .rows = dataset.GetRasterYSize(),
-          .placed = dataset.GetGeoTransform(t.data()) == CE_None,
+          .has_georeference = dataset.GetGeoTransform(t.data()) == CE_None,
           .saturated = full_scale(one)};
 }
 
-std::optional<Georeference> orthophoto_place(GDALDataset& dataset, const std::string& path,
-                                             const std::string& crs, std::vector<std::string>& warnings) {
+std::optional<Georeference> orthophoto_georeference(GDALDataset& dataset, const std::string& path,
+                                                    const std::string& crs,
+                                                    std::vector<std::string>& warnings) {
   const auto found = transform_of(dataset);
   if (!found) return std::nullopt;
   const GeoTransform& t = *found;
@@ -106,12 +106,12 @@ std::optional<Georeference> orthophoto_place(GDALDataset& dataset, const std::st
            "an orthophoto: " + warp_command(path, {}) + "; a frame image: give its camera");
   if (!(t[1] > 0) || !(t[5] < 0))
     refuse(fmt::format("the pixels measure {} x {}: columns must run east and rows south", t[1], t[5]), path,
-           "turn it: " + warp_command(path, {}));
+           "resample it: " + warp_command(path, {}));
   const Crs where = crs_of(dataset, path, crs, warnings);
   refuse_degrees(where, t, header, path);
   if (const double ratio = -t[5] / t[1]; !(std::abs(ratio - 1) < 0.01))
     warnings.push_back(
-        fmt::format("{} has pixels of {:.6g} x {:.6g}: round things look oval in it", path, t[1], -t[5]));
+        fmt::format("{} has pixels of {:.6g} x {:.6g}: circles appear as ellipses", path, t[1], -t[5]));
   return Georeference{where, t[0] + t[1] / 2, t[3] + t[5] / 2, t[1], t[5]};
 }
 

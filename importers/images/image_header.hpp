@@ -8,19 +8,21 @@
 #include "importers/gdal_session.hpp"
 namespace waymark {
 
-/// What an image file says of itself.
+/// Size and properties of an image file.
 struct ImageHeader {
   std::int64_t columns = 0, rows = 0;
-  bool placed = false;  ///< has a georeference of whatever kind
+  bool has_georeference = false;  ///< has a georeference of any kind
   double saturated = 0;
 };
 
-/// Throws Error{input} for a file without raster, a missing band, complex numbers.
+/// Reads the header. Throws Error{input} for a file without raster, a missing band, complex numbers.
 ImageHeader read_image_header(GDALDataset& dataset, const std::string& path, int band);
 
-/// Where an orthophoto's pixels lie; nothing for an image without georeference. `crs` replaces its own unless
-/// empty. Refuses degrees, rotated and south-up images with the command that mends them.
-std::optional<Georeference> orthophoto_place(GDALDataset& dataset, const std::string& path,
-                                             const std::string& crs, std::vector<std::string>& warnings);
+/// Returns the georeference of an orthophoto; `std::nullopt` for an image without one. A non-empty `crs`
+/// replaces the file's own. Throws Error{input} for degrees, rotated and south-up images, with the command
+/// that corrects them.
+std::optional<Georeference> orthophoto_georeference(GDALDataset& dataset, const std::string& path,
+                                                    const std::string& crs,
+                                                    std::vector<std::string>& warnings);
 
 }  // namespace waymark

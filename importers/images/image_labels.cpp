@@ -26,7 +26,7 @@ std::string item(GDALDataset& dataset, const char* name) {
   return text;
 }
 
-// "2019:04:11 11:01:21" to "2019-04-11T11:01:21".
+// Converts "2019:04:11 11:01:21" to "2019-04-11T11:01:21".
 std::string iso(std::string exif) {
   if (exif.size() < 19) return {};
   exif[4] = exif[7] = '-';
@@ -34,7 +34,7 @@ std::string iso(std::string exif) {
   return exif.substr(0, 19);
 }
 
-// "(3) (1) (22.5)" to "03:01:22.5", whole seconds kept only.
+// Parses a time such as "(3) (1) (22.5)" as 03:01:22.5.
 std::optional<double> gps_time(const std::string& date, const std::string& time) {
   if (date.size() < 10) return std::nullopt;
   std::array<double, 3> part{};
@@ -50,7 +50,7 @@ std::optional<double> gps_time(const std::string& date, const std::string& time)
   return midnight ? std::optional(*midnight + 3600 * part[0] + 60 * part[1] + part[2]) : std::nullopt;
 }
 
-// The number after "KEY = " in label text.
+// Returns the number after "KEY = " in label text.
 std::optional<double> keyword(std::string_view label, std::string_view key) {
   for (std::size_t at = label.find(key); at != label.npos; at = label.find(key, at + 1)) {
     const bool begins =
@@ -102,12 +102,12 @@ std::string label_of(const std::string& image_path) {
   for (const char* extension : {".LBL", ".lbl"}) {
     const std::string beside = std::filesystem::path(image_path).replace_extension(extension).string();
     VSIStatBufL status;
-    if (VSIStatL(beside.c_str(), &status) == 0) return head_of(beside, kLabelBytes);
+    if (VSIStatL(beside.c_str(), &status) == 0) return read_vsi_head(beside, kLabelBytes);
   }
   try {
-    std::string head = head_of(image_path, kLabelBytes);
+    std::string head = read_vsi_head(image_path, kLabelBytes);
     return is_label(head) ? head : "";
-  } catch (const Error&) {  // a name that only GDAL understands has no file to look into
+  } catch (const Error&) {  // a name that only GDAL understands names no file
     return "";
   }
 }

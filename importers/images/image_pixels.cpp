@@ -19,12 +19,12 @@ constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 constexpr std::array<float, 3> kRec709{0.2126F, 0.7152F, 0.0722F};
 constexpr std::int64_t kStripPixels = std::int64_t{1} << 20;
 
-// One band with its weight and what it calls no data.
+// One band with its weight and no-data values.
 struct Channel {
   GDALRasterBand* band = nullptr;
   float weight = 1;
-  float nodata = kNothing;          // never equal to anything where there is none
-  float lowest = -3.4e38F;          // ISIS keeps its special values below
+  float nodata = kNothing;          // NaN if there is none, equal to nothing
+  float lowest = -3.4e38F;          // special values of ISIS are below
   std::vector<float> palette = {};  // brightness by index
 };
 
@@ -54,7 +54,7 @@ Channel channel(GDALDataset& dataset, int index, float weight) {
   return made;
 }
 
-// Red, green, blue where the file says which they are; else the first band.
+// Returns red, green, blue if the file names them; else the first band.
 std::vector<Channel> channels(GDALDataset& dataset, int band) {
   if (band > 0) return {channel(dataset, band, 1)};
   std::array<int, 3> colours{};
@@ -68,7 +68,7 @@ std::vector<Channel> channels(GDALDataset& dataset, int band) {
   return made;
 }
 
-// Mask bands and alpha; no-data values are compared by us, since in colour all bands must have them.
+// Returns a mask or alpha band. No-data values are compared here, since all bands of a colour must have them.
 GDALRasterBand* mask_of(GDALRasterBand& band) {
   const int flags = band.GetMaskFlags();
   return (flags & (GMF_ALL_VALID | GMF_NODATA)) ? nullptr : band.GetMaskBand();
@@ -100,7 +100,7 @@ void add(const Channel& from, std::vector<float>& read, std::vector<float>& sum,
   }
 }
 
-// Colour images: a pixel is missing where all its bands are.
+// A pixel of a colour image is missing if all its bands are.
 std::vector<float> read_strip(const std::vector<Channel>& all, const Window& strip, const std::string& path) {
   const auto size = static_cast<std::size_t>(strip.cells());
   std::vector<float> sum(size, 0), read(size);

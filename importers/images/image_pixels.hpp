@@ -5,8 +5,8 @@
 #include "importers/gdal_session.hpp"
 namespace waymark {
 
-/// Brightness of a window, NaN outside the image and where there is no data. `band` as ImageImport has it.
-/// Reads strips of rows: beside the result about 16 MB. Throws Error{input} where the file is damaged.
+/// Reads the brightness of a window; NaN outside the image and for no data. `band` as in ImageImport. Reads
+/// strips of rows: about 16 MB beside the result. Throws Error{input} if the file is damaged.
 Pixels read_pixels(GDALDataset& dataset, const Window& window, int band, const std::string& path);
 
 }  // namespace waymark

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "importers/images/fit_camera.hpp"
+#include "importers/cameras/scale_camera.hpp"
 #include "importers/images/image_header.hpp"
 #include "importers/images/image_pixels.hpp"
 #include "importers/rasters/raster_handles.hpp"
@@ -16,7 +16,7 @@
 namespace waymark {
 namespace {
 
-// Opens its file when first read.
+// An image that opens its file when first read.
 class FileImage final : public ImportedImage {
  public:
   FileImage(ImageInfo info, int band, std::shared_ptr<RasterHandles> files, std::size_t file,
@@ -45,14 +45,14 @@ class FileImage final : public ImportedImage {
     std::vector<std::string> ignored;
     if (same_size && !info_.ortho) return;
     if (same_size)
-      if (const auto now = orthophoto_place(dataset, info_.path, info_.crs.wkt2(), ignored);
+      if (const auto now = orthophoto_georeference(dataset, info_.path, info_.crs.wkt2(), ignored);
           now && now->x0 == info_.ortho->x0 && now->y0 == info_.ortho->y0 && now->dx == info_.ortho->dx &&
           now->dy == info_.ortho->dy)
         return;
     throw Error(ErrorCode::input,
                 info_.columns == 0
-                    ? "the image could not be read when the run listed it: load_images says why"
-                    : "the image is not the one the run listed: size or place have changed",
+                    ? "the image could not be read when the run listed it; see the warnings of load_images"
+                    : "the image has changed since the run listed it: other size or georeference",
                 info_.path, "run with --rerun-from load_images");
   }
 
@@ -87,9 +87,9 @@ std::shared_ptr<const ImportedImage> import_image(const std::string& path, const
   std::vector<std::string> warnings;
   if (import.view) {
     if (!import.crs.empty()) info.crs = Crs::from_text(import.crs);
-    info.view->camera = fit_camera(info.view->camera, header.columns, header.rows, path, warnings);
+    info.view->camera = scale_camera(info.view->camera, header.columns, header.rows, path, warnings);
   } else if (import.georeference) {
-    info.ortho = orthophoto_place(*dataset, path, import.crs, warnings);
+    info.ortho = orthophoto_georeference(*dataset, path, import.crs, warnings);
     if (info.ortho) info.crs = info.ortho->crs;
   }
   return std::make_shared<const FileImage>(std::move(info), import.band,

@@ -7,14 +7,14 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// Images by what is known of them, `columns` and `rows` included. Files are opened when first read; of all
-/// files of a set at most RasterHandles::kIdle stay open. One whose file cannot be read throws when read.
+/// Makes images from their metadata, `columns` and `rows` included. Files are opened when first read; at most
+/// RasterHandles::kIdle files of a set stay open. Reading throws if the file cannot be read.
 ImageSet image_set(const std::vector<ImageInfo>& images, int band = 0);
 
-/// All of an ImageInfo as one line of JSON: equal images give equal text.
+/// Returns an ImageInfo as one line of JSON. Equal images give equal text.
 std::string to_json(const ImageInfo& image);
 
-/// An image set on disk is its recipe: decoding opens no file.
+/// Stores an image set as its recipe; decoding opens no file.
 template <>
 struct Codec<ImageSet> {
   static std::string encode(const ImageSet& images);

@@ -8,9 +8,9 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "importers/cameras/scale_camera.hpp"
 #include "importers/gdal_session.hpp"
 #include "importers/images/find_images.hpp"
-#include "importers/images/fit_camera.hpp"
 #include "importers/images/image_header.hpp"
 #include "importers/images/image_labels.hpp"
 #include "importers/images/sun_position.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kNamed = 5;  // names in one warning
 
-std::string some_of(const std::vector<std::string>& names) {
+std::string joined_names(const std::vector<std::string>& names) {
   const std::size_t shown = std::min(names.size(), kNamed);
   return fmt::format("{}{}",
                      fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
@@ -30,7 +30,7 @@ std::string some_of(const std::vector<std::string>& names) {
 std::optional<CameraSet> read_cameras(const ImageListing& listing, std::vector<std::string>& warnings) {
   std::optional<CameraSet> all;
   if (listing.cameras.empty()) return all;
-  const std::vector<std::string> files = matching(listing.cameras);
+  const std::vector<std::string> files = expand_pattern(listing.cameras);
   if (files.empty())
     throw Error(ErrorCode::input, "no camera file matches the pattern", listing.cameras, "check the path");
   for (const std::string& file : files) {
@@ -73,18 +73,18 @@ class Lister {
     out_.images.push_back(std::move(image));
   }
 
-  void tell() {
+  void add_warnings() {
     if (!broken_.empty())
       out_.warnings.push_back(fmt::format("{} of {} images cannot be read and will fail: {}", broken_.size(),
-                                          out_.images.size(), some_of(broken_)));
+                                          out_.images.size(), joined_names(broken_)));
     if (!unplaced_.empty())
       out_.warnings.push_back(fmt::format("{} of {} images have neither a pose nor a usable georeference: {}",
-                                          unplaced_.size(), out_.images.size(), some_of(unplaced_)));
+                                          unplaced_.size(), out_.images.size(), joined_names(unplaced_)));
     if (!local_times_.empty())
       out_.warnings.push_back(fmt::format(
           "the sun of {} images is unknown, because their EXIF times have no offset from UTC: pass "
           "time_zone, e.g. +08:00, or the sun itself: {}",
-          local_times_.size(), some_of(local_times_)));
+          local_times_.size(), joined_names(local_times_)));
   }
 
  private:
@@ -98,7 +98,7 @@ class Lister {
     place(found, *dataset, image);
     const TimeTaken taken = time_taken(*dataset, listing_.time_zone);
     if (image.taken_utc.empty() && taken.utc) image.taken_utc = utc_text(*taken.utc);
-    light(found, taken, image);
+    set_sun(found, taken, image);
   }
 
   void place(const FoundImage& found, GDALDataset& dataset, ImageInfo& image) {
@@ -107,12 +107,12 @@ class Lister {
         image.crs = cameras_->crs;
         image.view = found.camera->view;
         image.view->camera =
-            fit_camera(image.view->camera, image.columns, image.rows, found.path, out_.warnings);
+            scale_camera(image.view->camera, image.columns, image.rows, found.path, out_.warnings);
         check_camera(image.view->camera, found.path, "", out_.warnings);
         return;
       }
       std::vector<std::string> warnings;
-      image.ortho = orthophoto_place(dataset, found.path, "", warnings);
+      image.ortho = orthophoto_georeference(dataset, found.path, "", warnings);
       for (std::string& warning : warnings) out_.warnings.push_back(std::move(warning));
       if (image.ortho) adopt(found, image);
     } catch (const Error& e) {
@@ -125,19 +125,19 @@ class Lister {
       unplaced_.push_back(found.name + (found.camera ? " (not oriented in the camera file)" : ""));
   }
 
-  // One CRS for the whole set: the map's, else that of the first orthophoto.
+  // Uses one CRS for the whole set: the map's, else that of the first orthophoto.
   void adopt(const FoundImage& found, ImageInfo& image) {
     const Crs own = image.ortho->crs;
     if (own.kind() == CrsKind::local && crs_) image.ortho->crs = *crs_;
     if (!crs_) crs_ = image.ortho->crs;
     if (!image.ortho->crs.same_as(*crs_))
-      throw Error(ErrorCode::input, fmt::format("it is in {}, the map in {}", own.id(), crs_->id()),
+      throw Error(ErrorCode::input, fmt::format("the image is in {}, the map in {}", own.id(), crs_->id()),
                   found.path,
                   fmt::format("gdalwarp -t_srs '{}' -r cubic '{}' out.tif", crs_->id(), found.path));
     image.crs = *crs_;
   }
 
-  void light(const FoundImage& found, const TimeTaken& taken, ImageInfo& image) {
+  void set_sun(const FoundImage& found, const TimeTaken& taken, ImageInfo& image) {
     image.image_sun_angle = listing_.image_sun_angle;
     image.sun = listing_.sun;
     using From = ImageListing::SunFrom;
@@ -147,16 +147,16 @@ class Lister {
         image.sun = found.camera->sun;
         image.image_sun_angle = found.camera->image_sun_angle;
       }
-      if (!image.sun && !image.image_sun_angle) light_from_label(found, image);
+      if (!image.sun && !image.image_sun_angle) set_sun_from_label(found, image);
       if (image.sun || image.image_sun_angle) return;
     }
-    light_from_time(found, taken, image);
+    set_sun_from_time(found, taken, image);
   }
 
-  void light_from_label(const FoundImage& found, ImageInfo& image) {
+  void set_sun_from_label(const FoundImage& found, ImageInfo& image) {
     const LabelSun label = label_sun(label_of(found.path));
     if (!label.image_angle) return;
-    // In a north-up orthophoto the right is east, 90 deg clockwise from north.
+    // Right is east in a north-up orthophoto, 90 deg clockwise from north.
     if (image.ortho && label.elevation)
       image.sun = Sun{.azimuth = Degrees{std::fmod(label.image_angle->value + 450, 360.0)},
                       .elevation = *label.elevation};
@@ -164,16 +164,18 @@ class Lister {
       image.image_sun_angle = label.image_angle;
   }
 
-  void light_from_time(const FoundImage& found, const TimeTaken& taken, ImageInfo& image) {
+  void set_sun_from_time(const FoundImage& found, const TimeTaken& taken, ImageInfo& image) {
     if (!image.view && !image.ortho) return;
     const bool earthly = image.crs.kind() != CrsKind::local && image.crs.body().name == earth().name;
     const auto time = utc_seconds(image.taken_utc);
     if (!time && !taken.local.empty() && earthly) local_times_.push_back(found.name);
     if (listing_.sun_from == ImageListing::SunFrom::time && !time)
-      throw Error(ErrorCode::input,
-                  taken.local.empty() ? "the sun is to follow from the time, but the image has none"
-                                      : fmt::format("its time {} has no offset from UTC", taken.local),
-                  found.path, "pass time_zone, e.g. +08:00, or sun_azimuth and sun_elevation");
+      throw Error(
+          ErrorCode::input,
+          taken.local.empty()
+              ? "the sun cannot be computed: the image has no time"
+              : fmt::format("the sun cannot be computed: the time {} has no offset from UTC", taken.local),
+          found.path, "pass time_zone, e.g. +08:00, or sun_azimuth and sun_elevation");
     if (!time || (!earthly && listing_.sun_from == ImageListing::SunFrom::all)) return;
     const auto [x, y] = middle_of(image);
     const Sun sun = sun_on_map(*time, image.crs, x, y);
@@ -181,7 +183,7 @@ class Lister {
       image.sun = sun;
     else
       out_.warnings.push_back(
-          fmt::format("{}: at {} the sun stood at {:.1f} deg, below the horizon: it is not used", found.name,
+          fmt::format("{}: the sun at {} is at {:.1f} deg, below the horizon, and is not used", found.name,
                       image.taken_utc, sun.elevation.value));
   }
 
@@ -212,10 +214,10 @@ ListedImages list_images(const ImageListing& listing) {
   if (found.empty())
     throw Error(ErrorCode::input, "there are no images",
                 listing.files.empty() ? listing.cameras : listing.files[0],
-                "a folder is searched for .tif .png .jpg .pgm .img .jp2 ... files, not below");
+                "folders are searched for .tif .png .jpg .pgm .img .jp2 ... files, without subfolders");
   Lister lister(listing, cameras, out);
   for (const FoundImage& image : found) lister.add(image);
-  lister.tell();
+  lister.add_warnings();
   return out;
 }
 

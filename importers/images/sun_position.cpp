@@ -67,7 +67,7 @@ Sun sun_on_earth(double unix_seconds, double lon, double lat) {
                                     std::cos(declination) * std::cos(hour) * std::sin(latitude),
                                 std::sin(declination) * std::sin(latitude) +
                                     std::cos(declination) * std::cos(hour) * std::cos(latitude));
-  // The parallax: seen from the surface and not from the centre the sun stands 8.8" lower at the horizon.
+  // Parallax: seen from the surface, the sun is 8.8" lower at the horizon than from the centre.
   Sun sun = sun_from_direction(towards);
   sun.elevation.value -= 8.794 / 3600 * std::cos(rad(sun.elevation.value));
   return sun;
@@ -76,15 +76,15 @@ Sun sun_on_earth(double unix_seconds, double lon, double lat) {
 Sun sun_on_map(double unix_seconds, const Crs& crs, double x, double y) {
   if (crs.kind() == CrsKind::local || crs.body().name != earth().name)
     throw Error(ErrorCode::input,
-                fmt::format("the time says where the sun stands on Earth only; this map is on {}",
+                fmt::format("the sun follows from the time on Earth only; this map is on {}",
                             crs.kind() == CrsKind::local ? "no body" : crs.body().name),
                 "", "give sun_azimuth and sun_elevation, or the sun in the camera file");
-  const Crs degrees = geographic_of(crs);
+  const Crs degrees = geographic_crs(crs);
   const CrsTransform to_degrees(crs, degrees), to_map(degrees, crs);
   const auto [lon, lat] = to_degrees(x, y);
   Sun sun = sun_on_earth(unix_seconds, lon, lat);
   if (crs.kind() == CrsKind::geographic) return sun;
-  // True north in the grid, clockwise from its y axis.
+  // Azimuth of true north in the grid, clockwise from its y axis.
   constexpr double kStep = 1e-4;
   const auto [x0, y0] = to_map(lon, lat - kStep);
   const auto [x1, y1] = to_map(lon, lat + kStep);
@@ -93,7 +93,7 @@ Sun sun_on_map(double unix_seconds, const Crs& crs, double x, double y) {
 }
 
 std::optional<double> utc_seconds(std::string_view text) {
-  // "YYYY-MM-DDTHH:MM[:SS[.fff]]" and "Z", "+HH:MM" or "+HHMM".
+  // Format: "YYYY-MM-DDTHH:MM[:SS[.fff]]" and "Z", "+HH:MM" or "+HHMM".
   const auto digits = [&](std::size_t at, std::size_t count, double& value) {
     if (at + count > text.size()) return false;
     value = 0;

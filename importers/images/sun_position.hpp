@@ -8,24 +8,24 @@
 #include "geo/sun.hpp"
 namespace waymark {
 
-/// Of a vector towards the sun in the grid frame, any length > 0.
+/// Returns the sun for a vector towards it in the grid frame, any length > 0.
 Sun sun_from_direction(const Eigen::Vector3d& towards_sun);
 
-/// Where the sun stands on Earth: azimuth clockwise from true north, elevation with refraction left out (it
-/// is below 0.1 deg above 10 deg of elevation). Longitude east, degrees; time in seconds since 1970-01-01
-/// UTC. Meeus, Astronomical Algorithms (1998), ch. 25 (low accuracy) and 12; better than 0.01 deg from 1950
-/// to 2050.
+/// Computes the position of the sun on Earth: azimuth clockwise from true north, elevation without refraction
+/// (below 0.1 deg above 10 deg of elevation). Longitude east, degrees; time in seconds since 1970-01-01 UTC.
+/// Meeus, Astronomical Algorithms (1998), ch. 25 (low accuracy) and 12; better than 0.01 deg from 1950 to
+/// 2050.
 Sun sun_on_earth(double unix_seconds, double lon, double lat);
 
-/// The sun at a place of a map on Earth, azimuth from grid north. Throws Error{input} for a map on another
-/// body or on none. x, y in the units of the CRS.
+/// Computes the sun at a position of a map on Earth, azimuth from grid north. x, y are in the units of the
+/// CRS. Throws Error{input} for a map on another body or on none.
 Sun sun_on_map(double unix_seconds, const Crs& crs, double x, double y);
 
-/// Seconds since 1970-01-01 UTC of an ISO 8601 time with Z or an offset, "2019-04-11T11:01:21+08:00"; nothing
-/// for what is no such time, one without offset included: local time must not be taken for UTC.
+/// Returns seconds since 1970-01-01 UTC of an ISO 8601 time with Z or an offset, "2019-04-11T11:01:21+08:00".
+/// `std::nullopt` for other text and for a time without offset, since local time is not UTC.
 std::optional<double> utc_seconds(std::string_view text);
 
-/// The same time as "2019-04-11T03:01:21Z".
+/// Returns the time as "2019-04-11T03:01:21Z".
 std::string utc_text(double unix_seconds);
 
 }  // namespace waymark

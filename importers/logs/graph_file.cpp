@@ -11,14 +11,14 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
-#include "importers/logs/number_table.hpp"
+#include "core/text_file.hpp"
 
 namespace waymark {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// One line of a graph: a word and numbers; every message names it.
+/// One line of a graph file: a word and numbers. Messages name the line.
 struct Line {
   const fs::path* file;
   std::size_t number = 0;
@@ -44,7 +44,7 @@ struct Line {
     return static_cast<std::int64_t>(value);
   }
   Pose2 pose(std::size_t i) const { return {real(i), real(i + 1), real(i + 2)}; }
-  /// So many numbers, and no others.
+  /// Throws unless the line has exactly `count` numbers.
   void needs(std::size_t count, std::size_t or_else = 0) const {
     if (rest.size() == count || (or_else && rest.size() == or_else)) return;
     fail(fmt::format("{} has {} numbers, not {}", word, rest.size(), count), "is the line cut off?");
@@ -99,7 +99,7 @@ class Reader {
     else if (w == "FIX")
       for (std::size_t i = 0; i < line.rest.size(); ++i) fixed_.emplace_back(line.id(i), line);
     else if (w.find("SE3") != w.npos || w == "EDGE3" || w == "VERTEX3" || w.find("TRACKXYZ") != w.npos)
-      line.fail(fmt::format("{}: this graph lies in space, not in the plane", w), "plane graphs can be read");
+      line.fail(fmt::format("{}: this graph is three-dimensional", w), "only planar graphs can be read");
     else
       ++unknown_[std::string(w)];
     return true;
@@ -110,11 +110,12 @@ class Reader {
       std::string words;
       for (const auto& [word, count] : unknown_) words += (words.empty() ? "" : ", ") + word;
       throw Error(ErrorCode::input, "the graph has no edges", file.string(),
-                  words.empty() ? "docs/slam.md says what is read" : "these words are not known: " + words);
+                  words.empty() ? "docs/how_to/optimize_a_pose_graph.md says what is read"
+                                : "these words are not known: " + words);
     }
     number();
     for (const auto& [word, count] : unknown_)
-      out_.remarks.push_back(fmt::format("{} lines '{}' are left out", count, word));
+      out_.remarks.push_back(fmt::format("{} lines '{}' are skipped", count, word));
     return std::move(out_);
   }
 
@@ -130,13 +131,13 @@ class Reader {
     line.needs(4);
     const Pose2 at = line.pose(1);
     if (!poses_.emplace(line.id(0), at).second || (!isam_ && landmarks_.contains(line.id(0))))
-      line.fail(fmt::format("vertex {} is there twice", line.id(0)));
+      line.fail(fmt::format("vertex {} is defined twice", line.id(0)));
   }
   void landmark_vertex(const Line& line) {
     line.needs(3);
     const Eigen::Vector2d at(line.real(1), line.real(2));
     if (!landmarks_.emplace(line.id(0), at).second || (!isam_ && poses_.contains(line.id(0))))
-      line.fail(fmt::format("vertex {} is there twice", line.id(0)));
+      line.fail(fmt::format("vertex {} is defined twice", line.id(0)));
   }
 
   template <class Matrix>
@@ -166,7 +167,7 @@ class Reader {
 
   void step(const Line& line) {
     line.needs(11, isam_ ? 5 : 0);
-    if (line.id(0) == line.id(1)) line.fail(fmt::format("{} ties {} to itself", line.word, line.id(0)));
+    if (line.id(0) == line.id(1)) line.fail(fmt::format("{} connects {} to itself", line.word, line.id(0)));
     steps_.push_back({line.id(0), line.id(1), {.step = line.pose(2), .root = root3(line, 5)}, line});
   }
   void sighting(const Line& line) {
@@ -195,13 +196,13 @@ class Reader {
     priors_.push_back({line.id(0), 0, {.at = line.pose(1), .root = root3(line, 4)}, line});
   }
 
-  /// Index of an id; where the file declares vertices, it must have declared this one.
+  /// Returns the index of an id. Throws if the file declares vertices, but not this one.
   template <class Ids>
   static std::size_t index(const Ids& ids, std::int64_t id, const Line& line, const char* what) {
     const auto found = ids.find(id);
     if (found == ids.end())
       line.fail(fmt::format("{} names {} {}, which the graph does not have", line.word, what, id),
-                "does a vertex or an odometry edge miss?");
+                "is a vertex or an odometry edge missing?");
     return found->second;
   }
 
@@ -265,7 +266,7 @@ class Reader {
 
 std::string graph_format(const fs::path& file) {
   if (!fs::is_regular_file(file)) return {};
-  const std::string text = text_of_file(file);
+  const std::string text = read_text(file, "the file");
   std::string format;
   bool may_be_toro = true, may_be_isam = true, edges = false;
   std::size_t looked_at = 0;
@@ -288,7 +289,7 @@ std::string graph_format(const fs::path& file) {
 }
 
 ImportedGraph import_graph(const fs::path& file, const std::string& format) {
-  const std::string text = text_of_file(file);
+  const std::string text = read_text(file, "the file");
   Reader reader(format);
   for_each_line(file, text, [&](const Line& line) { return reader.read(line); });
   ImportedGraph graph = reader.take(file);

@@ -6,15 +6,15 @@
 #include "localization/slam/graph.hpp"
 namespace waymark {
 
-/// A graph as its file has it.
+/// A pose graph from a file.
 struct ImportedGraph {
   PoseGraph graph;  ///< poses and landmarks by ascending id; t of a pose is its id
   std::string format;
-  std::vector<std::string> remarks;  ///< what was left out, for people
+  std::vector<std::string> remarks;  ///< skipped lines, for people
 };
 
-/// The dialect of a text that holds a graph: "isam", "g2o", "toro", or empty for what is none of them. isam
-/// and toro share the word EDGE2: told apart by the place of the zeros among its six numbers.
+/// Recognises the format of a graph file: "isam", "g2o", "toro", or empty for another file. isam and toro
+/// share the word EDGE2; the positions of the zeros among its six numbers decide.
 std::string graph_format(const std::filesystem::path& file);
 
 /// Reads a plane pose graph with or without landmarks. `format`:

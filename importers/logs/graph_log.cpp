@@ -4,6 +4,7 @@
 
 #include "importers/logs/graph_file.hpp"
 #include "importers/logs/import_log.hpp"
+#include "localization/robot_log.hpp"
 
 namespace waymark {
 namespace {
@@ -13,7 +14,7 @@ SeenLandmark sighting_of(const SightingEdge& edge, std::int64_t landmark) {
   seen.identity = landmark_key(std::to_string(landmark));
   Eigen::Vector2d value = edge.value;
   Eigen::Matrix2d covariance = (edge.root.transpose() * edge.root).inverse();
-  if (edge.kind == SightingKind::place) {
+  if (edge.kind == SightingKind::position) {
     value << edge.value.norm(), std::atan2(edge.value.y(), edge.value.x());
     const double range = std::max(value[0], 1e-3);
     Eigen::Matrix2d to_polar;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/logs/import_log.hpp"
 
+#include <fmt/format.h>
+
 #include "core/error.hpp"
 #include "importers/logs/graph_file.hpp"
+#include "localization/robot_log.hpp"
 
 namespace waymark {
 namespace {
@@ -25,9 +28,25 @@ std::string recognised(const fs::path& path) {
   return graph.empty() ? "waymark" : graph;
 }
 
-}  // namespace
+/// Longest time between two records, seconds: twelve days. Nothing is known of a robot's pose after it, and a
+/// single wild stamp would make every uncertainty of the log boundless.
+constexpr double kMaxPause = 1e6;
 
-RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
+void check_times(const RobotLog& log, const fs::path& path) {
+  const auto check = [&](const auto& records, const char* what) {
+    for (std::size_t i = 1; i < records.size(); ++i)
+      if (const double pause = records[i].t - records[i - 1].t; !(pause <= kMaxPause))
+        throw Error(ErrorCode::input,
+                    fmt::format("a time stamp is wrong: after {:.15g} s, the next {} is at {:.15g} s",
+                                records[i - 1].t, what, records[i].t),
+                    path.string(), "correct or remove that record; stamps are seconds of one clock");
+  };
+  check(log.events, "reading");
+  check(log.truth, "true pose");
+  check(log.felled, "felled tree");
+}
+
+RobotLog read_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
   const std::string format = how.format.empty() ? recognised(path) : how.format;
   if (format == "waymark") return import_waymark_log(path, types);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
@@ -36,6 +55,14 @@ RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogIm
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
               "known are waymark, mrclam, victoria-park, isam, g2o and toro");
+}
+
+}  // namespace
+
+RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
+  RobotLog log = read_log(path, types, how);
+  check_times(log, path);
+  return log;
 }
 
 }  // namespace waymark

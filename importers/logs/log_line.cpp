@@ -7,12 +7,16 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 
 namespace waymark {
 
 using nlohmann::json;
 
 namespace {
+
+constexpr const char* kLineHint =
+    "a log has one object per line (docs/reference/log_format.md); not a number is written null";
 
 const json& value_of(const void* value) {
   return *static_cast<const json*>(value);
@@ -27,12 +31,14 @@ const json& list(const LogLine& line, const json& object, const char* key) {
 
 LogLine::LogLine(const std::filesystem::path& file, std::size_t number, std::string_view text)
     : file_(file), number_(number) {
-  const auto document = std::make_shared<const json>(json::parse(text, nullptr, false));
+  if (const auto fault = find_json_fault(text))
+    throw Error(ErrorCode::input, "this line is no JSON object: " + fault->problem,
+                fmt::format("{}, line {}, column {}", file.string(), number, fault->column), kLineHint);
+  const auto document = std::make_shared<const json>(json::parse(text));
   document_ = document, object_ = document.get();
   if (!document->is_object())
     throw Error(ErrorCode::input, "this line is no JSON object",
-                fmt::format("{}, line {}", file.string(), number),
-                "a log has one object per line (docs/log_format.md); not a number is written null");
+                fmt::format("{}, line {}", file.string(), number), kLineHint);
 }
 
 bool LogLine::has(const char* key) const {
@@ -73,15 +79,16 @@ double LogLine::not_negative(const char* key) const {
   return value;
 }
 
-double LogLine::within_two_turns(const char* key, double value, const char* rule) const {
+double LogLine::expect_within_two_turns(const char* key, double value, const char* rule) const {
   if (!(std::abs(value) <= 4 * std::numbers::pi)) fail(fmt::format("\"{}\" is {}: {}", key, value, rule));
   return value;
 }
 double LogLine::angle(const char* key, std::optional<double> otherwise) const {
-  return within_two_turns(key, otherwise ? number(key, *otherwise) : number(key), "angles are radians");
+  return expect_within_two_turns(key, otherwise ? number(key, *otherwise) : number(key),
+                                 "angles are radians");
 }
-double LogLine::turn(const char* key) const {
-  return within_two_turns(key, number(key), "turns are radians per second");
+double LogLine::angular_rate(const char* key) const {
+  return expect_within_two_turns(key, number(key), "turns are radians per second");
 }
 
 std::vector<float> LogLine::numbers(const char* key, float otherwise) const {
@@ -104,7 +111,7 @@ Pose2 LogLine::mount() const {
 
 void LogLine::fail(const std::string& problem) const {
   throw Error(ErrorCode::input, "the log " + problem, fmt::format("{}, line {}", file_.string(), number_),
-              "docs/log_format.md describes each record");
+              "docs/reference/log_format.md describes each record");
 }
 
 }  // namespace waymark

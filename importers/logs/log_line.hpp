@@ -10,14 +10,13 @@
 #include "localization/pose2.hpp"
 namespace waymark {
 
-/// One line of a log, or an object within it: its values, each checked. Every message names the file and the
-/// line. Throws Error{input}.
+/// One line of a log, or an object within it, with checked values. Throws Error{input} with file and line.
 class LogLine {
  public:
   /// `file` must outlive it.
   LogLine(const std::filesystem::path& file, std::size_t number, std::string_view text);
 
-  bool has(const char* key) const;  ///< and it is not null
+  bool has(const char* key) const;  ///< false for a missing or null member
   bool is_object(const char* key) const;
   std::vector<std::string> keys() const;
   LogLine part(const char* key) const;
@@ -26,12 +25,12 @@ class LogLine {
   double number(const char* key) const;
   double number(const char* key, double otherwise) const { return has(key) ? number(key) : otherwise; }
   double positive(const char* key, double otherwise) const;
-  double not_negative(const char* key) const;  ///< 0 where it is missing
-  /// Radians; what is more than two turns was meant in degrees.
+  double not_negative(const char* key) const;  ///< 0 if it is missing
+  /// Returns an angle in radians. Throws if it exceeds two turns, which suggests degrees.
   double angle(const char* key, std::optional<double> otherwise = {}) const;
-  /// rad/s; two turns in a second were meant in degrees.
-  double turn(const char* key) const;
-  /// `otherwise` stands for what is no number.
+  /// Returns a rate in rad/s. Throws if it exceeds two turns per second, which suggests degrees.
+  double angular_rate(const char* key) const;
+  /// Returns numbers; `otherwise` replaces null.
   std::vector<float> numbers(const char* key, float otherwise) const;
   std::string text(const char* key) const;
   Pose2 pose() const;
@@ -42,12 +41,12 @@ class LogLine {
  private:
   LogLine(const LogLine& whole, const void* object)
       : file_(whole.file_), number_(whole.number_), document_(whole.document_), object_(object) {}
-  double within_two_turns(const char* key, double value, const char* rule) const;
+  double expect_within_two_turns(const char* key, double value, const char* rule) const;
 
   const std::filesystem::path& file_;
   std::size_t number_;
   std::shared_ptr<const void> document_;
-  const void* object_;  ///< within the document: its JSON library is no concern of who reads logs
+  const void* object_;  ///< within the document; opaque, so that users do not include the JSON library
 };
 
 }  // namespace waymark

@@ -9,16 +9,18 @@
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/number_table.hpp"
+#include "localization/robot_log.hpp"
 
 namespace waymark {
 namespace {
 
-// What follows is the same for all robots, and was chosen on robots 1 and 2 of set 6 against the truth.
-// The odometry is of commands: a robot follows them late, and does less than it is told.
-constexpr double kObeys = 0.2, kSpeed = 0.93, kTurn = 0.89;  // s, and shares of what was commanded
-// What the camera takes to find a bar code, s.
+// These constants are the same for all robots, and were fitted on robots 1 and 2 of set 6 against the truth.
+// The odometry holds commands: a robot follows them late and moves less than commanded.
+constexpr double kCommandDelay = 0.2, kSpeedFactor = 0.93,
+                 kTurnFactor = 0.89;  // s, and fractions of the command
+// Time the camera needs to find a bar code, s.
 constexpr double kLatency = 0.05;
-// Errors of ranges (with distance) and bearings, and for how long, in seconds, one code is misread alike.
+// Errors of ranges (with distance) and bearings, and how long one code is misread in the same way, seconds.
 constexpr double kRangeSd = 0.03, kRangeSdPerMetre = 0.06, kBearingSd = 0.02;
 constexpr ErrorMemory kMemory{.range = 3, .bearing = 1};
 constexpr OdometryNoise kOdometry{.along_per_metre = 0.015,
@@ -33,8 +35,8 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   return std::filesystem::is_directory(path) ? path : path.parent_path();
 }
 
-/// 3 of Robot3_Odometry.dat; 0 for other names.
-std::int64_t robot_in_name(const std::filesystem::path& path) {
+/// Returns 3 for Robot3_Odometry.dat; 0 for other names.
+std::int64_t robot_number(const std::filesystem::path& path) {
   const std::string name = path.filename().string();
   return name.size() > 6 && name.starts_with("Robot") && name[5] >= '1' && name[5] <= '9' ? name[5] - '0' : 0;
 }
@@ -60,7 +62,7 @@ class Frames {
 
 RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot, const TypeRegistry& types) {
   const std::filesystem::path folder = folder_of(path);
-  if (robot == 0) robot = robot_in_name(path);
+  if (robot == 0) robot = robot_number(path);
   if (robot < 1 || robot > kRobots)
     throw Error(ErrorCode::usage, "an MRCLAM dataset has the robots 1 to 5: which one?", path.string(),
                 "add --robot 1");
@@ -88,7 +90,7 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
                    .features = {},
                    .identity = {}};
     if (subject == subject_of.end() || subject->second <= kRobots)
-      s.type = kNoSuchType;  // another robot, or a code that was misread
+      s.type = kNoSuchType;  // another robot, or a misread code
     if (subject != subject_of.end()) s.identity = landmark_key(uid_of(subject->second));
     frames.add(seen[i] - kLatency, s);
   }
@@ -98,8 +100,8 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
   log.in_crs = true;
   const auto odometry = number_table(file("Odometry"), 3);
   for (std::size_t i = 0; i < odometry.size(); i += 3)
-    log.events.push_back(
-        {odometry[i] + kObeys, TwistReading{kSpeed * odometry[i + 1], 0, kTurn * odometry[i + 2]}});
+    log.events.push_back({odometry[i] + kCommandDelay,
+                          TwistReading{kSpeedFactor * odometry[i + 1], 0, kTurnFactor * odometry[i + 2]}});
   log.error_memory = kMemory;
   log.odometry = kOdometry;
   for (LogEvent& e : frames.take()) log.events.push_back(std::move(e));
@@ -111,7 +113,7 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
   }
   if (unknown)
     log.remarks.push_back(fmt::format("{} sightings of bar codes that are not in Barcodes.dat", unknown));
-  tidy(log);
+  clean_log(log);
   return log;
 }
 

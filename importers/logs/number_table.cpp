@@ -5,24 +5,14 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 
 namespace waymark {
 
-std::string text_of_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (in && !std::filesystem::is_directory(file) && in.peek() == std::ifstream::traits_type::eof()) return {};
-  if (!in || std::filesystem::is_directory(file) || !(text << in.rdbuf()))
-    throw Error(ErrorCode::input, "cannot read the file", file.string(), "is it there, and may it be read?");
-  return text.str();
-}
-
 std::vector<double> number_table(const std::filesystem::path& file, std::size_t per_row) {
-  const std::string text = text_of_file(file);
+  const std::string text = read_text(file, "the file");
   std::vector<double> numbers;
   const char *at = text.data(), *end = at + text.size();
   std::size_t line = 1;

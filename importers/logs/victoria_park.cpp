@@ -6,17 +6,18 @@
 
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/number_table.hpp"
+#include "localization/robot_log.hpp"
 
 namespace waymark {
 
 // Vehicle of Guivant & Nebot: wheelbase 2.83 m, encoder on the left rear wheel 0.76 m off the middle, laser
-// 3.78 m ahead of the rear axle and 0.5 m to the left: the point that is followed, since GPS fixes agree with
+// 3.78 m ahead of the rear axle and 0.5 m to the left: the tracked point, since GPS fixes agree with
 // it (0.98 m against 2.5 m at the axle, first 200 s). GPS columns are latitude, longitude: north, east. Beams
 // run from -90 (right) to 90 degrees (left).
 RobotLog import_victoria_park(const std::filesystem::path& folder) {
   RobotLog log;
   log.car = {2.83, 0.76, 3.78, 0.5};
-  // Of this car, chosen on the first 200 s.
+  // Fitted for this car on the first 200 s.
   log.odometry = OdometryNoise{
       .along_per_metre = 0.01, .across_per_metre = 0.001, .yaw_per_metre = 2e-4, .yaw_per_radian = 5e-3};
   const auto drive = number_table(folder / "DRS.txt", 3);
@@ -29,7 +30,7 @@ RobotLog import_victoria_park(const std::filesystem::path& folder) {
                    .first_angle = -std::numbers::pi / 2,
                    .angle_step = std::numbers::pi / 360,
                    .ranges = std::vector<float>(kBeams),
-                   .most_range = 80};
+                   .max_range = 80};
     std::ranges::transform(scans.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                            scans.begin() + static_cast<std::ptrdiff_t>(i + kBeams) + 1, scan.ranges.begin(),
                            [](double range) { return static_cast<float>(range); });
@@ -37,11 +38,11 @@ RobotLog import_victoria_park(const std::filesystem::path& folder) {
   }
   if (std::filesystem::exists(folder / "GPS.txt")) {
     const auto fixes = number_table(folder / "GPS.txt", 3);
-    for (std::size_t i = 0; i < fixes.size(); i += 3)  // truth, and for that reason no reading
+    for (std::size_t i = 0; i < fixes.size(); i += 3)  // used as truth, hence not as a reading
       log.truth.push_back({fixes[i], {fixes[i + 2], fixes[i + 1], 0}});
   }
   std::ranges::stable_sort(log.events, {}, &LogEvent::t);
-  tidy(log);
+  clean_log(log);
   return log;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -9,11 +10,12 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/log_line.hpp"
-#include "importers/logs/number_table.hpp"
 #include "localization/detectors/depth_rocks.hpp"
 #include "localization/detectors/horizon_summits.hpp"
+#include "localization/robot_log.hpp"
 
 namespace waymark {
 namespace {
@@ -29,7 +31,7 @@ class Reader {
     if (kind == "header") return header(line);
     const double t = line.number("t");
     if (kind == "odometry")
-      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.turn("omega")});
+      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.angular_rate("omega")});
     else if (kind == "car")
       add(t, CarReading{line.number("v"), line.angle("steering")});
     else if (kind == "step")
@@ -56,24 +58,24 @@ class Reader {
 
   RobotLog take() {
     for (const auto& [kind, count] : unknown_)
-      log_.remarks.push_back(fmt::format("{} records of the kind '{}' are left out", count, kind));
+      log_.remarks.push_back(fmt::format("{} records of the kind '{}' are skipped", count, kind));
     for (const auto& [type, count] : no_type_)
       log_.remarks.push_back(
           fmt::format("{} sightings of type '{}', which the map does not have", count, type));
-    tidy(log_);
+    clean_log(log_);
     return std::move(log_);
   }
 
  private:
   void add(double t, LogReading reading) { log_.events.push_back({t, std::move(reading)}); }
 
-  // A yaw that was never wrapped grows turn by turn. One that begins beyond two turns, or jumps, was meant in
-  // degrees.
+  // A yaw that was never wrapped grows turn by turn. One that begins beyond two turns, or jumps, is probably
+  // in degrees.
   Pose2 truth(const LogLine& line) {
     const double yaw = line.number("yaw", 0);
     if (!(std::abs(yaw - last_truth_yaw_) <= std::numbers::pi)) line.angle("yaw", 0);
     last_truth_yaw_ = yaw;
-    return {line.number("x"), line.number("y"), wrapped(yaw)};
+    return {line.number("x"), line.number("y"), wrap_angle(yaw)};
   }
 
   void header(const LogLine& line) {
@@ -103,6 +105,9 @@ class Reader {
 
   SeenLandmark sighting(const LogLine& line) {
     SeenLandmark s;
+    if (!line.has("bearing"))
+      line.fail(
+          "has a sighting without \"bearing\": a range alone is not used to localize, directions are needed");
     s.bearing = line.angle("bearing");
     if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
       line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", s.bearing));
@@ -158,7 +163,7 @@ class Reader {
                    .first_angle = line.angle("first_angle"),
                    .angle_step = line.angle("angle_step"),
                    .ranges = line.numbers("ranges", 0),
-                   .most_range = line.positive("most_range", 80),
+                   .max_range = line.positive("most_range", 80),
                    .roll = line.angle("roll", 0),
                    .pitch = line.angle("pitch", 0),
                    .beam_width = {}};
@@ -170,14 +175,21 @@ class Reader {
     return types_.find(name) ? std::optional<TypeId>(types_.id(name)) : std::nullopt;
   }
 
+  static std::int64_t pixels(const LogLine& line, const char* key) {
+    const double count = line.positive(key, 1);
+    if (!(count <= 1e5 && count == std::floor(count)))
+      line.fail(fmt::format("\"{}\" must be a whole number up to 100000, is {}", key, count));
+    return static_cast<std::int64_t>(count);
+  }
+
   static DepthImage depth(const LogLine& line) {
     DepthImage image{.robot_from_sensor = line.mount(),
                      .height = line.positive("height", 1.5),
                      .tilt = line.angle("tilt", 0),
                      .roll = line.angle("roll", 0),
                      .pitch = line.angle("pitch", 0),
-                     .columns = static_cast<std::int64_t>(line.positive("columns", 1)),
-                     .rows = static_cast<std::int64_t>(line.positive("rows", 1)),
+                     .columns = pixels(line, "columns"),
+                     .rows = pixels(line, "rows"),
                      .focal = line.positive("focal", 1),
                      .depths = line.numbers("depths", kMissing)};
     if (static_cast<std::int64_t>(image.depths.size()) != image.columns * image.rows)
@@ -226,7 +238,7 @@ class Reader {
 }  // namespace
 
 RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
-  std::istringstream text(text_of_file(file));
+  std::istringstream text(read_text(file, "the file"));
   Reader reader(types);
   std::size_t number = 0, records = 0;
   for (std::string line; std::getline(text, line);) {

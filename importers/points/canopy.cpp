@@ -10,28 +10,29 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "geo/metric_crs.hpp"
 #include "importers/gdal_session.hpp"
-#include "importers/points/canopy_sample.hpp"
+#include "importers/points/inspect_canopy.hpp"
 #include "importers/rasters/dem.hpp"
 
 namespace waymark {
 namespace {
 
-constexpr float kHighest = 150;  // metres: the tallest tree known has 116
+constexpr float kMaxHeight = 150;  // metres; the tallest tree known has 116
 
 struct Raster {
   std::shared_ptr<const ImportedDem> dem;
-  double metres = 1;  // per unit of its numbers, beyond what its band says
+  double metres = 1;  // per unit of its numbers, after the unit of its band
 };
 
-// The CRS to open a file with: "local" where it names none.
+// Returns the CRS to open a file with: "local" if it names none.
 std::string crs_for(const std::string& file, const std::string& crs, std::vector<std::string>& warnings) {
   if (!crs.empty()) return crs;
   const GdalDataset dataset = open_raster(file);
   if (dataset->GetSpatialRef() != nullptr) return {};
   double t[6];
   if (dataset->GetGeoTransform(t) == CE_None && std::abs(t[1]) < 0.001)
-    return {};  // degrees: import_dem says it
+    return {};  // degrees: import_dem throws
   warnings.push_back(fmt::format(
       "{}: it has no coordinate reference system; its coordinates are taken as metres: pass --crs", file));
   return "local";
@@ -55,7 +56,9 @@ Raster open(const std::vector<std::string>& files, const CanopyImport& import, c
     throw Error(ErrorCode::input,
                 fmt::format("the {} is in degrees ({}), but crowns and distances between trees are in metres",
                             what, crs.id()),
-                files[0], "reproject it first: gdalwarp -t_srs EPSG:32633 IN.tif OUT.tif (your UTM zone)");
+                files[0],
+                fmt::format("reproject it first: gdalwarp -t_srs {} '{}' OUT.tif",
+                            fitting_metric_crs(raster.dem->geometry()), files[0]));
   warnings.insert(warnings.end(), raster.dem->warnings().begin(), raster.dem->warnings().end());
   const double unit = crs.metres_per_unit();
   if (std::abs(unit - 1) > 1e-9 && !names_unit(files[0])) {
@@ -68,7 +71,7 @@ Raster open(const std::vector<std::string>& files, const CanopyImport& import, c
   return raster;
 }
 
-// Bilinear between the cells of `grid`; NaN where one of the four is unknown.
+// Interpolates bilinearly between the cells of `grid`; NaN if one of the four is unknown.
 float between(const HeightWindow& heights, double column, double row) {
   const double c = std::floor(column), r = std::floor(row);
   const double u = column - c, v = row - r;
@@ -108,11 +111,11 @@ class RasterCanopy final : public ImportedCanopy {
 
   Grid<float> read(const Window& window) const override {
     Grid<float> heights = raw(window);
-    for (float& h : heights.cells()) h = !(h <= kHighest) || h == kNoCanopy ? kNoCanopy : std::max(h, 0.0F);
+    for (float& h : heights.cells()) h = !(h <= kMaxHeight) || h == kNoCanopy ? kNoCanopy : std::max(h, 0.0F);
     return heights;
   }
 
-  double ground(std::int64_t column, std::int64_t row) const override {
+  double ground_elevation(std::int64_t column, std::int64_t row) const override {
     if (!terrain_.dem) return std::nan("");
     return ground_in({column, row, 1, 1})(0, 0);
   }
@@ -143,7 +146,7 @@ class RasterCanopy final : public ImportedCanopy {
     return [this](const Window& window) { return raw(window); };
   }
 
-  // As the rasters have them: negative and absurd heights included.
+  // Heights as in the rasters, negative and absurd ones included.
   Grid<float> raw(const Window& window) const {
     const HeightWindow top = top_.dem->read(window);
     Grid<float> heights(window.columns, window.rows, kNoCanopy);
@@ -161,7 +164,7 @@ class RasterCanopy final : public ImportedCanopy {
     return heights;
   }
 
-  // Elevation of the ground at the cells of the surface, metres; NaN where unknown.
+  // Returns the ground elevation at the cells of the surface, metres; NaN if unknown.
   Grid<float> ground_in(const Window& window) const {
     Grid<float> ground(window.columns, window.rows);
     const auto metres = static_cast<float>(terrain_.metres);
@@ -210,7 +213,7 @@ class RasterCanopy final : public ImportedCanopy {
                        b.where.y(static_cast<double>(b.rows)) > a.where.y(-1);
     if (apart)
       throw Error(ErrorCode::input, "surface and terrain do not overlap", import_.dtm[0],
-                  "check that both are of the same place and in the same CRS");
+                  "check that both cover the same area and are in the same CRS");
     if (!same_grid_)
       warnings_.push_back(
           fmt::format("{}: its grid (cells of {:g}) is not that of the surface (cells of {:g}): the terrain "

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/json_text.hpp"
 #include "importers/points/canopy.hpp"
 
 namespace waymark {
@@ -12,7 +13,7 @@ std::string Codec<Canopies>::encode(const Canopies& canopies) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& canopy : canopies) {
     const auto* raster = dynamic_cast<const ImportedCanopy*>(canopy.get());
-    if (!raster) throw std::logic_error("only a canopy that was imported can be kept in a work folder");
+    if (!raster) throw std::logic_error("only an imported canopy can be stored in a work folder");
     const CanopyImport& import = raster->import();
     all.push_back({{"chm", import.chm},
                    {"dsm", import.dsm},
@@ -29,7 +30,7 @@ std::string Codec<Canopies>::encode(const Canopies& canopies) {
 
 Canopies Codec<Canopies>::decode(std::string_view bytes) {
   Canopies canopies;
-  for (const auto& json : nlohmann::json::parse(bytes))
+  for (const auto& json : nlohmann::json::parse(checked_json(bytes, "canopies")))
     canopies.push_back(import_canopy({.chm = json.at("chm"),
                                       .dsm = json.at("dsm"),
                                       .dtm = json.at("dtm"),

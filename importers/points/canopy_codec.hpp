@@ -4,8 +4,8 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// Canopies on disk are their recipes: decoding opens the files again. Only what import_canopy or
-/// import_points opened can be encoded (std::logic_error).
+/// Stores canopies as their recipes; decoding opens the files again. Only results of import_canopy and
+/// import_points can be encoded (std::logic_error).
 template <>
 struct Codec<Canopies> {
   static std::string encode(const Canopies& canopies);

@@ -28,8 +28,8 @@ LasCatalogue::LasCatalogue(const std::vector<std::string>& files, std::int64_t m
     for (std::uint64_t first = 0; first < headers_[f].points; first += kLasChunk) {
       Run run{f, first, std::min(kLasChunk, headers_[f].points - first), kNowhere};
       for (const LasPoint& p : read_las_points(headers_[f], first, run.count)) {
-        if (!counts(p)) {
-          ++left_out_;
+        if (!is_usable(p)) {
+          ++excluded_;
           continue;
         }
         ++points_;
@@ -68,9 +68,9 @@ LasCatalogue::Points LasCatalogue::points_of(std::size_t run) const {
 
 void LasCatalogue::visit(const LasBox& box, const std::function<void(const LasPoint&)>& use) const {
   for (std::size_t run = 0; run < runs_.size(); ++run) {
-    if (!runs_[run].box.meets(box)) continue;
+    if (!runs_[run].box.intersects(box)) continue;
     for (const LasPoint& p : *points_of(run))
-      if (counts(p) && p.x >= box.left && p.x <= box.right && p.y >= box.low && p.y <= box.high) use(p);
+      if (is_usable(p) && p.x >= box.left && p.x <= box.right && p.y >= box.low && p.y <= box.high) use(p);
   }
 }
 

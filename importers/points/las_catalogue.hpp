@@ -12,26 +12,26 @@ namespace waymark {
 /// A rectangle in the units of the files.
 struct LasBox {
   double left = 0, low = 0, right = 0, high = 0;
-  bool meets(const LasBox& b) const {
+  bool intersects(const LasBox& b) const {
     return left <= b.right && b.left <= right && low <= b.high && b.low <= high;
   }
 };
 
-/// The points of many LAS files, found by place. Each run of 65,536 points is known by its box, so a search
-/// reads only the runs that may matter; decoded runs are kept while memory allows. Safe for many threads.
+/// Spatial index of the points of many LAS files. It knows the box of each run of 65,536 points, so a search
+/// decodes only runs that intersect; decoded runs are cached within the memory limit. Safe for many threads.
 class LasCatalogue {
  public:
   /// Reads every file once: about 10 M points/s. Throws Error{input}.
   LasCatalogue(const std::vector<std::string>& files, std::int64_t memory_bytes);
 
   const std::vector<LasHeader>& headers() const { return headers_; }
-  const LasBox& box() const { return box_; }  ///< of all points that count
+  const LasBox& box() const { return box_; }  ///< of all usable points
   std::uint64_t points() const { return points_; }
   std::uint64_t ground_points() const { return ground_; }
   std::uint64_t first_returns() const { return first_returns_; }
-  std::uint64_t left_out() const { return left_out_; }  ///< noise and withheld
+  std::uint64_t excluded() const { return excluded_; }  ///< noise and withheld
 
-  /// All points of the box that are no noise, file by file in their order.
+  /// Visits all usable points in the box, file by file in their order.
   void visit(const LasBox& box, const std::function<void(const LasPoint&)>& use) const;
 
  private:
@@ -46,19 +46,19 @@ class LasCatalogue {
   std::vector<LasHeader> headers_;
   std::vector<Run> runs_;
   LasBox box_;
-  std::uint64_t points_ = 0, ground_ = 0, first_returns_ = 0, left_out_ = 0;
+  std::uint64_t points_ = 0, ground_ = 0, first_returns_ = 0, excluded_ = 0;
   std::size_t kept_runs_;
   mutable std::mutex mutex_;
-  mutable std::list<std::pair<std::size_t, Points>> kept_;  // used last first
+  mutable std::list<std::pair<std::size_t, Points>> kept_;  // most recently used first
   mutable std::unordered_map<std::size_t, std::list<std::pair<std::size_t, Points>>::iterator> at_;
 };
 
-/// Neither noise nor withheld.
-inline bool counts(const LasPoint& p) {
+/// Returns false for noise and withheld points.
+inline bool is_usable(const LasPoint& p) {
   return !p.withheld && p.classification != 7 && p.classification != 18;
 }
 
-/// First returns; all, where the file does not number them.
+/// Returns true for a first return, and for all returns if the file does not number them.
 inline bool is_first(const LasPoint& p) {
   return p.return_number <= 1;
 }

@@ -35,7 +35,7 @@ std::vector<unsigned char> bytes_of(VsiFile& file, std::uint64_t offset, std::si
   return bytes;
 }
 
-// What the records of the CRS say.
+// Contents of the CRS records.
 struct CrsRecords {
   std::string wkt;
   int projected = 0, geographic = 0, linear_unit = 0, vertical_unit = 0, vertical = 0;
@@ -96,7 +96,7 @@ double metres_of_unit(int epsg) {
   return epsg == 9001 ? 1 : epsg == 9002 ? 0.3048 : epsg == 9003 ? 1200.0 / 3937 : 0;
 }
 
-// The unit of a vertical CRS in WKT: the last unit named in it.
+// Returns the unit of a vertical CRS in WKT: the last unit named in it.
 double vertical_unit_of(const std::string& wkt) {
   std::size_t start = wkt.find("VERT_CS");
   if (start == std::string::npos) start = wkt.find("VERTCRS");
@@ -117,7 +117,7 @@ void place(LasHeader& header, const CrsRecords& records) {
       header.crs = Crs::from_text(fmt::format("EPSG:{}", records.projected));
     else if (records.projected == 0 && records.geographic > 0 && records.geographic < 32767)
       header.crs = Crs::from_text(fmt::format("EPSG:{}", records.geographic));
-  } catch (const Error&) {  // what PROJ does not know is as good as nothing said
+  } catch (const Error&) {  // a CRS unknown to PROJ counts as none
   }
   header.metres_per_height =
       records.wkt.empty() ? metres_of_unit(records.vertical_unit) : vertical_unit_of(records.wkt);
@@ -151,7 +151,7 @@ void count_points(LasHeader& header, const std::vector<unsigned char>& head, std
   if (header.points > there)
     refuse(
         header.path,
-        fmt::format("the file is cut off: its header promises {} points, it holds {}", header.points, there),
+        fmt::format("the file is truncated: its header states {} points, it holds {}", header.points, there),
         "copy or download it again");
 }
 

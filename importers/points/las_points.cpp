@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-// Where a record keeps what; formats 6 to 10 have wider return numbers and classes.
+// Offsets of the fields of a record; formats 6 to 10 have wider return numbers and classes.
 LasPoint decoded(const unsigned char* record, const LasHeader& header) {
   std::int32_t raw[3];
   std::memcpy(raw, record, sizeof raw);

@@ -16,12 +16,14 @@ namespace waymark {
 namespace {
 
 constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
-constexpr double kAround = 20;        // metres of points around a block
-constexpr double kGroundAround = 60;  // metres of points around a block in which ground is sought
-constexpr double kFewest = 0.25;      // returns per m2, below which ground cannot be told by its shape
+constexpr double kHalo = 20;          // metres of points around a block
+constexpr double kGroundHalo = 60;    // metres of points around a block for finding the ground
+constexpr double kMinDensity = 0.25;  // returns per m2; below, ground cannot be recognised by its shape
 constexpr std::size_t kKeptBlocks = 256;
+// Cells of the grid: the work is bounded by the size of the input. A survey has .01 to 20 cells per point.
+constexpr double kMinCells = 1e8, kCellsPerPoint = 2000;
 
-/// The CRS all files agree on.
+/// Returns the common CRS of all files.
 Crs crs_of(const std::vector<LasHeader>& headers, const std::string& asked, const LasBox& box,
            std::vector<std::string>& warnings) {
   if (!asked.empty()) return asked == "local" ? Crs::local() : Crs::from_text(asked);
@@ -94,7 +96,7 @@ class PointCanopy final : public ImportedCanopy {
     return heights;
   }
 
-  double ground(std::int64_t column, std::int64_t row) const override {
+  double ground_elevation(std::int64_t column, std::int64_t row) const override {
     if (column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows) return std::nan("");
     return static_cast<double>(
         block_at(column / kBlock, row / kBlock)->ground(column % kBlock, row % kBlock));
@@ -105,15 +107,15 @@ class PointCanopy final : public ImportedCanopy {
     if (catalogue_.points() == 0)
       throw Error(ErrorCode::input, "the files hold no points", import_.las[0],
                   "check that they are the right ones");
-    if (const auto out = catalogue_.left_out(); out > 0)
+    if (const auto out = catalogue_.excluded(); out > 0)
       warnings_.push_back(
-          fmt::format("{}: {} points are noise or withheld and left out", import_.las[0], out));
+          fmt::format("{}: {} points are noise or withheld and are skipped", import_.las[0], out));
   }
 
   void check_unclassified() {
     const LasBox& box = catalogue_.box();
     const double width = (box.right - box.left) * unit_, height = (box.high - box.low) * unit_;
-    if (!(static_cast<double>(catalogue_.points()) > kFewest * width * height) ||
+    if (!(static_cast<double>(catalogue_.points()) > kMinDensity * width * height) ||
         !(std::min(width, height) > 20))
       throw Error(
           ErrorCode::input,
@@ -124,7 +126,7 @@ class PointCanopy final : public ImportedCanopy {
     warnings_.push_back(
         import_.las[0] +
         ": no point is classified as ground (class 2): the ground is found by its shape (Axelsson "
-        "2000), which takes low dense canopy and steps of the ground for the other");
+        "2000), which confuses low dense canopy with steps of the terrain");
   }
 
   void set_height_unit() {
@@ -151,10 +153,13 @@ class PointCanopy final : public ImportedCanopy {
     const double left = std::floor(box.left / step), top = std::ceil(box.high / step);
     grid_.where.x0 = (left + 0.5) * step, grid_.where.y0 = (top - 0.5) * step;
     const double columns = std::floor(box.right / step) - left + 1, rows = top - std::floor(box.low / step);
-    if (!(columns * rows < 1e11))
+    const double most = std::max(kMinCells, kCellsPerPoint * static_cast<double>(catalogue_.points()));
+    if (!(columns * rows < std::min(most, 1e11)))
       throw Error(ErrorCode::input,
-                  fmt::format("the points lie {:.3g} x {:.3g} m apart", columns * cell, rows * cell),
-                  import_.las[0], "a header with a wrong scale, or files of different places?");
+                  fmt::format("{} points lie {:.3g} x {:.3g} m apart, which are {:.3g} cells of {:g} m",
+                              catalogue_.points(), columns * cell, rows * cell, columns * rows, cell),
+                  import_.las[0],
+                  "a header with a wrong scale or offset, a wild point, or files of different areas?");
     grid_.columns = std::max<std::int64_t>(1, static_cast<std::int64_t>(columns));
     grid_.rows = std::max<std::int64_t>(1, static_cast<std::int64_t>(rows));
     if (spacing_ > 1.5 * cell && import_.resolution > 0)
@@ -172,20 +177,20 @@ class PointCanopy final : public ImportedCanopy {
           return it->second;
         }
     }
-    auto made = std::make_shared<const CanopyBlock>(made_block(column, row));
+    auto made = std::make_shared<const CanopyBlock>(compute_block(column, row));
     const std::scoped_lock lock(mutex_);
     blocks_.emplace_front(key, made);
     if (blocks_.size() > kKeptBlocks) blocks_.pop_back();
     return made;
   }
 
-  CanopyBlock made_block(std::int64_t column, std::int64_t row) const {
+  CanopyBlock compute_block(std::int64_t column, std::int64_t row) const {
     const Georeference& where = grid_.where;
     const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
     const CellFrame frame{
         where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
     const bool classified = catalogue_.ground_points() > 0;
-    const double around = (classified ? kAround : kGroundAround) / unit_, last = static_cast<double>(kBlock);
+    const double around = (classified ? kHalo : kGroundHalo) / unit_, last = static_cast<double>(kBlock);
     LaserPoints points;
     catalogue_.visit({where.x(first) - around, where.y(top + last) - around, where.x(first + last) + around,
                       where.y(top) + around},
@@ -205,7 +210,8 @@ class PointCanopy final : public ImportedCanopy {
   std::vector<std::string> warnings_;
   std::string name_;
   mutable std::mutex mutex_;
-  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const CanopyBlock>>> blocks_;  // used last first
+  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const CanopyBlock>>>
+      blocks_;  // most recently used first
 };
 
 }  // namespace

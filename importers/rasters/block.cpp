@@ -48,7 +48,7 @@ std::vector<T> read_cells(GDALRasterBand& band, const RasterHeader& header, int 
   return cells;
 }
 
-// Cells the mask hides become NaN, which is never a height.
+// Sets masked cells to NaN, which is never a height.
 template <class T>
 void apply_mask(GDALRasterBand& band, const RasterHeader& header, int column, int row,
                 std::vector<T>& cells) {
@@ -64,15 +64,36 @@ void apply_mask(GDALRasterBand& band, const RasterHeader& header, int column, in
     if (shown[i] == 0) cells[i] = std::numeric_limits<T>::quiet_NaN();
 }
 
-// Branch-free in the integers' case, so that the compiler may use vector instructions.
+// False for NaN and infinities.
+bool is_plausible(double height, const HeightScale& heights) {
+  return height >= heights.min_height && height <= heights.max_height && std::isfinite(height);
+}
+
+// Branch-free, so that the compiler may vectorise.
 template <class T>
 void copy(std::span<const T> from, const HeightScale& heights, std::span<double> into) {
   for (std::size_t i = 0; i < into.size(); ++i) {
     const double value = from[i];
-    const bool known = !(value >= heights.void_low && value <= heights.void_high) && std::isfinite(value);
-    const double height = known ? value * heights.scale + heights.offset : kNoHeight;
-    into[i] = into[i] == kNoHeight ? height : into[i];
+    const double height = value * heights.scale + heights.offset;
+    const bool known =
+        !(value >= heights.min_void && value <= heights.max_void) && is_plausible(height, heights);
+    into[i] = into[i] != kNoHeight ? into[i] : known ? height : kNoHeight;
   }
+}
+
+template <class T>
+ImplausibleCells count_implausible(std::span<const T> cells, const HeightScale& heights) {
+  const auto implausible = [&](double value) {
+    return !(value >= heights.min_void && value <= heights.max_void) && std::isfinite(value) &&
+           !is_plausible(value * heights.scale + heights.offset, heights);
+  };
+  ImplausibleCells found;
+  for (const T value : cells) found.count += implausible(value) ? 1 : 0;
+  if (found.count == 0) return found;
+  const auto first = std::ranges::find_if(cells, implausible);
+  found.first = static_cast<std::size_t>(first - cells.begin());
+  found.height = static_cast<double>(*first) * heights.scale + heights.offset;
+  return found;
 }
 
 }  // namespace
@@ -82,7 +103,7 @@ std::size_t Block::bytes() const {
 }
 
 Block read_block(GDALDataset& dataset, const RasterHeader& header, int block_column, int block_row) {
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
+  GDALRasterBand& band = *dataset.GetRasterBand(header.band);
   if (header.cells == CellType::int16)
     return {read_cells<std::int16_t>(band, header, block_column, block_row)};
   const auto masked = [&](auto cells) {
@@ -92,6 +113,15 @@ Block read_block(GDALDataset& dataset, const RasterHeader& header, int block_col
   if (header.cells == CellType::float32)
     return masked(read_cells<float>(band, header, block_column, block_row));
   return masked(read_cells<double>(band, header, block_column, block_row));
+}
+
+ImplausibleCells implausible_cells(const Block& block, std::size_t first, std::size_t count,
+                                   const HeightScale& scale) {
+  ImplausibleCells found = std::visit(
+      [&](const auto& cells) { return count_implausible(std::span(cells).subspan(first, count), scale); },
+      block.cells);
+  found.first += first;
+  return found;
 }
 
 void copy_heights(const Block& block, std::size_t first, const HeightScale& scale, std::span<double> into) {

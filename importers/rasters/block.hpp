@@ -9,18 +9,30 @@
 namespace waymark {
 
 /// A decoded block of a file: `block_rows` rows of `block_columns` cells, in the file's order, unscaled.
-/// Cells that a mask hides are NaN. Cells beyond the file's edge have any value.
+/// Masked cells are NaN. Cells beyond the edge of the file have any value.
 struct Block {
   std::variant<std::vector<std::int16_t>, std::vector<float>, std::vector<double>> cells;
 
   std::size_t bytes() const;
 };
 
-/// Reads one block with the file's own compression unit, which no other thread's reading can hold up.
-/// Throws Error{input} where the file is damaged.
+/// Reads one block of the file's own tiling, so that threads do not wait for each other. Throws Error{input}
+/// if the file is damaged.
 Block read_block(GDALDataset& dataset, const RasterHeader& header, int block_column, int block_row);
 
-/// Gives heights to those cells of `into` that have none yet, from the block's cells `first` and following.
+/// A number that is no height of any body (kMinHeight, kMaxHeight).
+struct ImplausibleCells {
+  std::int64_t count = 0;
+  std::size_t first = 0;  ///< index in the block
+  double height = 0;      ///< of the first, metres
+};
+
+/// Counts them among `count` cells of the block, beginning at `first`.
+ImplausibleCells implausible_cells(const Block& block, std::size_t first, std::size_t count,
+                                   const HeightScale& scale);
+
+/// Sets those cells of `into` that have no height yet from the cells of the block, beginning at `first`.
+/// Implausible heights are left out.
 void copy_heights(const Block& block, std::size_t first, const HeightScale& scale, std::span<double> into);
 
 }  // namespace waymark

@@ -20,7 +20,7 @@ std::shared_ptr<const Block> BlockCache::find(const Key& key) {
 
 void BlockCache::keep(const Key& key, std::shared_ptr<const Block> block) {
   const std::scoped_lock lock(mutex_);
-  if (places_.contains(key)) return;  // another thread was faster
+  if (places_.contains(key)) return;  // another thread has added it
   used_ += block->bytes();
   entries_.push_front({key, std::move(block)});
   places_.emplace(key, entries_.begin());

@@ -9,8 +9,8 @@
 #include "importers/rasters/block.hpp"
 namespace waymark {
 
-/// Decoded blocks of all files of a DEM, shared by all threads: neighbouring windows meet in the same blocks,
-/// and decompression costs ten times the copying. What was used longest ago goes first.
+/// Cache of decoded blocks of all files of a DEM, shared by all threads: neighbouring windows share blocks,
+/// and decompression costs ten times the copying. Evicts the least recently used block.
 class BlockCache {
  public:
   explicit BlockCache(std::size_t bytes) : limit_(bytes) {}
@@ -21,7 +21,7 @@ class BlockCache {
     friend bool operator==(const Key&, const Key&) = default;
   };
 
-  /// The block, decoded by `read` where it is not at hand. Two threads may decode the same block at once:
+  /// Returns the block, decoded by `read` if it is not cached. Two threads may decode the same block at once;
   /// both get the same cells.
   std::shared_ptr<const Block> get(const Key& key, const std::function<Block()>& read);
 
@@ -39,7 +39,7 @@ class BlockCache {
 
   std::size_t limit_, used_ = 0;
   std::mutex mutex_;
-  std::list<Entry> entries_;  // used last first
+  std::list<Entry> entries_;  // most recently used first
   std::unordered_map<Key, std::list<Entry>::iterator, Hash> places_;
 };
 

@@ -3,11 +3,15 @@
 
 #include <gdal.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "core/error.hpp"
 #include "importers/rasters/fill_voids.hpp"
 #include "importers/rasters/inspect.hpp"
 #include "importers/rasters/metric_dem.hpp"
 #include "importers/rasters/mosaic.hpp"
+#include "importers/tables/area_of_interest.hpp"
 
 namespace waymark {
 namespace {
@@ -17,7 +21,8 @@ std::vector<RasterHeader> read_headers(const DemImport& import) {
     throw Error(ErrorCode::usage, "no DEM is given", "", "name one or more raster files");
   std::vector<RasterHeader> headers;
   for (const std::string& path : import.files)
-    headers.push_back(read_header(*open_raster(path), path, import.crs));
+    headers.push_back(read_header(*open_raster(path), path,
+                                  {import.crs, import.band, import.height_unit, import.height_scale}));
   return headers;
 }
 
@@ -25,9 +30,10 @@ class MosaicDem : public ImportedDem {
  public:
   explicit MosaicDem(const DemImport& import)
       : import_(import), mosaic_(read_headers(import), cache_bytes()) {
-    GDALSetCacheMax64(import.memory_bytes / 8);  // what VRTs and masks are read through
+    GDALSetCacheMax64(import.memory_bytes / 8);  // GDAL's cache, used for VRTs and masks
     for (const RasterHeader& header : mosaic_.headers())
       warnings_.insert(warnings_.end(), header.warnings.begin(), header.warnings.end());
+    if (!import.area.empty()) area_ = read_area_of_interest(import.area, geometry().where.crs);
     if (!import.inspect) return;
     for (std::string& warning : inspect(mosaic_, cache_bytes())) warnings_.push_back(std::move(warning));
   }
@@ -35,7 +41,17 @@ class MosaicDem : public ImportedDem {
   const GridGeometry& geometry() const override { return mosaic_.grid(); }
   NodataPolicy nodata_policy() const override { return import_.nodata; }
   HeightWindow read(const Window& window) const override {
-    return import_.nodata == NodataPolicy::fill ? read_filled(mosaic_, window) : mosaic_.read(window);
+    return import_.nodata == NodataPolicy::fill ? read_filled(mosaic_, window, import_.fill_distance)
+                                                : mosaic_.read(window);
+  }
+  bool in_area(double x, double y) const override { return !area_ || area_->contains(x, y); }
+  CellFaults faults(const Window& window) const override {
+    CellFaults found = mosaic_.implausible(window);
+    if (import_.nodata != NodataPolicy::fill) return found;
+    const HeightWindow raw = mosaic_.read(window);
+    const std::int64_t voids = std::ranges::count(raw.cells(), kNoHeight);
+    if (voids > 0) found.filled = voids - std::ranges::count(read(window).cells(), kNoHeight);
+    return found;
   }
   double height_sd() const override { return import_.height_sd; }
   std::vector<std::string> files() const override { return import_.files; }
@@ -47,6 +63,7 @@ class MosaicDem : public ImportedDem {
 
   DemImport import_;
   Mosaic mosaic_;
+  std::optional<Area> area_;
   std::vector<std::string> warnings_;
 };
 
@@ -54,7 +71,7 @@ class MosaicDem : public ImportedDem {
 
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
   std::shared_ptr<const ImportedDem> dem = std::make_shared<const MosaicDem>(import);
-  return import.metric ? in_metres(std::move(dem)) : dem;
+  return import.metric ? project_to_metres(std::move(dem)) : dem;
 }
 
 }  // namespace waymark

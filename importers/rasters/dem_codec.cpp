@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/json_text.hpp"
 #include "geo/plane_dem.hpp"
 #include "importers/rasters/dem.hpp"
 #include "importers/rasters/nodata_policy.hpp"
@@ -19,11 +20,16 @@ std::string Codec<DemHandle>::encode(const DemHandle& dem) {
         .dump();
   }
   const auto* imported = dynamic_cast<const ImportedDem*>(dem.get());
-  if (!imported) throw std::logic_error("only a DEM that import_dem opened can be kept in a work folder");
+  if (!imported) throw std::logic_error("only a DEM opened by import_dem can be stored in a work folder");
   const DemImport& import = imported->import();
   return nlohmann::json{{"files", import.files},
                         {"nodata", to_string(import.nodata)},
                         {"crs", import.crs},
+                        {"band", import.band},
+                        {"height_unit", import.height_unit},
+                        {"height_scale", import.height_scale},
+                        {"fill_distance", import.fill_distance},
+                        {"area", import.area},
                         {"memory_bytes", import.memory_bytes},
                         {"height_sd", import.height_sd},
                         {"metric", import.metric}}
@@ -31,7 +37,7 @@ std::string Codec<DemHandle>::encode(const DemHandle& dem) {
 }
 
 DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
-  const auto json = nlohmann::json::parse(bytes);
+  const auto json = nlohmann::json::parse(checked_json(bytes, "DEM"));
   if (json.contains("plane")) {
     const std::string crs = json.at("crs");
     return std::make_shared<PlaneDem>(crs == "local" ? Crs::local() : Crs::from_text(crs), json.at("plane"),
@@ -40,6 +46,11 @@ DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
   return import_dem({.files = json.at("files"),
                      .nodata = nodata_policy(json.at("nodata").get<std::string>()),
                      .crs = json.at("crs"),
+                     .band = json.value("band", 0),
+                     .height_unit = json.value("height_unit", ""),
+                     .height_scale = json.value("height_scale", 1.0),
+                     .area = json.value("area", ""),
+                     .fill_distance = json.value("fill_distance", 100),
                      .memory_bytes = json.at("memory_bytes"),
                      .height_sd = json.at("height_sd"),
                      .metric = json.value("metric", false),

@@ -4,9 +4,9 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// A DEM on disk is its recipe: files, policy, CRS. Decoding opens the files again, headers only, so shards
-/// on other machines read the rasters themselves. Only a DEM that import_dem opened, or level ground
-/// (PlaneDem), can be encoded (std::logic_error).
+/// Stores a DEM as its recipe: files, policy, CRS. Decoding opens the headers again, so shards on other
+/// machines read the rasters themselves. Only a result of import_dem, or level ground (PlaneDem), can be
+/// encoded (std::logic_error).
 template <>
 struct Codec<DemHandle> {
   static std::string encode(const DemHandle& dem);

@@ -5,10 +5,12 @@
 #include "importers/rasters/mosaic.hpp"
 namespace waymark {
 
-/// The heights of a window, its voids interpolated as gdal_fillnodata does: inverse distance to the nearest
-/// height in each of four quadrants, at most 100 cells away, no smoothing, rounded where the files hold whole
-/// metres. Exact: the same cells come out whatever the window. Cells outside the grid and voids wider than
-/// 200 cells stay empty. A window with voids is read with 100 cells around it.
-HeightWindow read_filled(const Mosaic& mosaic, const Window& window);
+/// Reads the heights of a window with voids interpolated as by gdal_fillnodata: inverse distance to the
+/// nearest height in each of four quadrants, at most `distance` cells away, no smoothing, rounded if the
+/// files hold whole metres.
+/// - A cell has the same height in every window that contains it.
+/// - Cells outside the grid and voids farther than `distance` cells from data stay empty.
+/// - The voids of a window are read with a margin of `distance` cells; those without data there cost no more.
+HeightWindow read_filled(const Mosaic& mosaic, const Window& window, int distance);
 
 }  // namespace waymark

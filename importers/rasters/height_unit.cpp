@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <string>
 
+#include "core/error.hpp"
+
 namespace waymark {
 namespace {
 
@@ -36,6 +38,14 @@ HeightUnit height_unit(std::string_view name) {
   for (const NamedUnit& unit : units)
     if (std::ranges::find(unit.names, lower) != unit.names.end()) return {unit.metres, true};
   return {1, false};
+}
+
+HeightUnit stated_height_unit(std::string_view name) {
+  const HeightUnit unit = height_unit(name);
+  if (!unit.known)
+    throw Error(ErrorCode::usage, "there is no unit of height '" + std::string(name) + "'", "height_unit",
+                "name one of m, km, dm, cm, mm, ft, us-ft, or pass --height-scale");
+  return unit;
 }
 
 }  // namespace waymark

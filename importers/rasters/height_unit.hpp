@@ -8,7 +8,10 @@ struct HeightUnit {
   bool known = true;
 };
 
-/// The unit of a band by any name in use, whatever its case. No name means metres.
+/// Returns the unit of a band by any of its usual names, in any case. An empty name means metres.
 HeightUnit height_unit(std::string_view name);
+
+/// Returns the unit that a user named. Throws Error{usage} with the names for an unknown one.
+HeightUnit stated_height_unit(std::string_view name);
 
 }  // namespace waymark

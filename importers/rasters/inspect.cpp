@@ -12,18 +12,18 @@ namespace waymark {
 namespace {
 
 constexpr double kSeamTolerance = 1e-3;  // metres
-constexpr std::size_t kSeamsNamed = 20;
-constexpr std::int64_t kPiece = 1024;  // cells on a side, read at once
-constexpr std::int64_t kGlance = 256;  // the same where the first piece mostly tells
+constexpr std::size_t kMaxSeamsListed = 20;
+constexpr std::int64_t kPiece = 1024;      // cells on a side, read at once
+constexpr std::int64_t kQuickPiece = 256;  // the same if the first piece is usually enough
 
 // Calls visit(piece) for squares of `side` cells of the window, row by row, until it returns false.
 void for_each_piece(const Window& window, std::int64_t side, auto&& visit) {
   for (std::int64_t row = window.row; row < window.end_row(); row += side)
     for (std::int64_t column = window.column; column < window.end_column(); column += side)
-      if (!visit(common({column, row, side, side}, window))) return;
+      if (!visit(intersection({column, row, side, side}, window))) return;
 }
 
-// The end of a file is what a broken download lacks.
+// An interrupted download lacks the end of the file.
 void check_ends(const Mosaic& mosaic) {
   for (std::size_t file = 0; file < mosaic.headers().size(); ++file) {
     const Window& whole = mosaic.window_of(file);
@@ -34,7 +34,7 @@ void check_ends(const Mosaic& mosaic) {
 
 void check_relief(const Mosaic& mosaic, std::vector<std::string>& warnings) {
   double low = std::numeric_limits<double>::infinity(), high = kNoHeight;
-  for_each_piece({0, 0, mosaic.grid().columns, mosaic.grid().rows}, kGlance, [&](const Window& piece) {
+  for_each_piece({0, 0, mosaic.grid().columns, mosaic.grid().rows}, kQuickPiece, [&](const Window& piece) {
     const HeightWindow heights = mosaic.read(piece);
     for (const double height : heights.cells()) {
       if (height == kNoHeight) continue;
@@ -54,7 +54,7 @@ void check_relief(const Mosaic& mosaic, std::vector<std::string>& warnings) {
 struct Disagreement {
   std::int64_t shared = 0, different = 0;
   double largest = 0;
-  std::int64_t column = 0, row = 0;  ///< of the largest, in the grid
+  std::int64_t column = 0, row = 0;  ///< of the largest difference, in the grid
 };
 
 Disagreement compare(const Mosaic& mosaic, std::size_t first, std::size_t second, const Window& overlap) {
@@ -81,18 +81,19 @@ void check_seams(const Mosaic& mosaic, std::vector<std::string>& warnings) {
   std::size_t seams = 0;
   for (std::size_t i = 0; i < files.size(); ++i)
     for (std::size_t j = i + 1; j < files.size(); ++j) {
-      const Window overlap = common(mosaic.window_of(i), mosaic.window_of(j));
+      const Window overlap = intersection(mosaic.window_of(i), mosaic.window_of(j));
       if (overlap.cells() == 0) continue;
       const Disagreement found = compare(mosaic, i, j, overlap);
-      if (found.different == 0 || ++seams > kSeamsNamed) continue;
+      if (found.different == 0 || ++seams > kMaxSeamsListed) continue;
       const Georeference& where = mosaic.grid().where;
       warnings.push_back(
           fmt::format("{} and {} disagree in {} of {} shared cells, by up to {:.6g} m at ({:.6f}, {:.6f}); "
-                      "the first one counts",
+                      "the first one has priority",
                       files[i].path, files[j].path, found.different, found.shared, found.largest,
                       where.x(static_cast<double>(found.column)), where.y(static_cast<double>(found.row))));
     }
-  if (seams > kSeamsNamed) warnings.push_back(fmt::format("{} more seams disagree", seams - kSeamsNamed));
+  if (seams > kMaxSeamsListed)
+    warnings.push_back(fmt::format("{} more seams disagree", seams - kMaxSeamsListed));
 }
 
 void check_layout(const Mosaic& mosaic, std::size_t cache_bytes, std::vector<std::string>& warnings) {
@@ -102,7 +103,7 @@ void check_layout(const Mosaic& mosaic, std::size_t cache_bytes, std::vector<std
         cell * static_cast<double>(header.columns) * std::max<double>(kPiece, header.block_rows);
     if (header.block_columns < 2 * kPiece || band <= static_cast<double>(cache_bytes)) continue;
     warnings.push_back(
-        fmt::format("{} is stored in strips of {} columns, which will be decoded again and again: raise the "
+        fmt::format("{} is stored in strips of {} columns, which are decoded repeatedly: raise the "
                     "memory to {:.0f} MB, "
                     "or convert it: gdal_translate -of COG -co COMPRESS=ZSTD '{}' tiled.tif",
                     header.path, header.block_columns, std::ceil(1.2e-6 * band), header.path));

@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/error.hpp"
 #include "importers/images/image.hpp"
+#include "importers/tables/area_of_interest.hpp"
 
 namespace waymark {
 namespace {
 
-constexpr double kWidest = 6;  // degrees on the ground: scale is true to 0.2 % there
+constexpr double kMaxExtent = 6;  // degrees on the ground: scale is true to 0.2 % there
 
 class MetricDem final : public ImportedDem {
  public:
@@ -24,12 +26,12 @@ class MetricDem final : public ImportedDem {
     const double tall = static_cast<double>(from.rows) * -from.where.dy;
     const double wide =
         static_cast<double>(from.columns) * from.where.dx * std::cos(lat * 3.141592653589793 / 180);
-    if (!(wide <= kWidest && tall <= kWidest))
+    if (!(wide <= kMaxExtent && tall <= kMaxExtent))
       throw Error(ErrorCode::input,
-                  fmt::format("a DEM of {:.3g} x {:.3g} degrees is too wide to be laid on a plane for images",
+                  fmt::format("a DEM of {:.3g} x {:.3g} degrees is too wide for a projection to metres",
                               static_cast<double>(from.columns) * from.where.dx, tall),
                   source_->files().empty() ? "" : source_->files().front(),
-                  "cut out the ground they show: gdal_translate -projwin LON0 LAT0 LON1 LAT1");
+                  "cut out the area of the images: gdal_translate -projwin LON0 LAT0 LON1 LAT1");
     where_.crs = Crs::from_text(local_projection(from.where.crs, lon, lat));
     const CrsTransform to_metres(from.where.crs, where_.crs);
     const auto middle = to_metres(lon, lat), east = to_metres(lon + from.where.dx, lat),
@@ -49,6 +51,8 @@ class MetricDem final : public ImportedDem {
     geometry_ = {.columns = static_cast<std::int64_t>(std::floor((high_x - low_x) / step)) + 1,
                  .rows = static_cast<std::int64_t>(std::floor((high_y - low_y) / step)) + 1,
                  .where = where_};
+    if (const std::string& area = source_->import().area; !area.empty())
+      area_ = read_area_of_interest(area, where_.crs);
     warnings_ = source_->warnings();
     warnings_.push_back(fmt::format("the DEM is in degrees; it is used in metres: {}",
                                     local_projection(from.where.crs, lon, lat)));
@@ -56,6 +60,7 @@ class MetricDem final : public ImportedDem {
 
   const GridGeometry& geometry() const override { return geometry_; }
   NodataPolicy nodata_policy() const override { return source_->nodata_policy(); }
+  bool in_area(double x, double y) const override { return !area_ || area_->contains(x, y); }
   double height_sd() const override { return source_->height_sd(); }
   std::vector<std::string> files() const override { return source_->files(); }
   const std::vector<std::string>& warnings() const override { return warnings_; }
@@ -76,8 +81,8 @@ class MetricDem final : public ImportedDem {
                  last_row = static_cast<double>(from.rows - 1);
     double low_column = last_column, high_column = 0, low_row = last_row, high_row = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i] = near_grid(from.where.column(x[i]), last_column);
-      y[i] = near_grid(from.where.row(y[i]), last_row);
+      x[i] = is_near_grid(from.where.column(x[i]), last_column);
+      y[i] = is_near_grid(from.where.row(y[i]), last_row);
       if (!std::isfinite(x[i] + y[i])) continue;
       low_column = std::min(low_column, x[i]), high_column = std::max(high_column, x[i]);
       low_row = std::min(low_row, y[i]), high_row = std::max(high_row, y[i]);
@@ -97,8 +102,8 @@ class MetricDem final : public ImportedDem {
   }
 
  private:
-  // Up to half a cell outside counts as on the border.
-  static double near_grid(double place, double last) {
+  // A position up to half a cell outside counts as on the border.
+  static double is_near_grid(double place, double last) {
     return place >= -0.5 && place <= last + 0.5 ? std::clamp(place, 0.0, last) : std::nan("");
   }
 
@@ -120,12 +125,13 @@ class MetricDem final : public ImportedDem {
   std::shared_ptr<const ImportedDem> source_;
   Georeference where_;
   GridGeometry geometry_;
+  std::optional<Area> area_;
   std::vector<std::string> warnings_;
 };
 
 }  // namespace
 
-std::shared_ptr<const ImportedDem> in_metres(std::shared_ptr<const ImportedDem> dem) {
+std::shared_ptr<const ImportedDem> project_to_metres(std::shared_ptr<const ImportedDem> dem) {
   if (dem->geometry().where.crs.kind() != CrsKind::geographic) return dem;
   return std::make_shared<const MetricDem>(std::move(dem));
 }

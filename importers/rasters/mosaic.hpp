@@ -9,23 +9,26 @@
 #include "importers/rasters/raster_handles.hpp"
 namespace waymark {
 
-/// Heights of several files on one grid, as they are in the files. Safe to read from many threads.
+/// Heights of several files on one grid, without interpolation. Safe to read from many threads.
 class Mosaic {
  public:
-  /// `cache_bytes`: decoded blocks kept for later windows.
+  /// `cache_bytes` limits the decoded blocks kept for later windows.
   Mosaic(std::vector<RasterHeader> headers, std::size_t cache_bytes);
 
   const GridGeometry& grid() const { return layout_.grid; }
   const std::vector<RasterHeader>& headers() const { return headers_; }
-  /// Where a file lies in the grid.
+  /// Returns the window of a file in the grid.
   const Window& window_of(std::size_t file) const { return layout_.files[file]; }
 
-  /// The contract of DemSource::read; of overlapping files the first one that has a height wins.
+  /// Implements DemSource::read; of overlapping files the first one with a height has priority.
   HeightWindow read(const Window& window) const;
-  /// Heights of one file alone; the window is of the grid and inside the file.
+  /// Reads heights of one file alone; the window is in grid coordinates and inside the file.
   HeightWindow read_file(std::size_t file, const Window& window) const;
+  /// Counts the cells of all files in a window inside the grid whose numbers are no heights.
+  CellFaults implausible(const Window& window) const;
 
  private:
+  void for_each_row(std::size_t file, const Window& part, auto&& visit) const;
   void add_heights(const Window& inside, const Window& window, HeightWindow& heights) const;
   void add_file(std::size_t file, const Window& part, const Window& window, HeightWindow& heights) const;
 
@@ -35,7 +38,7 @@ class Mosaic {
   mutable RasterHandles handles_;
 };
 
-/// The common part; without cells where there is none.
-Window common(const Window& a, const Window& b);
+/// Returns the intersection of two windows; it has no cells if they are disjoint.
+Window intersection(const Window& a, const Window& b);
 
 }  // namespace waymark

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
-#include "importers/rasters/full_turn.hpp"
+#include "importers/rasters/wraparound.hpp"
 
 namespace waymark {
 namespace {
@@ -18,7 +18,8 @@ double width(const RasterHeader& header) {
   return static_cast<double>(header.columns) * header.where.dx;
 }
 
-// The gdalwarp call that puts `other` on the grid of `first`: extent in whole cells of that grid.
+// Returns the gdalwarp call that resamples `other` to the grid of `first`: extent in whole cells of that
+// grid.
 std::string remedy(const RasterHeader& first, const RasterHeader& other) {
   const Georeference &grid = first.where, &o = other.where;
   const auto edge_x = [&](double column) { return grid.x(column - 0.5); };
@@ -57,8 +58,8 @@ void check_same_grid(const RasterHeader& first, const RasterHeader& other) {
         both, remedy(first, other));
 }
 
-// Shifts longitudes by whole turns so that the files lie in the shortest stretch: the widest gap on the
-// circle is left outside. A stretch that is already the shortest stays as it is.
+// Shifts longitudes by whole turns so that the files span the shortest interval, outside the widest gap
+// on the circle. An interval that is already the shortest stays unchanged.
 void join_across_antimeridian(std::vector<RasterHeader>& headers) {
   if (headers.size() < 2 || headers[0].where.crs.kind() != CrsKind::geographic) return;
   const auto west = [](const RasterHeader& h) { return h.where.x(-0.5); };
@@ -79,7 +80,7 @@ void join_across_antimeridian(std::vector<RasterHeader>& headers) {
     }
     reach = std::max(reach, to);
   }
-  if (origin + 360 - reach >= widest - 1e-9) start = origin;  // the gap is where the numbers have it
+  if (origin + 360 - reach >= widest - 1e-9) start = origin;  // the gap is at the numeric ends
   for (RasterHeader& h : headers) h.where.x0 -= 360 * std::floor((west(h) - start) / 360 + 1e-9);
 }
 
@@ -109,7 +110,7 @@ MosaicLayout lay_out(const std::vector<RasterHeader>& given) {
   grid = {.columns = right - left, .rows = bottom - top, .where = first.where};
   grid.where.x0 = first.where.x(static_cast<double>(left));
   grid.where.y0 = first.where.y(static_cast<double>(top));
-  close_the_circle(grid);
+  mark_wraparound(grid);
   return layout;
 }
 

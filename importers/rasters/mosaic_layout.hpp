@@ -12,10 +12,10 @@ struct MosaicLayout {
       files;  ///< where each file lies in the grid; may reach past the last column of a grid that wraps
 };
 
-/// Lays the files out on the grid that the first one begins. Files across the antimeridian are brought
-/// together by whole turns. A grid that goes round the body wraps, and repeated columns are dropped. Throws
-/// Error that names both files, the numbers and the gdalwarp command that mends it, where CRS, cell size or
-/// alignment differ by more than 1/1000 of a cell.
+/// Places the files on the grid of the first one. Files across the antimeridian are shifted by whole turns. A
+/// grid that covers all longitudes wraps, and repeated columns are dropped. Throws Error with both files, the
+/// numbers and the gdalwarp command that corrects them, if CRS, cell size or alignment differ by more than
+/// 1/1000 of a cell.
 MosaicLayout lay_out(const std::vector<RasterHeader>& headers);
 
 }  // namespace waymark

@@ -6,10 +6,10 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// "ocean", "unknown", "fill".
+/// Returns "ocean", "unknown" or "fill".
 std::string to_string(NodataPolicy policy);
 
-/// Throws Error{usage} with the nearest name where there is no such policy.
+/// Parses a policy. Throws Error{usage} with the nearest name if there is no such policy.
 NodataPolicy nodata_policy(std::string_view name);
 
 std::vector<std::string> nodata_policy_names();

@@ -8,15 +8,15 @@
 #include "importers/gdal_session.hpp"
 namespace waymark {
 
-/// Open files, handed out to one thread at a time, since a GDAL data set may not be shared. Files are opened
-/// when needed; of those nobody uses, the `kIdle` used last stay open.
+/// Pool of open files. Lends each to one thread at a time, since a GDAL data set may not be shared. Opens
+/// files on demand and keeps the `kIdle` most recently used idle ones open.
 class RasterHandles {
  public:
   static constexpr std::size_t kIdle = 64;
 
   explicit RasterHandles(std::vector<std::string> paths) : paths_(std::move(paths)) {}
 
-  /// Goes back to the pool at the end of its life.
+  /// Borrows a file and returns it to the pool when destroyed.
   class Lease {
    public:
     Lease(RasterHandles& pool, std::size_t file) : pool_(&pool), file_(file), dataset_(pool.take(file)) {}
@@ -41,7 +41,7 @@ class RasterHandles {
 
   std::vector<std::string> paths_;
   std::mutex mutex_;
-  std::list<Idle> idle_;  // used last first
+  std::list<Idle> idle_;  // most recently used first
 };
 
 }  // namespace waymark

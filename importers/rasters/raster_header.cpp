@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "core/error.hpp"
 #include "importers/rasters/height_unit.hpp"
-#include "importers/rasters/radii.hpp"
+#include "importers/rasters/reference_radius.hpp"
 
 namespace waymark {
 namespace {
@@ -21,32 +22,37 @@ using GeoTransform = std::array<double, 6>;
   throw Error(ErrorCode::input, problem, path, hint);
 }
 
-GDALRasterBand& only_band(GDALDataset& dataset, const std::string& path) {
+int band_of_heights(GDALDataset& dataset, const std::string& path, int wanted) {
   const int bands = dataset.GetRasterCount();
   if (bands == 0) {
     const char* first = CSLFetchNameValue(dataset.GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
-    refuse(
-        "the file holds no raster of its own", path,
-        first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows what it holds");
+    refuse("the file itself contains no raster", path,
+           first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows its content");
   }
+  if (wanted > bands)
+    refuse(fmt::format("there is no band {}: this file has {}", wanted, bands), path,
+           "`gdalinfo` lists the bands; pass --band with one of them");
   const bool height_and_alpha =
       bands == 2 && dataset.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
-  if (bands > 1 && !height_and_alpha)
+  if (wanted == 0 && bands > 1 && !height_and_alpha)
     refuse(fmt::format("a DEM has one band of heights, this file has {}", bands), path,
-           fmt::format("take out the right one: gdal_translate -b 1 '{}' dem.tif", path));
-  GDALRasterBand& band = *dataset.GetRasterBand(1);
+           fmt::format("name the right one: `waymark peaks --band 1`, load_dem.band in a job; or extract it: "
+                       "gdal_translate -b 1 '{}' dem.tif",
+                       path));
+  const int number = std::max(1, wanted);
+  GDALRasterBand& band = *dataset.GetRasterBand(number);
   if (GDALDataTypeIsComplex(band.GetRasterDataType()))
     refuse(fmt::format("heights are real numbers, this file holds complex ones ({})",
                        GDALGetDataTypeName(band.GetRasterDataType())),
-           path, "a DEM made from interferograms is a later product: take that one");
-  return band;
+           path, "use the DEM derived from the interferogram");
+  return number;
 }
 
 std::optional<GeoTransform> transform_of(GDALDataset& dataset, const std::string& path) {
   GeoTransform t{};
   if (dataset.GetGeoTransform(t.data()) != CE_None) {
     if (dataset.GetGCPCount() > 0)
-      refuse("the file is placed by ground control points, not by a grid", path,
+      refuse("the file is georeferenced by ground control points, not by a grid", path,
              fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
     return std::nullopt;
   }
@@ -71,18 +77,17 @@ Crs crs_of(const GDALDataset& dataset, const std::string& path, const std::strin
   CPLFree(wkt);
   if (!definition.empty()) return Crs::from_text(definition);
   const bool like_degrees = t && std::abs((*t)[0]) <= 360 && std::abs((*t)[3]) <= 90 && (*t)[1] < 0.1;
-  refuse("the file does not say where on which body it lies: it has no coordinate reference system", path,
+  refuse("the file has no coordinate reference system", path,
          like_degrees ? "its numbers look like degrees: pass --crs EPSG:4326 if this is Earth, --crs "
                         "IAU_2015:49900 if Mars, --crs IAU_2015:30100 if the Moon"
                       : "pass --crs, e.g. --crs EPSG:32611, or --crs local for metres on no body");
 }
 
-// The corner-based transform of GDAL becomes centre-based here and nowhere else; a south-up file is turned.
+// Converts the corner-based transform of GDAL to centres, here and nowhere else; flips a south-up file.
 Georeference place(const Crs& crs, const std::optional<GeoTransform>& transform, std::int64_t rows,
                    const std::string& path) {
   if (!transform && crs.kind() != CrsKind::local)
-    refuse("the file does not say where its cells lie: it has no geotransform", path,
-           "add one: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE");
+    refuse("the file has no geotransform", path, "add one: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE");
   const GeoTransform t = transform.value_or(GeoTransform{0, 1, 0, static_cast<double>(rows), 0, -1});
   const double top = t[5] < 0 ? t[3] : t[3] + t[5] * static_cast<double>(rows);
   const double dy = -std::abs(t[5]);
@@ -121,21 +126,24 @@ double nodata_of(GDALRasterBand& band) {
   return known ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-HeightScale height_scale(GDALRasterBand& band, RasterHeader& header) {
+HeightScale height_scale(GDALRasterBand& band, const RasterReading& reading, RasterHeader& header) {
   HeightScale heights;
   const GDALDataType type = band.GetRasterDataType();
-  heights.void_low = heights.void_high = nodata_of(band);
-  if (type == GDT_Float32) heights.void_low = heights.void_high = static_cast<float>(heights.void_low);
-  if (const double huge = std::abs(heights.void_low); huge > 1e30) {  // often written with a few digits only
-    heights.void_low -= 1e-5 * huge;
-    heights.void_high += 1e-5 * huge;
+  heights.min_void = heights.max_void = nodata_of(band);
+  if (type == GDT_Float32) heights.min_void = heights.max_void = static_cast<float>(heights.min_void);
+  if (const double huge = std::abs(heights.min_void); huge > 1e30) {  // often written with a few digits only
+    heights.min_void -= 1e-5 * huge;
+    heights.max_void += 1e-5 * huge;
   }
-  const HeightUnit unit = height_unit(band.GetUnitType());
+  const HeightUnit unit =
+      reading.height_unit.empty() ? height_unit(band.GetUnitType()) : stated_height_unit(reading.height_unit);
   if (!unit.known)
-    header.warnings.push_back(fmt::format("{}: heights are in '{}', which is no unit we know; read as metres",
-                                          header.path, band.GetUnitType()));
-  heights.scale = band.GetScale() * unit.metres;
-  heights.offset = band.GetOffset() * unit.metres;
+    header.warnings.push_back(
+        fmt::format("{}: heights are in '{}', an unknown unit; metres are assumed: pass --height-unit",
+                    header.path, band.GetUnitType()));
+  const double metres = unit.metres * reading.height_scale;
+  heights.scale = band.GetScale() * metres;
+  heights.offset = band.GetOffset() * metres;
   if (!(std::abs(heights.scale) > 0) || !std::isfinite(heights.scale) || !std::isfinite(heights.offset))
     refuse(fmt::format("heights would be {} times the cell plus {}", heights.scale, heights.offset),
            header.path, "correct the band: gdal_edit.py -scale 1 -offset 0 FILE");
@@ -157,36 +165,38 @@ CellType cell_type(GDALDataType type, bool masked) {  // a masked cell becomes N
   }
 }
 
-void take_off_radius(GDALDataset& dataset, RasterHeader& header) {
-  const auto [metres, because] = radius_to_take_off(dataset, header);
+void subtract_reference_radius(GDALDataset& dataset, RasterHeader& header) {
+  const auto [metres, reason] = detect_reference_radius(dataset, header);
   if (metres == 0) return;
   const Body& body = header.where.crs.body();
   header.heights.offset -= metres;
   header.heights.whole_metres = header.heights.whole_metres && metres == std::floor(metres);
   header.warnings.push_back(
       fmt::format("{}: heights are distances from the body's centre: {}, the radius of {} is {:.10g} m; "
-                  "{:.10g} m taken off",
-                  header.path, because, body.name, body.equatorial_radius, metres));
+                  "{:.10g} m are subtracted",
+                  header.path, reason, body.name, body.equatorial_radius, metres));
 }
 
 }  // namespace
 
-RasterHeader read_header(GDALDataset& dataset, const std::string& path, const std::string& crs) {
+RasterHeader read_header(GDALDataset& dataset, const std::string& path, const RasterReading& reading) {
   const GdalListener quiet;
-  GDALRasterBand& band = only_band(dataset, path);
+  const int number = band_of_heights(dataset, path, reading.band);
+  GDALRasterBand& band = *dataset.GetRasterBand(number);
   const auto transform = transform_of(dataset, path);
   RasterHeader header;
   header.path = path;
+  header.band = number;
   header.columns = dataset.GetRasterXSize();
   header.rows = dataset.GetRasterYSize();
-  header.where = place(crs_of(dataset, path, crs, transform), transform, header.rows, path);
+  header.where = place(crs_of(dataset, path, reading.crs, transform), transform, header.rows, path);
   header.south_up = transform && (*transform)[5] > 0;
   check_coordinates(header);
   band.GetBlockSize(&header.block_columns, &header.block_rows);
   header.masked = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
   header.cells = cell_type(band.GetRasterDataType(), header.masked);
-  header.heights = height_scale(band, header);
-  take_off_radius(dataset, header);
+  header.heights = height_scale(band, reading, header);
+  subtract_reference_radius(dataset, header);
   return header;
 }
 

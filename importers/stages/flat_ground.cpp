@@ -15,11 +15,10 @@ struct FlatGround {
           "crs", crs,
           {.help = "Projected coordinate reference system of the map: EPSG:32633, a PROJ string, or local"});
       option("height", height, {.help = "Height of the level ground", .min = -2e4, .max = 1e5});
-      option(
-          "height_sd", height_sd,
-          {.help = "How far the real ground departs from it: places seen from the side become less certain",
-           .min = 0,
-           .max = 1e4});
+      option("height_sd", height_sd,
+             {.help = "Deviation of the real terrain from it: positions seen at an angle become less certain",
+              .min = 0,
+              .max = 1e4});
     }
   };
   static constexpr Out<DemHandle> dem{"dem"};

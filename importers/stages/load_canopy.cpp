@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/options/memory_option.hpp"
 #include "geo/plane_dem.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/points/canopy_codec.hpp"
@@ -12,8 +13,6 @@
 namespace waymark {
 namespace {
 
-constexpr std::int64_t kMegabyte = std::int64_t{1} << 20;
-
 struct LoadCanopy {
   struct Options {
     std::vector<std::string> chm, dsm, dtm, las;
@@ -21,37 +20,35 @@ struct LoadCanopy {
     bool flights = false;
     std::string forest_type, crs;
     std::int64_t tile_cells = 1024;
-    std::int64_t memory = 512;
+    MemoryOption memory;
 
     void describe(OptionVisitor& option) {
       option("chm", chm, {.help = "Canopy height models: heights above ground"});
-      option("dsm", dsm, {.help = "Surface models, instead of chm; the ground is told by dtm"});
+      option("dsm", dsm, {.help = "Surface models, instead of chm; dtm gives the terrain"});
       option("dtm", dtm, {.help = "Terrain models under the surface models, on any grid"});
       option(
           "las", las,
-          {.help = "LAS files, instead of chm: one catalogue of laser points, ground classified (class 2)"});
+          {.help =
+               "LAS files, instead of chm: one catalogue of laser points, with classified ground (class 2)"});
       option("resolution", resolution,
-             {.help = "Cell of the canopy made of laser points; 0: by their density", .min = 0, .max = 20});
+             {.help = "Cell size of the canopy made from laser points; 0: by their density",
+              .min = 0,
+              .max = 20});
       option(
           "flights", flights,
           {.help =
-               "Each file of chm (of dsm, of las) is a survey of its own: trees that several saw are merged. "
-               "Otherwise the files make one canopy; where they overlap the first one counts"});
-      option(
-          "forest_type", forest_type,
-          {.help = "Raster that tells the type of forest, so that treetops are sought by the preset of each: "
-                   "1 conifer, 2 broadleaf, 3 mixed"});
+               "Each file of chm (of dsm, of las) is a separate survey: trees found in several are merged. "
+               "Otherwise the files make one canopy; where they overlap the first one has priority"});
+      option("forest_type", forest_type,
+             {.help = "Raster of forest types, which select the preset for finding treetops: "
+                      "1 conifer, 2 broadleaf, 3 mixed"});
       option("crs", crs,
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
       option("tile_cells", tile_cells,
-             {.help = "Side of the squares the canopy is worked on in; the trees do not depend on it",
+             {.help = "Side of the tiles for processing; the trees do not depend on it",
               .min = 64,
               .max = 16384});
-      option("memory", memory,
-             {.help = "Megabytes of decoded rasters kept for neighbouring tiles",
-              .min = 16,
-              .max = 1e7,
-              .affects_result = false});
+      memory.describe(option);
     }
   };
 
@@ -88,9 +85,9 @@ struct LoadCanopy {
                      .resolution = options.resolution.value,
                      .forest_type = options.forest_type.empty() ? "" : unit.path(options.forest_type),
                      .crs = options.crs,
-                     .memory_bytes = options.memory * kMegabyte};
+                     .memory_bytes = options.memory.bytes()};
     check(options);
-    const std::vector<CanopyImport> surveys = options.flights ? one_each(all) : std::vector{all};
+    const std::vector<CanopyImport> surveys = options.flights ? open_each(all) : std::vector{all};
     Canopies opened;
     DemHandle terrain;
     for (const CanopyImport& survey : surveys) {
@@ -117,7 +114,7 @@ struct LoadCanopy {
                   "points make their own canopy model: leave out one or the other");
   }
 
-  // With its folder where another file has the same name: surveys are told apart by their names.
+  // Includes the folder if another file has the same name: names identify surveys.
   static std::string name_among(const std::string& file, const std::vector<std::string>& files) {
     const auto plain = [](const std::string& f) { return std::filesystem::path(f).filename(); };
     const auto alike =
@@ -126,7 +123,7 @@ struct LoadCanopy {
   }
 
   // Surface models share the terrain models.
-  static std::vector<CanopyImport> one_each(const CanopyImport& all) {
+  static std::vector<CanopyImport> open_each(const CanopyImport& all) {
     std::vector<CanopyImport> surveys;
     const auto count = static_cast<std::int64_t>(all.chm.size() + all.dsm.size() + all.las.size());
     for (auto member : {&CanopyImport::chm, &CanopyImport::dsm, &CanopyImport::las})

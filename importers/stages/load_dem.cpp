@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/options/memory_option.hpp"
 #include "importers/rasters/dem.hpp"
 #include "importers/rasters/dem_codec.hpp"
 #include "importers/rasters/nodata_policy.hpp"
@@ -8,45 +9,56 @@
 namespace waymark {
 namespace {
 
-constexpr std::int64_t kMegabyte = std::int64_t{1} << 20;
-
 struct LoadDem {
   struct Options {
     std::vector<std::string> files;
     std::string nodata = to_string(NodataPolicy::ocean);
     std::string crs;
     Meters height_sd{0};
+    std::int64_t band = 0;
+    std::string height_unit;
+    double height_scale = 1;
+    std::int64_t fill_distance = 100;
+    std::string aoi;
     bool metric = false;
     std::int64_t tile_cells = 512;
-    std::int64_t memory = 512;
+    MemoryOption memory;
 
     void describe(OptionVisitor& option) {
-      option(
-          "files", files,
-          {.help = "Rasters that make the DEM; where they overlap the first one counts. Distances from the "
-                   "body's centre become elevations above its equatorial radius"});
-      option(
-          "nodata", nodata,
-          {.help =
-               "What cells without a height are: ocean (nothing hidden), unknown (ground of any height may "
-               "be hidden), fill (interpolated)",
-           .choices = nodata_policy_names()});
+      option("files", files,
+             {.help = "Rasters of the DEM; where they overlap the first one has priority. Distances from the "
+                      "body's centre become elevations above its equatorial radius"});
+      option("nodata", nodata,
+             {.help =
+                  "Meaning of cells without a height: ocean (nothing hidden, but beside ground above 100 m), "
+                  "unknown (terrain of any height may be hidden), fill (interpolated, then unknown)",
+              .choices = nodata_policy_names()});
       option("crs", crs,
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
       option("height_sd", height_sd,
              {.help = "Standard deviation of a height; 0: not known", .min = 0, .max = 1000});
+      option("band", band, {.help = "Band that holds the heights; 0: the only one", .min = 0, .max = 65536});
+      option("height_unit", height_unit,
+             {.help = "Unit of the heights instead of the band's: m, km, dm, cm, mm, ft, us-ft"});
+      option("height_scale", height_scale,
+             {.help = "Factor of all heights, e.g. 0.1 for decimetres", .min = 1e-6, .max = 1e6});
+      option("fill_distance", fill_distance,
+             {.help = "nodata fill: voids are filled up to this many cells from data; the rest stays unknown",
+              .min = 1,
+              .max = 1000});
+      option(
+          "aoi", aoi,
+          {.help =
+               "Polygons of the area of interest: landmarks outside are left out, but measured on the whole "
+               "DEM"});
       option("metric", metric,
-             {.help = "true: a DEM in degrees is laid on a plane in metres about its middle, as images need "
-                      "it; jobs that load images ask for it themselves"});
+             {.help = "true: project a DEM in degrees to metres about its middle, as images need "
+                      "it; jobs that load images set it themselves"});
       option("tile_cells", tile_cells,
-             {.help = "Side of the squares the DEM is worked on in; the map does not depend on it",
+             {.help = "Side of the tiles for processing; the map does not depend on it",
               .min = 64,
               .max = 16384});
-      option("memory", memory,
-             {.help = "Megabytes of decoded DEM kept for neighbouring tiles",
-              .min = 16,
-              .max = 1e7,
-              .affects_result = false});
+      memory.describe(option);
     }
   };
 
@@ -56,18 +68,27 @@ struct LoadDem {
   static StageSpec spec() {
     return {.name = "load_dem",
             .summary = "Opens elevation rasters as one grid and cuts it into tiles",
-            .version = 3,
+            .version = 4,
             .scope = Scope::map,
             .lists = Scope::tile,
             .outputs = {dem, tiles}};
   }
 
-  static std::vector<std::string> input_files(const Options& options) { return options.files; }
+  static std::vector<std::string> input_files(const Options& options) {
+    std::vector<std::string> files = options.files;
+    if (!options.aoi.empty()) files.push_back(options.aoi);
+    return files;
+  }
 
   static void run(const Options& options, StageContext& unit) {
     DemImport import{.nodata = nodata_policy(options.nodata),
                      .crs = options.crs,
-                     .memory_bytes = options.memory * kMegabyte,
+                     .band = static_cast<int>(options.band),
+                     .height_unit = options.height_unit,
+                     .height_scale = options.height_scale,
+                     .area = options.aoi.empty() ? "" : unit.path(options.aoi),
+                     .fill_distance = static_cast<int>(options.fill_distance),
+                     .memory_bytes = options.memory.bytes(),
                      .height_sd = options.height_sd.value,
                      .metric = options.metric};
     for (const std::string& file : options.files) import.files.push_back(unit.path(file));

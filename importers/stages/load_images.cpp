@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "geo/dem_handle.hpp"
-#include "importers/images/camera_set.hpp"
-#include "importers/images/control_points.hpp"
+#include "importers/cameras/camera_set.hpp"
+#include "importers/cameras/control_points.hpp"
 #include "importers/images/find_images.hpp"
 #include "importers/images/image_set.hpp"
 #include "importers/images/list_images.hpp"
@@ -33,19 +33,18 @@ struct LoadImages {
     std::int64_t band = 0;
 
     void describe(OptionVisitor& option) {
-      option(
-          "files", files,
-          {.help =
-               "Images, patterns (*.png) or folders of images; empty: those the camera file names, near it"});
+      option("files", files,
+             {.help = "Images, patterns (*.png) or folders of images; empty: those named in the camera file, "
+                      "near it"});
       option("cameras", cameras,
              {.help = "Camera file, or a pattern for several of one format; empty: orthophotos"});
       option("camera_format", camera_format,
              {.help = "Format of the camera files", .choices = format_names()});
       option("interior", interior,
-             {.help = "File with the interior orientation, for formats that keep it apart"});
+             {.help = "File with the interior orientation, for formats that store it separately"});
       option("crs", crs, {.help = "CRS of the map; empty: that of the DEM"});
       option("camera_crs", camera_crs,
-             {.help = "CRS of camera places where their file does not say; empty: the map's"});
+             {.help = "CRS of camera positions if their file names none; empty: the map's"});
       option(
           "height_offset", height_offset,
           {.help =
@@ -54,43 +53,43 @@ struct LoadImages {
            .min = -1e5,
            .max = 1e5});
       option("control_points", control_points,
-             {.help = "CSV file that ties an arbitrary camera frame to the map"});
+             {.help = "CSV file of control points that georeference an arbitrary camera frame"});
       option("similarity", similarity,
              {.help = "Instead of control points: scale,qw,qx,qy,qz,x,y,z with map = scale * rotation * "
                       "frame + shift"});
       option("rotation_sd", rotation_sd,
-             {.help = "Standard deviation of camera angles where the camera file gives none",
+             {.help = "Standard deviation of camera angles if the camera file gives none",
               .min = 0,
               .max = 180});
       option("position_sd", position_sd,
-             {.help = "Standard deviation of camera places where the camera file gives none",
+             {.help = "Standard deviation of camera positions if the camera file gives none",
               .min = 0,
               .max = 1e6});
       option("sun", sun,
-             {.help = "What tells the sun: auto (camera file, label, then time and place), time, none",
+             {.help = "Source of the sun: auto (camera file, label, then time and position), time, none",
               .choices = {"auto", "time", "none"}});
-      option("sun_azimuth", sun_azimuth,
-             {.help = "Towards the sun, clockwise from map north; of all images, with sun_elevation",
-              .min = -360,
-              .max = 360});
+      option(
+          "sun_azimuth", sun_azimuth,
+          {.help = "Direction towards the sun for all images, clockwise from map north; needs sun_elevation",
+           .min = -360,
+           .max = 360});
       option("sun_elevation", sun_elevation,
-             {.help = "Of the sun above the horizon; 0: not given", .min = 0, .max = 90});
-      option("sun_sd", sun_sd,
-             {.help = "Standard deviation of the sun's angles as given", .min = 0, .max = 90});
-      option(
-          "image_sun_angle", image_sun_angle,
-          {.help =
-               "Towards the sun in the images, degrees from x (right) towards y (down); empty: not given"});
+             {.help = "Elevation of the sun above the horizon; 0: unknown", .min = 0, .max = 90});
+      option("sun_sd", sun_sd, {.help = "Standard deviation of the given sun angles", .min = 0, .max = 90});
+      option("image_sun_angle", image_sun_angle,
+             {.help = "Direction towards the sun in the images, degrees from x (right) towards y (down); "
+                      "empty: unknown"});
       option("time_zone", time_zone,
-             {.help = "Offset of EXIF times that carry none: Z, +08:00; empty: not known"});
-      option(
-          "gsd", gsd,
-          {.help = "Ground size of a pixel, for images without place; 0: not known", .min = 0, .max = 1e5});
+             {.help = "UTC offset for EXIF times without one: Z, +08:00; empty: unknown"});
+      option("gsd", gsd,
+             {.help = "Ground size of a pixel, for images without georeference; 0: unknown",
+              .min = 0,
+              .max = 1e5});
       option("saturated", saturated,
-             {.help = "Pixels at or above are blown out; 0: the largest 8 or 16 bit number",
+             {.help = "Pixel value from which pixels are saturated; 0: the largest 8 or 16 bit number",
               .min = 0,
               .max = 1e12});
-      option("band", band, {.help = "Band to look at, from 1; 0: brightness", .min = 0, .max = 10000});
+      option("band", band, {.help = "Band to use, from 1; 0: brightness", .min = 0, .max = 10000});
     }
   };
 
@@ -100,7 +99,7 @@ struct LoadImages {
 
   static StageSpec spec() {
     return {.name = "load_images",
-            .summary = "Lists images and gives each one its camera or georeference, and the sun",
+            .summary = "Lists images with their camera or georeference and the sun",
             .version = 2,
             .scope = Scope::map,
             .lists = Scope::image,
@@ -108,7 +107,7 @@ struct LoadImages {
             .outputs = {images, items}};
   }
 
-  // Images are hashed one by one, as what they are to their own units; what counts here is which there are.
+  // The units hash the images one by one; this stage depends on their names and sizes only.
   static std::vector<std::string> input_files(const Options& options) {
     namespace fs = std::filesystem;
     std::vector<std::string> files;
@@ -168,7 +167,7 @@ struct LoadImages {
     for (const std::string& warning : listed.warnings) unit.warn(warning);
     std::vector<ImageItem> list;
     for (ImageInfo info : listed.images) {
-      const std::string path = std::exchange(info.path, {});  // elsewhere it is the same image
+      const std::string path = std::exchange(info.path, {});  // the path does not change the image
       list.push_back({static_cast<std::int64_t>(list.size()), info.name, path, to_json(info)});
     }
     unit.count_out(static_cast<std::int64_t>(list.size()));

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "importers/tables/table.hpp"
 #include "importers/tables/text_table.hpp"
+#include "pipeline/forest/allometry_fit.hpp"
 
 namespace waymark {
 namespace {
@@ -57,7 +58,7 @@ std::optional<double> number(const TableRow& row, std::size_t column, bool decim
   return value;
 }
 
-// Centimetres per unit, by what stems measure: medians from 3 to 200 cm.
+// Returns centimetres per unit, inferred from the median diameter of stems: 3 to 200 cm.
 double unit_of(const std::vector<MeasuredTree>& trees, const std::string& asked, std::string& name) {
   name = asked;
   if (asked.empty()) {
@@ -93,7 +94,7 @@ MeasuredTrees read_measured_trees(const std::string& path, const TreeColumns& co
   while (table->next(row)) {
     const auto h = number(row, height, header.decimal_comma), d = number(row, diameter, header.decimal_comma);
     if (!h || !d || !(*d > 0) || !(*h > 0)) {
-      ++read.left_out;
+      ++read.skipped_rows;
       continue;
     }
     MeasuredTree tree{.height = *h, .diameter = *d};

@@ -18,7 +18,8 @@
 namespace waymark {
 namespace {
 
-constexpr double kTouching = 1;  // m2 two neighbours may share by rounding
+constexpr double kMaxCoordinate = 1e9;  // CRS units; the largest body that is mapped has 7e7 m around it
+constexpr double kMaxSharedArea = 1;    // m2; neighbours may overlap this much by rounding
 
 using Geometry = std::unique_ptr<OGRGeometry>;
 
@@ -51,7 +52,7 @@ int column_of(OGRLayer& layer, std::initializer_list<const char*> names) {
   return -1;
 }
 
-/// The polygons of a geometry; other parts of a collection are left out.
+/// Collects the polygons of a geometry; skips other parts of a collection.
 void collect_polygons(const OGRGeometry& geometry, std::vector<const OGRPolygon*>& polygons) {
   if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon) {
     polygons.push_back(geometry.toPolygon());
@@ -60,7 +61,7 @@ void collect_polygons(const OGRGeometry& geometry, std::vector<const OGRPolygon*
   }
 }
 
-/// Stands with their geometries in the CRS asked for.
+/// Reads stands with their geometries in the requested CRS.
 class Reader {
  public:
   Reader(const std::string& path, const std::string& name, const Crs& into)
@@ -73,7 +74,7 @@ class Reader {
       if (own && own->kind() != CrsKind::local && own->id() != "EPSG:4326")
         warn(fmt::format("{}: its CRS {} is ignored, since that of the map is local", path, own->id()));
     } else if (!own) {
-      warn(fmt::format("{} does not tell its CRS: taken to be in the map's, {}", path, into.id()));
+      warn(fmt::format("{} has no CRS: the map's is assumed, {}", path, into.id()));
     } else if (!own->same_as(into)) {
       transform_.emplace(*own, into);
     }
@@ -86,7 +87,7 @@ class Reader {
     for (const auto& feature : *layer_) add(*feature);
     if (out_.stands.empty() && out_.failed.empty())
       throw Error(ErrorCode::input, "the layer of stands has no rows", path_, "draw at least one polygon");
-    tell_overlaps();
+    warn_of_overlaps();
     return std::move(out_);
   }
 
@@ -98,7 +99,7 @@ class Reader {
     if (name.empty()) name = fmt::format("{}", feature.GetFID());
     const int times = ++used_[name];
     if (times > 1) {
-      warn(fmt::format("stand {} is there {} times: this one is called {} ({})", name, times, name, times));
+      warn(fmt::format("stand {} occurs {} times: this one is named {} ({})", name, times, name, times));
       name = fmt::format("{} ({})", name, times);
     }
     return name;
@@ -114,7 +115,12 @@ class Reader {
     if (given == nullptr || given->IsEmpty()) return fail("has no geometry");
     Geometry geometry(given->getLinearGeometry());
     geometry->flattenTo2D();
-    if (!move(*geometry)) return fail("has corners without a place in the map's CRS");
+    if (!move(*geometry)) return fail("has corners outside the domain of the map's CRS");
+    OGREnvelope box;
+    geometry->getEnvelope(&box);
+    for (const double corner : {box.MinX, box.MinY, box.MaxX, box.MaxY})
+      if (!(std::abs(corner) <= kMaxCoordinate))
+        return fail(fmt::format("has a corner at {:.6g}, farther out than any map reaches", corner));
     {
       const GdalListener quiet;
       if (!geometry->IsValid()) {
@@ -149,7 +155,7 @@ class Reader {
     return sum;
   }
 
-  /// Corners go over one by one: edges of stands are short.
+  /// Transforms corners only: edges of stands are short.
   bool move(OGRGeometry& geometry) {
     if (!transform_) return true;
     std::vector<const OGRPolygon*> polygons;
@@ -166,10 +172,10 @@ class Reader {
     return true;
   }
 
-  void tell_overlaps() {
+  void warn_of_overlaps() {
     std::vector<OGREnvelope> boxes(geometries_.size());
     for (std::size_t i = 0; i < geometries_.size(); ++i) geometries_[i]->getEnvelope(&boxes[i]);
-    constexpr int kMostTold = 20;
+    constexpr int kMaxReported = 20;
     int overlaps = 0;
     const GdalListener quiet;
     for (std::size_t i = 0; i < boxes.size(); ++i)
@@ -177,11 +183,12 @@ class Reader {
         if (!boxes[i].Intersects(boxes[j])) continue;
         const Geometry both(geometries_[i]->Intersection(geometries_[j].get()));
         const double shared = both ? area_of(*both) : 0;
-        if (shared > kTouching && ++overlaps <= kMostTold)
-          warn(fmt::format("stands {} and {} overlap by {:.1f} square units: the trees there count in both",
+        if (shared > kMaxSharedArea && ++overlaps <= kMaxReported)
+          warn(fmt::format("stands {} and {} overlap by {:.1f} square units: trees there are counted in both",
                            out_.stands[i].name, out_.stands[j].name, shared));
       }
-    if (overlaps > kMostTold) warn(fmt::format("{} more pairs of stands overlap", overlaps - kMostTold));
+    if (overlaps > kMaxReported)
+      warn(fmt::format("{} more pairs of stands overlap", overlaps - kMaxReported));
   }
 
   std::string path_;

@@ -19,7 +19,7 @@ bool named_like_text(std::string path) {
 
 }  // namespace
 
-std::string TableSource::place_of(const TableRow& row) const {
+std::string TableSource::row_location(const TableRow& row) const {
   return fmt::format("{}, {} {}", header().path, header().row_word, row.number);
 }
 

@@ -19,7 +19,7 @@ constexpr std::array kCommon = {
     "x",    "y",    "z",    "uid",         "confidence", "seen",  "visible", "observations",
     "x_sd", "y_sd", "z_sd", "position_sd", "var_x",      "var_y", "cov_xy",  "var_z"};
 
-/// Names of two columns that are a position, the surest first.
+/// Pairs of column names that hold a position, the most certain first.
 constexpr std::array<std::array<std::string_view, 2>, 11> kPositions = {{{"geom_x", "geom_y"},
                                                                          {"map_x", "map_y"},
                                                                          {"x", "y"},
@@ -47,7 +47,7 @@ constexpr std::array<Unit, 10> kUnits = {{{"km", "*1000"},
                                           {"rad", ""},
                                           {"radians", ""}}};
 
-/// "Diameter (km)" as "diameter_km".
+/// Returns "diameter_km" for "Diameter (km)".
 std::string normal(std::string_view name) {
   std::string result;
   for (const char c : name) {
@@ -68,7 +68,7 @@ std::string quoted(const std::string& column) {
   return column.find('"') == std::string::npos ? '"' + column + '"' : '`' + column + '`';
 }
 
-/// The column of that name, with or without a unit, as an expression in metres or radians.
+/// Returns the column of that name, with or without a unit, as an expression in metres or radians.
 std::optional<std::string> guess(const TableHeader& table, std::string_view wanted) {
   for (const std::string& column : table.columns) {
     const std::string name = normal(column);
@@ -128,8 +128,8 @@ std::vector<Assignment> assignments(const std::string& text) {
     if (trimmed(part).empty()) continue;
     const std::size_t sign = part.find('=');
     if (sign == std::string::npos)
-      throw Error(ErrorCode::usage, fmt::format("'{}' says not what it is for", trimmed(part)),
-                  "--columns " + text, "write target=expression, e.g. x=lon,y=lat,radius=diam/2");
+      throw Error(ErrorCode::usage, fmt::format("'{}' has no target", trimmed(part)), "--columns " + text,
+                  "write target=expression, e.g. x=lon,y=lat,radius=diam/2");
     all.push_back({trimmed(part.substr(0, sign)), trimmed(part.substr(sign + 1))});
   }
   return all;
@@ -149,8 +149,8 @@ class Binder {
 
   void set(const std::string& target, const std::string& expression) {
     if (!done_.insert(target).second)
-      throw Error(ErrorCode::usage, fmt::format("--columns says twice what '{}' is", target), "--columns",
-                  "keep one of them");
+      throw Error(ErrorCode::usage, fmt::format("--columns gives '{}' twice", target), "--columns",
+                  "remove one of them");
     if (!expression.empty()) bindings_.emplace(target, TableExpression(expression, table_.columns));
   }
 
@@ -178,9 +178,10 @@ class Binder {
   ColumnBindings take() {
     for (const char* needed : {"x", "y"})
       if (!bindings_.contains(needed))
-        throw Error(
-            ErrorCode::usage, fmt::format("no column of the table is known to be {}", needed), table_.path,
-            fmt::format("say which, e.g. --columns x=lon,y=lat; it has {}", fmt::join(table_.columns, ", ")));
+        throw Error(ErrorCode::usage, fmt::format("no column of the table is recognised as {}", needed),
+                    table_.path,
+                    fmt::format("name it, e.g. --columns x=lon,y=lat; the table has {}",
+                                fmt::join(table_.columns, ", ")));
     return std::move(bindings_);
   }
 
@@ -213,7 +214,7 @@ ColumnBindings bind_columns(const std::string& text, const TableHeader& table, c
   return binder.take();
 }
 
-bool names_say_degrees(const ColumnBindings& bindings) {
+bool names_imply_degrees(const ColumnBindings& bindings) {
   const std::string x = normal(bindings.find("x")->second.text()),
                     y = normal(bindings.find("y")->second.text());
   return (x.starts_with("lon") || x.starts_with("lng")) && y.starts_with("lat");

@@ -14,7 +14,7 @@
 namespace waymark {
 namespace {
 
-constexpr GIntBig kLargest = GIntBig{4} << 30;  // bytes of a text table
+constexpr GIntBig kMaxBytes = GIntBig{4} << 30;  // bytes of a text table
 
 std::string read_text(const std::string& path) {
   const GdalListener quiet;
@@ -23,24 +23,23 @@ std::string read_text(const std::string& path) {
   if (VSIStatL(name.c_str(), &status) != 0)
     throw Error(ErrorCode::input, "there is no such file", path, "check the path");
   if (VSI_ISDIR(status.st_mode))
-    throw Error(ErrorCode::input, "this is a folder, no table", path, "name a file in it");
+    throw Error(ErrorCode::input, "this is a folder, not a table", path, "name a file in it");
   GByte* bytes = nullptr;
   vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, name.c_str(), &bytes, &size, kLargest))
+  if (!VSIIngestFile(nullptr, name.c_str(), &bytes, &size, kMaxBytes))
     throw Error(ErrorCode::input, "the table cannot be read: " + quiet.error_about(path), path,
-                "check its permissions; tables beyond 4 GB must be cut, or stored as a GeoPackage");
+                "check its permissions; split tables above 4 GB, or store them as a GeoPackage");
   std::string text(bytes, bytes + size);
   VSIFree(bytes);
   return text;
 }
 
-/// Tables of other encodings would give nonsense for names, never for numbers: only what cannot be read at
-/// all is refused.
+/// Refuses only encodings that cannot be read at all: other ones garble names, but never numbers.
 void check_text(std::string& text, const std::string& path) {
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw Error(ErrorCode::input, "the table is in UTF-16", path,
-                "turn it: iconv -f UTF-16 -t UTF-8 TABLE > utf8.csv");
+                "convert it: iconv -f UTF-16 -t UTF-8 TABLE > utf8.csv");
   if (text.find('\0') != std::string::npos)
     throw Error(ErrorCode::input, "this is no text table: it holds zero bytes", path,
                 "pass --from ogr for a vector layer that GDAL reads");
@@ -52,7 +51,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-/// Separator of a line: the first of these it holds outside quotes; blanks where there is none.
+/// Returns the separator of a line: the first of tab, ; | , that it holds outside quotes; else a blank.
 char separator_of(std::string_view line) {
   bool quoted = false;
   std::array<int, 256> counts{};
@@ -63,6 +62,15 @@ char separator_of(std::string_view line) {
   for (const char c : {'\t', ';', '|', ','})
     if (counts[static_cast<unsigned char>(c)] > 0) return c;
   return ' ';
+}
+
+/// Removes the apostrophe that keeps a spreadsheet from computing a text, as csv_text of the exporters writes
+/// it.
+std::string without_apostrophe(std::string cell) {
+  const bool marked = cell.size() > 1 && cell[0] == '\'' &&
+                      std::string_view("=+-@\t\r").find(cell[1]) != std::string_view::npos;
+  if (marked) cell.erase(0, 1);
+  return cell;
 }
 
 class CsvTable final : public TableSource {
@@ -83,7 +91,7 @@ class CsvTable final : public TableSource {
     if (row.cells.size() != wanted)
       throw Error(ErrorCode::input,
                   fmt::format("the row has {} values, the table has {} columns", row.cells.size(), wanted),
-                  place_of(row), "quote values that hold the separator, or correct the row");
+                  row_location(row), "quote values that hold the separator, or correct the row");
     return true;
   }
 
@@ -111,7 +119,7 @@ class CsvTable final : public TableSource {
     line_ = line;
   }
 
-  /// Empty lines and comments between rows.
+  /// Skips empty lines and comments between rows.
   void skip_comments() {
     while (at_ < text_.size()) {
       const std::size_t end = std::min(text_.find('\n', at_), text_.size());
@@ -143,7 +151,7 @@ class CsvTable final : public TableSource {
       ++at_;
     std::size_t end = at_;
     while (end > start && (is_blank(text_[end - 1]) || text_[end - 1] == '\r')) --end;
-    return text_.substr(start, end - start);
+    return without_apostrophe(text_.substr(start, end - start));
   }
 
   std::string read_quoted(const TableRow& row) {
@@ -158,11 +166,11 @@ class CsvTable final : public TableSource {
         break;
     }
     if (at_ >= text_.size())
-      throw Error(ErrorCode::input, "a quote is opened and never closed", place_of(row),
+      throw Error(ErrorCode::input, "a quote is opened and never closed", row_location(row),
                   "close it, or double the quotes inside a value");
     ++at_;
     while (at_ < text_.size() && text_[at_] != separator_ && text_[at_] != '\n') ++at_;
-    return cell;
+    return without_apostrophe(std::move(cell));
   }
 
   void skip_blanks() {

@@ -20,7 +20,7 @@ namespace {
 
 using Operation = double (*)(double, double);
 using Nodes = std::vector<std::unique_ptr<const TableExpression::Node>>;
-constexpr int kDeepest = 200;  // nested parentheses
+constexpr int kMaxDepth = 200;  // nested parentheses
 
 struct Function {
   std::string_view name;
@@ -116,7 +116,7 @@ class Parser {
   }
 
   NodePointer sum() {
-    if (++depth_ > kDeepest) fail("the expression is nested too deeply");
+    if (++depth_ > kMaxDepth) fail("the expression is nested too deeply");
     NodePointer left = term();
     for (;;) {
       if (take('+'))
@@ -141,7 +141,7 @@ class Parser {
   }
 
   NodePointer power() {
-    if (++depth_ > kDeepest) fail("the expression is nested too deeply");
+    if (++depth_ > kMaxDepth) fail("the expression is nested too deeply");
     NodePointer result;
     if (take('-')) {
       result = join([](double a, double) { return -a; }, power(), nullptr);
@@ -230,7 +230,7 @@ double evaluate(const Node& node, const TableRow& row, const TableSource& table)
   if (const auto number = to_real(cell, table.header().decimal_comma)) return *number;
   throw Error(ErrorCode::input,
               fmt::format("'{}' is no number, in column '{}'", cell, table.header().columns[node.column]),
-              table.place_of(row),
+              table.row_location(row),
               "correct it, leave it empty, or pass --skip-bad-rows to go on without such rows");
 }
 

@@ -11,20 +11,21 @@ namespace waymark {
 ///   sum = term (+|- term)...   term = power (*|/ power)...   power = [-] value [^ power]
 ///   value = number | pi | column | "any column" | function(sum[, sum]) | (sum)
 /// Functions: sqrt abs exp log log10 sin cos tan (radians) deg rad (into that unit) min max. Columns are
-/// found by their name, or else by it in any case; `` ` `` quotes like ".
+/// matched by name, exactly or else in any case; `` ` `` quotes like ".
 class TableExpression {
  public:
-  /// Throws Error{usage} pointing at the fault; for an unknown column with the nearest name, or all of them.
+  /// Throws Error{usage} with the position of the fault; for an unknown column with the nearest name, or all
+  /// of them.
   TableExpression(std::string_view text, const std::vector<std::string>& columns);
   ~TableExpression();
   TableExpression(TableExpression&&) noexcept;
   TableExpression& operator=(TableExpression&&) noexcept;
 
   const std::string& text() const { return text_; }
-  /// NaN where a column it needs has no value, and where the arithmetic has none (1/0, sqrt(-1)).
-  /// Throws Error{input} naming row and column for a cell that is no number.
+  /// Returns the value; NaN if a column has none or the result is not finite (1/0, sqrt(-1)). Throws
+  /// Error{input} with row and column for a cell that is no number.
   double value(const TableRow& row, const TableSource& table) const;
-  /// The cell as it stands; throws Error{usage} where the expression is more than one column's name.
+  /// Returns the text of the cell. Throws Error{usage} if the expression is more than a column name.
   const std::string& word(const TableRow& row) const;
   bool is_column() const;
 
@@ -35,8 +36,8 @@ class TableExpression {
   std::unique_ptr<const Node> root_;
 };
 
-/// Index of a column by name, exactly or else in any case; throws Error{usage} where there is none or
-/// several.
+/// Returns the index of a column by name, exactly or else in any case. Throws Error{usage} if there is none,
+/// or several.
 std::size_t column_index(const std::vector<std::string>& columns, std::string_view name);
 
 }  // namespace waymark

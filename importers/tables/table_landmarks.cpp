@@ -6,18 +6,22 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 #include <unordered_set>
+#include <utility>
 
+#include "core/covariance.hpp"
 #include "core/error.hpp"
 #include "core/quality.hpp"
+#include "importers/tables/table.hpp"
 #include "importers/tables/table_columns.hpp"
-#include "importers/tables/table_places.hpp"
+#include "importers/tables/table_positions.hpp"
 #include "landmarks/uid.hpp"
 
 namespace waymark {
 namespace {
 
-/// What the rows of a table may be: one type, or what their column `type` says.
+/// Types of the rows of a table: one type, or the one in their column `type`.
 class RowTypes {
  public:
   RowTypes(const TableHeader& table, const TypeRegistry& types, const std::string& asked) : types_(&types) {
@@ -27,7 +31,7 @@ class RowTypes {
     else if (types.find(table.layer) != nullptr)
       only_ = types.id(table.layer);
     else if (!column_)
-      throw Error(ErrorCode::usage, "the table does not say what its rows are", table.path,
+      throw Error(ErrorCode::usage, "the table does not name the type of its rows", table.path,
                   "pass --type, e.g. --type crater; `waymark types` lists them");
   }
 
@@ -35,10 +39,10 @@ class RowTypes {
     return only_ ? std::vector{(*types_)[*only_].name} : types_->names();
   }
 
-  /// Nothing for a row of another type, or of none that is known.
+  /// Returns the type of a row; `std::nullopt` for another or unknown type.
   std::optional<TypeId> of(const TableRow& row) const {
     const std::string said = column_ ? row.cells[*column_] : "";
-    if (only_) {  // a column `type` with words of its own, such as "standard", says nothing
+    if (only_) {  // other words in a column `type`, such as "standard", are ignored
       const bool other = types_->find(said) != nullptr && types_->id(said) != *only_;
       return other ? std::nullopt : only_;
     }
@@ -51,7 +55,7 @@ class RowTypes {
   std::optional<TypeId> only_;
 };
 
-/// Reads the cells of one row after another by what they are bound to.
+/// Reads the cells of a row by the targets they are bound to.
 class Cells {
  public:
   Cells(const TableSource& table, const ColumnBindings& bindings) : table_(table), bindings_(bindings) {}
@@ -84,32 +88,34 @@ class Cells {
   const ColumnBindings& bindings_;
 };
 
-double or_zero(double value) {
+double zero_if_nan(double value) {
   return std::isnan(value) ? 0 : value;
 }
 
 void read_covariance(const Cells& cells, const TableRow& row, Eigen::Matrix3d& covariance) {
-  const double both = or_zero(cells.real(row, "position_sd"));
+  const double both = cells.real(row, "position_sd"), unknown = std::nan("");
   const auto variance = [&](const char* as_variance, const char* as_sd, double otherwise) {
     const double given = cells.real(row, as_variance), sd = cells.real(row, as_sd);
     return !std::isnan(given) ? given : !std::isnan(sd) ? sd * std::abs(sd) : otherwise * std::abs(otherwise);
   };
   covariance(0, 0) = variance("var_x", "x_sd", both);
   covariance(1, 1) = variance("var_y", "y_sd", both);
-  covariance(2, 2) = variance("var_z", "z_sd", 0);
-  covariance(0, 1) = covariance(1, 0) = or_zero(cells.real(row, "cov_xy"));
+  covariance(2, 2) = variance("var_z", "z_sd", unknown);
+  const bool known = !std::isnan(covariance(0, 0)) && !std::isnan(covariance(1, 1));
+  if (!known) covariance(0, 0) = covariance(1, 1) = unknown;  // half a covariance is none
+  covariance(0, 1) = covariance(1, 0) = known ? zero_if_nan(cells.real(row, "cov_xy")) : unknown;
 }
 
 void read_features(const Cells& cells, const TableRow& row, const LandmarkType& type, Landmark& landmark) {
   landmark.features.resize(type.features.size());
-  landmark.quality.of_feature.resize(type.features.size());
+  landmark.quality.feature_confidences.resize(type.features.size());
   for (std::size_t i = 0; i < type.features.size(); ++i) {
     const FeatureSpec& feature = type.features[i];
     const double value = cells.real(row, feature.name), sd = cells.real(row, feature.name + "_sd");
     if (std::isnan(value)) continue;
     const bool spread = !std::isnan(sd);
     landmark.features[i] = {value, spread ? sd * std::abs(sd) : 0, spread ? landmark.observations : 1};
-    landmark.quality.of_feature[i] =
+    landmark.quality.feature_confidences[i] =
         spread ? spread_confidence(landmark.features[i], feature.scale, feature.reference) : std::nullopt;
   }
 }
@@ -118,7 +124,7 @@ Landmark read_landmark(const Cells& cells, const TableRow& row, const LandmarkTy
   Landmark landmark;
   landmark.type = id;
   landmark.uid = cells.word(row, "uid");
-  landmark.position.xyz = {cells.real(row, "x"), cells.real(row, "y"), or_zero(cells.real(row, "z"))};
+  landmark.position.xyz = {cells.real(row, "x"), cells.real(row, "y"), zero_if_nan(cells.real(row, "z"))};
   const double confidence = cells.real(row, "confidence");
   landmark.confidence = std::isnan(confidence) ? 1 : confidence;
   landmark.observations = std::max(1, cells.count(row, "observations"));
@@ -131,27 +137,32 @@ Landmark read_landmark(const Cells& cells, const TableRow& row, const LandmarkTy
   return landmark;
 }
 
-/// Why a landmark cannot be; empty if it can.
-std::string implausible(const LandmarkType& type, const Landmark& landmark) {
+/// Returns false for negative variances and correlations beyond 1. Unknown parts (NaN) are no fault.
+bool is_possible_covariance(const Eigen::Matrix3d& c) {
+  if (c(0, 0) < 0 || c(1, 1) < 0 || c(2, 2) < 0) return false;
+  const Eigen::Matrix2d plane = c.topLeftCorner<2, 2>();
+  return !plane.allFinite() || is_covariance(plane);
+}
+
+/// Returns the reason why a landmark is implausible; empty if it is plausible.
+std::string find_implausibility(const LandmarkType& type, const Landmark& landmark) {
   for (std::size_t i = 0; i < type.features.size(); ++i) {
     const FeatureSpec& feature = type.features[i];
     const FeatureValue& value = landmark.features[i];
     if (!value.known()) continue;
     const std::string unit = feature.unit.empty() ? "" : " " + feature.unit;
-    if (value.value < feature.lowest)
-      return fmt::format("{} {} below {:g}{}", type.name, feature.name, feature.lowest, unit);
-    if (value.value > feature.highest)
-      return fmt::format("{} {} above {:g}{}", type.name, feature.name, feature.highest, unit);
+    if (value.value < feature.min_value)
+      return fmt::format("{} {} below {:g}{}", type.name, feature.name, feature.min_value, unit);
+    if (value.value > feature.max_value)
+      return fmt::format("{} {} above {:g}{}", type.name, feature.name, feature.max_value, unit);
     if (value.variance < 0) return fmt::format("negative deviation of {}", feature.name);
   }
-  const auto& c = landmark.covariance;
-  if (c.diagonal().minCoeff() < 0 || c(0, 1) * c(0, 1) > c(0, 0) * c(1, 1) * (1 + 1e-9))
-    return "its position deviations are no covariance";
+  if (!is_possible_covariance(landmark.covariance)) return "its position deviations are no covariance";
   if (!(landmark.confidence >= 0 && landmark.confidence <= 1)) return "confidence outside 0 to 1";
   return {};
 }
 
-/// Counts rejections and keeps what can be kept of them.
+/// Counts rejections and stores those with a position as observations.
 class Rejections {
  public:
   Rejections(ImportedTable& into, const TableSource& table) : into_(into), table_(table) {}
@@ -159,18 +170,19 @@ class Rejections {
   void add(const TableRow& row, const std::string& reason) {
     ++into_.rejected_by_reason[reason];
     if (into_.first_rejection.empty())
-      into_.first_rejection = fmt::format("{}: {}", table_.place_of(row), reason);
+      into_.first_rejection = fmt::format("{}: {}", table_.row_location(row), reason);
   }
 
   void add(const TableRow& row, const Landmark& landmark, const std::string& reason) {
     add(row, reason);
     Observation seen;
     seen.type = landmark.type;
-    seen.source = table_.place_of(row);
+    seen.source = table_.row_location(row);
     seen.position = landmark.position;
     seen.features = landmark.features;
     seen.confidence = landmark.confidence > 0 && landmark.confidence <= 1 ? landmark.confidence : 1;
-    if (landmark.covariance.diagonal().minCoeff() >= 0) seen.covariance = landmark.covariance;
+    seen.covariance = is_possible_covariance(landmark.covariance) ? landmark.covariance
+                                                                  : Eigen::Matrix3d::Constant(std::nan(""));
     for (FeatureValue& feature : seen.features) feature.variance = std::max(0.0, feature.variance);
     seen.rejected = reason;
     into_.rejected.push_back(std::move(seen));
@@ -191,22 +203,27 @@ bool before(const Landmark& a, const Landmark& b) {
   return a.uid < b.uid;
 }
 
-/// Names the nameless; a name of the table's own must be one landmark's only.
+/// Assigns missing uids. Throws if the table gives two landmarks the same uid.
 void name_landmarks(const TypeRegistry& types, ImportedTable& result, const std::string& path) {
   std::ranges::stable_sort(result.landmarks, before);
-  std::vector<Landmark> named = result.landmarks;
-  assign_uids(types, result.crs, named);
-  std::unordered_set<std::string> taken;
-  for (std::size_t i = 0; i < named.size(); ++i) {
+  std::vector<std::string> given;
+  given.reserve(result.landmarks.size());
+  for (Landmark& landmark : result.landmarks) given.push_back(std::exchange(landmark.uid, {}));
+  assign_uids(types, result.crs, result.landmarks);
+  std::unordered_set<std::string_view> taken;
+  TypeId type = 0;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (result.landmarks[i].type != type) taken.clear();  // sorted by type; types have tables of their own
+    type = result.landmarks[i].type;
     std::string& uid = result.landmarks[i].uid;
-    if (uid.empty()) uid = named[i].uid;
-    if (!taken.insert(types[named[i].type].name + '/' + uid).second)
+    if (!given[i].empty()) uid = std::move(given[i]);
+    if (!taken.insert(uid).second)
       throw Error(ErrorCode::input, fmt::format("two rows have the uid '{}'", uid), path,
                   "correct the column, or leave it out: --columns uid=");
   }
 }
 
-void refuse_if_none_is_left(const ImportedTable& result, const std::string& path) {
+void refuse_empty_result(const ImportedTable& result, const std::string& path) {
   if (!result.landmarks.empty() || result.rows == 0) return;
   std::string reasons;
   for (const auto& [reason, count] : result.rejected_by_reason)
@@ -228,8 +245,8 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
   for (const auto& [target, expression] : bindings)
     result.bindings.push_back(
         target == expression.text() ? target : fmt::format("{} = {}", target, expression.text()));
-  TablePlaces places(header, how.table_crs, how.map_crs, names_say_degrees(bindings));
-  result.crs = places.map_crs();
+  TablePositions positions(header, how.table_crs, how.map_crs, names_imply_degrees(bindings));
+  result.crs = positions.map_crs();
 
   const Cells cells(table, bindings);
   Rejections rejections(result, table);
@@ -247,9 +264,9 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
         continue;
       }
       Landmark landmark = read_landmark(cells, row, types[*type], *type);
-      if (const std::string nowhere = places.move_to_map(landmark.position); !nowhere.empty())
+      if (const std::string nowhere = positions.transform_to_map(landmark.position); !nowhere.empty())
         rejections.add(row, nowhere);
-      else if (const std::string reason = implausible(types[*type], landmark); !reason.empty())
+      else if (const std::string reason = find_implausibility(types[*type], landmark); !reason.empty())
         rejections.add(row, landmark, reason);
       else
         result.landmarks.push_back(std::move(landmark));
@@ -258,8 +275,8 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
       rejections.add(row, "cannot be read");
     }
   }
-  result.warnings = places.warnings();
-  refuse_if_none_is_left(result, header.path);
+  result.warnings = positions.warnings();
+  refuse_empty_result(result, header.path);
   name_landmarks(types, result, header.path);
   return result;
 }

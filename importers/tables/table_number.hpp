@@ -4,11 +4,11 @@
 #include <string_view>
 namespace waymark {
 
-/// Empty, or one of the words tables write for no value: NA, N/A, NaN, null, none, - and --, in any case.
+/// Returns whether a cell has no value: empty, NA, N/A, NaN, null, none, - or --, in any case.
 bool is_missing(std::string_view cell);
 
-/// A finite number that fills the whole cell, but for blanks around it. `decimal_comma`: 3,5 is allowed
-/// beside 3.5.
+/// Parses a finite number that fills the whole cell except for blanks around it. `decimal_comma` allows 3,5
+/// beside 3.5. `std::nullopt` for other text.
 std::optional<double> to_real(std::string_view cell, bool decimal_comma);
 
 }  // namespace waymark

@@ -27,7 +27,7 @@ OGRLayer& choose_layer(GDALDataset& dataset, const std::string& path, const std:
     if (has_geometry(*layer)) with_geometry.push_back(layer);
   }
   if (all.empty())
-    throw Error(ErrorCode::input, "the file holds no layer", path, "`ogrinfo` shows what it holds");
+    throw Error(ErrorCode::input, "the file holds no layer", path, "`ogrinfo` shows its content");
   for (const std::string& wanted : {name, type})
     if (OGRLayer* layer = wanted.empty() ? nullptr : dataset.GetLayerByName(wanted.c_str())) return *layer;
   if (!name.empty()) return layer_named(dataset, path, name, all);
@@ -73,7 +73,7 @@ class OgrTable final : public TableSource {
       if (fault.empty()) return false;
       broken_ = true;
       throw Error(ErrorCode::input,
-                  fmt::format("the layer breaks off behind feature {}: {}", row.number, fault), header_.path,
+                  fmt::format("the layer breaks off after feature {}: {}", row.number, fault), header_.path,
                   "fetch or write it again");
     }
     row.number = feature->GetFID();
@@ -115,7 +115,7 @@ class OgrTable final : public TableSource {
   TableHeader header_;
   GdalDataset dataset_;
   OGRLayer* layer_;
-  bool broken_ = false;  // what lies behind a fault is not looked for
+  bool broken_ = false;  // rows after a fault are not read
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 std::vector<std::string> words_of(std::string_view line) {
   constexpr std::string_view kBlank = " \t\r", kMark = ",;";
   std::vector<std::string> words;
-  bool after_mark = true;  // two marks in a row hold an empty word
+  bool after_mark = true;  // two separators in a row enclose an empty word
   for (std::size_t i = 0; i < line.size();) {
     if (kBlank.find(line[i]) != kBlank.npos) {
       ++i;
@@ -41,7 +41,7 @@ std::vector<std::string> words_of(std::string_view line) {
 }  // namespace
 
 std::vector<TextRow> text_rows(const std::string& path) {
-  const std::string content = content_of(path);
+  const std::string content = read_vsi_text(path);
   std::vector<TextRow> rows;
   std::size_t line = 0;
   for (std::size_t begin = content.starts_with("\xEF\xBB\xBF") ? 3 : 0; begin < content.size();) {

@@ -9,12 +9,37 @@
 #include "core/error.hpp"
 
 namespace waymark {
+namespace {
+
+/// Throws Error{input} if an SQLite file has a recursive view: GDAL would read its rows without end.
+void refuse_recursive_views(GDALDataset& dataset, const std::string& path) {
+  const std::string driver = dataset.GetDriverName();
+  if (driver != "GPKG" && driver != "SQLite") return;
+  const GdalListener quiet;
+  OGRLayer* views = dataset.ExecuteSQL(
+      "SELECT name FROM sqlite_master WHERE type = 'view' AND upper(sql) LIKE '%UNION%' AND ' ' || "
+      "replace(replace(replace(upper(sql), char(10), ' '), char(9), ' '), '(', ' ') LIKE '% WITH %'",
+      nullptr, "");
+  if (views == nullptr) return;
+  std::string name;
+  if (const OGRFeatureUniquePtr row{views->GetNextFeature()}) name = row->GetFieldAsString(0);
+  dataset.ReleaseResultSet(views);
+  if (!name.empty())
+    throw Error(ErrorCode::input,
+                fmt::format("the file has a recursive view, '{}', whose rows need not end", name), path,
+                "remove the view, or copy its rows into a table");
+}
+
+}  // namespace
 
 GdalDataset open_vector(const std::string& path, const std::string& thing, const std::string& hint) {
   const GdalListener gdal;
   GdalDataset dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  if (dataset) return dataset;
+  if (dataset) {
+    refuse_recursive_views(*dataset, path);
+    return dataset;
+  }
   VSIStatBufL status;
   if (path.find(':') == std::string::npos && VSIStatL(path.c_str(), &status) != 0)
     throw Error(ErrorCode::input, "there is no such " + thing, path, "check the path");

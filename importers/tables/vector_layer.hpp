@@ -8,14 +8,15 @@
 class OGRLayer;
 namespace waymark {
 
-/// Opens a vector file. Throws Error{input}: "there is no such <thing>" or what GDAL says, with `hint`.
+/// Opens a vector file. Throws Error{input} with "there is no such <thing>" or GDAL's message, and `hint`.
 GdalDataset open_vector(const std::string& path, const std::string& thing, const std::string& hint);
 
-/// The layer of this name. Throws Error{usage} with the nearest of the names there are.
+/// Returns the layer of this name. Throws Error{usage} with the nearest of the names in `all`.
 OGRLayer& layer_named(GDALDataset& dataset, const std::string& path, const std::string& name,
                       const std::vector<std::string>& all);
 
-/// The layer's CRS; nothing where it has none or one nobody knows ("undefined Cartesian" and the like).
+/// Returns the layer's CRS; `std::nullopt` if it has none or an unknown one ("undefined Cartesian" and
+/// similar).
 std::optional<Crs> crs_of(OGRLayer& layer);
 
 }  // namespace waymark

@@ -1,83 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The public header: nothing but includes.
 #pragma once
-#include "core/attribute.hpp"
-#include "core/detection.hpp"
-#include "core/error.hpp"
-#include "core/feature.hpp"
-#include "core/frames.hpp"
-#include "core/grid.hpp"
-#include "core/input_file.hpp"
-#include "core/landmark.hpp"
-#include "core/observation.hpp"
-#include "core/options.hpp"
-#include "core/quality.hpp"
-#include "core/random.hpp"
-#include "core/units.hpp"
-#include "exporters/export_map.hpp"
-#include "exporters/report_html.hpp"
-#include "geo/body.hpp"
-#include "geo/camera.hpp"
-#include "geo/crs.hpp"
-#include "geo/dem_handle.hpp"
-#include "geo/dem_source.hpp"
-#include "geo/georeference.hpp"
-#include "geo/image_source.hpp"
-#include "geo/local_frame.hpp"
-#include "geo/spatial_index.hpp"
-#include "geo/sun.hpp"
-#include "geo/terrain.hpp"
-#include "geodb/layer_style.hpp"
-#include "geodb/map_contents.hpp"
-#include "geodb/map_editor.hpp"
-#include "geodb/map_query.hpp"
-#include "geodb/map_store.hpp"
-#include "geodb/validate_map.hpp"
-#include "geodb/write_map.hpp"
-#include "importers/hash.hpp"
-#include "importers/images/camera_set.hpp"
-#include "importers/images/image.hpp"
-#include "importers/rasters/dem.hpp"
-#include "importers/rasters/dem_codec.hpp"
-#include "importers/stages.hpp"
-#include "landmarks/landmark_type.hpp"
-#include "landmarks/semantic_map.hpp"
-#include "landmarks/sensor_profile.hpp"
-#include "landmarks/uid.hpp"
-#include "localization/filters/kalman.hpp"
-#include "localization/filters/particle_filter.hpp"
-#include "localization/global/constellation.hpp"
-#include "localization/global/skyline.hpp"
-#include "localization/identification/identification.hpp"
-#include "localization/robot_log.hpp"
-#include "localization/slam/ekf_slam.hpp"
-#include "localization/slam/graph_of_drive.hpp"
-#include "localization/slam/graph_solver.hpp"
-#include "pipeline/craters/find_craters.hpp"
-#include "pipeline/craters/find_craters_in_dem.hpp"
-#include "pipeline/engine/job.hpp"
-#include "pipeline/engine/pipeline.hpp"
-#include "pipeline/engine/plan.hpp"
-#include "pipeline/engine/report.hpp"
-#include "pipeline/engine/runner.hpp"
-#include "pipeline/engine/stage.hpp"
-#include "pipeline/engine/stage_pages.hpp"
-#include "pipeline/forest/crown_table.hpp"
-#include "pipeline/forest/find_trees.hpp"
-#include "pipeline/forest/stand_inventory.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/merging.hpp"
-#include "pipeline/fusion/placing.hpp"
-#include "pipeline/fusion/valuing.hpp"
-#include "pipeline/rocks/find_rocks.hpp"
-#include "pipeline/stages.hpp"
-#include "pipeline/terrain/divide_tree.hpp"
-#include "pipeline/terrain/ground_metric.hpp"
-#include "pipeline/terrain/isolation.hpp"
-#include "pipeline/terrain/prominence.hpp"
-#include "pipeline/terrain/relief_pyramid.hpp"
-#include "pipeline/terrain/visibility.hpp"
-#include "testbed/render.hpp"
-#include "testbed/scenario.hpp"
-#include "testbed/scene.hpp"
+#include <waymark/detection.hpp>
+#include <waymark/forest.hpp>
+#include <waymark/localization.hpp>
+#include <waymark/map.hpp>
+#include <waymark/mapping.hpp>
+#include <waymark/testbed.hpp>
+
+/// \mainpage
+/// Include one header by purpose, or `waymark/waymark.hpp` for all, and link `Waymark::waymark`:
+/// - \ref map_header
+/// - \ref mapping_header
+/// - \ref detection_header
+/// - \ref forest_header
+/// - \ref localization_header
+/// - \ref testbed_header
+///
+/// Whatever these headers do not include is private and not installed.
+
+/// \namespace waymark
+/// Semantic navigation maps: landmarks with features, evidence and quality, and robots that find themselves
+/// by them.

@@ -4,14 +4,13 @@ namespace waymark {
 
 void register_sensor_bearing_camera(SensorRegistry& sensors);
 void register_sensor_bearing_camera(SensorRegistry& sensors) {
-  sensors.add(
-      {.name = "bearing_camera",
-       .summary = "One camera that measures directions: summits on the horizon, by how far they stand out",
-       .weights = {{"mountain_top", "prominence", 1},
-                   {"mountain_top", "isolation", 1},
-                   {"mountain_top", "elevation", 0.5},
-                   {"rock", "height", 1},
-                   {"tree", "height", 1}}});
+  sensors.add({.name = "bearing_camera",
+               .summary = "Camera that measures bearings: prefers summits by prominence and isolation",
+               .weights = {{"mountain_top", "prominence", 1},
+                           {"mountain_top", "isolation", 1},
+                           {"mountain_top", "elevation", 0.5},
+                           {"rock", "height", 1},
+                           {"tree", "height", 1}}});
 }
 
 }  // namespace waymark

@@ -5,7 +5,7 @@ namespace waymark {
 void register_sensor_descent_camera(SensorRegistry& sensors);
 void register_sensor_descent_camera(SensorRegistry& sensors) {
   sensors.add({.name = "descent_camera",
-               .summary = "Camera that looks down while landing: sees outlines, not heights",
+               .summary = "Nadir camera of a lander: measures outlines, not heights",
                .weights = {{"crater", "radius", 1},
                            {"crater", "major_axis", 1},
                            {"crater", "minor_axis", 1},

@@ -5,7 +5,7 @@ namespace waymark {
 void register_sensor_harvester_laser(SensorRegistry& sensors);
 void register_sensor_harvester_laser(SensorRegistry& sensors) {
   sensors.add({.name = "harvester_laser",
-               .summary = "Scanner on a forest machine, level with the stems: sees stem diameters",
+               .summary = "Horizontal laser scanner of a forest machine: measures stem diameters",
                .weights = {{"tree", "diameter", 1}}});
 }
 

@@ -5,7 +5,7 @@ namespace waymark {
 void register_sensor_horizontal_laser(SensorRegistry& sensors);
 void register_sensor_horizontal_laser(SensorRegistry& sensors) {
   sensors.add({.name = "horizontal_laser",
-               .summary = "Line scanner that looks level: sees how wide things are, not how tall",
+               .summary = "Horizontal line scanner: measures widths, not heights",
                .weights = {{"rock", "radius", 1},
                            {"rock", "height", 0.2},
                            {"tree", "diameter", 1},

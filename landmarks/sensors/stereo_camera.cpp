@@ -5,7 +5,7 @@ namespace waymark {
 void register_sensor_stereo_camera(SensorRegistry& sensors);
 void register_sensor_stereo_camera(SensorRegistry& sensors) {
   sensors.add({.name = "stereo_camera",
-               .summary = "Pair of cameras: sees width and height at close range",
+               .summary = "Pair of cameras: measures width and height at close range",
                .weights = {{"rock", "radius", 1},
                            {"rock", "height", 1},
                            {"tree", "diameter", 1},

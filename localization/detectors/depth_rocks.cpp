@@ -16,8 +16,8 @@ struct Square {
   int points = 0, segment = -1;
 };
 
-// Height of the ground at a square: a plane through the lowest points around, from which what stands out is
-// left out twice.
+// Returns the height of the ground at a cell, from a plane through the lowest points around. Two further
+// fits omit what stands above it.
 double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64_t row, std::int64_t reach) {
   Eigen::Vector3d plane(0, 0, 0);
   double above = 1e9;
@@ -48,13 +48,13 @@ double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64
 
 }  // namespace
 
-std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& options) {
-  // Levelled points, robot's heading kept: x ahead, y left of the camera.
+std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRockOptions& options) {
+  // Levelled points keep the robot's heading: x ahead, y left of the camera.
   const Eigen::Matrix3d level = (Eigen::AngleAxisd(image.pitch, Eigen::Vector3d::UnitY()) *
                                  Eigen::AngleAxisd(image.roll, Eigen::Vector3d::UnitX()) *
                                  Eigen::AngleAxisd(image.tilt, Eigen::Vector3d::UnitY()))
                                     .toRotationMatrix();
-  const double reach = options.most_range + 2;
+  const double reach = options.max_range + 2;
   const auto side = static_cast<std::int64_t>(2 * reach / options.cell);
   Grid<Square> squares(side / 2 + 1, side + 1);
   std::vector<Eigen::Vector3d> points;
@@ -78,7 +78,7 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& opt
     for (std::int64_t c = 0; c < squares.columns(); ++c)
       if (squares(c, r).points > 0) ground(c, r) = static_cast<float>(ground_about(squares, c, r, around));
   const auto stands = [&](std::int64_t c, std::int64_t r) {
-    return squares(c, r).points > 0 && double(squares(c, r).highest - ground(c, r)) > options.least_height;
+    return squares(c, r).points > 0 && double(squares(c, r).highest - ground(c, r)) > options.min_height;
   };
 
   int segments = 0;
@@ -111,7 +111,7 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& opt
   for (const Eigen::Vector3d& p : points) {
     const Square& square = squares(column_of(p.x()), row_of(p.y()));
     const double above = p.z() - double(ground(column_of(p.x()), row_of(p.y())));
-    if (square.segment < 0 || !(above > 0.5 * options.least_height)) continue;
+    if (square.segment < 0 || !(above > 0.5 * options.min_height)) continue;
     Sum& sum = sums[static_cast<std::size_t>(square.segment)];
     const double bearing = std::atan2(p.y(), p.x());
     sum.left = std::max(sum.left, bearing);
@@ -123,10 +123,10 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& opt
   }
   std::vector<DepthRock> rocks;
   for (const Sum& sum : sums) {
-    if (sum.points < options.least_points || sum.at_edge || sum.near > options.most_range) continue;
+    if (sum.points < options.min_points || sum.at_edge || sum.near > options.max_range) continue;
     const double half_sine = std::sin(std::min(sum.left - sum.right, 2.0) / 2);
     const double radius = sum.near * half_sine / (1 - half_sine);
-    if (!(2 * radius >= options.least_width && 2 * radius <= options.most_width)) continue;
+    if (!(2 * radius >= options.min_width && 2 * radius <= options.max_width)) continue;
     DepthRock rock{.range = sum.near + 0.9 * radius,
                    .bearing = (sum.left + sum.right) / 2,
                    .radius = radius,
@@ -140,7 +140,7 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRocks& opt
   return rocks;
 }
 
-SightingSet sightings_of_rocks(const DepthImage& image, const DepthRocks& options) {
+SightingSet sightings_of_rocks(const DepthImage& image, const DepthRockOptions& options) {
   SightingSet set{image.robot_from_sensor, {}};
   for (const DepthRock& rock : find_rocks(image, options)) {
     SeenLandmark s;

@@ -6,8 +6,8 @@
 
 namespace waymark {
 
-std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const HorizonSummits& options) {
-  std::vector<SeenSummit> summits;
+std::vector<DetectedSummit> find_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options) {
+  std::vector<DetectedSummit> summits;
   const auto& e = horizon.elevations;
   const auto n = static_cast<std::ptrdiff_t>(e.size());
   if (n < 3 || !(horizon.angle_step > 0)) return summits;
@@ -16,7 +16,8 @@ std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const Horizo
     if (ring) i = (i % n + n) % n;
     return i >= 0 && i < n ? static_cast<double>(e[static_cast<std::size_t>(i)]) : std::nan("");
   };
-  // Lowest ground on one side before the horizon rises above the summit; unknown elevations are passed over.
+  // Key col: lowest elevation on one side before the horizon rises above the summit. Skips unknown
+  // elevations.
   const auto key = [&](std::ptrdiff_t i, std::ptrdiff_t step) {
     double lowest = at(i);
     for (std::ptrdiff_t k = 1; k < n; ++k) {
@@ -31,13 +32,13 @@ std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const Horizo
     const double here = at(i), left = at(i - 1), right = at(i + 1);
     if (!(here > left) || !(here >= right)) continue;
     const double prominence = here - std::max(key(i, -1), key(i, 1));
-    if (!(prominence >= std::max(options.least_prominence, 3 * horizon.elevation_sd))) continue;
+    if (!(prominence >= std::max(options.min_prominence, 3 * horizon.elevation_sd))) continue;
     const double bend = left + right - 2 * here;
     const double off = bend < 0 ? std::clamp(0.5 * (left - right) / bend, -0.5, 0.5) : 0;
-    SeenSummit s{.bearing = wrapped(horizon.first_angle + (double(i) + off) * horizon.angle_step),
-                 .elevation = here,
-                 .prominence = prominence};
-    // A flat top is found less well: where the horizon is within its noise of the summit.
+    DetectedSummit s{.bearing = wrap_angle(horizon.first_angle + (double(i) + off) * horizon.angle_step),
+                     .elevation = here,
+                     .prominence = prominence};
+    // A flat top has a less precise bearing: where the horizon is within its noise of the summit.
     std::ptrdiff_t wide = 1;
     while (wide < n / 4 &&
            (at(i + wide) > here - 2 * horizon.elevation_sd || at(i - wide) > here - 2 * horizon.elevation_sd))
@@ -45,12 +46,12 @@ std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const Horizo
     s.bearing_sd = horizon.angle_step * (0.3 + 0.3 * double(wide));
     summits.push_back(s);
   }
-  std::ranges::stable_sort(summits, std::greater<>{}, &SeenSummit::prominence);
-  if (options.least_distance > 0) {
-    std::vector<SeenSummit> kept;
-    for (const SeenSummit& s : summits)
-      if (std::ranges::none_of(kept, [&](const SeenSummit& k) {
-            return std::abs(wrapped(k.bearing - s.bearing)) < options.least_distance;
+  std::ranges::stable_sort(summits, std::greater<>{}, &DetectedSummit::prominence);
+  if (options.min_distance > 0) {
+    std::vector<DetectedSummit> kept;
+    for (const DetectedSummit& s : summits)
+      if (std::ranges::none_of(kept, [&](const DetectedSummit& k) {
+            return std::abs(wrap_angle(k.bearing - s.bearing)) < options.min_distance;
           }))
         kept.push_back(s);
     summits = std::move(kept);
@@ -58,9 +59,9 @@ std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const Horizo
   return summits;
 }
 
-SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSummits& options) {
+SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options) {
   SightingSet set;
-  for (const SeenSummit& summit : find_summits(horizon, options)) {
+  for (const DetectedSummit& summit : find_summits(horizon, options)) {
     SeenLandmark s;
     s.type = options.type ? options.type : std::optional<TypeId>(kNoSuchType);
     s.bearing = summit.bearing;

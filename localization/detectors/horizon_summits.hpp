@@ -5,31 +5,32 @@
 #include "localization/sighting.hpp"
 namespace waymark {
 
-/// Where the ground ends and the sky begins, all round or in part.
+/// Elevation of the horizon by direction, of a full turn or a part.
 struct HorizonProfile {
   double first_angle = 0, angle_step = 0;  ///< rad, left of forward
   double elevation_sd = 0.001;             ///< rad
-  std::vector<float> elevations;           ///< rad; not finite: not known
+  std::vector<float> elevations;           ///< rad; not finite: unknown
 };
 
-struct HorizonSummits {
-  std::optional<TypeId> type;       ///< given to the sightings
-  double least_prominence = 0.006;  ///< rad that it stands above both sides before the horizon is higher
-  double least_distance = 0;        ///< rad, to a higher summit
+/// Options of the summit detector for horizon profiles.
+struct HorizonSummitOptions {
+  std::optional<TypeId> type;     ///< of the sightings
+  double min_prominence = 0.006;  ///< rad above both sides before the horizon is higher
+  double min_distance = 0;        ///< rad, to a higher summit
 };
 
 /// A summit on the horizon.
-struct SeenSummit {
+struct DetectedSummit {
   double bearing = 0, elevation = 0;  ///< rad
   double prominence = 0;              ///< rad
   double bearing_sd = 0.01;
 };
 
-/// Local maxima of the horizon that stand out; the highest first. A full turn is taken as a ring. The place
-/// is that of a parabola through the highest and its neighbours.
-std::vector<SeenSummit> find_summits(const HorizonProfile& horizon, const HorizonSummits& options);
+/// Finds prominent local maxima of the horizon, the most prominent first. A full turn is treated as a ring.
+/// The bearing is that of a parabola through the maximum and its neighbours.
+std::vector<DetectedSummit> find_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options);
 
-/// Bearings only: the map does not say how far they are.
-SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSummits& options);
+/// Finds summits and returns them as sightings without range: the distance of a summit is not measured.
+SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options);
 
 }  // namespace waymark

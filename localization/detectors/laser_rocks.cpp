@@ -6,12 +6,12 @@
 #include <cmath>
 #include <span>
 
-#include "localization/detectors/level_scan.hpp"
+#include "localization/detectors/scan_segments.hpp"
 
 namespace waymark {
 namespace {
 
-// range = a + b u + c u^2 over u in [-1, 1] from end to end; c > 0 where the middle is nearer.
+// range = a + b u + c u^2 over u in [-1, 1] from end to end; c > 0 if the middle is nearer.
 struct Arc {
   double front = 0, bulge = 0, residual = 0;
 };
@@ -39,31 +39,31 @@ Arc fit_arc(std::span<const double> ranges) {
 
 }  // namespace
 
-std::vector<SeenRock> find_rocks(const LaserScan& scan, const LaserRocks& options) {
-  std::vector<SeenRock> rocks;
-  const std::vector<double> ranges = bridged_ranges(scan, options.jump);
+std::vector<LaserRock> find_rocks(const LaserScan& scan, const LaserRockOptions& options) {
+  std::vector<LaserRock> rocks;
+  const std::vector<double> ranges = bridge_outliers(scan, options.jump);
   const std::size_t n = ranges.size();
-  for (const BeamRun& run : runs_of(ranges, options.jump)) {
+  for (const BeamSegment& run : split_at_jumps(ranges, options.jump)) {
     const auto [begin, last] = run;
     const std::size_t beams = run.beams();
-    if (static_cast<int>(beams) < std::max(options.least_beams, 3) || begin == 0 || last + 1 >= n) continue;
+    if (static_cast<int>(beams) < std::max(options.min_beams, 3) || begin == 0 || last + 1 >= n) continue;
     const double ends = std::max(ranges[begin], ranges[last]);
-    if (!(ends < options.most_range) || !(ranges[begin - 1] > ranges[begin] + options.clear) ||
+    if (!(ends < options.max_range) || !(ranges[begin - 1] > ranges[begin] + options.clear) ||
         !(ranges[last + 1] > ranges[last] + options.clear))
       continue;
     const Arc arc = fit_arc({ranges.data() + begin, beams});
-    const double radius = cylinder_radius(arc.front, width_of(scan, beams));
+    const double radius = cylinder_radius(arc.front, angular_width(scan, beams));
     const double width = 2 * radius;
-    if (!(width >= options.least_width && width <= options.most_width) ||
-        !(arc.residual <= options.roughness * width) || !(arc.bulge >= options.least_bulge * width))
+    if (!(width >= options.min_width && width <= options.max_width) ||
+        !(arc.residual <= options.roughness * width) || !(arc.bulge >= options.min_bulge * width))
       continue;
-    SeenRock rock;
+    LaserRock rock;
     rock.beams = static_cast<int>(beams);
     rock.bulge = arc.bulge;
     rock.radius = radius;
     rock.bearing = scan.first_angle + scan.angle_step * 0.5 * static_cast<double>(begin + last);
     rock.range = arc.front + 0.9 * radius;
-    // Rocks are not round: where their middle lies behind the front is known to a part of the radius.
+    // Rocks are not round: the distance from front to centre is known to a fraction of the radius.
     const double beam = scan.angle_step * rock.range;
     rock.range_sd = std::sqrt(0.03 * 0.03 + 0.0625 * radius * radius);
     rock.bearing_sd = std::sqrt(beam * beam / 6 + 0.03 * radius * radius) / rock.range + 0.003;
@@ -72,15 +72,15 @@ std::vector<SeenRock> find_rocks(const LaserScan& scan, const LaserRocks& option
   return rocks;
 }
 
-SightingSet sightings_of_rocks(const LaserScan& scan, const LaserRocks& options) {
+SightingSet sightings_of_rocks(const LaserScan& scan, const LaserRockOptions& options) {
   SightingSet set{scan.robot_from_sensor, {}};
-  for (const SeenRock& rock : find_rocks(scan, options)) {
+  for (const LaserRock& rock : find_rocks(scan, options)) {
     SeenLandmark s;
     s.type = options.type;
-    const auto [range, bearing] = on_level_ground(scan, rock.range, rock.bearing);
+    const auto [range, bearing] = level_range_bearing(scan, rock.range, rock.bearing);
     s.range = range;
     s.range_sd = rock.range_sd;
-    s.bearing = wrapped(bearing);
+    s.bearing = wrap_angle(bearing);
     s.bearing_sd = rock.bearing_sd;
     if (options.type) {
       const double radius = options.taper * rock.radius, beam = scan.angle_step * rock.range;

@@ -6,18 +6,18 @@
 #include <numeric>
 #include <span>
 
-#include "localization/detectors/level_scan.hpp"
+#include "localization/detectors/scan_segments.hpp"
 
 namespace waymark {
 namespace {
 
-// The cylinder of this angular width seen over some beams.
+// Fits a cylinder of this angular width to some beams.
 Stem stem_of(std::span<const double> ranges, double first_bearing, double step, double width) {
   Stem stem;
   const auto n = ranges.size();
   stem.beams = static_cast<int>(n);
   stem.bearing = first_bearing + 0.5 * step * static_cast<double>(n - 1);
-  // The nearest of a few noisy ranges lies before the stem, the mean of all behind its front: the middle
+  // The nearest of a few noisy ranges lies in front of the stem, their mean behind its front. The middle
   // third is nearly flat.
   double front = 0;
   const std::size_t skip = n / 3;
@@ -37,7 +37,7 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
   for (std::size_t i = 0; i < n; ++i) squares += std::pow(middle_from(i) - stem.range, 2);
   stem.roughness = std::sqrt(squares / static_cast<double>(n));
 
-  // A width is a whole number of beams: the count errs by up to one, its variance is 1/6 beam squared.
+  // A width is a whole number of beams: its error is at most one beam, its variance 1/6 beam squared.
   const double beam = step * stem.range;
   stem.diameter_sd = std::sqrt(beam * beam / 6 + 1e-4);
   stem.range_sd = std::sqrt(0.25 * stem.diameter_sd * stem.diameter_sd + 0.02 * 0.02);
@@ -45,10 +45,11 @@ Stem stem_of(std::span<const double> ranges, double first_bearing, double step, 
   return stem;
 }
 
-// What stands beside is farther away. On one side it may be nearer, if the stem is whole all the same: then
-// its last beam there lies as far behind the front as a stem's edge does. At the ends of the scan nobody
-// knows what stands beside.
-bool stands_out(std::span<const double> ranges, const BeamRun& run, double mean, const LaserStems& options) {
+// Returns whether the background on both sides is farther away. One side may be nearer if the stem is
+// whole: then its last beam there lies as far behind the front as a stem's edge. At the ends of the scan
+// the background is unknown.
+bool stands_out(std::span<const double> ranges, const BeamSegment& run, double mean,
+                const LaserStemOptions& options) {
   const auto [first, last] = run;
   if (first == 0 || last + 1 >= ranges.size()) return false;
   const double before = ranges[first - 1], after = ranges[last + 1];
@@ -65,50 +66,50 @@ bool stands_out(std::span<const double> ranges, const BeamRun& run, double mean,
 
 }  // namespace
 
-LaserStems forest_stems() {
+LaserStemOptions forest_stem_options() {
   return {.type = {},
           .jump = 0.35,
           .clear = 0.4,
-          .most_diameter = 1.5,
-          .least_diameter = 0.05,
-          .most_range = 25,
+          .max_diameter = 1.5,
+          .min_diameter = 0.05,
+          .max_range = 25,
           .roughness = 0.06,
-          .rough_base = 0.025,
-          .rough_share = 0.15,
-          .least_beams = 3,
+          .roughness_base = 0.025,
+          .roughness_per_metre = 0.15,
+          .min_beams = 3,
           .range_sd = 0,
           .bearing_sd = 0,
           .partly_hidden = true};
 }
 
-std::vector<Stem> find_stems(const LaserScan& scan, const LaserStems& options) {
+std::vector<Stem> find_stems(const LaserScan& scan, const LaserStemOptions& options) {
   std::vector<Stem> stems;
-  const std::vector<double> ranges = bridged_ranges(scan, options.jump);
-  for (const BeamRun& run : runs_of(ranges, options.jump)) {
+  const std::vector<double> ranges = bridge_outliers(scan, options.jump);
+  for (const BeamSegment& run : split_at_jumps(ranges, options.jump)) {
     const std::span<const double> hits(ranges.data() + run.first, run.beams());
     const double mean = std::accumulate(hits.begin(), hits.end(), 0.0) / static_cast<double>(hits.size());
-    if (!stands_out(ranges, run, mean, options) || !(mean < options.most_range) ||
-        static_cast<int>(run.beams()) < options.least_beams)
+    if (!stands_out(ranges, run, mean, options) || !(mean < options.max_range) ||
+        static_cast<int>(run.beams()) < options.min_beams)
       continue;
     const Stem stem = stem_of(hits, scan.first_angle + static_cast<double>(run.first) * scan.angle_step,
-                              scan.angle_step, width_of(scan, run.beams()));
-    if (stem.diameter >= options.least_diameter && stem.diameter <= options.most_diameter &&
+                              scan.angle_step, angular_width(scan, run.beams()));
+    if (stem.diameter >= options.min_diameter && stem.diameter <= options.max_diameter &&
         stem.roughness <=
-            std::min(options.roughness, options.rough_base + options.rough_share * stem.diameter))
+            std::min(options.roughness, options.roughness_base + options.roughness_per_metre * stem.diameter))
       stems.push_back(stem);
   }
   return stems;
 }
 
-SightingSet sightings_of_stems(const LaserScan& scan, const LaserStems& options) {
+SightingSet sightings_of_stems(const LaserScan& scan, const LaserStemOptions& options) {
   SightingSet set{scan.robot_from_sensor, {}};
   for (const Stem& stem : find_stems(scan, options)) {
     SeenLandmark s;
     s.type = options.type;
-    const auto [range, bearing] = on_level_ground(scan, stem.range, stem.bearing);
+    const auto [range, bearing] = level_range_bearing(scan, stem.range, stem.bearing);
     s.range = range;
     s.range_sd = options.range_sd > 0 ? options.range_sd : stem.range_sd;
-    s.bearing = wrapped(bearing);
+    s.bearing = wrap_angle(bearing);
     s.bearing_sd = options.bearing_sd > 0 ? options.bearing_sd : stem.bearing_sd;
     if (options.type) {
       constexpr std::size_t kDiameter = 1;

@@ -6,18 +6,20 @@
 
 namespace waymark {
 
-void ScanLandmarks::describe(OptionVisitor& option) {
-  option("scans", find, {.help = "What laser scans are searched for", .choices = {"auto", "stems", "rocks"}});
+void ScanDetectionOptions::describe(OptionVisitor& option) {
+  option("scans", find,
+         {.help = "Landmarks to detect in laser scans", .choices = {"auto", "stems", "rocks"}});
   option("scan_features", features, {.help = "Use the diameters and radii measured in scans"});
 }
 
-SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types, const ScanLandmarks& options) {
+SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types,
+                              const ScanDetectionOptions& options) {
   const bool rocks = options.find == "rocks" || (options.find == "auto" && types.rock);
   SightingSet set;
   if (rocks) {
     set = sightings_of_rocks(scan, {.type = types.rock});
   } else {
-    LaserStems stems = scan.beam_width ? forest_stems() : LaserStems{};
+    LaserStemOptions stems = scan.beam_width ? forest_stem_options() : LaserStemOptions{};
     stems.type = types.tree;
     set = sightings_of_stems(scan, stems);
   }

@@ -7,21 +7,22 @@
 #include "localization/sighting.hpp"
 namespace waymark {
 
-/// What laser scans are searched for.
-struct ScanLandmarks {
-  std::string find = "auto";  ///< `stems`, `rocks`; `auto`: what the map has, rocks where it has both
+/// Options of landmark detection in laser scans.
+struct ScanDetectionOptions {
+  std::string find = "auto";  ///< `stems`, `rocks`; `auto`: the types of the map, rocks if it has both
   bool features = true;       ///< give diameters and radii to the sightings
 
   void describe(OptionVisitor& option);
 };
 
-/// Types the map has; sightings of others have none.
+/// Types of the map; absent: the sightings have no type.
 struct ScanTypes {
   std::optional<TypeId> tree, rock;
 };
 
-/// Landmarks in a scan. Stems are searched with the settings for forests where the log tells the width of the
-/// beams, with those for single trees in a park otherwise.
-SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types, const ScanLandmarks& options);
+/// Detects landmarks in a scan. Uses the stem options for forests if the log gives the width of the beams,
+/// otherwise those for single trees in a park.
+SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types,
+                              const ScanDetectionOptions& options);
 
 }  // namespace waymark

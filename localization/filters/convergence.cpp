@@ -12,17 +12,17 @@ constexpr double kSame = 2;  // m, beside three standard deviations
 }  // namespace
 
 void Convergence::fix(const GnssFix& gnss) {
-  const double variance = 4 * gnss.sd * gnss.sd;  // its errors last
+  const double variance = 4 * gnss.sd * gnss.sd;  // GNSS errors are correlated
   if (!(variance < prior_.covariance(0, 0) + prior_.covariance(1, 1))) return;
   const double yaw = prior_.covariance(2, 2);
   prior_.pose.x = gnss.at.x(), prior_.pose.y = gnss.at.y();
   prior_.covariance = Eigen::Vector3d(variance, variance, yaw).asDiagonal();
 }
 
-void Convergence::count(double fit, double chance, bool one_place) {
-  if (!one_place) lose();
+void Convergence::count(double fit, double chance, bool unimodal) {
+  if (!unimodal) reset();
   explained_.add(fit, chance);
-  if (explained_.known()) found_ = explained_.share() > (found_ ? kLeast : kShare);
+  if (explained_.known()) found_ = explained_.value() > (found_ ? kLeast : kShare);
 }
 
 void Convergence::confirm(const PoseEstimate& sure, const PoseEstimate& here) {
@@ -31,7 +31,7 @@ void Convergence::confirm(const PoseEstimate& sure, const PoseEstimate& here) {
   found_ = (sure.pose.at() - here.pose.at()).norm() < 3 * sd + kSame;
 }
 
-PoseEstimate Convergence::honest(PoseEstimate estimate) const {
+PoseEstimate Convergence::inflate_covariance(PoseEstimate estimate) const {
   if (found_) return estimate;
   const Eigen::Vector2d off = prior_.pose.at() - estimate.pose.at();
   estimate.covariance.topLeftCorner<2, 2>() +=

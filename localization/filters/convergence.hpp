@@ -2,37 +2,39 @@
 #pragma once
 #include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
-#include "localization/filters/explained.hpp"
+#include "localization/filters/explained_fraction.hpp"
 namespace waymark {
 
-/// Whether a filter that was told no start has found the robot. Particles that gather at one place are no
-/// proof: those of all other places may have died before they were asked often enough, and in a dense map
-/// much of what is seen fits anywhere. It has found the robot when a PoseFinder is sure of the same place, or
-/// when the map explains 0.35 of what is seen beyond chance; no longer when less than 0.2.
-/// Until then its covariance must cover every place the robot may be.
+/// Decides whether a filter without a given start has found the robot. Until then its covariance must cover
+/// every position the robot may have.
+/// - Particles gathered at one position are no proof: those elsewhere may have died early, and in a dense
+///   map many sightings fit anywhere.
+/// - Found: a PoseFinder confirms the position, or the map explains 0.35 of the sightings beyond chance.
+/// - No longer found: the map explains less than 0.2.
 class Convergence {
  public:
-  /// `prior`: what is known before anything is seen.
+  /// `prior`: the estimate before any sighting.
   explicit Convergence(const PoseEstimate& prior) : prior_(prior) {}
 
-  void move(const BodyMotion& motion) { prior_ = moved(prior_, motion); }
-  /// A position measured from outside bounds where the robot may be.
+  void predict(const BodyMotion& motion) { prior_ = predict_pose(prior_, motion); }
+  /// Bounds the prior by a measured position.
   void fix(const GnssFix& gnss);
-  /// A set of sightings: the share that fits, and that fits by chance; `one_place`: the filter has gathered.
-  void count(double fit, double chance, bool one_place);
-  /// A finder is sure that it is here, or elsewhere.
+  /// Adds a set of sightings: the fraction that fits, and the fraction that fits by chance. `unimodal`:
+  /// the filter has one mode.
+  void count(double fit, double chance, bool unimodal);
+  /// Compares the filter's position with a certain one from a finder.
   void confirm(const PoseEstimate& sure, const PoseEstimate& here);
 
-  /// The filter begins anew.
-  void lose() { explained_.clear(), found_ = false; }
+  /// Resets the decision; called when the filter restarts.
+  void reset() { explained_.clear(), found_ = false; }
 
   bool found() const { return found_; }
-  /// The filter's estimate; while nothing is found, with the covariance of the prior about it.
-  PoseEstimate honest(PoseEstimate estimate) const;
+  /// Returns the filter's estimate; until the robot is found, with the covariance of the prior added.
+  PoseEstimate inflate_covariance(PoseEstimate estimate) const;
 
  private:
   PoseEstimate prior_;
-  Explained explained_;
+  ExplainedFraction explained_;
   bool found_ = false;
 };
 

@@ -8,26 +8,27 @@
 namespace waymark {
 namespace {
 
-constexpr double kCertain = 0.999;  // pairings above need no mixture
+constexpr double kCertain = 0.999;  // pairings above this need no mixture
 
-// Landmarks further than this from where the robot believes to be are not asked for.
+// Returns the distance from the estimated pose within which landmarks are needed.
 double reach_of(const SightingSet& seen, const PoseEstimate& robot, const IdentificationOptions& options) {
   double farthest = 0;
   for (const SeenLandmark& s : seen.sightings)
-    if (s.sound()) farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options.bearing_reach);
+    if (s.is_valid())
+      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options.bearing_reach);
   const double spread = std::sqrt(std::max(robot.covariance(0, 0), robot.covariance(1, 1)));
   return farthest + 6 * spread + std::hypot(seen.robot_from_sensor.x, seen.robot_from_sensor.y);
 }
 
 }  // namespace
 
-Eigen::Vector3d widest(const Eigen::Vector3d& sd) {
+Eigen::Vector3d clamp_sd(const Eigen::Vector3d& sd) {
   return sd.cwiseMin(Eigen::Vector3d(1e4, 1e4, 3)).cwiseMax(Eigen::Vector3d(0.05, 0.05, 0.02));
 }
 
 void KalmanOptions::describe(OptionVisitor& option) {
   option("lost_after", lost_after,
-         {.help = "Sets of sightings in a row without a match after which the filter searches",
+         {.help = "Consecutive sets of sightings without a match before the filter searches",
           .min = 1,
           .max = 1e9});
   option("search_growth", search_growth,
@@ -41,11 +42,11 @@ KalmanLocalizer::KalmanLocalizer(LandmarkWindow map, FeatureScales scales,
       identification_(std::move(identification)),
       options_(options) {}
 
-std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
+std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
-  const LandmarkGrid& map = map_.around(before.pose.at(), reach_of(seen, before, identification_));
+  const LandmarkGrid& map = map_.landmarks_near(before.pose.at(), reach_of(seen, before, identification_));
   auto [matches, posterior] = identify(seen, before, map, scales_, identification_);
-  std::vector<Use> uses;
+  std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     Match& match = matches[i];
@@ -54,37 +55,37 @@ std::vector<Match> KalmanLocalizer::see(const SightingSet& seen) {
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
     match.key = landmark.key;
-    uses.push_back({&seen.sightings[i], &landmark, trust_in(landmark, identification_)});
+    uses.push_back({&seen.sightings[i], &landmark, effective_quality(landmark, identification_)});
   }
   if (posterior && doubtful) {
     missed_ = 0;
     replace(*posterior);
   } else if (!uses.empty()) {
     missed_ = 0;
-    update(uses, seen.robot_from_sensor);
+    correct(uses, seen.robot_from_sensor);
   } else if (strange && ++missed_ >= options_.lost_after && options_.search_growth > 1) {
     widen(options_.search_growth);
   }
   return matches;
 }
 
-// A position and a heading are parts of the state: the update is linear, the same for both filters.
+// Position and heading are components of the state: the update is linear, the same for both filters.
 template <class Fix>
-bool KalmanLocalizer::take(const Fix& measured, int rows) {
+bool KalmanLocalizer::apply_fix(const Fix& measured, int rows) {
   FixGate& gate = rows == 2 ? gnss_ : heading_;
-  FixUpdate update = updated(estimate(), measured);
+  FixUpdate update = update_pose(estimate(), measured);
   if (!gate.pass(update.squares, rows)) return false;
-  if (gate.overruled()) {
+  if (gate.was_forced()) {
     for (int i = 0; i < 40 && update.squares > 4; ++i) {
       widen(2);
-      update = updated(estimate(), measured);
+      update = update_pose(estimate(), measured);
     }
   }
   replace(update.estimate);
   return true;
 }
-template bool KalmanLocalizer::take(const GnssFix&, int);
-template bool KalmanLocalizer::take(const HeadingFix&, int);
+template bool KalmanLocalizer::apply_fix(const GnssFix&, int);
+template bool KalmanLocalizer::apply_fix(const HeadingFix&, int);
 
 ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
                                IdentificationOptions identification, KalmanOptions options)
@@ -94,26 +95,26 @@ ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, Fe
     throw std::invalid_argument("the start of a filter must be finite");
 }
 
-void ExtendedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
-  for (const Use& use : uses)
-    estimate_ = kalman_updated(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+void ExtendedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
+  for (const MatchedSighting& use : uses)
+    estimate_ = ekf_update(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
 }
 
 void ExtendedKalman::widen(double factor) {
   const Eigen::Vector3d sd = estimate_.covariance.diagonal().cwiseSqrt();
-  const Eigen::Vector3d wide = widest(sd * factor);
-  // Correlations are dropped: what the filter believed was wrong.
+  const Eigen::Vector3d wide = clamp_sd(sd * factor);
+  // Drops correlations: the estimate was wrong.
   estimate_.covariance = wide.cwiseAbs2().asDiagonal();
 }
 
-PoseEstimate kalman_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
-                            const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
+                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
   const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, landmark.at);
   Eigen::Matrix<double, 2, 3> h = e.by_pose;
   Eigen::Matrix2d r =
       (sensor_noise(seen) + e.by_landmark * landmark.covariance * e.by_landmark.transpose()) / trust;
   const Eigen::Vector2d v = innovation(seen, e.value);
-  if (!seen.range) {  // a row that says nothing
+  if (!seen.range) {  // the range row carries no information
     h.row(0).setZero();
     r(0, 1) = r(1, 0) = 0;
   }

@@ -4,8 +4,8 @@
 #include <functional>
 namespace waymark {
 
-/// Calls work(first, last) for blocks of 512 of `count` particles, on several threads (0: all there are)
-/// where it pays. The blocks are the same for any number of threads; results must not depend on their order.
+/// Calls work(first, last) for blocks of 512 of `count` particles, on several threads (0: all) if that
+/// pays. The blocks are the same for any number of threads; results must not depend on their order.
 void for_each_block(std::size_t count, std::int64_t threads,
                     const std::function<void(std::size_t, std::size_t)>& work);
 

@@ -12,7 +12,7 @@
 namespace waymark {
 namespace {
 
-constexpr int kPatience = 10;  // fixes that are left out while a set of sightings is awaited
+constexpr int kPatience = 10;  // fixes to ignore while a set of sightings is awaited
 
 Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& random) {
   const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
@@ -22,18 +22,18 @@ Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& ran
 }  // namespace
 
 void ParticleOptions::describe(OptionVisitor& option) {
-  option("particles", particles, {.help = "Particles while the place is known", .min = 10, .max = 1e7});
+  option("particles", particles, {.help = "Particles while the pose is known", .min = 10, .max = 1e7});
   option("search_particles", search_particles,
-         {.help = "Particles while the place is not known", .min = 10, .max = 1e7});
+         {.help = "Particles during global localization", .min = 10, .max = 1e7});
   option("adaptive", adaptive, {.help = "Use as many particles as their spread needs (KLD sampling)"});
-  option("kld_error", kld_error, {.help = "Error the adaptive number allows", .min = 0.001, .max = 0.5});
+  option("kld_error", kld_error, {.help = "Error bound of KLD sampling", .min = 0.001, .max = 0.5});
   option("resample_below", resample_below,
-         {.help = "Draw again when fewer than this part of the particles count", .min = 0, .max = 1});
-  option("recovery", recovery, {.help = "Try new places when sightings fit ever less"});
+         {.help = "Resample if fewer than this fraction of the particles are effective", .min = 0, .max = 1});
+  option("recovery", recovery, {.help = "Draw new poses when the likelihood of sightings falls"});
   option("recovery_slow", recovery_slow,
-         {.help = "How fast the long memory of the fit fades, per set", .min = 1e-6, .max = 1});
+         {.help = "Decay of the long-term mean likelihood, per set", .min = 1e-6, .max = 1});
   option("recovery_fast", recovery_fast,
-         {.help = "How fast the short memory of the fit fades, per set", .min = 1e-6, .max = 1});
+         {.help = "Decay of the short-term mean likelihood, per set", .min = 1e-6, .max = 1});
   weight.describe(option);
 }
 
@@ -44,23 +44,18 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow
       scales_(std::move(scales)),
       identification_(std::move(identification)),
       options_(std::move(options)),
-      finder_(std::move(finder)) {
-  // What both say is said once, for the identification.
-  options_.weight.clutter = identification_.clutter;
-  options_.weight.quality_floor = identification_.quality_floor;
-  options_.weight.feature_tolerance = identification_.feature_tolerance;
-  options_.weight.feature_limit = identification_.feature_limit;
-  options_.weight.bearing_reach = identification_.bearing_reach;
+      finder_(std::move(finder)),
+      memory_(scales_) {
   if (!start) {
     searching_ = true;
-    const Eigen::AlignedBox2d box = map_.around({0, 0}, 0).bounds();
+    const Eigen::AlignedBox2d box = map_.landmarks_near({0, 0}, 0).bounds();
     if (!box.isEmpty()) {
       summary_.pose = {box.center().x(), box.center().y(), 0};
       summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
           box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
     }
-    doubt_.emplace(summary_);
-    if (!identification_.use_identities) chance_ = chance_share(map_, scales_, identification_);
+    convergence_.emplace(summary_);
+    if (!identification_.use_identities) chance_ = make_chance_fraction(map_, scales_, identification_);
     return;
   }
   if (!start->pose.finite() || !start->covariance.allFinite())
@@ -73,25 +68,26 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow
   weights_.assign(count, 1 / static_cast<double>(count));
 }
 
-Trust ParticleFilter::trust() const {
-  if (poses_.empty()) return Trust::unset;
-  return searching_ || (doubt_ && !doubt_->found()) ? Trust::lost : Trust::sure;
+LocalizationStatus ParticleFilter::status() const {
+  if (poses_.empty()) return LocalizationStatus::uninitialized;
+  return searching_ || (convergence_ && !convergence_->found()) ? LocalizationStatus::lost
+                                                                : LocalizationStatus::tracking;
 }
 
-void ParticleFilter::move(const BodyMotion& motion) {
-  pending_ = then(pending_, motion);
-  if (finder_) memory_.move(motion);
-  if (doubt_) doubt_->move(motion);
-  if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) spread();
+void ParticleFilter::predict(const BodyMotion& motion) {
+  pending_ = compose(pending_, motion);
+  if (finder_) memory_.predict(motion);
+  if (convergence_) convergence_->predict(motion);
+  if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) apply_motion();
 }
 
-void ParticleFilter::spread() {
-  summary_ = moved(summary_, pending_);
+void ParticleFilter::apply_motion() {
+  summary_ = predict_pose(summary_, pending_);
   const Eigen::Matrix3d root = square_root(pending_.covariance);
   const std::uint64_t stream = named_seed(static_cast<std::uint64_t>(options_.seed), "motion") + ++step_;
-  const Ziggurat& normal = Ziggurat::shared();
+  const Ziggurat& normal = Ziggurat::instance();
   for_each_block(poses_.size(), options_.threads, [&](std::size_t first, std::size_t last) {
-    Random random(mixed(stream) + first);
+    Random random(mix_bits(stream) + first);
     for (std::size_t i = first; i < last; ++i) {
       const double a = normal(random), b = normal(random), c = normal(random);
       poses_[i] = poses_[i] * Pose2{pending_.step.x + root(0, 0) * a,
@@ -103,11 +99,11 @@ void ParticleFilter::spread() {
 }
 
 template <class Fit>
-bool ParticleFilter::weigh_by(Fit&& fit) {
+bool ParticleFilter::reweight(Fit&& fit) {
   for (std::size_t i = 0; i < poses_.size(); ++i) weights_[i] = std::log(weights_[i]) + fit(poses_[i]);
-  weights_ = normalised(weights_);
-  summary_ = summary(poses_, weights_, kOnePlace);
-  if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
+  weights_ = normalise_log_weights(weights_);
+  summary_ = dominant_mode(poses_, weights_, kModeRadius);
+  if (effective_sample_size(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
     Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw by fix");
     std::vector<Pose2> next;
     for (const std::uint32_t i : resample(weights_, poses_.size(), random.uniform()))
@@ -118,8 +114,8 @@ bool ParticleFilter::weigh_by(Fit&& fit) {
   return true;
 }
 
-// Any heading; the particles there are keep a part of the weight.
-void ParticleFilter::draw_about(const GnssFix& gnss, double kept) {
+// Draws any heading; present particles keep the fraction `kept` of the weight.
+void ParticleFilter::sample_around_fix(const GnssFix& gnss, double kept) {
   Random random(static_cast<std::uint64_t>(options_.seed) + ++step_, "fix");
   if (!(kept > 0)) poses_.clear(), weights_.clear();
   for (double& w : weights_) w *= kept;
@@ -129,13 +125,13 @@ void ParticleFilter::draw_about(const GnssFix& gnss, double kept) {
     poses_.push_back({x, y, random.uniform(-std::numbers::pi, std::numbers::pi)});
     weights_.push_back((1 - kept) / static_cast<double>(count));
   }
-  summary_ = summary(poses_, weights_, kOnePlace);
+  summary_ = dominant_mode(poses_, weights_, kModeRadius);
 }
 
 bool ParticleFilter::fix(const GnssFix& gnss) {
-  spread();
-  const double squares = updated(summary_, gnss).squares;
-  const bool scattered = trust() == Trust::lost;
+  apply_motion();
+  const double squares = update_pose(summary_, gnss).squares;
+  const bool scattered = status() == LocalizationStatus::lost;
   if (!poses_.empty() && !scattered && !gnss_.pass(squares, 2)) return false;
   if (contested_ > 0) {
     --contested_;
@@ -143,45 +139,47 @@ bool ParticleFilter::fix(const GnssFix& gnss) {
   }
   double nearest = 1e300;
   for (const Pose2& p : poses_) nearest = std::min(nearest, (p.at() - gnss.at).squaredNorm());
-  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle there
-    // Particles that see what they should are kept beside the new ones: errors of fixes last, under trees.
+  if (nearest > 9 * gnss.sd * gnss.sd) {  // no particle near the fix
+    // Particles that match their sightings stay beside the new ones: GNSS errors are correlated, e.g. under
+    // trees.
     const bool fits = !scattered && slow_ > 0 && fast_ > 0.5 * slow_;
     contested_ = fits ? kPatience : 0;
-    draw_about(gnss, fits ? 0.5 : 0);
-    if (doubt_) doubt_->lose(), doubt_->fix(gnss);
+    sample_around_fix(gnss, fits ? 0.5 : 0);
+    if (convergence_) convergence_->reset(), convergence_->fix(gnss);
     return true;
   }
-  if (doubt_) doubt_->fix(gnss);
-  return weigh_by(
+  if (convergence_) convergence_->fix(gnss);
+  return reweight(
       [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
 }
 
 bool ParticleFilter::fix(const HeadingFix& heading) {
-  spread();
+  apply_motion();
   if (poses_.empty()) return false;
-  // A floor for wild readings: they cannot kill the particles that are right.
-  return weigh_by([&](const Pose2& p) {
-    const double v = wrapped(heading.yaw - p.yaw) / heading.sd;
+  // A floor limits outliers: they cannot remove the particles that are right.
+  return reweight([&](const Pose2& p) {
+    const double v = wrap_angle(heading.yaw - p.yaw) / heading.sd;
     return std::log(std::exp(-v * v / 2) + 1e-4);
   });
 }
 
-std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
-  spread();
+std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
+  apply_motion();
   double farthest = 0;
   for (const SeenLandmark& s : seen.sightings)
-    if (s.sound())
+    if (s.is_valid())
       farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
   if (options_.weight.expect_unseen) farthest = std::max(farthest, options_.weight.view_range);
   const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  const LandmarkGrid& map = map_.around(summary_.pose.at(), farthest + 6 * width);
+  const LandmarkGrid& map = map_.landmarks_near(summary_.pose.at(), farthest + 6 * width);
   ++sets_;
   if (finder_) {
     memory_.add(seen);
-    if (searching_ || (doubt_ && !doubt_->found()) || (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
-      ask_finder(seen);
+    if (searching_ || (convergence_ && !convergence_->found()) ||
+        (options_.recovery && slow_ > 0 && fast_ < 0.7 * slow_))
+      query_finder(seen);
     else
-      hints_.clear();
+      finder_samples_.clear();
   }
   if (poses_.empty() && !seen.sightings.empty())
     search(seen, map, static_cast<std::size_t>(options_.search_particles));
@@ -189,18 +187,19 @@ std::vector<Match> ParticleFilter::see(const SightingSet& seen) {
 
   weigh(seen, map);
   contested_ = 0;
-  summary_ = summary(poses_, weights_, kOnePlace);
+  summary_ = dominant_mode(poses_, weights_, kModeRadius);
   const double sd = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kOnePlace, 3 * found_sd_));
-  if (effective_count(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
-    draw_again(seen, map);
+  searching_ = sd > (searching_ ? std::max(0.5, 1.5 * found_sd_) : std::max(3 * kModeRadius, 3 * found_sd_));
+  if (effective_sample_size(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
+    resample_particles(seen, map);
 
   std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
-    match.pairing.evidence = {};  // of the estimate after the update: residuals, no innovations
+    match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations
   }
-  if (doubt_) doubt_->count(fitting_share(matches), chance_ ? chance_(seen, summary_) : 0, !searching_);
+  if (convergence_)
+    convergence_->count(matched_fraction(matches), chance_ ? chance_(seen, summary_) : 0, !searching_);
   return matches;
 }
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include "core/random.hpp"
 #include "localization/filters/convergence.hpp"
-#include "localization/filters/sighting_score.hpp"
+#include "localization/filters/particle_weights.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/identification/landmark_window.hpp"
@@ -11,14 +11,15 @@
 #include "localization/localizer.hpp"
 namespace waymark {
 
+/// Options of the particle filter.
 struct ParticleOptions {
-  std::int64_t particles = 500;          ///< while the place is known
-  std::int64_t search_particles = 4000;  ///< while it is not
+  std::int64_t particles = 500;          ///< while the pose is known
+  std::int64_t search_particles = 4000;  ///< during global localization
   bool adaptive = false;                 ///< KLD sampling: as many as the spread needs, up to the above
-  double kld_error = 0.05;               ///< of the adaptive number
-  double resample_below = 0.5;           ///< part of the particles that must be effective
-  bool recovery = true;                  ///< augmented filter: new particles when sightings fit ever less
-  double recovery_slow = 0.005;          ///< per set of sightings
+  double kld_error = 0.05;               ///< error bound of KLD sampling
+  double resample_below = 0.5;           ///< fraction of the particles that must be effective
+  bool recovery = true;                  ///< augmented filter: random particles when the likelihood falls
+  double recovery_slow = 0.005;          ///< decay of the long-term mean likelihood, per set of sightings
   double recovery_fast = 0.05;
   std::int64_t seed = 1;
   std::int64_t threads = 0;  ///< 0: as many as there are; no effect on the result
@@ -27,48 +28,48 @@ struct ParticleOptions {
   void describe(OptionVisitor& option);
 };
 
-/// Particle filter (section 4.2; Monte Carlo localization, Thrun et al. 2005, with augmented recovery and KLD
-/// sampling). Sightings that would leave a handful of the particles that lie together are believed part by
-/// part, with a new cloud drawn after each (progressive correction and regularization, Musso et al. 2001).
-/// The same seed gives the same track for any number of threads. Poses for the search are drawn where a
-/// landmark of the right type explains one of the sightings, and half of them from a PoseFinder, if there is
-/// one, which is asked about all that was seen lately.
+/// Particle filter (section 4.2): Monte Carlo localization (Thrun et al. 2005) with augmented recovery and
+/// KLD sampling. The same seed gives the same track for any number of threads.
+/// - A unimodal cloud is updated in tempered steps and resampled after each (progressive correction and
+///   regularization, Musso et al. 2001). This keeps a precise set from leaving a handful of particles.
+/// - During a search, poses are sampled where a landmark of the right type explains a sighting. Half of
+///   them come from the PoseFinder, if there is one, applied to recent sightings.
 class ParticleFilter final : public Localizer {
  public:
-  /// Without a start the first sightings say where the robot may be.
+  /// Without a start the first sightings initialise the filter.
   ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
                  IdentificationOptions identification = {}, ParticleOptions options = {},
                  PoseFinder finder = {});
-  void move(const BodyMotion& motion) override;
-  /// The verdicts are those of `identify` at the estimate after the update.
-  std::vector<Match> see(const SightingSet& seen) override;
+  void predict(const BodyMotion& motion) override;
+  /// Returns the verdicts of `identify` at the estimate after the update.
+  std::vector<Match> update(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override;
   bool fix(const HeadingFix& heading) override;
   PoseEstimate estimate() const override {
-    return doubt_ ? doubt_->honest(moved(summary_, pending_)) : moved(summary_, pending_);
+    return convergence_ ? convergence_->inflate_covariance(predict_pose(summary_, pending_))
+                        : predict_pose(summary_, pending_);
   }
-  Trust trust() const override;
+  LocalizationStatus status() const override;
 
-  /// With `expect_unseen`: what the ground hides is not expected.
-  void look_over(LineOfSight visible) { visible_ = std::move(visible); }
+  /// Sets the line-of-sight test. With `expect_unseen`, hidden landmarks are not expected.
+  void set_line_of_sight(LineOfSight visible) { visible_ = std::move(visible); }
 
   std::size_t particles() const { return poses_.size(); }
 
  private:
-  static constexpr double kOnePlace = 1.5;  // m: particles nearer than this are one hypothesis
+  static constexpr double kModeRadius = 1.5;  // m: particles nearer than this are one hypothesis
 
-  void spread();  // moves the particles by what has been driven since the last time
+  void apply_motion();  // moves the particles by the motion since the last call
   void weigh(const SightingSet& seen, const LandmarkGrid& map);
-  bool together(const PoseEstimate& cloud) const;  // the particles are one cloud about one place
-  void draw_again(const SightingSet& seen, const LandmarkGrid& map);
-  std::optional<Pose2> pose_that_explains(const SightingSet& seen, const LandmarkGrid& map,
-                                          Random& random) const;
-  void ask_finder(const SightingSet& seen);
-  void draw_about(const GnssFix& gnss, double kept);
+  bool is_unimodal(const PoseEstimate& cloud) const;  // whether the particles are one cloud
+  void resample_particles(const SightingSet& seen, const LandmarkGrid& map);
+  std::optional<Pose2> sample_pose(const SightingSet& seen, const LandmarkGrid& map, Random& random) const;
+  void query_finder(const SightingSet& seen);
+  void sample_around_fix(const GnssFix& gnss, double kept);
   template <class Fit>
-  bool weigh_by(Fit&& fit);
+  bool reweight(Fit&& fit);
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
-  std::size_t wanted() const;
+  std::size_t required_count() const;
 
   LandmarkWindow map_;
   FeatureScales scales_;
@@ -83,14 +84,14 @@ class ParticleFilter final : public Localizer {
   bool searching_ = false;
   PoseFinder finder_;
   SightingMemory memory_;
-  std::vector<Pose2> hints_;  // poses the finder gave, drawn with their covariances
-  std::uint64_t asked_ = 0;   // set at which it was asked last
+  std::vector<Pose2> finder_samples_;  // samples of the poses that the finder returned
+  std::uint64_t queried_set_ = 0;      // set at which the finder was called last
   std::uint64_t sets_ = 0;
-  double found_sd_ = 0;  // m, of the last pose the finder was sure of: no search gets nearer by itself
+  double found_sd_ = 0;  // m, of the last pose the finder accepted: a search gets no closer by itself
   FixGate gnss_;
-  int contested_ = 0;  // fixes that are left out until what is seen decides between them and the particles
-  std::optional<Convergence> doubt_;  // where no start was given
-  ChanceShare chance_;
+  int contested_ = 0;  // fixes to ignore until sightings decide between them and the particles
+  std::optional<Convergence> convergence_;  // only without a given start
+  ChanceFraction chance_;
   LineOfSight visible_;
 };
 

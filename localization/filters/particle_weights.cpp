@@ -14,22 +14,22 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 void WeightOptions::describe(OptionVisitor& option) {
   option("weights", weights,
-         {.help = "How particles are weighed: by probability, or by eqs. 12-14",
+         {.help = "Weights of particles: likelihood, or eqs. 12-14 of the paper",
           .choices = {"likelihood", "paper"}});
   option("temper", temper,
-         {.help = "Power of each probability; below 1 where errors of successive sightings are alike",
+         {.help = "Exponent of each likelihood; below 1 if errors of successive sightings are correlated",
           .min = 0.01,
           .max = 1});
   option("particle_gate", gate,
          {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
   option("unmatched_cost", unmatched_cost,
-         {.help = "paper: what a sighting without landmark costs; negative: the gate"});
+         {.help = "paper: cost of a sighting without landmark; negative: the gate"});
   option("expect_unseen", expect_unseen,
-         {.help = "likelihood: landmarks in view that were not seen speak against a place"});
+         {.help = "likelihood: unseen landmarks in view count against a pose"});
   option("detection", detection,
          {.help = "Probability that a landmark in view is seen", .min = 0.01, .max = 0.999});
   option("view_range", view_range,
-         {.help = "expect_unseen: how far the sensor sees, metres", .min = 0.1, .max = 1e5});
+         {.help = "expect_unseen: range of the sensor, metres", .min = 0.1, .max = 1e5});
   option("view_angle", view_angle,
          {.help = "expect_unseen: the sensor's whole field of view, radians", .min = 0.01, .max = 6.2831854});
 }
@@ -43,7 +43,7 @@ std::vector<double> paper_weights(std::span<const double> errors) {
   return weights;
 }
 
-std::vector<double> normalised(std::span<const double> log_weights) {
+std::vector<double> normalise_log_weights(std::span<const double> log_weights) {
   std::vector<double> weights(log_weights.size());
   double most = -kNone, sum = 0;
   for (const double w : log_weights)

@@ -8,9 +8,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kSame = 9.2;     // squared distance of two sightings of one landmark, 99 % of two numbers
-constexpr double kForgotten = 4;  // times the memory: what is left of the correlation is 2 %
-constexpr double kWidest = 1e3;   // two sightings of one moment
+constexpr double kSame = 9.2;     // squared distance of one landmark's sightings: 99 % of chi-square, 2 dof
+constexpr double kForgotten = 4;  // correlation times after which a correlation of 2 % is left
+constexpr double kWidest = 1e3;   // limit for two sightings at one time
 
 double widening(double seconds, double memory) {
   if (!(memory > 0)) return 1;
@@ -20,9 +20,9 @@ double widening(double seconds, double memory) {
 
 }  // namespace
 
-void RepeatedSightings::move(const BodyMotion& motion) {
-  const SeenAfter after(motion);
-  for (Last& p : last_) after.move(p.at, p.covariance);
+void RepeatedSightings::predict(const BodyMotion& motion) {
+  const MotionCompensation after(motion);
+  for (Last& p : last_) after.apply(p.at, p.covariance);
 }
 
 void RepeatedSightings::widen(SightingSet& seen, double t) {
@@ -32,7 +32,7 @@ void RepeatedSightings::widen(SightingSet& seen, double t) {
   std::vector<bool> taken(last_.size(), false);
   const std::size_t before = last_.size();
   for (SeenLandmark& s : seen.sightings) {
-    if (!s.sound() || !s.range) continue;
+    if (!s.is_valid() || !s.range) continue;
     const double along = seen.robot_from_sensor.yaw + s.bearing;
     const Eigen::Matrix2d r = Eigen::Rotation2Dd(along).toRotationMatrix();
     const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));

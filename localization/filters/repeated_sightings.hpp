@@ -4,26 +4,25 @@
 #include "localization/sighting.hpp"
 namespace waymark {
 
-/// How long, in seconds, the error a sensor makes with one landmark stays alike: its correlation falls to
-/// 1/e. 0: each sighting errs anew.
+/// Correlation times, s, of a sensor's errors with one landmark (fall to 1/e); 0: independent errors.
 struct ErrorMemory {
   double range = 0, bearing = 0;
 };
 
-/// Keeps filters from believing the same error many times. A camera that sees a bar code four times a second
-/// errs four times in the same way, and a filter that takes the errors as independent becomes too sure of
-/// itself. For an error with correlation rho from one sighting to the next (Gauss-Markov), a further sighting
-/// says only (1 - rho) / (1 + rho) of what the first one said: its standard deviations are widened by that.
-/// It holds for all localizers alike, since it changes what they are told.
+/// Widens the standard deviations of sightings whose errors repeat. A camera that sees a bar code four
+/// times a second errs four times alike, and a filter that assumes independent errors becomes
+/// overconfident. With correlation rho from one sighting to the next (Gauss-Markov), a further sighting
+/// carries (1 - rho) / (1 + rho) of the information of the first. Acts on the measurements, so it serves
+/// all localizers.
 ///
-/// Which sightings are of one landmark is judged by place alone, carried along by odometry, never by
-/// identities. Bearings without range are not recognised and stay as they are.
+/// Sightings of one landmark are associated by position alone, predicted by odometry, never by identities.
+/// Bearings without range are not associated and stay as they are.
 class RepeatedSightings {
  public:
   explicit RepeatedSightings(const ErrorMemory& memory) : memory_(memory) {}
 
-  void move(const BodyMotion& motion);
-  /// Widens the standard deviations of what was seen before; `t` is the time of the set, s.
+  void predict(const BodyMotion& motion);
+  /// Widens the standard deviations of repeated sightings; `t` is the time of the set, s.
   void widen(SightingSet& seen, double t);
 
  private:

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kEverywhere = 1e150;  // m
 
-/// Of the sum of the unit vectors of those within a squared distance.
+/// Direction of the sum of the unit vectors within a squared distance.
 double direction(std::span<const Pose2> poses, std::span<const double> weights, const Eigen::Vector2d& near,
                  double square) {
   double c = 0, s = 0;
@@ -26,7 +26,7 @@ double direction(std::span<const Pose2> poses, std::span<const double> weights, 
   return std::atan2(s, c);
 }
 
-/// Of those within `radius` metres of `near`.
+/// Moments of the poses within `radius` metres of `near`.
 PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weights,
                      const Eigen::Vector2d& near, double radius) {
   const double square = radius * radius, ahead = poses.empty() ? 0 : poses[0].yaw;
@@ -35,17 +35,17 @@ PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weigh
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double dx = poses[i].x - near.x(), dy = poses[i].y - near.y();
     if (!(dx * dx + dy * dy <= square)) continue;
-    const double turn = wrapped(poses[i].yaw - ahead), w = weights[i];
+    const double turn = wrap_angle(poses[i].yaw - ahead), w = weights[i];
     farthest = std::max(farthest, std::abs(turn));
     total += w, x += w * dx, y += w * dy, yaw += w * turn;
   }
   if (!(total > 0)) return {{near.x(), near.y(), 0}, Eigen::Matrix3d::Zero()};
-  x /= total, y /= total, yaw = wrapped(ahead + yaw / total);
+  x /= total, y /= total, yaw = wrap_angle(ahead + yaw / total);
   if (farthest > std::numbers::pi / 2) yaw = direction(poses, weights, near, square);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double dx = poses[i].x - near.x(), dy = poses[i].y - near.y();
     if (!(dx * dx + dy * dy <= square)) continue;
-    const double a = dx - x, b = dy - y, t = wrapped(poses[i].yaw - yaw), w = weights[i] / total;
+    const double a = dx - x, b = dy - y, t = wrap_angle(poses[i].yaw - yaw), w = weights[i] / total;
     xx += w * a * a, xy += w * a * b, yy += w * b * b, xt += w * a * t, yt += w * b * t, tt += w * t * t;
   }
   PoseEstimate e{{near.x() + x, near.y() + y, yaw}, {}};
@@ -55,7 +55,7 @@ PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weigh
 
 }  // namespace
 
-double effective_count(std::span<const double> weights) {
+double effective_sample_size(std::span<const double> weights) {
   double squares = 0;
   for (const double w : weights) squares += w * w;
   return squares > 0 ? 1 / squares : 0;
@@ -79,12 +79,12 @@ PoseEstimate moments(std::span<const Pose2> poses, std::span<const double> weigh
   return moments(poses, weights, poses.empty() ? Eigen::Vector2d(0, 0) : poses[0].at(), kEverywhere);
 }
 
-std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> weights,
-                          const PoseEstimate& all, std::size_t count, Random& random) {
+std::vector<Pose2> resample_regularized(std::span<const Pose2> poses, std::span<const double> weights,
+                                        const PoseEstimate& all, std::size_t count, Random& random) {
   const double blur = std::pow(0.8 / static_cast<double>(std::max<std::size_t>(count, 2)), 2.0 / 7);
   const double keep = std::sqrt(1 - blur);
   const Eigen::Matrix3d root = square_root(blur * all.covariance);
-  const Ziggurat& normal = Ziggurat::shared();
+  const Ziggurat& normal = Ziggurat::instance();
   std::vector<Pose2> next;
   next.reserve(count);
   for (const std::uint32_t i : resample(weights, count, random.uniform())) {
@@ -92,8 +92,8 @@ std::vector<Pose2> redraw(std::span<const Pose2> poses, std::span<const double> 
     const double a = normal(random), b = normal(random), c = normal(random);
     next.push_back({all.pose.x + keep * (p.x - all.pose.x) + root(0, 0) * a,
                     all.pose.y + keep * (p.y - all.pose.y) + root(1, 0) * a + root(1, 1) * b,
-                    wrapped(all.pose.yaw + keep * wrapped(p.yaw - all.pose.yaw) + root(2, 0) * a +
-                            root(2, 1) * b + root(2, 2) * c)});
+                    wrap_angle(all.pose.yaw + keep * wrap_angle(p.yaw - all.pose.yaw) + root(2, 0) * a +
+                               root(2, 1) * b + root(2, 2) * c)});
   }
   return next;
 }
@@ -111,15 +111,15 @@ std::size_t occupied_bins(std::span<const Pose2> poses, double metres, double ra
   bins.reserve(poses.size());
   for (const Pose2& p : poses)
     bins.emplace_back(std::floor(p.x / metres), std::floor(p.y / metres),
-                      std::floor(wrapped(p.yaw) / radians));
+                      std::floor(wrap_angle(p.yaw) / radians));
   std::ranges::sort(bins);
   return static_cast<std::size_t>(std::ranges::unique(bins).begin() - bins.begin());
 }
 
-PoseEstimate summary(std::span<const Pose2> poses, std::span<const double> weights, double radius) {
+PoseEstimate dominant_mode(std::span<const Pose2> poses, std::span<const double> weights, double radius) {
   const PoseEstimate all = moments(poses, weights);
   if (std::sqrt(all.covariance(0, 0) + all.covariance(1, 1)) < radius / 3) return all;
-  // The heaviest cell, then its surroundings.
+  // Finds the heaviest cell, then its surroundings.
   std::vector<std::tuple<double, double, std::size_t>> cells;
   for (std::size_t i = 0; i < poses.size(); ++i)
     cells.emplace_back(std::floor(poses[i].x / radius), std::floor(poses[i].y / radius), i);

@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// Poses that are asked at once, side by side in vector registers.
+/// Number of poses evaluated side by side in vector registers.
 constexpr int kLanes = 8;
 using Lanes = Eigen::Array<double, kLanes, 1>;
 
-/// atan2 for the small angles that pass a gate; to 1e-7 rad where it is a series.
+// Computes atan2 for the small angles that pass a gate; to 1e-7 rad where it is a series.
 template <class T>
 T series(const T& t) {
   const T s = t * t;
@@ -32,7 +32,7 @@ Lanes small_angle(const Lanes& y, const Lanes& x) {
   return angle;
 }
 
-/// Of angles up to half a radian, to 1e-16.
+/// For angles up to half a radian, to 1e-16.
 Lanes cosine_of(const Lanes& angle) {
   const Lanes s = angle * angle;
   Lanes sum = Lanes::Ones();
@@ -55,46 +55,50 @@ Lanes at_least(const Lanes& a, double least) {
 
 }  // namespace
 
-/// Where the sensor is and where a sighting points.
+// Position of the sensor and direction of a sighting.
 template <class T>
 struct SightingScore::View {
   T x, y, cosine, sine;
 };
 
-/// A landmark's place compared with the one seen: squared distance, and one over the determinant of its
-/// covariance.
+// Comparison of a landmark's position with the measured one: squared distance, and one over the determinant
+// of its covariance.
 template <class T>
-struct SightingScore::Place {
+struct SightingScore::PositionMatch {
   T squares, inverse_det;
 };
 
 SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
-                             const WeightOptions& options, bool use_identities)
+                             const WeightOptions& options, const IdentificationOptions& identification)
     : map_(&map),
       scales_(&scales),
       options_(options),
+      identification_(identification),
       robot_from_sensor_(seen.robot_from_sensor),
       paper_(options.weights == "paper") {
   const double gate = -2 * std::log1p(-options.gate);  // chi-square quantile of two degrees of freedom
   const double sigmas = std::sqrt(gate);
   for (const SeenLandmark& s : seen.sightings) {
-    if (!s.sound()) continue;
-    const double far = s.range ? *s.range : options.bearing_reach;
+    if (!s.is_valid()) continue;
+    const double far = s.range ? *s.range : identification.bearing_reach;
     Prepared p{.seen = s,
                .cosine = std::cos(s.bearing),
                .sine = std::sin(s.bearing),
                .range_variance = s.range ? s.range_sd * s.range_sd : 0,
                .bearing_variance = s.bearing_sd * s.bearing_sd,
                .radius = far,
-               .clutter = options.clutter * (s.range ? 1 : far),
+               .clutter = identification.clutter * (s.range ? 1 : far),
                .gate = gate,
                .candidates = {}};
     if (s.range)
       p.radius = sigmas * std::max(s.range_sd, far * std::min(s.bearing_sd, 1.0)) + sigmas * map.largest_sd();
-    p.known = use_identities && s.identity;
+    p.known = identification.use_identities && s.identity;
+    if (s.type)
+      for (std::size_t i = 0; i < kMaxFeatures; ++i)
+        p.turns = p.turns || (s.features.known(i) && scales.is_axis(*s.type, i));
     if (p.known) {
       if (const auto l = map.find(*s.identity))
-        if (const auto alike = likeness(p, *l))
+        if (const auto alike = pose_free_terms(p, *l))
           p.candidates.push_back({*l, map[*l].at, map[*l].covariance, *alike});
     }
     if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
@@ -102,8 +106,12 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
   }
 }
 
+double SightingScore::quality(std::uint32_t landmark) const {
+  return std::max((*map_)[landmark].quality, identification_.quality_floor);
+}
+
 double SightingScore::log_unseen(std::uint32_t landmark) const {
-  return std::log1p(-options_.detection * std::max((*map_)[landmark].quality, options_.quality_floor));
+  return std::log1p(-options_.detection * quality(landmark));
 }
 
 double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
@@ -126,27 +134,36 @@ double SightingScore::unseen(const Pose2& robot, std::span<const std::uint32_t> 
   return unseen(sensor.at(), std::cos(sensor.yaw), std::sin(sensor.yaw), matched);
 }
 
-std::optional<SightingScore::Likeness> SightingScore::likeness(const Prepared& p,
-                                                               std::uint32_t landmark) const {
+// For a sighting with an axis: an upper bound, without it.
+std::optional<SightingScore::PoseFreeTerms> SightingScore::pose_free_terms(const Prepared& p,
+                                                                           std::uint32_t landmark) const {
+  return feature_terms(
+      p, landmark,
+      p.turns ? features_without_axes(*scales_, *p.seen.type, p.seen.features) : p.seen.features);
+}
+
+std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const Prepared& p,
+                                                                         std::uint32_t landmark,
+                                                                         const KnownFeatures& seen) const {
   const MapLandmark& l = (*map_)[landmark];
   if (!p.known && p.seen.type && *p.seen.type != l.type) return {};
   const bool comparable = p.seen.type && *p.seen.type == l.type;
   const FeatureComparison features =
-      comparable ? compare_features(*scales_, l.type, p.seen.features, l.features, options_.feature_tolerance)
+      comparable ? compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance)
                  : FeatureComparison{};
-  if (features.largest > options_.feature_limit) return {};
-  const double quality = std::max(l.quality, options_.quality_floor);
-  // A missing feature counts 1; right ones count 1 each on average.
+  if (features.largest > identification_.feature_limit) return {};
+  // A missing feature counts 1, which is what matching features count on average.
   const double alike = std::exp((features.used - features.squares) / 2);
   const double turns = 2 * std::numbers::pi;
-  return Likeness{.scale = quality * p.seen.confidence * alike / (p.seen.range ? turns : std::sqrt(turns)),
-                  .features = features.squares,
-                  .quality = quality};
+  return PoseFreeTerms{
+      .scale = quality(landmark) * p.seen.confidence * alike / (p.seen.range ? turns : std::sqrt(turns)),
+      .features = features.squares};
 }
 
 template <class T>
-SightingScore::Place<T> SightingScore::place(const Prepared& p, const Eigen::Vector2d& at,
-                                             const Eigen::Matrix2d& c, const View<T>& view) const {
+SightingScore::PositionMatch<T> SightingScore::match_position(const Prepared& p, const Eigen::Vector2d& at,
+                                                              const Eigen::Matrix2d& c,
+                                                              const View<T>& view) const {
   using std::sqrt;
   const T dx = at.x() - view.x, dy = at.y() - view.y;
   const T ahead = view.cosine * dx + view.sine * dy, left = view.cosine * dy - view.sine * dx;
@@ -168,45 +185,53 @@ SightingScore::Place<T> SightingScore::place(const Prepared& p, const Eigen::Vec
 }
 
 template <class T>
-T SightingScore::value(const Place<T>& place, const Likeness& likeness) const {
+T SightingScore::value(const PositionMatch<T>& place, const PoseFreeTerms& pose_free_terms) const {
   using std::exp;
   using std::sqrt;
-  if (paper_) return (place.squares + likeness.features) * likeness.quality;
-  return likeness.scale * exp(-0.5 * place.squares) * sqrt(place.inverse_det);
+  if (paper_) return place.squares + pose_free_terms.features;
+  return pose_free_terms.scale * exp(-0.5 * place.squares) * sqrt(place.inverse_det);
 }
 
-SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& view, bool in_cloud) const {
+SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& view, bool in_cloud,
+                                        double sensor_yaw) const {
   Best best{paper_ ? kNone : 0, 0};
-  const auto take = [&](const Place<double>& there, const Likeness& alike, std::uint32_t landmark) {
+  KnownFeatures turned;
+  if (p.turns) turned = features_in_map(*scales_, *p.seen.type, p.seen.features, sensor_yaw);
+  const auto take = [&](const PositionMatch<double>& there, PoseFreeTerms alike, std::uint32_t landmark) {
+    if (p.turns) {
+      const auto all = feature_terms(p, landmark, turned);
+      if (!all) return;
+      alike = *all;
+    }
     const double v = value(there, alike);
     if (paper_ ? v < best.value : v > best.value) best = {v, landmark};
   };
   const double range = p.seen.range.value_or(0);
   const Eigen::Vector2d centre(view.x + range * view.cosine, view.y + range * view.sine);
-  if (p.known || (in_cloud && p.gathered)) {
+  if (p.known || (in_cloud && p.prefetched)) {
     for (const Candidate& c : p.candidates) {
       if (!p.known && !((c.at - centre).squaredNorm() <= p.radius * p.radius)) continue;
-      if (const auto there = place(p, c.at, c.covariance, view); there.squares <= p.gate)
-        take(there, c.likeness, c.landmark);
+      if (const auto there = match_position(p, c.at, c.covariance, view); there.squares <= p.gate)
+        take(there, c.pose_free_terms, c.landmark);
     }
     return best;
   }
   map_->near(centre, p.radius, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (p.seen.type && *p.seen.type != l.type) return;
-    const auto there = place(p, l.at, l.covariance, view);
+    const auto there = match_position(p, l.at, l.covariance, view);
     if (!(there.squares <= p.gate)) return;
-    if (const auto alike = likeness(p, i)) take(there, *alike, i);
+    if (const auto alike = pose_free_terms(p, i)) take(there, *alike, i);
   });
   return best;
 }
 
-// The heart of the filter.
-void SightingScore::several(const Pose2* poses, double* fit) const {
+// The hot loop of the particle filter.
+void SightingScore::score_lanes(const Pose2* poses, double* fit) const {
   Lanes x, y, turn;
   for (int i = 0; i < kLanes; ++i) {
     x[i] = poses[i].x, y[i] = poses[i].y;
-    turn[i] = wrapped(poses[i].yaw - cloud_.middle.yaw);
+    turn[i] = wrap_angle(poses[i].yaw - cloud_.middle.yaw);
   }
   const double ahead = std::cos(cloud_.middle.yaw), across = std::sin(cloud_.middle.yaw);
   const Lanes c = cosine_of(turn), s = sine_of(turn);
@@ -226,9 +251,9 @@ void SightingScore::several(const Pose2* poses, double* fit) const {
     for (const Candidate& l : p.candidates) {
       const Lanes away = (l.at.x() - centre_x).square() + (l.at.y() - centre_y).square();
       if (!(away.minCoeff() <= square)) continue;
-      const Place<Lanes> there = place(p, l.at, l.covariance, view);
+      const PositionMatch<Lanes> there = match_position(p, l.at, l.covariance, view);
       if (!(there.squares.minCoeff() <= p.gate)) continue;
-      const Lanes v = value(there, l.likeness);
+      const Lanes v = value(there, l.pose_free_terms);
       for (int i = 0; i < kLanes; ++i) {
         const double inside = away[i] <= square && there.squares[i] <= p.gate ? v[i] : 0;
         best[i] = std::max(best[i], inside);
@@ -244,8 +269,8 @@ void SightingScore::several(const Pose2* poses, double* fit) const {
 
 void SightingScore::operator()(std::span<const Pose2> poses, std::span<double> fit) const {
   std::size_t i = 0;
-  if (alike_ && std::ranges::all_of(poses, [&](const Pose2& p) { return cloud_.holds(p); }))
-    for (; i + kLanes <= poses.size(); i += kLanes) several(&poses[i], &fit[i]);
+  if (shared_candidates_ && std::ranges::all_of(poses, [&](const Pose2& p) { return cloud_.contains(p); }))
+    for (; i + kLanes <= poses.size(); i += kLanes) score_lanes(&poses[i], &fit[i]);
   for (; i < poses.size(); ++i) fit[i] = (*this)(poses[i]);
 }
 
@@ -255,16 +280,20 @@ double SightingScore::operator()(const Pose2& robot) const {
   const Eigen::Vector2d sensor(robot.x + cosine * mount.x - sine * mount.y,
                                robot.y + sine * mount.x + cosine * mount.y);
   if (mount.yaw != 0) cosine = std::cos(robot.yaw + mount.yaw), sine = std::sin(robot.yaw + mount.yaw);
-  const bool in_cloud = cloud_.holds(robot);
+  const bool in_cloud = cloud_.contains(robot);
   const bool expects = options_.expect_unseen && !paper_;
   const double detection = expects ? options_.detection : 1;
   double sum = 0, product = 1;  // of costs; of densities
   std::vector<std::uint32_t> matched;
   for (const Prepared& p : prepared_) {
     const Eigen::Vector2d along(cosine * p.cosine - sine * p.sine, sine * p.cosine + cosine * p.sine);
-    const auto [value, landmark] = best(p, {sensor.x(), sensor.y(), along.x(), along.y()}, in_cloud);
+    const auto [value, landmark] =
+        best(p, {sensor.x(), sensor.y(), along.x(), along.y()}, in_cloud, robot.yaw + mount.yaw);
     if (paper_) {
-      sum += value < kNone ? value : options_.unmatched_cost < 0 ? p.gate : options_.unmatched_cost;
+      if (value < kNone)
+        sum += value * quality(landmark);
+      else
+        sum += options_.unmatched_cost < 0 ? p.gate : options_.unmatched_cost;
       continue;
     }
     if (expects && value > 0) matched.push_back(landmark);

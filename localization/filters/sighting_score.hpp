@@ -6,54 +6,59 @@
 #include "localization/identification/identification.hpp"
 namespace waymark {
 
-/// Weighs poses by one set of sightings. Made once per set, then asked for each particle from any thread:
-/// about 60 ns per sighting where the map holds a few landmarks inside the gate, whatever its size; 20 ns for
-/// poses of a cloud it has been shown.
+/// Log likelihood of one set of sightings at a pose. Constructed once per set, then called for each
+/// particle from any thread. About 60 ns per sighting with a few landmarks inside the gate, whatever the
+/// size of the map; 20 ns for poses passed to prefetch().
 class SightingScore {
  public:
-  /// `map` and `scales` must outlive it. Unsound sightings are left out.
+  /// `map` and `scales` must outlive it. Omits invalid sightings. Uses clutter, quality floor, feature
+  /// limits, reach of bearings and identities of `identification`.
   SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
-                const WeightOptions& options, bool use_identities);
+                const WeightOptions& options, const IdentificationOptions& identification);
 
-  /// Looks up once which landmarks the sightings could be of from any of these poses, and compares their
-  /// features. No score changes by it; other poses are looked up in the map each for itself.
-  void gather(std::span<const Pose2> poses);
+  /// Looks up the candidate landmarks of the sightings for all these poses at once, and compares their
+  /// features. Does not change any score; other poses look up the map one by one.
+  void prefetch(std::span<const Pose2> poses);
 
-  /// The fit of each pose, as operator() tells it but for rounding.
+  /// Computes the fit of each pose; equals operator() of each pose up to rounding.
   void operator()(std::span<const Pose2> poses, std::span<double> fit) const;
 
-  /// `likelihood`: sum over sightings of the log of (clutter + best landmark's density times quality), and
-  /// with `expect_unseen` the sum of log(1 - q detection) over landmarks in view that no sighting is nearest
-  /// to. What stands between is not known: in dense forest choose `view_range` so that most is seen.
-  /// `paper`: e of eq. 12, the sum of match distances times qualities.
+  /// Returns the fit of a pose.
+  /// - `likelihood`: sum over sightings of the log of (clutter + best landmark's density times quality).
+  ///   With `expect_unseen`, plus log(1 - q detection) for each landmark in view that no sighting is
+  ///   nearest to. Occlusion is unknown: in dense forest choose `view_range` so that most landmarks are
+  ///   seen.
+  /// - `paper`: e of eq. 12, the sum of match(d) times the quality of the landmark of least distance.
   double operator()(const Pose2& robot) const;
   std::size_t sightings() const { return prepared_.size(); }
-  /// Landmarks that cannot be seen from where the robot about is, ascending: they are not expected.
+  /// Sets the landmarks that are hidden from the robot, ascending: they are not expected.
   void hide(std::vector<std::uint32_t> landmarks) { hidden_ = std::move(landmarks); }
-  /// The sum of log(1 - q detection) over landmarks in view that are not among those matched.
+  /// Returns the sum of log(1 - q detection) over landmarks in view that are not matched.
   double unseen(const Pose2& robot, std::span<const std::uint32_t> matched) const;
 
  private:
-  /// What of a landmark and a sighting does not depend on the pose.
-  struct Likeness {
-    double scale;              ///< `likelihood`: the density is this times exp(-squares / 2) / sqrt(det)
-    double features, quality;  ///< `paper`: the cost is (squares + features) times quality
+  /// Terms of a landmark and a sighting that do not depend on the pose.
+  struct PoseFreeTerms {
+    double scale;     ///< `likelihood`: the density is this times exp(-squares / 2) / sqrt(det)
+    double features;  ///< `paper`: their part of the distance of eq. 11
   };
   struct Candidate {
     std::uint32_t landmark;
     Eigen::Vector2d at;
     Eigen::Matrix2d covariance;
-    Likeness likeness;
+    PoseFreeTerms pose_free_terms;
   };
   struct Prepared {
     SeenLandmark seen;
     double cosine, sine;  ///< of the bearing
     double range_variance, bearing_variance;
-    double radius;   ///< m about the expected place; about the sensor where there is no range
-    double clutter;  ///< density where no landmark fits
+    double radius;   ///< m about the expected position; about the sensor without a range
+    double clutter;  ///< density of false sightings
     double gate;
-    bool known = false;     ///< it says who it is
-    bool gathered = false;  ///< `candidates` are all there are for poses of the cloud; of a known one always
+    bool known = false;  ///< it has an identity
+    bool turns = false;  ///< it has an axis, whose azimuth depends on the pose
+    bool prefetched =
+        false;  ///< `candidates` are complete for poses of the cloud; always so with an identity
     std::vector<Candidate> candidates;
   };
   /// A box of poses.
@@ -62,29 +67,32 @@ class SightingScore {
     Eigen::Vector2d half = {-1, -1};
     double turn = -1;  ///< rad, largest difference of heading
 
-    bool holds(const Pose2& pose) const {
+    bool contains(const Pose2& pose) const {
       return std::abs(pose.x - middle.x) <= half.x() && std::abs(pose.y - middle.y) <= half.y() &&
-             std::abs(wrapped(pose.yaw - middle.yaw)) <= turn;
+             std::abs(wrap_angle(pose.yaw - middle.yaw)) <= turn;
     }
   };
   template <class T>
   struct View;
   template <class T>
-  struct Place;
+  struct PositionMatch;
   struct Best {
-    double value;  ///< `likelihood`: a density, 0 where nothing fits; `paper`: a cost, infinite there
+    double value;  ///< `likelihood`: a density, 0 if nothing fits; `paper`: match(d) of eq. 10, infinite then
     std::uint32_t landmark;
   };
-  static Cloud cloud_of(std::span<const Pose2> poses);
-  void gather(Prepared& p, const Pose2& sensor, double radius);
+  static Cloud bounding_cloud(std::span<const Pose2> poses);
+  void prefetch(Prepared& p, const Pose2& sensor, double radius);
   template <class T>
-  Place<T> place(const Prepared& p, const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance,
-                 const View<T>& view) const;
+  PositionMatch<T> match_position(const Prepared& p, const Eigen::Vector2d& at,
+                                  const Eigen::Matrix2d& covariance, const View<T>& view) const;
   template <class T>
-  T value(const Place<T>& place, const Likeness& likeness) const;
-  std::optional<Likeness> likeness(const Prepared& p, std::uint32_t landmark) const;
-  Best best(const Prepared& p, const View<double>& view, bool in_cloud) const;
-  void several(const Pose2* poses, double* fit) const;
+  T value(const PositionMatch<T>& place, const PoseFreeTerms& pose_free_terms) const;
+  std::optional<PoseFreeTerms> pose_free_terms(const Prepared& p, std::uint32_t landmark) const;
+  std::optional<PoseFreeTerms> feature_terms(const Prepared& p, std::uint32_t landmark,
+                                             const KnownFeatures& seen) const;
+  Best best(const Prepared& p, const View<double>& view, bool in_cloud, double sensor_yaw) const;
+  void score_lanes(const Pose2* poses, double* fit) const;
+  double quality(std::uint32_t landmark) const;
   double log_unseen(std::uint32_t landmark) const;
   double unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
                 std::span<const std::uint32_t> matched) const;
@@ -92,13 +100,14 @@ class SightingScore {
   const LandmarkGrid* map_;
   const FeatureScales* scales_;
   WeightOptions options_;
+  IdentificationOptions identification_;
   Pose2 robot_from_sensor_;
   std::vector<Prepared> prepared_;
   bool paper_;
   Cloud cloud_;
-  bool alike_ = false;  // poses of the cloud have the same candidates, and can be asked several at once
+  bool shared_candidates_ = false;  // poses of the cloud share their candidates and are evaluated in groups
   std::vector<std::uint32_t> hidden_;
-  std::vector<TypeId> types_;  // that the sensor sees, as far as this set tells
+  std::vector<TypeId> types_;  // types in this set
 };
 
 }  // namespace waymark

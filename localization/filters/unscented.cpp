@@ -8,8 +8,8 @@
 namespace waymark {
 namespace {
 
-/// Lower triangular L with L L' = m m', without forming the product: modified Gram-Schmidt over the rows
-/// (Golub and Van Loan 2013, 5.2.8), whose triangular factor is as exact as Householder's.
+// Returns lower triangular L with L L' = m m', without forming the product. Modified Gram-Schmidt over the
+// rows (Golub and Van Loan 2013, 5.2.8), whose triangular factor is as exact as Householder's.
 template <int Columns>
 Eigen::Matrix3d lower_root(Eigen::Matrix<double, 3, Columns> m) {
   Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
@@ -37,8 +37,8 @@ struct RootedPose {
   Eigen::Matrix3d root;
 };
 
-// Points of pose and step together: 6 dimensions, 12 points of equal weight.
-RootedPose root_moved(const RootedPose& before, const BodyMotion& motion) {
+// Sigma points of pose and step together: 6 dimensions, 12 points of equal weight.
+RootedPose predict_root(const RootedPose& before, const BodyMotion& motion) {
   constexpr int kPoints = 12;
   const Eigen::Matrix3d noise = square_root(motion.covariance);
   const double reach = std::sqrt(6.0);
@@ -56,12 +56,12 @@ RootedPose root_moved(const RootedPose& before, const BodyMotion& motion) {
   Eigen::Vector3d mean = points.rowwise().mean();
   mean.z() = circular_mean(yaws, kPoints);
   points.colwise() -= mean;
-  for (int i = 0; i < kPoints; ++i) points(2, i) = wrapped(points(2, i));
+  for (int i = 0; i < kPoints; ++i) points(2, i) = wrap_angle(points(2, i));
   return {pose_of(mean), lower_root<kPoints>(points / std::sqrt(double{kPoints}))};
 }
 
-RootedPose root_updated(const RootedPose& before, const SeenLandmark& seen_landmark,
-                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+RootedPose update_root(const RootedPose& before, const SeenLandmark& seen_landmark,
+                       const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
   constexpr int kPoints = 6;
   const double reach = std::sqrt(3.0);
   Eigen::Matrix<double, 3, kPoints> points;
@@ -76,7 +76,7 @@ RootedPose root_updated(const RootedPose& before, const SeenLandmark& seen_landm
   Eigen::Vector2d mean = seen.rowwise().mean();
   mean[1] = circular_mean(bearings, kPoints);
   seen.colwise() -= mean;
-  for (int i = 0; i < kPoints; ++i) seen(1, i) = wrapped(seen(1, i));
+  for (int i = 0; i < kPoints; ++i) seen(1, i) = wrap_angle(seen(1, i));
   points /= std::sqrt(double{kPoints});
   seen /= std::sqrt(double{kPoints});
 
@@ -95,15 +95,15 @@ RootedPose root_updated(const RootedPose& before, const SeenLandmark& seen_landm
 
 }  // namespace
 
-PoseEstimate unscented_moved(const PoseEstimate& estimate, const BodyMotion& motion) {
-  const RootedPose after = root_moved({estimate.pose, square_root(estimate.covariance)}, motion);
+PoseEstimate ukf_predict(const PoseEstimate& estimate, const BodyMotion& motion) {
+  const RootedPose after = predict_root({estimate.pose, square_root(estimate.covariance)}, motion);
   return {after.pose, after.root * after.root.transpose()};
 }
 
-PoseEstimate unscented_updated(const PoseEstimate& estimate, const SeenLandmark& seen,
-                               const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
-  const RootedPose after = root_updated({estimate.pose, square_root(estimate.covariance)}, seen,
-                                        robot_from_sensor, landmark, trust);
+PoseEstimate ukf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
+                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+  const RootedPose after = update_root({estimate.pose, square_root(estimate.covariance)}, seen,
+                                       robot_from_sensor, landmark, trust);
   return {after.pose, after.root * after.root.transpose()};
 }
 
@@ -116,15 +116,15 @@ UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkWindow map, 
     throw std::invalid_argument("the start of a filter must be finite");
 }
 
-void UnscentedKalman::move(const BodyMotion& motion) {
-  const RootedPose after = root_moved({pose_, root_}, motion);
+void UnscentedKalman::predict(const BodyMotion& motion) {
+  const RootedPose after = predict_root({pose_, root_}, motion);
   pose_ = after.pose, root_ = after.root;
 }
 
-void UnscentedKalman::update(const std::vector<Use>& uses, const Pose2& robot_from_sensor) {
-  for (const Use& use : uses) {
+void UnscentedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
+  for (const MatchedSighting& use : uses) {
     const RootedPose after =
-        root_updated({pose_, root_}, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+        update_root({pose_, root_}, *use.seen, robot_from_sensor, *use.landmark, use.trust);
     pose_ = after.pose, root_ = after.root;
   }
 }
@@ -136,7 +136,7 @@ void UnscentedKalman::replace(const PoseEstimate& estimate) {
 
 void UnscentedKalman::widen(double factor) {
   const Eigen::Vector3d sd = (root_ * root_.transpose()).diagonal().cwiseSqrt();
-  root_ = widest(sd * factor).asDiagonal();
+  root_ = clamp_sd(sd * factor).asDiagonal();
 }
 
 }  // namespace waymark

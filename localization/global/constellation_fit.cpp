@@ -15,11 +15,11 @@ constexpr std::size_t kKept = 10;
 
 }  // namespace
 
-Eigen::Matrix2d turned(double yaw) {
+Eigen::Matrix2d rotation(double yaw) {
   return Eigen::Rotation2Dd(yaw).toRotationMatrix();
 }
 
-std::vector<ConstellationFix> ConstellationSearch::fitted() {
+std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
   double sd = index_.typical_sd_;
   for (const Seen& s : points_) sd = std::max(sd, s.sd);
   const double cell = std::max(3 * sd, 1e-6), turn = 0.15;
@@ -29,9 +29,9 @@ std::vector<ConstellationFix> ConstellationSearch::fitted() {
   };
   std::unordered_map<std::uint64_t, Crowd> crowds;
   const auto key = [&](const Guess& g) {
-    const Eigen::Vector3d at = plane_at(index_.places_[g.anchor]).place(g.middle) / cell;
-    std::uint64_t k = mixed(static_cast<std::uint64_t>(std::llround(wrapped(g.yaw) / turn)));
-    for (int i = 0; i < 3; ++i) k = mixed(k ^ static_cast<std::uint64_t>(std::llround(at[i])));
+    const Eigen::Vector3d at = plane_at(index_.positions_[g.anchor]).point(g.middle) / cell;
+    std::uint64_t k = mix_bits(static_cast<std::uint64_t>(std::llround(wrap_angle(g.yaw) / turn)));
+    for (int i = 0; i < 3; ++i) k = mix_bits(k ^ static_cast<std::uint64_t>(std::llround(at[i])));
     return k;
   };
   for (std::size_t i = 0; i < guesses_.size(); ++i) {
@@ -40,7 +40,7 @@ std::vector<ConstellationFix> ConstellationSearch::fitted() {
   }
   std::vector<Crowd> ranked;
   for (const auto& [k, crowd] : crowds) ranked.push_back(crowd);
-  const auto best = std::min(ranked.size(), static_cast<std::size_t>(o_.most_tried));
+  const auto best = std::min(ranked.size(), static_cast<std::size_t>(o_.max_tried));
   std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(best), ranked.end(),
                     [](const Crowd& a, const Crowd& b) {
                       return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
@@ -56,11 +56,11 @@ std::vector<ConstellationFix> ConstellationSearch::fitted() {
 void ConstellationSearch::keep(std::vector<ConstellationFix>& fixes, ConstellationFix fix) const {
   for (ConstellationFix& other : fixes) {
     const Eigen::Vector3d apart =
-        other.plane.place(other.on_plane.pose.at()) - fix.plane.place(fix.on_plane.pose.at());
+        other.plane.point(other.plane_pose.pose.at()) - fix.plane.point(fix.plane_pose.pose.at());
     std::size_t shared = 0;
     for (std::size_t i = 0; i < fix.landmarks.size(); ++i)
       shared += fix.landmarks[i] && fix.landmarks[i] == other.landmarks[i];
-    if (2 * shared < static_cast<std::size_t>(fix.matched) && apart.norm() > 3 * near_enough(fix, other))
+    if (2 * shared < static_cast<std::size_t>(fix.matched) && apart.norm() > 3 * combined_sd(fix, other))
       continue;
     if (2 * shared < static_cast<std::size_t>(fix.matched)) continue;
     if (badness(fix) < badness(other)) other = std::move(fix);
@@ -69,29 +69,29 @@ void ConstellationSearch::keep(std::vector<ConstellationFix>& fixes, Constellati
   fixes.push_back(std::move(fix));
 }
 
-double ConstellationSearch::near_enough(const ConstellationFix& a, const ConstellationFix& b) {
-  return std::sqrt(a.on_plane.covariance.diagonal().head<2>().sum() +
-                   b.on_plane.covariance.diagonal().head<2>().sum());
+double ConstellationSearch::combined_sd(const ConstellationFix& a, const ConstellationFix& b) {
+  return std::sqrt(a.plane_pose.covariance.diagonal().head<2>().sum() +
+                   b.plane_pose.covariance.diagonal().head<2>().sum());
 }
 
 std::optional<ConstellationFix> ConstellationSearch::fit(const Guess& g) const {
-  // The plane touches where the middle of the sightings is thought to be: distances are true there.
-  PlacedLandmark middle = index_.places_[g.anchor];
+  // The plane touches the surface at the expected centroid of the sightings, where distances are true.
+  LandmarkPosition middle = index_.positions_[g.anchor];
   const TangentPlane first = plane_at(middle);
   TangentPlane plane = first;
   Eigen::Vector2d offset = g.middle;
   std::vector<Local> locals;
   const double reach = 1.3 * extent_ + 3 * o_.sigmas * index_.typical_sd_ + 1e-9;
-  index_.cells_.near(first.place(offset), reach, [&](std::uint32_t i, double) {
-    locals.push_back({i, flattened(plane, index_.places_[i].at)});
+  index_.cells_.near(first.point(offset), reach, [&](std::uint32_t i, double) {
+    locals.push_back({i, flatten(plane, index_.positions_[i].at)});
   });
   if (locals.size() < 2) return {};
   std::ranges::sort(locals, {}, &Local::landmark);
 
-  // From the pose of the middle to that of the robot.
-  const Eigen::Vector2d robot = offset - turned(g.yaw) * middle_;
-  PoseEstimate e{{robot.x(), robot.y(), wrapped(g.yaw)}, Eigen::Matrix3d::Zero()};
-  double slack = 2;  // the guess is of three sightings only; tightened as all of them join
+  // From the pose of the centroid to that of the robot.
+  const Eigen::Vector2d robot = offset - rotation(g.yaw) * middle_;
+  PoseEstimate e{{robot.x(), robot.y(), wrap_angle(g.yaw)}, Eigen::Matrix3d::Zero()};
+  double slack = 2;  // a guess uses three sightings only; tightened as more are matched
   Matches matches, last;
   for (int round = 0; round < 6; ++round) {
     matches = match(e.pose, locals, slack);
@@ -102,11 +102,11 @@ std::optional<ConstellationFix> ConstellationSearch::fit(const Guess& g) const {
   }
   matches = match(e.pose, locals, 1);
   if (!adjust(e, matches, locals)) return {};
-  return judged(e, plane, matches, locals);
+  return evaluate_fix(e, plane, matches, locals);
 }
 
 Eigen::Matrix2d ConstellationSearch::spread(const Seen& s, const Pose2& pose, std::uint32_t landmark) const {
-  const Eigen::Matrix2d r = turned(pose.yaw);
+  const Eigen::Matrix2d r = rotation(pose.yaw);
   return r * s.covariance * r.transpose() + index_.landmarks_[landmark].covariance;
 }
 
@@ -119,7 +119,7 @@ ConstellationSearch::Matches ConstellationSearch::match(const Pose2& pose, const
   };
   std::vector<Pair> pairs;
   const double gate = o_.sigmas * o_.sigmas * slack * slack;
-  const Eigen::Matrix2d r = turned(pose.yaw);
+  const Eigen::Matrix2d r = rotation(pose.yaw);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const Eigen::Vector2d at = pose.at() + r * points_[i].at;
     const Eigen::Matrix2d seen = r * points_[i].covariance * r.transpose();
@@ -148,8 +148,8 @@ bool ConstellationSearch::adjust(PoseEstimate& e, const Matches& matches,
                                  const std::vector<Local>& locals) const {
   for (int step = 0; step < 2; ++step) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-    const Eigen::Matrix2d r = turned(e.pose.yaw);
+    Eigen::Vector3d information_vector = Eigen::Vector3d::Zero();
+    const Eigen::Matrix2d r = rotation(e.pose.yaw);
     int count = 0;
     for (std::size_t i = 0; i < matches.size(); ++i) {
       if (!matches[i]) continue;
@@ -159,13 +159,13 @@ bool ConstellationSearch::adjust(PoseEstimate& e, const Matches& matches,
       j << 1, 0, -seen.y(), 0, 1, seen.x();
       const Eigen::Matrix2d weight = spread(points_[i], e.pose, l.landmark).inverse();
       information += j.transpose() * weight * j;
-      pull += j.transpose() * weight * (l.at - e.pose.at() - seen);
+      information_vector += j.transpose() * weight * (l.at - e.pose.at() - seen);
       ++count;
     }
     if (count < 2) return false;
     const Eigen::LDLT<Eigen::Matrix3d> solver(information);
     if (solver.info() != Eigen::Success || !solver.isPositive()) return false;
-    const Eigen::Vector3d change = solver.solve(pull);
+    const Eigen::Vector3d change = solver.solve(information_vector);
     if (!change.allFinite()) return false;
     e.pose = pose_of(e.pose.vector() + change);
     e.covariance = solver.solve(Eigen::Matrix3d::Identity());
@@ -173,10 +173,11 @@ bool ConstellationSearch::adjust(PoseEstimate& e, const Matches& matches,
   return e.covariance.allFinite();
 }
 
-ConstellationFix ConstellationSearch::judged(const PoseEstimate& e, const TangentPlane& plane,
-                                             const Matches& matches, const std::vector<Local>& locals) const {
+ConstellationFix ConstellationSearch::evaluate_fix(const PoseEstimate& e, const TangentPlane& plane,
+                                                   const Matches& matches,
+                                                   const std::vector<Local>& locals) const {
   ConstellationFix fix{
-      .plane = plane, .on_plane = e, .landmarks = {}, .matched = 0, .squares = 0, .log_false_alarms = 0};
+      .plane = plane, .plane_pose = e, .landmarks = {}, .matched = 0, .squares = 0, .log_false_alarms = 0};
   fix.landmarks.resize(total_);
   const double reach = 1.3 * extent_ + 1e-9;
   const double density = static_cast<double>(locals.size()) / (std::numbers::pi * reach * reach);
@@ -191,14 +192,14 @@ ConstellationFix ConstellationSearch::judged(const PoseEstimate& e, const Tangen
     tail[0] *= 1 - p;
     if (!matches[i]) continue;
     const Local& l = locals[*matches[i]];
-    const Eigen::Vector2d d = l.at - e.pose.at() - turned(e.pose.yaw) * points_[i].at;
+    const Eigen::Vector2d d = l.at - e.pose.at() - rotation(e.pose.yaw) * points_[i].at;
     fix.squares += d.dot(spread(points_[i], e.pose, l.landmark).inverse() * d);
     fix.landmarks[points_[i].index] = l.landmark;
     ++fix.matched;
   }
   double chance = 0;
   for (std::size_t m = tail.size(); m-- > static_cast<std::size_t>(fix.matched);) chance += tail[m];
-  // Poses that can be told apart: the volume of all over the volume of one.
+  // Number of distinguishable poses: the volume of all over the volume of one.
   const double one =
       std::pow(2 * std::numbers::pi, 1.5) * std::sqrt(std::max(e.covariance.determinant(), 1e-300));
   fix.log_false_alarms =

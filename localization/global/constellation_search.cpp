@@ -8,14 +8,14 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kMostSightings = 40;  // the nearest ones; more add time and nothing else
+constexpr std::size_t kMostSightings = 40;  // the nearest ones; more only cost time
 constexpr std::size_t kSeenNeighbours = 7;
-constexpr double kMostCells = 3000;  // of one triangle: beyond, its lengths are too uncertain to look up
-constexpr std::size_t kMostGuesses = 30000;  // from the triangles that fit the fewest places
+constexpr double kMostCells = 3000;  // of one triangle; with more its lengths are too uncertain to look up
+constexpr std::size_t kMostGuesses = 30000;  // from the triangles with the fewest hits
 
 }  // namespace
 
-TangentPlane plane_at(const PlacedLandmark& place) {
+TangentPlane plane_at(const LandmarkPosition& place) {
   const Eigen::Vector3d pole = Eigen::Vector3d::UnitZ();
   if (place.up.dot(pole) > 1 - 1e-12) return {.origin = place.at};
   const Eigen::Vector3d east = pole.cross(place.up).normalized();
@@ -23,7 +23,7 @@ TangentPlane plane_at(const PlacedLandmark& place) {
 }
 
 /// On the plane, at the true distance from its origin.
-Eigen::Vector2d flattened(const TangentPlane& plane, const Eigen::Vector3d& at) {
+Eigen::Vector2d flatten(const TangentPlane& plane, const Eigen::Vector3d& at) {
   const Eigen::Vector3d d = at - plane.origin;
   const Eigen::Vector2d p(plane.east.dot(d), plane.north.dot(d));
   const double flat = p.norm();
@@ -45,12 +45,12 @@ ConstellationAnswer ConstellationSearch::find() {
   if (index_.size() == 0) return {.fix = {}, .reason = "the map is empty", .candidates = {}};
   std::size_t named = 0;
   for (const Seen& s : points_) named += s.named.has_value();
-  if (named < 2 && points_.size() < static_cast<std::size_t>(o_.least_matches))
-    return {.fix = {}, .reason = "too few sightings with a range", .candidates = {}};
+  if (named < 2 && points_.size() < static_cast<std::size_t>(o_.min_matches))
+    return {.fix = {}, .reason = "too few sightings with range", .candidates = {}};
   if (named >= 2) guess_by_names();
   if (named < 2) guess_by_triangles();
   if (guesses_.empty()) return {.fix = {}, .reason = "no such constellation in the map", .candidates = {}};
-  ConstellationAnswer answer{.fix = {}, .reason = {}, .candidates = fitted()};
+  ConstellationAnswer answer{.fix = {}, .reason = {}, .candidates = fit_guesses()};
   answer.reason = verdict(answer.candidates, named);
   if (answer.reason.empty()) answer.fix = answer.candidates[0];
   return answer;
@@ -58,9 +58,10 @@ ConstellationAnswer ConstellationSearch::find() {
 
 void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   const SeenLandmark& s = seen.sightings[i];
-  if (!s.sound() || !s.range || s.type == kNoSuchType) return;
+  if (!s.is_valid() || !s.range || s.type == kNoSuchType) return;
   Seen p{.index = i,
          .sighting = &s,
+         .features = s.type ? features_without_axes(index_.scales_, *s.type, s.features) : s.features,
          .at = {},
          .covariance = {},
          .range = *s.range,
@@ -71,10 +72,10 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   const double along = mount.yaw + s.bearing;
   p.at = mount.at() + *s.range * Eigen::Vector2d(std::cos(along), std::sin(along));
   const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
-  const Eigen::Matrix2d r = turned(along);
+  const Eigen::Matrix2d r = rotation(along);
   p.covariance = r * sd.cwiseAbs2().asDiagonal() * r.transpose();
   p.sd = sd.maxCoeff();
-  if (o_.use_identities && s.identity) {
+  if (o_.identification.use_identities && s.identity) {
     const auto found = index_.by_key_.find(*s.identity);
     if (found == index_.by_key_.end()) return;
     p.named = found->second;
@@ -87,8 +88,8 @@ bool ConstellationSearch::alike(const Seen& s, std::uint32_t landmark) const {
   const MapLandmark& l = index_.landmarks_[landmark];
   if (!s.sighting->type) return true;
   if (*s.sighting->type != l.type) return false;
-  return compare_features(index_.scales_, l.type, s.sighting->features, l.features, o_.feature_tolerance)
-             .largest <= o_.feature_limit;
+  return compare_features(index_.scales_, l.type, s.features, l.features, o_.identification.feature_tolerance)
+             .largest <= o_.identification.feature_limit;
 }
 
 double ConstellationSearch::rarity(const Seen& s) const {
@@ -101,11 +102,11 @@ double ConstellationSearch::rarity(const Seen& s) const {
 void ConstellationSearch::guess(std::uint32_t anchor, const std::array<const Seen*, 3>& seen,
                                 const std::array<std::uint32_t, 3>& landmarks, std::size_t count,
                                 double weight) {
-  const TangentPlane plane = plane_at(index_.places_[anchor]);
+  const TangentPlane plane = plane_at(index_.positions_[anchor]);
   Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = from;
   std::array<Eigen::Vector2d, 3> flat;
   for (std::size_t i = 0; i < count; ++i) {
-    flat[i] = flattened(plane, index_.places_[landmarks[i]].at);
+    flat[i] = flatten(plane, index_.positions_[landmarks[i]].at);
     from += seen[i]->at / static_cast<double>(count), to += flat[i] / static_cast<double>(count);
   }
   double cosine = 0, sine = 0;
@@ -114,7 +115,7 @@ void ConstellationSearch::guess(std::uint32_t anchor, const std::array<const See
     cosine += a.dot(b), sine += a.x() * b.y() - a.y() * b.x();
   }
   const double yaw = std::atan2(sine, cosine);
-  guesses_.push_back({anchor, to + turned(yaw) * (middle_ - from), yaw, weight});
+  guesses_.push_back({anchor, to + rotation(yaw) * (middle_ - from), yaw, weight});
 }
 
 void ConstellationSearch::guess_by_names() {
@@ -123,7 +124,7 @@ void ConstellationSearch::guess_by_names() {
       const Seen &a = points_[i], &b = points_[j];
       if (!a.named || !b.named || *a.named == *b.named) continue;
       const double seen = (a.at - b.at).norm();
-      const double real = (index_.places_[*a.named].at - index_.places_[*b.named].at).norm();
+      const double real = (index_.positions_[*a.named].at - index_.positions_[*b.named].at).norm();
       const double sd = std::sqrt(a.sd * a.sd + b.sd * b.sd + 2 * index_.typical_sd_ * index_.typical_sd_);
       if (std::abs(seen - real) <= o_.sigmas * sd && seen > 2 * sd)
         guess(*a.named, {&a, &b, nullptr}, {*a.named, *b.named, 0}, 2, 1);
@@ -149,7 +150,7 @@ void ConstellationSearch::guess_by_triangles() {
   std::vector<std::vector<Hit>> all;
   for (const auto& t : triples)
     if (look_up(t); !hits_.empty()) all.push_back(std::move(hits_));
-  // What fits few places says most.
+  // Triangles with few hits are the most informative.
   std::ranges::stable_sort(all, {}, &std::vector<Hit>::size);
   for (const auto& hits : all) {
     const double weight = 1 / static_cast<double>(hits.size());
@@ -178,13 +179,13 @@ void ConstellationSearch::look_up(const std::array<const Seen*, 3>& c) {
   if (side[0] + slack[0] < side[1] - slack[1] || side[1] + slack[1] < side[2] - slack[2]) return;
   const Eigen::Vector2d ab = c[1]->at - c[0]->at, ac = c[2]->at - c[0]->at;
   const double area = ab.x() * ac.y() - ab.y() * ac.x();
-  // Too flat to say how it turns: the height over the longest side is within the error.
+  // Too flat to have an orientation: the height over the longest side is within the error.
   if (!(std::abs(area) > side[0] * std::max(slack[0], slack[2]) / 2)) return;
   const double cell = index_.length_cell_;
   const auto low = [&](std::size_t i) { return std::floor(std::max(0.0, side[i] - slack[i]) / cell); };
   const auto high = [&](std::size_t i) { return std::floor((side[i] + slack[i]) / cell); };
   if ((high(0) - low(0) + 1) * (high(1) - low(1) + 1) > kMostCells || index_.corners_.empty()) return;
-  for (const auto& types : types_of(c))
+  for (const auto& types : possible_types(c))
     for (double x = low(0); x <= high(0); ++x)
       for (double y = low(1); y <= std::min(high(1), x); ++y) {
         const std::size_t bucket = index_.bucket(index_.key(types, x, y, area > 0));
@@ -197,11 +198,11 @@ void ConstellationSearch::compare(const std::array<const Seen*, 3>& c,
                                   const std::array<std::uint32_t, 3>& corners,
                                   const std::array<double, 3>& side, const std::array<double, 3>& slack,
                                   double x, double y, bool left) {
-  const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return index_.places_[corners[i]].at; };
+  const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return index_.positions_[corners[i]].at; };
   for (std::size_t i = 0; i < 3; ++i) {
     const double real = (at((i + 1) % 3) - at((i + 2) % 3)).norm();
     if (!(std::abs(real - side[i]) <= slack[i])) return;
-    // Another key in the same bucket would be met again in its own cell.
+    // Another key in the same bucket is found again in its own cell.
     if (i < 2 && std::floor(real / index_.length_cell_) != (i == 0 ? x : y)) return;
   }
   if (index_.turns_left(corners) != left) return;
@@ -210,7 +211,8 @@ void ConstellationSearch::compare(const std::array<const Seen*, 3>& c,
   hits_.push_back({c, corners});
 }
 
-std::vector<std::array<TypeId, 3>> ConstellationSearch::types_of(const std::array<const Seen*, 3>& c) const {
+std::vector<std::array<TypeId, 3>> ConstellationSearch::possible_types(
+    const std::array<const Seen*, 3>& c) const {
   std::vector<std::array<TypeId, 3>> all{{}};
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<std::array<TypeId, 3>> next;
@@ -236,14 +238,14 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
   const ConstellationFix& best = fixes[0];
   if (named >= 2) {
     const double least = std::max(2.0, 0.6 * static_cast<double>(named));
-    return best.matched >= least ? "" : "the names contradict the distances";
+    return best.matched >= least ? "" : "the identities contradict the distances";
   }
-  if (best.matched < o_.least_matches) return "too few sightings fit one place";
+  if (best.matched < o_.min_matches) return "too few sightings fit one pose";
   if (2 * best.matched < static_cast<int>(points_.size()) && best.matched < 8)
-    return "most sightings do not fit the best place";
-  if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best place may fit by chance";
+    return "most sightings do not fit the best pose";
+  if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
   if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
-    return "two places fit alike";
+    return "two poses fit alike";
   return "";
 }
 

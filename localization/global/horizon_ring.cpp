@@ -17,9 +17,9 @@ std::vector<HorizonEdge> horizon_ring(const TerrainGrid& ground, const Eigen::Ve
     const double azimuth = (s + 0.5) * width, dx = std::cos(azimuth), dy = std::sin(azimuth);
     double best = -1e9, far = 0, block = cell;
     int level = 0;
-    const double end = std::min(options.reach, ground.way_out(at, {dx, dy}));
+    const double end = std::min(options.reach, ground.exit_distance(at, {dx, dy}));
     for (double t = std::max(nearest, cell); t < end; t += 0.7 * block) {
-      if (above < best * t) break;  // nothing further away can be higher
+      if (above < best * t) break;  // no farther terrain can be higher
       while (2 * block <= t * width && level + 1 < ground.levels()) block *= 2, ++level;
       const float h = ground.highest(at.x() + dx * t, at.y() + dy * t, level);
       if (h == TerrainGrid::kNone) continue;
@@ -37,11 +37,11 @@ HorizonEdge horizon_at(const TerrainGrid& ground, const Eigen::Vector2d& at, dou
   const double bend = curvature_drop(1, options.body_radius, options.refraction);
   const double above = ground.summit() - eye;
   double best = -1e9, far = 0;
-  const double end = std::min(options.reach, ground.way_out(at, {dx, dy}));
+  const double end = std::min(options.reach, ground.exit_distance(at, {dx, dy}));
   for (double t = cell; t < end; t += std::max(0.7 * cell, 0.004 * t)) {
     if (above < best * t) break;
     const double rise = (ground.height(at.x() + dx * t, at.y() + dy * t) - bend * t * t - eye) / t;
-    if (rise > best) best = rise, far = t;  // false for ground that is not known
+    if (rise > best) best = rise, far = t;  // false for unknown terrain
   }
   return {static_cast<float>(best), static_cast<float>(far)};
 }

@@ -8,11 +8,11 @@
 #include "core/random.hpp"
 namespace waymark {
 
-/// Points of space in hashed cubes, for maps that may go round a body: a plane is the case z = 0. Immutable.
+/// Points in hashed cubes, for maps around a body; a plane is the case z = 0. Immutable.
 class PointCells {
  public:
   PointCells() = default;
-  /// `cell` metres; 0: about two points in a cell, taken as strewn over the faces of their box.
+  /// `cell` metres; 0: about two points in a cell, assuming they cover the faces of their box.
   explicit PointCells(std::span<const Eigen::Vector3d> points, double cell = 0);
 
   double cell() const { return cell_; }
@@ -55,7 +55,7 @@ class PointCells {
   };
   static std::uint64_t key_of(double x, double y, double z) {
     const auto word = [](double v) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(v)); };
-    return mixed(mixed(mixed(word(x)) ^ word(y)) ^ word(z));
+    return mix_bits(mix_bits(mix_bits(word(x)) ^ word(y)) ^ word(z));
   }
   std::size_t bucket_of(std::uint64_t key) const { return key & (first_.size() - 2); }
 

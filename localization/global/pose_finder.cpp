@@ -6,14 +6,14 @@
 namespace waymark {
 namespace {
 
-constexpr double kElsewhere = 16.3;    // squared distance of two poses, 99.9 % of three numbers
-constexpr double kLeastElsewhere = 1;  // m: of less a filter recovers by itself
+constexpr double kElsewhere = 16.3;    // squared distance of two poses: 99.9 % of chi-square, 3 dof
+constexpr double kLeastElsewhere = 1;  // m: a filter recovers from less by itself
 
 }  // namespace
 
-bool are_apart(const PoseEstimate& found, const PoseEstimate& other) {
+bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
   const Eigen::Vector3d d(found.pose.x - other.pose.x, found.pose.y - other.pose.y,
-                          wrapped(found.pose.yaw - other.pose.yaw));
+                          wrap_angle(found.pose.yaw - other.pose.yaw));
   const Eigen::Matrix3d both = 4 * found.covariance + other.covariance + 1e-9 * Eigen::Matrix3d::Identity();
   return d.head<2>().norm() > kLeastElsewhere && !(d.dot(both.inverse() * d) < kElsewhere);
 }

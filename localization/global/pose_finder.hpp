@@ -7,19 +7,19 @@
 #include "localization/sighting.hpp"
 namespace waymark {
 
-/// Where a robot may be that sees this, in the map's frame.
-struct FoundPoses {
-  std::optional<PoseEstimate> sure;    ///< the one place it can be
-  std::vector<PoseEstimate> possible;  ///< best first, the sure one too
-  std::string_view reason = {};        ///< why none is sure
+/// Result of a global localization, in the map's frame.
+struct PoseSearchResult {
+  std::optional<PoseEstimate> accepted;  ///< the only pose that explains the sightings
+  std::vector<PoseEstimate> candidates;  ///< best first, including the accepted one
+  std::string_view reason = {};          ///< why none is accepted
 };
 
-/// Answers "where am I?" without knowing anything but the map.
-using PoseFinder = std::function<FoundPoses(const SightingSet&)>;
+/// Global localization: finds the pose of the robot from sightings and the map alone.
+using PoseFinder = std::function<PoseSearchResult(const SightingSet&)>;
 
-/// Whether a pose that was found is not the other one: more than a metre off, and more than both covariances
-/// explain. That of the found one counts four times, as the finder does not know how odometry blurred what
-/// is remembered.
-bool are_apart(const PoseEstimate& found, const PoseEstimate& other);
+/// Returns whether a found pose differs from another by more than a metre and more than both covariances
+/// explain. Counts the covariance of the found pose four times, because the finder does not know the
+/// odometry noise in remembered sightings.
+bool are_distinct(const PoseEstimate& found, const PoseEstimate& other);
 
 }  // namespace waymark

@@ -9,8 +9,8 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kMost = 200;
-constexpr double kSame = 9.2;     // squared distance of two sightings of one landmark, 99 % of two numbers
-constexpr double kBlurred = 0.3;  // standard deviation over range: of no more use
+constexpr double kSame = 9.2;     // squared distance of one landmark's sightings: 99 % of chi-square, 2 dof
+constexpr double kBlurred = 0.3;  // standard deviation over range above which a sighting is dropped
 constexpr double kTolerance = 0.15;
 
 bool alike(const SeenLandmark& a, const SeenLandmark& b) {
@@ -27,9 +27,9 @@ bool alike(const SeenLandmark& a, const SeenLandmark& b) {
 
 }  // namespace
 
-void SightingMemory::move(const BodyMotion& motion) {
-  const SeenAfter after(motion);
-  for (Point& p : points_) after.move(p.at, p.covariance);
+void SightingMemory::predict(const BodyMotion& motion) {
+  const MotionCompensation after(motion);
+  for (Point& p : points_) after.apply(p.at, p.covariance);
   std::erase_if(points_, [](const Point& p) {
     return !(p.covariance.trace() < kBlurred * kBlurred * std::max(1.0, p.at.squaredNorm()));
   });
@@ -38,8 +38,9 @@ void SightingMemory::move(const BodyMotion& motion) {
 void SightingMemory::add(const SightingSet& seen) {
   std::vector<Point> fresh;
   std::vector<bool> taken(points_.size(), false);
-  for (const SeenLandmark& s : seen.sightings) {
-    if (!s.sound() || !s.range || s.type == kNoSuchType) continue;
+  for (SeenLandmark s : seen.sightings) {
+    if (!s.is_valid() || !s.range || s.type == kNoSuchType) continue;
+    if (s.type) s.features = features_without_axes(scales_, *s.type, s.features);
     const double along = seen.robot_from_sensor.yaw + s.bearing;
     const Eigen::Matrix2d r = Eigen::Rotation2Dd(along).toRotationMatrix();
     const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
@@ -63,7 +64,7 @@ void SightingMemory::add(const SightingSet& seen) {
     Point& old = points_[*nearest];
     const Eigen::Matrix2d gain = old.covariance * (old.covariance + p.covariance).inverse();
     old.at += gain * (p.at - old.at);
-    // Errors of one landmark's sightings are alike: the mean is not better than the best of them.
+    // Errors of one landmark's sightings are correlated: the mean is no better than the best of them.
     if (p.covariance.trace() < old.covariance.trace()) old.covariance = p.covariance;
     ++old.times;
   }
@@ -95,10 +96,10 @@ SightingSet SightingMemory::recall(std::size_t most) const {
   return set;
 }
 
-SightingSet with_bearings(SightingSet remembered, const SightingSet& seen) {
+SightingSet add_bearings(SightingSet remembered, const SightingSet& seen) {
   for (SeenLandmark s : seen.sightings) {
     if (s.range) continue;
-    s.bearing = wrapped(s.bearing + seen.robot_from_sensor.yaw);
+    s.bearing = wrap_angle(s.bearing + seen.robot_from_sensor.yaw);
     remembered.sightings.push_back(s);
   }
   return remembered;

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "localization/body_motion.hpp"
+#include "localization/identification/feature_distance.hpp"
 #include "localization/sighting.hpp"
 namespace waymark {
 
-/// What a robot has seen on its last way, carried along by odometry, as one set of sightings from where it
-/// stands now. Sightings of one landmark at different times become one.
+/// Recent sightings of a robot, predicted by odometry to its present frame, as one set. Sightings of one
+/// landmark at different times are merged.
 class SightingMemory {
  public:
-  void move(const BodyMotion& motion);
+  /// `scales` name the features that turn with the robot, which are not remembered.
+  explicit SightingMemory(FeatureScales scales = {}) : scales_(std::move(scales)) {}
+
+  void predict(const BodyMotion& motion);
   void add(const SightingSet& seen);
   void clear() { points_.clear(); }
-  /// At most `most` sightings, those best known first.
+  /// Returns at most `most` sightings, the most precise first.
   SightingSet recall(std::size_t most = 30) const;
   std::size_t size() const { return points_.size(); }
 
@@ -22,10 +26,11 @@ class SightingMemory {
     SeenLandmark seen;
     int times = 1;
   };
+  FeatureScales scales_;
   std::vector<Point> points_;
 };
 
-/// What is remembered, and those of the set at hand that have no range and are not remembered.
-SightingSet with_bearings(SightingSet remembered, const SightingSet& seen);
+/// Adds to remembered sightings those of the current set without range, which are not remembered.
+SightingSet add_bearings(SightingSet remembered, const SightingSet& seen);
 
 }  // namespace waymark

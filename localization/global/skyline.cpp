@@ -14,7 +14,7 @@ namespace waymark {
 namespace {
 
 constexpr std::size_t kKept = 10, kHeadings = 3;
-constexpr std::size_t kBeam[] = {1500, 600, 250, 150};  // places looked at more closely, level by level
+constexpr std::size_t kBeam[] = {1500, 600, 250, 150};  // positions refined, by level
 
 double badness(const SkylineFix& f) {
   return f.log_false_alarms;
@@ -41,10 +41,10 @@ class SkylineSearch {
     const auto usable = static_cast<double>(
         std::ranges::count_if(tops_, [](const HorizonTop& t) { return t.elevation.has_value(); }));
     if (index_.summits_.size() < 3)
-      return {.fix = {}, .reason = "the map has too few summits", .candidates = {}};
+      return {.fix = {}, .reason = "too few summits in the map", .candidates = {}};
     if (usable < (o_.heading ? 2 : 3))
       return {.fix = {}, .reason = "too few tops on the horizon", .candidates = {}};
-    SkylineAnswer answer = look_at(best_headings(index_.places_, tops_, 1, o_));
+    SkylineAnswer answer = look_at(best_headings(index_.viewpoints_, tops_, 1, o_));
     answer.reason = verdict(answer.candidates, usable);
     if (answer.reason.empty()) answer.fix = answer.candidates[0];
     return answer;
@@ -55,11 +55,11 @@ class SkylineSearch {
     double step = index_.options_.step;
     for (std::size_t level = 0; step > 2.5 * index_.terrain_.cell(); ++level) {
       keep_best(guesses,
-                std::min(kBeam[std::min(level, std::size(kBeam) - 1)], index_.places_.size() / 4 + 1));
-      guesses = closer(guesses, step);
+                std::min(kBeam[std::min(level, std::size(kBeam) - 1)], index_.viewpoints_.size() / 4 + 1));
+      guesses = refine(guesses, step);
       step /= 2;
     }
-    keep_best(guesses, static_cast<std::size_t>(o_.most_tried));
+    keep_best(guesses, static_cast<std::size_t>(o_.max_tried));
     std::vector<std::optional<SkylineFix>> fits(guesses.size());
     const SkylineScene scene{index_.terrain_, index_.summits_, o_};
     tbb::parallel_for(std::size_t{0}, guesses.size(),
@@ -73,17 +73,17 @@ class SkylineSearch {
     return answer;
   }
 
-  /// Four places of half the step in the square of each guess.
-  std::vector<HorizonGuess> closer(std::span<const HorizonGuess> guesses, double step) const {
+  /// Returns four positions at half the step for each guess.
+  std::vector<HorizonGuess> refine(std::span<const HorizonGuess> guesses, double step) const {
     std::vector<Eigen::Vector2d> at;
     for (const HorizonGuess& g : guesses)
       for (const auto& [dx, dy] : {std::pair{-1, -1}, {-1, 1}, {1, -1}, {1, 1}})
         at.push_back(g.at + step / 4 * Eigen::Vector2d(dx, dy));
     const std::size_t headings = step / 2 > 2.5 * index_.terrain_.cell() ? 1 : kHeadings;
-    return best_headings(look_round(index_.terrain_, at, step / 2, o_), tops_, headings, o_);
+    return best_headings(compute_horizons(index_.terrain_, at, step / 2, o_), tops_, headings, o_);
   }
 
-  /// Whether a fix is another place than all of these.
+  /// Returns whether a fix is at another position than all of these.
   bool is_new(std::span<const SkylineFix> fixes, const SkylineFix& fix) const {
     return std::ranges::none_of(fixes, [&](const SkylineFix& other) {
       return (other.at.pose.at() - fix.at.pose.at()).norm() < index_.options_.step / 2;
@@ -91,14 +91,14 @@ class SkylineSearch {
   }
 
   std::string_view verdict(const std::vector<SkylineFix>& fixes, double usable) const {
-    if (fixes.empty()) return "no place has such a horizon";
+    if (fixes.empty()) return "no position has such a horizon";
     const SkylineFix& best = fixes[0];
-    const auto least = o_.heading ? std::min<std::int64_t>(o_.least_matches, 3) : o_.least_matches;
-    if (best.matched < least || best.matched < o_.least_share * usable) return "too few tops fit one place";
-    if (!(best.squares < o_.most_squares * best.matched)) return "the best place fits badly";
-    if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best place may fit by chance";
+    const auto least = o_.heading ? std::min<std::int64_t>(o_.min_matches, 3) : o_.min_matches;
+    if (best.matched < least || best.matched < o_.min_fraction * usable) return "too few tops fit one pose";
+    if (!(best.squares < o_.max_squares * best.matched)) return "the best pose fits badly";
+    if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
     if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
-      return "two places fit alike";
+      return "two poses fit alike";
     return "";
   }
 
@@ -109,17 +109,22 @@ class SkylineSearch {
 
 void SkylineOptions::describe(OptionVisitor& option) {
   option("refraction", refraction,
-         {.help = "Skyline: part of the curvature the air takes away; 0 is taken as 0.13 on Earth",
+         {.help = "Skyline: fraction of the curvature that air compensates; 0 means 0.13 on Earth",
           .min = 0,
           .max = 0.9});
-  option("eye", eye, {.help = "Skyline: metres of the camera above the ground", .min = 0, .max = 1000});
-  option("skyline_reach", reach, {.help = "Skyline: metres to the farthest summit", .min = 100, .max = 1e6});
+  option("eye", eye,
+         {.help = "Skyline: height of the camera above the ground, metres", .min = 0, .max = 1000});
+  option("skyline_reach", reach,
+         {.help = "Skyline: distance of the farthest summit, metres", .min = 100, .max = 1e6});
   option("skyline_step", step,
-         {.help = "Skyline: metres between the places tried first", .min = 1, .max = 1e5});
+         {.help = "Skyline: metres between the positions of the coarse grid", .min = 1, .max = 1e5});
   option("summit_height_sd", height_sd,
-         {.help = "Skyline: error of the heights of summits and ground, metres", .min = 0.1, .max = 1000});
-  option("summit_place_sd", place_sd,
-         {.help = "Skyline: error of the places of summits, metres", .min = 0.1, .max = 1e4});
+         {.help = "Skyline: error of the heights of summits and terrain, metres", .min = 0.1, .max = 1000});
+  option("summit_position_sd", position_sd,
+         {.help = "Skyline: error of the positions of summits, metres",
+          .min = 0.1,
+          .max = 1e4,
+          .formerly = "summit_place_sd"});
 }
 
 SkylineAnswer SkylineIndex::find(std::span<const HorizonTop> tops, std::optional<double> heading) const {
@@ -132,7 +137,7 @@ SkylineAnswer SkylineIndex::find(std::span<const HorizonTop> tops, std::optional
 }
 
 SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const SkylineSummit> summits,
-                              const GroundHeight& ground, const SkylineOptions& options) {
+                              const TerrainHeight& ground, const SkylineOptions& options) {
   return SkylineIndex({summits.begin(), summits.end()}, ground, options).find(tops);
 }
 

@@ -15,7 +15,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kRounds = 6, kRing = 720;
 constexpr double kStandsOut = kTurn / kRing;
 constexpr double kFinest = 0.0015;  // rad between rays
-constexpr double kMissed = 0.05;    // probability that a top is not on the horizon as the DEM has it
+constexpr double kMissed = 0.05;    // probability that a top is not on the horizon of the DEM
 
 class HorizonFit {
  public:
@@ -43,24 +43,25 @@ class HorizonFit {
       if (!next || (next->pose.at() - guess.at).norm() > 4 * first + 4 * terrain_.cell()) return {};
       e = *next;
       if (round >= 2 && 4 * std::ranges::count_if(matches_, [](auto& m) { return !!m; }) < std::ssize(tops_))
-        return {};  // of such a place nothing more can come
+        return {};  // too few matches to improve
       place *= 0.4, turn *= 0.4;
     }
     if (!match(e.pose, 0, 0)) return {};
     const auto last = resection(tops_, points_, matches_, e, ground_, o_);
     if (!last || !match(last->pose, 0, 0)) return {};
-    return judged(*last);
+    return evaluate_fix(*last);
   }
 
  private:
   double eye(const Pose2& pose) const { return terrain_.height(pose.x, pose.y) + o_.eye; }
 
-  /// Takes a point for a top if it is nearer to it than what it has. Returns the squared distance.
-  double offer(std::size_t i, const Pose2& pose, const SummitView& v, double place, double turn) const {
+  /// Returns the squared distance of a top and a point of the terrain.
+  double squared_distance(std::size_t i, const Pose2& pose, const SummitView& v, double place,
+                          double turn) const {
     const HorizonTop& top = tops_[i];
-    const double across = std::hypot(o_.place_sd, place) / v.distance;
+    const double across = std::hypot(o_.position_sd, place) / v.distance;
     const double up = (o_.height_sd + 0.3 * place) / v.distance;
-    const double db = wrapped(top.bearing - v.azimuth + pose.yaw), de = *top.elevation - v.elevation;
+    const double db = wrap_angle(top.bearing - v.azimuth + pose.yaw), de = *top.elevation - v.elevation;
     return db * db / (top.bearing_sd * top.bearing_sd + across * across + turn * turn) +
            de * de / (top.elevation_sd * top.elevation_sd + up * up);
   }
@@ -71,9 +72,9 @@ class HorizonFit {
     const HorizonEdge middle = horizon_at(terrain_, pose.at(), height, azimuth, o_);
     const double far = std::max(double(middle.far), 5 * terrain_.cell());
     const double half =
-        std::min(o_.sigmas * std::hypot(tops_[i].bearing_sd, o_.place_sd / far, turn + place / far), 0.3);
+        std::min(o_.sigmas * std::hypot(tops_[i].bearing_sd, o_.position_sd / far, turn + place / far), 0.3);
     const double fine = std::clamp(half / 12, kFinest, kStandsOut / 2);
-    // A top is higher than all within kStandsOut of it.
+    // A top is higher than all directions within kStandsOut of it.
     const int beside = static_cast<int>(std::lround(kStandsOut / fine)),
               n = static_cast<int>(std::ceil(half / fine)) + beside;
     std::vector<HorizonEdge> edge;
@@ -86,7 +87,7 @@ class HorizonFit {
       for (int j = 1; j <= beside && top; ++j) top = lower(j) && lower(-j);
       if (!top) continue;
       const double a = azimuth + (k - n) * fine, d = h.far;
-      const double squares = offer(i, pose, {a, std::atan(double(h.rise)), d}, place, turn);
+      const double squares = squared_distance(i, pose, {a, std::atan(double(h.rise)), d}, place, turn);
       if (!(squares < squares_[i])) continue;
       squares_[i] = squares;
       matches_[i] = static_cast<std::uint32_t>(i);
@@ -95,10 +96,10 @@ class HorizonFit {
     }
   }
 
-  bool stands_free(const SkylineSummit& s, const Eigen::Vector3d& from) const {
+  bool is_unobstructed(const SkylineSummit& s, const Eigen::Vector3d& from) const {
     const Eigen::Vector3d top(s.at.x(), s.at.y(), s.height + o_.height_sd);
-    return clears_ground(from, top, ground_, o_, std::max(terrain_.cell(), o_.place_sd),
-                         3 * o_.place_sd + 100);
+    return clears_terrain(from, top, ground_, o_, std::max(terrain_.cell(), o_.position_sd),
+                          3 * o_.position_sd + 100);
   }
 
   bool match(const Pose2& pose, double place, double turn) {
@@ -110,27 +111,28 @@ class HorizonFit {
       if (tops_[i].elevation) match_horizon(i, pose, height, place, turn);
     }
     for (std::uint32_t j = 0; j < summits_.size(); ++j) {
-      const SummitView v = view_of(summits_[j], pose.at(), height, o_);
+      const SummitView v = view_summit(summits_[j], pose.at(), height, o_);
       if (v.distance > o_.reach) continue;
       for (std::size_t i = 0; i < tops_.size(); ++i) {
         if (!tops_[i].elevation) continue;
         if (std::abs(*tops_[i].elevation - v.elevation) >
             0.01 + o_.sigmas * (o_.height_sd + 0.3 * place) / v.distance)
           continue;
-        // The summit of the map that a top of the horizon is: of the same place.
-        if (matches_[i] && (points_[i].at - summits_[j].at).norm() < 2 * o_.place_sd + 2 * terrain_.cell() &&
+        // The summit at the position of a matched top names it.
+        if (matches_[i] &&
+            (points_[i].at - summits_[j].at).norm() < 2 * o_.position_sd + 2 * terrain_.cell() &&
             (!named_[i] ||
              (points_[i].at - summits_[*named_[i]].at).norm() > (points_[i].at - summits_[j].at).norm())) {
           named_[i] = j;
-          // Its place is known better than where a ray meets its flank.
-          if (const double squares = offer(i, pose, v, place, turn); squares < squares_[i] + 2) {
+          // A summit's position is more precise than the point where a ray meets its flank.
+          if (const double squares = squared_distance(i, pose, v, place, turn); squares < squares_[i] + 2) {
             squares_[i] = squares;
             points_[i] = summits_[j];
           }
           continue;
         }
-        const double squares = offer(i, pose, v, place, turn);
-        if (!(squares < squares_[i]) || !stands_free(summits_[j], {pose.x, pose.y, height})) continue;
+        const double squares = squared_distance(i, pose, v, place, turn);
+        if (!(squares < squares_[i]) || !is_unobstructed(summits_[j], {pose.x, pose.y, height})) continue;
         squares_[i] = squares;
         matches_[i] = static_cast<std::uint32_t>(i);
         points_[i] = summits_[j];
@@ -140,7 +142,7 @@ class HorizonFit {
     return true;
   }
 
-  /// Local maxima of the whole horizon: what a top may be.
+  /// Counts the local maxima of the whole horizon: the candidates for each top.
   int maxima(const Pose2& pose, double height) const {
     std::vector<float> rise;
     for (int k = 0; k < kRing; ++k)
@@ -151,8 +153,8 @@ class HorizonFit {
     return std::max(count, 1);
   }
 
-  /// Evidence for the pose: each top is one of the maxima of its horizon, or from anywhere.
-  SkylineFix judged(const PoseEstimate& e) const {
+  /// Computes the evidence for the pose: each top is one of the maxima of its horizon, or arbitrary.
+  SkylineFix evaluate_fix(const PoseEstimate& e) const {
     SkylineFix fix{.at = e, .summits = named_, .matched = 0, .squares = 0, .log_false_alarms = 0};
     const double of_all = (1 - kMissed) / maxima(e.pose, eye(e.pose));
     double sum = 0, squares = 0, usable = 0;
@@ -162,14 +164,14 @@ class HorizonFit {
                  spread = std::sqrt(std::max(squares / std::max(usable, 1.0) - mean * mean, 1e-4));
     for (std::size_t i = 0; i < tops_.size(); ++i) {
       if (!tops_[i].elevation) continue;
-      double ratio = kMissed;  // density where the top was seen over that of tops from anywhere
+      double ratio = kMissed;  // density of the top at this pose over that of an arbitrary top
       if (matches_[i]) {
         ++fix.matched;
         fix.squares += squares_[i];
         const double far = std::max(1.0, (points_[i].at - e.pose.at()).norm());
-        const double sb = std::hypot(tops_[i].bearing_sd, o_.place_sd / far),
+        const double sb = std::hypot(tops_[i].bearing_sd, o_.position_sd / far),
                      se = std::hypot(tops_[i].elevation_sd, o_.height_sd / far);
-        // Tops from anywhere have the same elevations and any bearing; all factors 2 pi but one cancel.
+        // Arbitrary tops have the same elevations and any bearing; all factors 2 pi but one cancel.
         const double off = std::min(std::abs(*tops_[i].elevation - mean) / spread, 2.0);
         const double band = std::sqrt(kTurn) * spread * std::exp(off * off / 2);
         ratio += of_all * band * std::exp(-squares_[i] / 2) / (sb * se);
@@ -185,10 +187,10 @@ class HorizonFit {
   std::span<const SkylineSummit> summits_;
   const SkylineOptions& o_;
   std::span<const HorizonTop> tops_;
-  std::vector<SkylineSummit> points_;  // of the ground, one for each top that has a match
+  std::vector<SkylineSummit> points_;                          // on the terrain, one for each matched top
   std::vector<std::optional<std::uint32_t>> named_, matches_;  // summit; index into points_
   std::vector<double> squares_;
-  GroundHeight ground_;
+  TerrainHeight ground_;
 };
 
 }  // namespace

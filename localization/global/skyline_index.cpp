@@ -18,7 +18,7 @@ constexpr double kMostPlaces = 60000, kFewestPlaces = 2000;
 
 }  // namespace
 
-SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, const GroundHeight& ground,
+SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, const TerrainHeight& ground,
                            const SkylineOptions& options)
     : summits_(std::move(summits)), options_(options), terrain_(ground, bounds(summits_), options_.reach) {
   if (summits_.size() < 3 || terrain_.area().isEmpty()) return;
@@ -29,7 +29,7 @@ SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, const GroundHeigh
   for (double y = options_.step / 2; y < size.y(); y += options_.step)
     for (double x = options_.step / 2; x < size.x(); x += options_.step)
       at.push_back(terrain_.area().min() + Eigen::Vector2d(x, y));
-  places_ = look_round(terrain_, at, options_.step, options_);
+  viewpoints_ = compute_horizons(terrain_, at, options_.step, options_);
 }
 
 }  // namespace waymark

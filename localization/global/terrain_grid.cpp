@@ -10,29 +10,29 @@ namespace {
 
 constexpr int kProbes = 64;
 
-/// Whether any ground is known between two places.
-bool known_between(const GroundHeight& ground, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+/// Returns whether any terrain is known between two positions.
+bool known_between(const TerrainHeight& ground, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   for (int i = 0; i <= kProbes; ++i)
     if (ground(a + (b - a) * i / kProbes)) return true;
   return false;
 }
 
-void widen(const GroundHeight& ground, Eigen::AlignedBox2d& box, double beyond) {
+void widen(const TerrainHeight& ground, Eigen::AlignedBox2d& box, double beyond) {
   const Eigen::AlignedBox2d first = box;
   const double step = std::max(beyond / 50, 1e-3);
   for (int axis = 0; axis < 2; ++axis)
-    for (const int way : {-1, 1})
+    for (const int direction : {-1, 1})
       for (double far = step; far <= beyond; far += step) {
         Eigen::Vector2d a = box.min(), b = box.max();
-        a[axis] = b[axis] = way < 0 ? first.min()[axis] - far : first.max()[axis] + far;
+        a[axis] = b[axis] = direction < 0 ? first.min()[axis] - far : first.max()[axis] + far;
         if (!known_between(ground, a, b)) break;
-        (way < 0 ? box.min() : box.max())[axis] = a[axis];
+        (direction < 0 ? box.min() : box.max())[axis] = a[axis];
       }
 }
 
 }  // namespace
 
-TerrainGrid::TerrainGrid(const GroundHeight& ground, Eigen::AlignedBox2d box, double beyond,
+TerrainGrid::TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond,
                          std::int64_t most)
     : area_(box) {
   if (area_.isEmpty()) return;

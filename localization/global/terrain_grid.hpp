@@ -4,18 +4,18 @@
 #include <algorithm>
 #include <vector>
 #include "core/grid.hpp"
-#include "localization/ground.hpp"
+#include "localization/terrain_pose.hpp"
 namespace waymark {
 
-/// Heights of the ground on a regular grid, with the highest of blocks of 2, 4, 8, ... cells: a ray that has
-/// come far looks at blocks as wide as the sector it stands for. Memory 6 bytes per cell.
+/// Terrain heights on a regular grid, with a max pyramid of blocks of 2, 4, 8, ... cells. A distant ray
+/// samples blocks as wide as its sector. 6 bytes per cell.
 class TerrainGrid {
  public:
-  /// Samples the ground in and around a box: each side is moved outwards by at most `beyond` metres while
-  /// ground is known there. At most `most` cells on the longer side.
-  TerrainGrid(const GroundHeight& ground, Eigen::AlignedBox2d box, double beyond, std::int64_t most = 1400);
+  /// Samples the terrain in and around a box. Each side is moved outwards by at most `beyond` metres while
+  /// terrain is known there. At most `most` cells on the longer side.
+  TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond, std::int64_t most = 1400);
 
-  /// Bilinear; NaN where one of the four cells is not known.
+  /// Bilinear; NaN if one of the four cells is unknown.
   double height(double x, double y) const {
     const double c = (x - area_.min().x()) / cell_, r = (y - area_.min().y()) / cell_;
     if (!(c >= 0 && r >= 0 && c < columns_ && r < rows_)) return std::nan("");
@@ -24,8 +24,8 @@ class TerrainGrid {
     const float *low = &heights_(c0, r0), *high = low + heights_.columns();
     return (1 - v) * ((1 - u) * low[0] + u * low[1]) + v * ((1 - u) * high[0] + u * high[1]);
   }
-  /// Highest known cell of the block of 2^level cells that holds the nearest cell of a place; lower than all
-  /// ground if none is.
+  /// Returns the highest known cell of the block of 2^level cells around a position; kNone if no cell is
+  /// known.
   float highest(double x, double y, int level) const {
     const double c_of = (x - area_.min().x()) / cell_ + 0.5, r_of = (y - area_.min().y()) / cell_ + 0.5;
     if (!(c_of >= 0 && r_of >= 0)) return kNone;
@@ -34,17 +34,18 @@ class TerrainGrid {
     const Grid<float>& grid = blocks_[static_cast<std::size_t>(level)];
     return grid.contains(c, r) ? grid(c, r) : kNone;
   }
-  /// How far a ray from a place inside goes, m; `along`: of length 1.
-  double way_out(const Eigen::Vector2d& from, const Eigen::Vector2d& along) const {
-    double way = 1e300;
+  /// Returns the distance, m, at which a ray from a position inside leaves the grid; `along` has length 1.
+  double exit_distance(const Eigen::Vector2d& from, const Eigen::Vector2d& along) const {
+    double distance = 1e300;
     for (int axis = 0; axis < 2; ++axis)
       if (along[axis] != 0)
-        way = std::min(way, ((along[axis] > 0 ? area_.max() : area_.min())[axis] - from[axis]) / along[axis]);
-    return way + 2 * cell_;
+        distance = std::min(distance,
+                            ((along[axis] > 0 ? area_.max() : area_.min())[axis] - from[axis]) / along[axis]);
+    return distance + 2 * cell_;
   }
   double cell() const { return cell_; }
   int levels() const { return static_cast<int>(blocks_.size()); }
-  double summit() const { return summit_; }  ///< highest of all; kNone without any ground
+  double summit() const { return summit_; }  ///< highest cell; kNone if none is known
   const Eigen::AlignedBox2d& area() const { return area_; }
 
   static constexpr float kNone = -1e30F;

@@ -34,7 +34,7 @@ ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, doub
     cost[r][columns.size() + r] = none_cost;
   }
 
-  // Potentials u, v; owner[j]: row of column j. Index 0 stands for "no row" and "no column".
+  // Potentials u, v; owner[j]: row of column j. Index 0 means "no row" and "no column".
   std::vector<double> u(n + 1, 0), v(m + 1, 0);
   std::vector<std::size_t> owner(m + 1, 0), way(m + 1, 0);
   for (std::size_t r = 1; r <= n; ++r) {

@@ -10,14 +10,14 @@ struct Choice {
   double cost = 0;
 };
 
-/// For each row one of its choices, or none, no column twice. `none_cost`: of a row without choice.
+/// For each row one of its choices, or none; no column twice.
 using ChosenColumns = std::vector<std::optional<std::size_t>>;  ///< index into the row's choices
 
-/// Cheapest entries first.
+/// Assigns the cheapest entries first.
 ChosenColumns assign_greedily(const std::vector<std::vector<Choice>>& rows);
 
-/// The least total cost (Kuhn 1955; shortest augmenting paths, Jonker & Volgenant 1987), each row having a
-/// dummy column of its own at `none_cost`. O(rows^2 (rows + columns)).
+/// Returns the assignment of least total cost (Kuhn 1955; shortest augmenting paths, Jonker & Volgenant
+/// 1987). Each row has a dummy column at `none_cost`. O(rows^2 (rows + columns)).
 ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost);
 
 }  // namespace waymark

@@ -2,6 +2,8 @@
 #include "localization/identification/feature_distance.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <numbers>
 
 namespace waymark {
 
@@ -16,6 +18,29 @@ FeatureScales::FeatureScales(const TypeRegistry& types) {
 
 double FeatureScales::difference(TypeId type, std::size_t feature, double a, double b) const {
   return type < scales_.size() ? waymark::difference(a, b, scales_[type][feature]) : a - b;
+}
+
+bool FeatureScales::has_axis(TypeId type) const {
+  return type < scales_.size() && std::ranges::find(scales_[type], Scale::axis) != scales_[type].end();
+}
+
+KnownFeatures features_in_map(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
+                              double sensor_yaw, double yaw_variance) {
+  KnownFeatures mapped = seen;
+  if (!scales.has_axis(type)) return mapped;
+  for (std::size_t i = 0; i < kMaxFeatures; ++i) {
+    if (!seen.known(i) || !scales.is_axis(type, i)) continue;
+    mapped.value[i] = std::remainder(std::numbers::pi / 2 - sensor_yaw - seen.value[i], std::numbers::pi);
+    mapped.variance[i] += yaw_variance;
+  }
+  return mapped;
+}
+
+KnownFeatures features_without_axes(const FeatureScales& scales, TypeId type, KnownFeatures seen) {
+  if (!scales.has_axis(type)) return seen;
+  for (std::size_t i = 0; i < kMaxFeatures; ++i)
+    if (scales.is_axis(type, i)) seen.value[i] = std::numeric_limits<double>::quiet_NaN();
+  return seen;
 }
 
 FeatureComparison compare_features(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,

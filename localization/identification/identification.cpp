@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "localization/chi_square.hpp"
 #include "localization/identification/assignment.hpp"
@@ -11,7 +12,7 @@
 namespace waymark {
 namespace {
 
-/// Quantiles of the gate by degrees of freedom, computed once per gate.
+/// Returns quantiles of the gate by degrees of freedom, computed once per gate.
 double gate_of(const IdentificationOptions& options, int freedom) {
   constexpr int kMost = 2 + static_cast<int>(kMaxFeatures);
   thread_local double last = -1;
@@ -28,16 +29,19 @@ double largest_sd(const Eigen::Matrix2d& c) {
   return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
 }
 
-/// Where the landmark of a sighting may be: landmarks outside cannot pass the gate.
-std::vector<std::uint32_t> within_reach(const SeenLandmark& seen, const Pose2& sensor,
-                                        const PoseEstimate& robot, const LandmarkGrid& map,
-                                        const IdentificationOptions& options) {
+/// Returns the landmarks that may pass the gate of a sighting; others cannot.
+std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Pose2& sensor,
+                                              const PoseEstimate& robot, const LandmarkGrid& map,
+                                              const IdentificationOptions& options) {
   std::vector<std::uint32_t> found;
   const double sigmas = std::sqrt(gate_of(options, 2 + static_cast<int>(kMaxFeatures)));
   const double place = largest_sd(robot.covariance.topLeftCorner<2, 2>());
   const double turn = std::sqrt(std::max(0.0, robot.covariance(2, 2)));
-  const double apex = sigmas * std::hypot(place, map.largest_sd());
-  const double half = std::min(sigmas * std::hypot(turn, seen.bearing_sd), 3.2);
+  // The noise of the least trusted landmark: a quality q multiplies standard deviations by 1 / sqrt(q).
+  const bool trusts = options.distance != "paper" && options.quality_floor < 1;
+  const double noise = trusts ? 1 / std::sqrt(std::max(map.min_quality(), options.quality_floor)) : 1;
+  const double apex = sigmas * std::hypot(place, noise * map.largest_sd());
+  const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
   const double along = sensor.yaw + seen.bearing;
   const auto keep = [&](std::uint32_t i) { found.push_back(i); };
   const auto at = [&](double range) -> Eigen::Vector2d {
@@ -45,13 +49,13 @@ std::vector<std::uint32_t> within_reach(const SeenLandmark& seen, const Pose2& s
   };
   if (seen.range) {
     const double chord = 2 * *seen.range * std::sin(std::min(half, 3.14) / 2);
-    map.near(at(*seen.range), apex + sigmas * seen.range_sd + chord, keep);
+    map.near(at(*seen.range), apex + sigmas * noise * seen.range_sd + chord, keep);
     return found;
   }
   if (half > 0.7) {
     map.near(sensor.at(), apex + options.bearing_reach, keep);
   } else {
-    // Discs along the wedge, each 1.6 times as wide as the wedge is there and half as far from the next.
+    // Discs along the wedge, each 1.6 times as wide as the wedge there and half as far from the next.
     for (double t = 0; t <= options.bearing_reach + apex;) {
       const double wide = std::max(apex + t * std::tan(half), 0.02 * options.bearing_reach);
       map.near(at(t), 1.6 * wide, keep);
@@ -68,14 +72,15 @@ double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const 
   return range * range + bearing * bearing + features.squares;
 }
 
-Match from(const Candidates& c, std::optional<std::size_t> chosen, Verdict otherwise) {
+Match match_from(const Candidates& c, std::optional<std::size_t> chosen, Verdict otherwise) {
   if (c.pairings.empty()) return {.verdict = c.verdict, .pairing = {}};
   if (!chosen) return {.verdict = otherwise, .pairing = {}};
   return {.verdict = Verdict::matched, .pairing = c.pairings[*chosen]};
 }
 
-std::vector<Match> one_by_one(const std::vector<Candidates>& all, const IdentificationOptions& options) {
-  const bool exclusive = options.association != "nearest";
+std::vector<Match> assign_individually(const std::vector<Candidates>& all,
+                                       const IdentificationOptions& options) {
+  const bool exclusive = options.chosen_association() != "nearest";
   ChosenColumns chosen(all.size());
   std::vector<std::vector<Choice>> rows;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -87,7 +92,7 @@ std::vector<Match> one_by_one(const std::vector<Candidates>& all, const Identifi
   if (exclusive && options.association != "greedy") chosen = assign_cheapest(rows, 1e6);
   std::vector<Match> matches;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    matches.push_back(from(all[i], chosen[i], Verdict::taken));
+    matches.push_back(match_from(all[i], chosen[i], Verdict::taken));
     if (matches[i].verdict != Verdict::matched || !(options.ambiguity > 0)) continue;
     for (const CandidatePair& p : all[i].pairings)
       if (p.landmark != matches[i].pairing.landmark && p.score < matches[i].pairing.score + options.ambiguity)
@@ -96,9 +101,9 @@ std::vector<Match> one_by_one(const std::vector<Candidates>& all, const Identifi
   return matches;
 }
 
-std::vector<Match> by_probability(const std::vector<Candidates>& all,
-                                  const std::vector<JointHypothesis>& hypotheses,
-                                  const IdentificationOptions& options) {
+std::vector<Match> assign_by_probability(const std::vector<Candidates>& all,
+                                         const std::vector<JointHypothesis>& hypotheses,
+                                         const IdentificationOptions& options) {
   std::vector<Match> matches;
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::vector<double> probability(all[i].pairings.size(), 0);
@@ -108,7 +113,7 @@ std::vector<Match> by_probability(const std::vector<Candidates>& all,
     std::optional<std::size_t> best;
     for (std::size_t c = 0; c < probability.size(); ++c)
       if (!best || probability[c] > probability[*best]) best = c;
-    Match match = from(all[i], best, Verdict::too_far);
+    Match match = match_from(all[i], best, Verdict::too_far);
     if (match.verdict == Verdict::matched) {
       match.probability = probability[*best];
       if (none > 0.5)
@@ -125,10 +130,10 @@ PoseEstimate mixture(const PoseEstimate& before, const std::vector<JointHypothes
   std::vector<PoseEstimate> after;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // relative to the pose before
   const auto off = [](const Pose2& from, const Pose2& to) {
-    return Eigen::Vector3d(to.x - from.x, to.y - from.y, wrapped(to.yaw - from.yaw));
+    return Eigen::Vector3d(to.x - from.x, to.y - from.y, wrap_angle(to.yaw - from.yaw));
   };
   for (const JointHypothesis& h : hypotheses) {
-    after.push_back(updated(before, h.evidence));
+    after.push_back(update_pose(before, h.evidence));
     mean += h.probability * off(before.pose, after.back().pose);
   }
   PoseEstimate mixed{pose_of(before.pose.vector() + mean), Eigen::Matrix3d::Zero()};
@@ -143,31 +148,39 @@ PoseEstimate mixture(const PoseEstimate& before, const std::vector<JointHypothes
 
 void IdentificationOptions::describe(OptionVisitor& option) {
   option("distance", distance,
-         {.help = "How a sighting is compared with a landmark: by all covariances, or by eq. 11 literally",
+         {.help = "Distance of a sighting and a landmark: with all covariances, or eq. 11 of the paper",
           .choices = {"mahalanobis", "paper"}});
   option("association", association,
-         {.help = "How sightings of one moment share the landmarks",
-          .choices = {"nearest", "greedy", "hungarian", "jcbb", "joint"}});
+         {.help = "Data association of the sightings of one set",
+          .choices = {"auto", "nearest", "greedy", "hungarian", "jcbb", "joint"}});
   option("gate", gate, {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.999999});
   option("certainty", certainty,
          {.help = "joint: pairings less probable are rejected as ambiguous", .min = 0, .max = 1});
   option("ambiguity", ambiguity,
          {.help = "Other associations: lead in squared distance a landmark needs over the next", .min = 0});
   option("feature_tolerance", feature_tolerance,
-         {.help = "Part of a feature's value two sensors may disagree by", .min = 0, .max = 10});
+         {.help = "Fraction of a feature's value by which two sensors may disagree", .min = 0, .max = 10});
   option("feature_limit", feature_limit,
-         {.help = "Squared standard deviations one feature may differ", .min = 0});
+         {.help = "Squared standard deviations by which one feature may differ", .min = 0});
   option("clutter", clutter,
          {.help = "False sightings per metre of range and radian of bearing", .min = 1e-12, .max = 1e3});
   option("bearing_reach", bearing_reach,
-         {.help = "How far, in metres, a sighting without range may be", .min = 0.1, .max = 1e6});
-  option("node_limit", node_limit, {.help = "Steps of a joint search", .min = 1, .max = 1e9});
+         {.help = "Largest range of a sighting without range, metres", .min = 0.1, .max = 1e6});
+  option("node_limit", node_limit,
+         {.help = "Largest number of nodes of a joint search", .min = 1, .max = 1e9});
   option("quality_floor", quality_floor,
-         {.help = "The noise of a landmark is divided by its quality, but by no less than this; 1 turns "
-                  "quality off",
+         {.help = "Smallest quality that the noise of a landmark is divided by; 1 turns quality off",
           .min = 1e-3,
           .max = 1});
-  option("use_identities", use_identities, {.help = "Believe landmarks that say who they are"});
+  option("use_identities", use_identities, {.help = "Use the identities of landmarks in the log"});
+}
+
+std::string_view IdentificationOptions::chosen_association() const {
+  return association != "auto" ? association : distance == "paper" ? "nearest" : "joint";
+}
+
+bool IdentificationOptions::distance_applies() const {
+  return distance != "paper" || (association != "joint" && association != "jcbb");
 }
 
 std::string_view wording(Verdict verdict) {
@@ -182,7 +195,7 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
                       const LandmarkGrid& map, const FeatureScales& scales,
                       const IdentificationOptions& options) {
   Candidates result;
-  if (!seen.sound()) return {Verdict::unsound, {}};
+  if (!seen.is_valid()) return {Verdict::unsound, {}};
   const bool paper = options.distance == "paper";
   const Pose2 sensor = robot.pose * robot_from_sensor;
   std::vector<std::uint32_t> reach;
@@ -193,15 +206,18 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     if (!found) return {Verdict::unknown_type, {}};
     reach = {*found};
   } else {
-    reach = within_reach(seen, sensor, robot, map, options);
+    reach = landmarks_in_reach(seen, sensor, robot, map, options);
   }
   result.verdict = Verdict::nothing_near;
+  const KnownFeatures seen_features =
+      seen.type ? features_in_map(scales, *seen.type, seen.features, sensor.yaw, robot.covariance(2, 2))
+                : seen.features;
   for (const std::uint32_t i : reach) {
     const MapLandmark& landmark = map[i];
     if (!known && seen.type && *seen.type != landmark.type) continue;
     FeatureComparison features;
     if (seen.type && *seen.type == landmark.type)
-      features = compare_features(scales, landmark.type, seen.features, landmark.features,
+      features = compare_features(scales, landmark.type, seen_features, landmark.features,
                                   options.feature_tolerance);
     if (!known && features.largest > options.feature_limit) {
       if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
@@ -210,7 +226,7 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
     CandidatePair p{
         .landmark = i,
-        .evidence = evidence_of(seen, expected, landmark.covariance, trust_in(landmark, options))};
+        .evidence = evidence_of(seen, expected, landmark.covariance, effective_quality(landmark, options))};
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;
@@ -231,24 +247,26 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
 
 Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
                         const FeatureScales& scales, const IdentificationOptions& options) {
+  if (!options.distance_applies())
+    throw std::invalid_argument("association " + options.association + " does not use distance=paper");
   std::vector<Candidates> all;
   for (const SeenLandmark& sighting : seen.sightings)
     all.push_back(candidates(sighting, seen.robot_from_sensor, robot, map, scales, options));
-  if (options.association == "joint") {
+  if (options.chosen_association() == "joint") {
     if (const auto hypotheses = joint_hypotheses(all, seen, map, robot.covariance, options))
-      return {by_probability(all, *hypotheses, options), mixture(robot, *hypotheses)};
+      return {assign_by_probability(all, *hypotheses, options), mixture(robot, *hypotheses)};
   } else if (options.association == "jcbb") {
-    if (const auto choice = most_compatible(all, robot.covariance, options)) {
+    if (const auto choice = joint_compatibility(all, robot.covariance, options)) {
       std::vector<Match> matches;
       for (std::size_t i = 0; i < all.size(); ++i) {
         const int c = (*choice)[i];
         matches.push_back(
-            from(all[i], c < 0 ? std::nullopt : std::optional<std::size_t>(c), Verdict::too_far));
+            match_from(all[i], c < 0 ? std::nullopt : std::optional<std::size_t>(c), Verdict::too_far));
       }
       return {std::move(matches), {}};
     }
   }
-  return {one_by_one(all, options), {}};
+  return {assign_individually(all, options), {}};
 }
 
 }  // namespace waymark

@@ -7,7 +7,7 @@ namespace waymark {
 
 JointEvidence& JointEvidence::operator+=(const JointEvidence& more) {
   information += more.information;
-  pull += more.pull;
+  information_vector += more.information_vector;
   squares += more.squares;
   log_det += more.log_det;
   rows += more.rows;
@@ -25,14 +25,14 @@ JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expe
     const Eigen::Matrix2d inverse = r.inverse();
     const Eigen::Matrix<double, 3, 2> weighted = expected.by_pose.transpose() * inverse;
     e.information = weighted * expected.by_pose;
-    e.pull = weighted * v;
+    e.information_vector = weighted * v;
     e.squares = v.dot(inverse * v);
     e.log_det = std::log(r.determinant());
     e.rows = 2;
   } else {
     const Eigen::Vector3d h = expected.by_pose.row(1).transpose();
     e.information = h * h.transpose() / r(1, 1);
-    e.pull = h * v[1] / r(1, 1);
+    e.information_vector = h * v[1] / r(1, 1);
     e.squares = v[1] * v[1] / r(1, 1);
     e.log_det = std::log(r(1, 1));
     e.rows = 1;
@@ -44,18 +44,20 @@ JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expe
 JointDistance joint_distance(const JointEvidence& evidence, const Eigen::Matrix3d& p) {
   const Eigen::Matrix3d m = Eigen::Matrix3d::Identity() + evidence.information * p;
   const double det = m.determinant();
-  const double squares = evidence.squares - evidence.pull.dot(p * (m.inverse() * evidence.pull));
+  const double squares =
+      evidence.squares - evidence.information_vector.dot(p * (m.inverse() * evidence.information_vector));
   return {std::max(0.0, squares), evidence.log_det + std::log(std::max(det, 1e-300))};
 }
 
-PoseEstimate updated(const PoseEstimate& estimate, const JointEvidence& evidence) {
+PoseEstimate update_pose(const PoseEstimate& estimate, const JointEvidence& evidence) {
   const Eigen::Matrix3d& p = estimate.covariance;
   const Eigen::Matrix3d m = (Eigen::Matrix3d::Identity() + evidence.information * p).inverse();
   const Eigen::Matrix3d gain = p * m;  // posterior covariance
   // Joseph form in information terms: A P A' + G L G' with A = I - G L stays symmetric and positive.
   const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * evidence.information;
   const Eigen::Matrix3d after = a * p * a.transpose() + gain * evidence.information * gain.transpose();
-  return {pose_of(estimate.pose.vector() + gain * evidence.pull), (after + after.transpose()) / 2};
+  return {pose_of(estimate.pose.vector() + gain * evidence.information_vector),
+          (after + after.transpose()) / 2};
 }
 
 }  // namespace waymark

@@ -4,32 +4,35 @@
 #include "localization/filters/measurement.hpp"
 namespace waymark {
 
-/// What a set of pairings of sightings with landmarks says about the pose, in information form. Adding a
-/// pairing is a sum; the joint compatibility of any set (Neira & Tardos 2001) and the Kalman update by it
-/// then cost a 3x3 solve, however many sightings there are.
+/// Information about the pose from a set of pairings, in information form. Adding a pairing is a sum. Joint
+/// compatibility (Neira & Tardos 2001) and the Kalman update then cost a 3x3 solve, for any number of
+/// sightings.
 struct JointEvidence {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< sum of H' R^-1 H
-  Eigen::Vector3d pull = Eigen::Vector3d::Zero();         ///< sum of H' R^-1 v
-  double squares = 0;                                     ///< sum of v' R^-1 v
-  double log_det = 0;                                     ///< sum of ln |R|
-  int rows = 0;                                           ///< numbers measured
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();         ///< sum of H' R^-1 H
+  Eigen::Vector3d information_vector = Eigen::Vector3d::Zero();  ///< sum of H' R^-1 v
+  double squares = 0;                                            ///< sum of v' R^-1 v
+  double log_det = 0;                                            ///< sum of ln |R|
+  int rows = 0;                                                  ///< numbers measured
 
   JointEvidence& operator+=(const JointEvidence& more);
   friend JointEvidence operator+(JointEvidence a, const JointEvidence& b) { return a += b; }
 };
 
-/// Of one pairing. R is the sensor's noise plus the landmark's covariance, divided by `trust` in (0, 1].
+/// Returns the evidence of one pairing. R is the sensor's noise plus the landmark's covariance, divided by
+/// `trust` in (0, 1].
 JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expected,
                           const Eigen::Matrix2d& landmark_covariance, double trust = 1);
 
-/// Of all innovations together, correlated by the uncertain pose (covariance p, may be singular).
+/// Distance of all innovations together.
 struct JointDistance {
   double squares = 0;  ///< v' S^-1 v, chi-square with `rows` degrees of freedom
   double log_det = 0;  ///< ln |S|
 };
+/// Returns the joint distance for a pose covariance p, which correlates the innovations and may be
+/// singular.
 JointDistance joint_distance(const JointEvidence& evidence, const Eigen::Matrix3d& p);
 
-/// The estimate after a Kalman update by all pairings at once.
-PoseEstimate updated(const PoseEstimate& estimate, const JointEvidence& evidence);
+/// Returns the estimate after a Kalman update by all pairings at once.
+PoseEstimate update_pose(const PoseEstimate& estimate, const JointEvidence& evidence);
 
 }  // namespace waymark

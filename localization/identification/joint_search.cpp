@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeast = 14;  // ln of 1e6: hypotheses less probable than the best by this are left out
+constexpr double kLeast = 14;  // ln of 1e6: hypotheses less probable than the best by this are omitted
 const double kLogTurn = std::log(2 * std::numbers::pi);
 
 class CompatibilitySearch {
@@ -77,12 +77,12 @@ class HypothesisList {
 
   bool list() {
     JointChoice none(sets_.size(), -1);
-    most_left_.assign(sets_.size() + 1, 0);
+    max_remaining_.assign(sets_.size() + 1, 0);
     for (std::size_t i = sets_.size(); i-- > 0;) {
       double most = unpaired(i);
       for (const CandidatePair& p : sets_[i].pairings)
         most = std::max(most, paired(i, p) - (p.evidence.log_det + p.evidence.rows * kLogTurn) / 2);
-      most_left_[i] = most_left_[i + 1] + most;
+      max_remaining_[i] = max_remaining_[i + 1] + most;
     }
     descend(0, {}, 0, none);
     return left_ >= 0;
@@ -90,9 +90,8 @@ class HypothesisList {
   std::vector<JointHypothesis> found;
 
  private:
-  // Branch and bound: given what is paired so far, no sighting left can be denser than at the peak of its
-  // sensor's noise. What could not come within kLeast of the best is not followed; it would be left out
-  // anyway.
+  // Branch and bound: no remaining sighting can be denser than the peak of its sensor's noise. Prunes what
+  // cannot come within kLeast of the best; it would be omitted anyway.
   void descend(std::size_t depth, const JointEvidence& so_far, double log_weight, JointChoice& choice) {
     if (--left_ < 0) return;
     double value = log_weight;
@@ -100,7 +99,7 @@ class HypothesisList {
       const JointDistance d = joint_distance(so_far, pose_);
       value -= (d.squares + d.log_det + so_far.rows * kLogTurn) / 2;
     }
-    if (value + most_left_[depth] < best_ - kLeast) return;
+    if (value + max_remaining_[depth] < best_ - kLeast) return;
     if (depth == sets_.size()) {
       found.push_back({choice, so_far, value});
       best_ = std::max(best_, value);
@@ -117,7 +116,8 @@ class HypothesisList {
   }
 
   double paired(std::size_t sighting, const CandidatePair& p) const {
-    return std::log(map_[p.landmark].quality * seen_.sightings[sighting].confidence) - p.features / 2;
+    const double exists = options_.quality_floor < 1 ? map_[p.landmark].quality : 1;
+    return std::log(exists * seen_.sightings[sighting].confidence) - p.features / 2;
   }
   // A sighting without range is clutter anywhere along its bearing.
   double unpaired(std::size_t sighting) const {
@@ -126,7 +126,7 @@ class HypothesisList {
            0.5 * (pairings.empty() ? 0 : typical_features(pairings));
   }
 
-  // What features cost a right pairing on average, so that unpaired sightings are judged by the same measure.
+  // Returns the average cost of the features of a right pairing, so that unpaired sightings are comparable.
   static double typical_features(const std::vector<CandidatePair>& pairings) {
     return pairings[0].feature_count;
   }
@@ -144,14 +144,14 @@ class HypothesisList {
   Eigen::Matrix3d pose_;
   const IdentificationOptions& options_;
   std::int64_t left_;
-  std::vector<double> most_left_;  // by depth: the most that the sightings from there on can add
+  std::vector<double> max_remaining_;  // by depth: the most that the remaining sightings can add
   double best_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace
 
-std::optional<JointChoice> most_compatible(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
-                                           const IdentificationOptions& options) {
+std::optional<JointChoice> joint_compatibility(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
+                                               const IdentificationOptions& options) {
   return CompatibilitySearch(sets, pose, options).best();
 }
 

@@ -5,24 +5,26 @@
 #include "localization/identification/identification.hpp"
 namespace waymark {
 
-/// One way to pair all sightings of a set: for each its candidate, or -1.
+/// A joint association: the candidate of each sighting, or -1.
 using JointChoice = std::vector<int>;
 
-/// Joint compatibility branch and bound (Neira & Tardos 2001): the most pairings that pass the gate together,
-/// among those the least joint distance; landmarks at most once. Nothing where `node_limit` is reached first.
-std::optional<JointChoice> most_compatible(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
-                                           const IdentificationOptions& options);
+/// Joint compatibility branch and bound (Neira & Tardos 2001). Returns the association with the most
+/// pairings that pass the gate together, among those the least joint distance; each landmark at most once.
+/// `std::nullopt` if `node_limit` is reached first.
+std::optional<JointChoice> joint_compatibility(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
+                                               const IdentificationOptions& options);
 
+/// A joint association and its probability.
 struct JointHypothesis {
   JointChoice choice;
   JointEvidence evidence;
   double probability = 0;  ///< among all hypotheses of the set
-  double log_weight = 0;   ///< ln of the density of the set under it, for comparing sets of several poses
+  double log_weight = 0;   ///< ln of the density of the set, to compare sets of several poses
 };
 
-/// All ways to pair a set, with their probabilities: Gaussian densities of the joint innovations times the
-/// landmarks' qualities against a density of clutter for each unpaired sighting. Most probable first; those
-/// below 1e-6 of the first are left out. Nothing where `node_limit` is reached.
+/// Returns all joint associations with their probabilities, most probable first. The probability is the
+/// Gaussian density of the joint innovations times the landmarks' qualities, against a clutter density for
+/// each unpaired sighting. Omits those below 1e-6 of the first. `std::nullopt` if `node_limit` is reached.
 std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Candidates> sets,
                                                              const SightingSet& seen, const LandmarkGrid& map,
                                                              const Eigen::Matrix3d& pose,

@@ -7,11 +7,11 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark {
 
-/// Features of a type that localization compares: the first eight, in the order of the type. Types of ours
+/// Number of features that localization compares: the first eight, in the order of the type. Built-in types
 /// have at most five.
 inline constexpr std::size_t kMaxFeatures = 8;
 
-/// Feature values without memory of their own, so that millions lie side by side. NaN: not known.
+/// Feature values in fixed arrays, so that millions lie side by side. NaN: unknown.
 struct KnownFeatures {
   KnownFeatures() {
     value.fill(std::numeric_limits<double>::quiet_NaN());
@@ -23,8 +23,8 @@ struct KnownFeatures {
   bool known(std::size_t i) const { return std::isfinite(value[i]); }
 };
 
-/// What the map knows: merged values. Their error is taken as the spread of the observations, which is
-/// cautious (the mean is better than that) and right for a thing that looks different from each side.
+/// Returns the merged values of the map. The variance is the spread of the observations: conservative, and
+/// right for an object that looks different from each side.
 KnownFeatures known_features(const FeatureSet& features);
 
 }  // namespace waymark

@@ -9,13 +9,13 @@
 #include "localization/identification/map_landmark.hpp"
 namespace waymark {
 
-/// Landmarks in cells of a regular grid, in memory, for the many small questions of a particle filter: about
-/// 40 ns each whatever the size of the map. Immutable; many threads may ask. Building: 10 M landmarks/s.
+/// Landmarks in cells of a regular grid, in memory, for the many small queries of a particle filter: about
+/// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 10 M
+/// landmarks/s.
 class LandmarkGrid {
  public:
   LandmarkGrid() = default;
-  /// `cell` metres, > 0; 0: one that holds about two landmarks. Landmarks keep the order of cells, row by
-  /// row.
+  /// `cell` metres, > 0; 0: about two landmarks per cell. Orders landmarks by cell, row by row.
   explicit LandmarkGrid(std::vector<MapLandmark> landmarks, double cell = 0);
 
   std::span<const MapLandmark> landmarks() const { return landmarks_; }
@@ -23,9 +23,10 @@ class LandmarkGrid {
   std::size_t size() const { return landmarks_.size(); }
   bool empty() const { return landmarks_.empty(); }
   Eigen::AlignedBox2d bounds() const { return bounds_; }
-  double largest_sd() const { return largest_sd_; }  ///< of any landmark's position, m
+  double largest_sd() const { return largest_sd_; }    ///< of any landmark's position, m
+  double min_quality() const { return min_quality_; }  ///< of any landmark
 
-  /// Index of a landmark by key.
+  /// Returns the index of a landmark by key.
   std::optional<std::uint32_t> find(LandmarkKey key) const;
 
   /// Calls visit(index) for the landmarks within `radius` of `centre`, ascending.
@@ -60,11 +61,11 @@ class LandmarkGrid {
   }
 
   std::vector<MapLandmark> landmarks_;
-  std::vector<XY> at_;                ///< positions again, close together
+  std::vector<XY> at_;                ///< positions of the landmarks, contiguous
   std::vector<std::uint32_t> first_;  ///< index of each cell's first landmark; one more than cells
   std::unordered_map<LandmarkKey, std::uint32_t> by_key_;
   Eigen::AlignedBox2d bounds_;
-  double cell_ = 1, largest_sd_ = 0;
+  double cell_ = 1, largest_sd_ = 0, min_quality_ = 1;
   std::int64_t columns_ = 0, rows_ = 0;
 };
 

@@ -13,7 +13,7 @@ LandmarkWindow::LandmarkWindow(LandmarkSource source, double margin)
   assert(source_ && margin > 0);
 }
 
-const LandmarkGrid& LandmarkWindow::around(const Eigen::Vector2d& at, double reach) {
+const LandmarkGrid& LandmarkWindow::landmarks_near(const Eigen::Vector2d& at, double reach) {
   if (whole()) return grid_;
   const Eigen::Vector2d half = Eigen::Vector2d::Constant(reach);
   const Eigen::AlignedBox2d asked(at - half, at + half);

@@ -4,20 +4,20 @@
 #include "localization/identification/landmark_grid.hpp"
 namespace waymark {
 
-/// Landmarks inside a box of the map frame, e.g. one query of a map file.
+/// Returns the landmarks inside a box of the map frame, e.g. by a query of a map file.
 using LandmarkSource = std::function<std::vector<MapLandmark>(const Eigen::AlignedBox2d&)>;
 
-/// The landmarks round a robot that moves: a square of the map in memory, read again when the robot comes
-/// near its edge. What an update costs then does not depend on the size of the map.
+/// Landmarks around a moving robot: a square of the map in memory, read again when the robot comes near its
+/// edge. The cost of an update does not depend on the size of the map.
 class LandmarkWindow {
  public:
-  /// The whole map in memory.
+  /// Holds the whole map in memory.
   explicit LandmarkWindow(LandmarkGrid whole);
-  /// `margin` metres are read beyond what is asked for, > 0; a quarter of the reach where that is more.
+  /// Reads `margin` metres, > 0, beyond the requested area; a quarter of the reach if that is more.
   LandmarkWindow(LandmarkSource source, double margin);
 
-  /// All landmarks within `reach` of the place, and more. Valid until the next call.
-  const LandmarkGrid& around(const Eigen::Vector2d& at, double reach);
+  /// Returns at least the landmarks within `reach` of the position. Valid until the next call.
+  const LandmarkGrid& landmarks_near(const Eigen::Vector2d& at, double reach);
   bool whole() const { return !source_; }
 
  private:

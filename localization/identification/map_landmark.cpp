@@ -12,7 +12,7 @@ namespace {
 
 // An unknown or unusable covariance must not make a landmark perfect or turn a filter's numbers into NaN.
 Eigen::Matrix2d usable(const Eigen::Matrix3d& covariance) {
-  constexpr double kUnknown = 1e-4;  // 1 cm: a map that says nothing of its errors is taken as good
+  constexpr double kUnknown = 1e-4;  // 1 cm: a map without covariances is taken as precise
   const Eigen::Matrix2d c = covariance.topLeftCorner<2, 2>();
   if (!c.allFinite() || !(c(0, 0) > 0) || !(c(1, 1) > 0)) return Eigen::Matrix2d::Identity() * kUnknown;
   const double limit = 0.999999 * std::sqrt(c(0, 0) * c(1, 1));  // a correlation beyond 1 is not one
@@ -54,7 +54,7 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   return robots;
 }
 
-std::vector<MapLandmark> landmarks_of(const SemanticMap& map, const SensorProfile* sensor) {
+std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorProfile* sensor) {
   std::vector<MapLandmark> all;
   all.reserve(map.size());
   for (const Landmark& landmark : map.landmarks())

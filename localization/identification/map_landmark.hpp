@@ -8,26 +8,27 @@
 #include "localization/identification/known_features.hpp"
 namespace waymark {
 
-/// A landmark by 64 bits of a hash of its uid.
+/// Key of a landmark: 64 bits of a hash of its uid.
 using LandmarkKey = std::uint64_t;
+/// Returns the key of a uid.
 LandmarkKey landmark_key(std::string_view uid);
 
-/// A landmark as a robot uses it: on the plane of the map frame, metres.
+/// A landmark as localization uses it: in the plane of the map frame, metres.
 struct MapLandmark {
   LandmarkKey key = 0;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of `at`, m^2
   TypeId type = 0;
-  /// Probability that it is there and can be seen, (0, 1]: the map's confidence times its quality for the
-  /// sensor (eq. 8). 1 where the map has neither.
+  /// Probability that it exists and can be seen, (0, 1]: the map's confidence times its quality for the
+  /// sensor (eq. 8). 1 if the map has neither.
   double quality = 1;
   KnownFeatures features;
 };
 
-/// All landmarks of a map. `sensor`: whose quality; null: the confidence alone counts.
-std::vector<MapLandmark> landmarks_of(const SemanticMap& map, const SensorProfile* sensor = nullptr);
+/// Converts all landmarks of a map. `sensor`: profile for the quality; null: the confidence alone counts.
+std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorProfile* sensor = nullptr);
 
-/// One of them.
+/// Converts one landmark.
 MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, const LocalFrame& frame,
                          const SensorProfile* sensor = nullptr);
 

@@ -10,19 +10,19 @@
 namespace waymark {
 namespace {
 
-/// What lies at `at` in the map, seen from the pose, and the derivatives by pose and by `at`.
+/// Position relative to a pose, and its derivatives with respect to the pose and to the position.
 struct Seen {
   Eigen::Vector2d value;
   Eigen::Matrix<double, 2, 3> by_pose;
-  Eigen::Matrix2d by_place;
+  Eigen::Matrix2d by_position;
 };
 
 Seen seen_from(const Pose2& pose, const Eigen::Vector2d& at) {
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   Seen seen;
-  seen.by_place << c, s, -s, c;
-  seen.value = seen.by_place * (at - pose.at());
-  seen.by_pose.leftCols<2>() = -seen.by_place;
+  seen.by_position << c, s, -s, c;
+  seen.value = seen.by_position * (at - pose.at());
+  seen.by_pose.leftCols<2>() = -seen.by_position;
   seen.by_pose.col(2) << seen.value.y(), -seen.value.x();
   return seen;
 }
@@ -32,7 +32,7 @@ Matrix root_of(const Matrix& information) {
   const Eigen::LLT<Matrix> cholesky(information);
   if (!information.allFinite() || cholesky.info() != Eigen::Success ||
       !(information - information.transpose()).isZero(1e-6 * information.norm()))
-    throw std::invalid_argument("an information matrix is not positive definite");
+    throw std::invalid_argument("information matrix is not positive definite");
   return cholesky.matrixU();
 }
 
@@ -42,23 +42,23 @@ StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to) {
   const Seen seen = seen_from(from, to.at());
   StepError e;
   e.value << seen.value.x() - edge.step.x, seen.value.y() - edge.step.y,
-      wrapped(to.yaw - from.yaw - edge.step.yaw);
+      wrap_angle(to.yaw - from.yaw - edge.step.yaw);
   e.by_from << seen.by_pose, 0, 0, -1;
-  e.by_to << seen.by_place, Eigen::Vector2d::Zero(), 0, 0, 1;
+  e.by_to << seen.by_position, Eigen::Vector2d::Zero(), 0, 0, 1;
   return {edge.root * e.value, edge.root * e.by_from, edge.root * e.by_to};
 }
 
 SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark) {
   SightingError e;
-  if (edge.kind == SightingKind::place) {
+  if (edge.kind == SightingKind::position) {
     const Pose2& mount = edge.robot_from_sensor;
     const Seen by_robot = seen_from(pose, landmark), by_sensor = seen_from(mount, by_robot.value);
-    e = {by_sensor.value - edge.value, by_sensor.by_place * by_robot.by_pose,
-         by_sensor.by_place * by_robot.by_place};
+    e = {by_sensor.value - edge.value, by_sensor.by_position * by_robot.by_pose,
+         by_sensor.by_position * by_robot.by_position};
   } else {
     const ExpectedSighting expected = expect(pose, edge.robot_from_sensor, landmark);
     e = {expected.value - edge.value, expected.by_pose, expected.by_landmark};
-    e.value[1] = wrapped(e.value[1]);
+    e.value[1] = wrap_angle(e.value[1]);
   }
   if (edge.kind == SightingKind::bearing) {
     e.value[0] = 0;
@@ -72,7 +72,7 @@ SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const 
 
 Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose) {
   return prior.root *
-         Eigen::Vector3d(pose.x - prior.at.x, pose.y - prior.at.y, wrapped(pose.yaw - prior.at.yaw));
+         Eigen::Vector3d(pose.x - prior.at.x, pose.y - prior.at.y, wrap_angle(pose.yaw - prior.at.yaw));
 }
 
 Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& landmark) {

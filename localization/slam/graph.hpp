@@ -9,44 +9,44 @@ namespace waymark {
 
 /// A pose of the robot in a graph.
 struct GraphPose {
-  std::int64_t id = 0;  ///< as the file or the log counts
-  double t = 0;         ///< s; of a file without times its id
+  std::int64_t id = 0;  ///< as in the file or the log
+  double t = 0;         ///< s; the id if the file has no times
   Pose2 at;
-  bool given = false;  ///< whether `at` is a first guess worth having
-  bool fixed = false;  ///< not to be moved
+  bool given = false;  ///< whether `at` is a usable initial guess
+  bool fixed = false;  ///< constant in the optimisation
 };
 
+/// A landmark in a graph.
 struct GraphLandmark {
   std::int64_t id = 0;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   bool given = false;
 };
 
-/// How the robot moved from one pose to another, seen from the first. Information = root' root.
+/// Relative motion between two poses, in the frame of the first. Information = root' root.
 struct StepEdge {
   std::size_t from = 0, to = 0;
   Pose2 step;
   Eigen::Matrix3d root = Eigen::Matrix3d::Identity();  ///< square root of the information, upper triangular
 };
 
-/// What a sighting measures, in the frame of the sensor.
+/// Measurement of a sighting, in the frame of the sensor.
 enum class SightingKind {
-  place,          ///< x forward, y left, m
+  position,       ///< x forward, y left, m
   range_bearing,  ///< m, rad to the left
   bearing,        ///< rad; the first of the two values is not used
 };
 
-/// A landmark seen from a pose.
+/// A sighting of a landmark from a pose.
 struct SightingEdge {
   std::size_t pose = 0, landmark = 0;
-  SightingKind kind = SightingKind::place;
+  SightingKind kind = SightingKind::position;
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d root =
-      Eigen::Matrix2d::Identity();  ///< as of StepEdge; of a bearing, the last entry counts
+  Eigen::Matrix2d root = Eigen::Matrix2d::Identity();  ///< as of StepEdge; a bearing uses the last entry
   Pose2 robot_from_sensor;
 };
 
-/// What was known of a pose or a landmark before the drive.
+/// Prior knowledge of a pose or a landmark.
 struct PosePrior {
   std::size_t pose = 0;
   Pose2 at;
@@ -58,8 +58,8 @@ struct LandmarkPrior {
   Eigen::Matrix2d root = Eigen::Matrix2d::Identity();
 };
 
-/// Poses and landmarks, and what is known of where they lie to each other. Edges refer to poses and landmarks
-/// by their index; poses stand in the order of the drive.
+/// Poses, landmarks, and measurements between them. Edges refer to poses and landmarks by index; poses are
+/// in the order of the drive.
 struct PoseGraph {
   std::vector<GraphPose> poses;
   std::vector<GraphLandmark> landmarks;
@@ -69,7 +69,7 @@ struct PoseGraph {
   std::vector<LandmarkPrior> landmark_priors;
 };
 
-/// Whitened difference between measured and expected, and its derivatives. Unused rows are 0.
+/// Whitened difference between measured and expected, and its Jacobians. Unused rows are 0.
 struct StepError {
   Eigen::Vector3d value;
   Eigen::Matrix3d by_from, by_to;
@@ -81,22 +81,23 @@ struct SightingError {
 };
 StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to);
 SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark);
-/// Derivative by the pose: the root.
+/// The Jacobian with respect to the pose is the root.
 Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose);
 Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& landmark);
 
-/// Sum of all squared errors where poses and landmarks stand now.
+/// Returns the sum of all squared errors at the present poses and landmarks.
 double chi2(const PoseGraph& graph);
 
-/// Whether something says where the graph lies: a prior on a pose, on two landmarks, or a fixed pose. The
-/// first pose is held otherwise.
+/// Returns whether the graph is anchored: by a prior on a pose, priors on two landmarks, or a fixed pose.
+/// Otherwise the first pose is held constant.
 bool has_gauge(const PoseGraph& graph);
 
-/// Upper triangular R with R'R = information. Throws std::invalid_argument where it is not positive definite.
+/// Returns upper triangular R with R'R = information. Throws std::invalid_argument if it is not positive
+/// definite.
 Eigen::Matrix3d information_root(const Eigen::Matrix3d& information);
 Eigen::Matrix2d information_root(const Eigen::Matrix2d& information);
 
-/// Numbers of measurements and of unknowns.
+/// Returns the number of measured numbers, and of unknowns.
 std::size_t residual_count(const PoseGraph& graph);
 std::size_t unknown_count(const PoseGraph& graph);
 

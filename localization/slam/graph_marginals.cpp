@@ -12,7 +12,7 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Index = Eigen::Index;
 
-/// Weight of an error's square under a kernel: rho' of Ceres.
+/// Returns the weight of an error's square under a kernel: rho' of Ceres.
 double weight(const std::string& kernel, double width, double square) {
   const double a = width * width;
   if (kernel == "huber") return square <= a ? 1 : width / std::sqrt(square);
@@ -20,7 +20,7 @@ double weight(const std::string& kernel, double width, double square) {
   return 1;
 }
 
-/// The information matrix, filled block by block.
+/// Information matrix, assembled block by block.
 class Information {
  public:
   explicit Information(const PoseGraph& graph)
@@ -41,7 +41,7 @@ class Information {
   Index landmark(std::size_t i) const { return landmark_row_[i]; }
   Index rows() const { return rows_; }
 
-  /// Adds a'b at (row, column), rows from pose() or landmark(); nothing where one is fixed.
+  /// Adds a'b at (row, column), rows from pose() or landmark(); does nothing if one is fixed.
   template <class A, class B>
   void add(Index row, Index column, const A& a, const B& b, double scale) {
     if (row < 0 || column < 0) return;
@@ -70,7 +70,7 @@ class Information {
   Index rows_ = 0;
 };
 
-/// Those entries of the inverse of L D L' that L has, in L's places; the diagonal apart.
+/// Entries of the inverse of L D L' at the non-zeros of L; the diagonal apart.
 struct SelectedInverse {
   Sparse below;
   Eigen::VectorXd diagonal;
@@ -81,8 +81,8 @@ struct SelectedInverse {
   }
 };
 
-// Z = D^-1 L^-1 + (I - L') Z, column by column from the last; only entries that L has are needed for others
-// that L has.
+// Z = D^-1 L^-1 + (I - L') Z, column by column from the last. Entries of the pattern of L depend on entries
+// of that pattern only.
 SelectedInverse selected_inverse(const Sparse& l, const Eigen::VectorXd& d) {
   const Index n = l.cols();
   SelectedInverse z{l, d.cwiseInverse()};
@@ -146,7 +146,7 @@ GraphMarginals graph_marginals(const PoseGraph& graph, const std::string& kernel
   Eigen::SimplicialLDLT<Sparse> factor(information.matrix());
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0))
     throw Error(ErrorCode::input, "the graph is not determined: it has no covariances", "",
-                "is a pose or landmark tied to the rest by less than it has coordinates?");
+                "check for a pose or landmark with fewer measurements than coordinates");
   Sparse l = factor.matrixL();
   const SelectedInverse inverse = selected_inverse(l, factor.vectorD());
   const auto place = [&](Index row) { return factor.permutationP().indices()[row]; };

@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "localization/slam/graph_initialization.hpp"
 #include "localization/slam/graph_marginals.hpp"
-#include "localization/slam/graph_start.hpp"
 
 namespace waymark {
 namespace {
@@ -18,7 +18,7 @@ using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
 using RowMajor2 = Eigen::Matrix<double, 2, 2, Eigen::RowMajor>;
 using Parameters = double const* const*;
 
-// A heading may be any number of turns: errors are taken the short way round, so no manifold is needed.
+// Headings are not wrapped: errors are taken the short way round, so no manifold is needed.
 Pose2 pose_at(const double* p) {
   return {p[0], p[1], p[2]};
 }
@@ -85,20 +85,20 @@ std::unique_ptr<ceres::LossFunction> loss_of(const GraphOptions& options) {
   return nullptr;
 }
 
-ceres::Problem::Options borrowing() {
+ceres::Problem::Options problem_options() {
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   return options;
 }
 
-/// A graph that grows pose by pose.
-class Growing {
+/// Least-squares problem to which poses are added one by one.
+class IncrementalProblem {
  public:
-  Growing(const PoseGraph& graph, const GraphOptions& options)
+  IncrementalProblem(const PoseGraph& graph, const GraphOptions& options)
       : graph_(graph),
         options_(options),
         loss_(loss_of(options)),
-        problem_(borrowing()),
+        problem_(problem_options()),
         at_(graph.poses.size()),
         there_(graph.landmarks.size()),
         placed_(graph.poses.size(), false),
@@ -118,7 +118,7 @@ class Growing {
     }
   }
 
-  void add(const Placement& next, bool from_guess) {
+  void add(const InitializationStep& next, bool from_guess) {
     const std::size_t i = next.pose;
     at_[i] = (from_guess ? graph_.poses[i].at : guess(next)).vector();
     placed_[i] = true;
@@ -132,7 +132,7 @@ class Growing {
       if (placed_[e.from] && placed_[e.to])
         problem_.AddResidualBlock(new StepCost(e), loss_of_step(e), at_[e.from].data(), at_[e.to].data());
     }
-    for (const std::size_t s : sightings_of_[i]) see(s, from_guess);
+    for (const std::size_t s : sightings_of_[i]) add_sighting(s, from_guess);
   }
 
   ceres::Solver::Summary solve(int iterations, double tolerance) {
@@ -158,19 +158,19 @@ class Growing {
     return graph;
   }
 
-  std::optional<std::size_t> undetermined() const {
+  std::optional<std::size_t> undetermined_landmark() const {
     const auto lost = std::ranges::find(known_, false);
     return lost == known_.end() ? std::nullopt
                                 : std::optional(static_cast<std::size_t>(lost - known_.begin()));
   }
 
  private:
-  // Odometry is not doubted; what ties poses that are not neighbours may be a wrong place recognised.
+  // Odometry has no kernel; an edge between poses that are not neighbours may be a false loop closure.
   ceres::LossFunction* loss_of_step(const StepEdge& e) const {
     return (e.from < e.to ? e.to - e.from : e.from - e.to) > 1 ? loss_.get() : nullptr;
   }
 
-  Pose2 guess(const Placement& next) const {
+  Pose2 guess(const InitializationStep& next) const {
     if (next.by_step) {
       const StepEdge& e = graph_.steps[*next.by_step];
       return e.to == next.pose ? pose_of(at_[e.from]) * e.step : pose_of(at_[e.to]) * inverse(e.step);
@@ -178,7 +178,7 @@ class Growing {
     PoseGraph now = graph_;
     for (const std::size_t s : sightings_of_[next.pose])
       now.landmarks[graph_.sightings[s].landmark].at = there_[graph_.sightings[s].landmark];
-    if (const auto pose = pose_by_landmarks(now, sightings_of_[next.pose], known_)) return *pose;
+    if (const auto pose = resect_pose(now, sightings_of_[next.pose], known_)) return *pose;
     return graph_.poses[next.pose].at;
   }
 
@@ -196,20 +196,20 @@ class Growing {
                               there_[e.landmark].data());
   }
 
-  void see(std::size_t s, bool from_guess) {
+  void add_sighting(std::size_t s, bool from_guess) {
     const SightingEdge& e = graph_.sightings[s];
     if (known_[e.landmark]) return tie(s);
     waiting_[e.landmark].push_back(s);
     if (from_guess && graph_.landmarks[e.landmark].given)
       place(e.landmark, graph_.landmarks[e.landmark].at);
-    else if (const auto at = place_seen(e, pose_of(at_[e.pose])))
+    else if (const auto at = landmark_position(e, pose_of(at_[e.pose])))
       place(e.landmark, *at);
     else if (const auto crossing =
-                 crossing_of(ray(waiting_[e.landmark].front()), ray(waiting_[e.landmark].back())))
+                 intersect_rays(ray(waiting_[e.landmark].front()), ray(waiting_[e.landmark].back())))
       place(e.landmark, *crossing);
   }
 
-  /// From the sensor along a bearing.
+  /// Returns the ray from the sensor along a bearing.
   Pose2 ray(std::size_t sighting) const {
     const SightingEdge& e = graph_.sightings[sighting];
     Pose2 sensor = pose_of(at_[e.pose]) * e.robot_from_sensor;
@@ -230,29 +230,29 @@ class Growing {
 constexpr double kRough = 1e-4, kFine = 1e-10;  // relative change of chi2 at which an optimisation ends
 constexpr int kRoughIterations = 15;
 
-GraphSolution grown(const PoseGraph& graph, const std::vector<Placement>& order, const GraphOptions& options,
-                    std::size_t block, bool from_guess) {
-  Growing growing(graph, options);
+GraphSolution solve_incrementally(const PoseGraph& graph, const std::vector<InitializationStep>& order,
+                                  const GraphOptions& options, std::size_t block, bool from_guess) {
+  IncrementalProblem problem(graph, options);
   GraphSolution solution;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    growing.add(order[i], from_guess);
+    problem.add(order[i], from_guess);
     const bool last = i + 1 == order.size();
     if (!last && (block == 0 || (i + 1) % block != 0)) continue;
     const auto summary =
-        growing.solve(last ? static_cast<int>(options.iterations) : kRoughIterations, last ? kFine : kRough);
+        problem.solve(last ? static_cast<int>(options.iterations) : kRoughIterations, last ? kFine : kRough);
     if (!summary.IsSolutionUsable())
       throw Error(ErrorCode::input, "the graph cannot be solved: " + summary.message, "",
-                  "are its numbers sound?");
+                  "check its measurements and information matrices");
     solution.iterations += static_cast<int>(summary.iterations.size()) - 1;
     ++solution.optimisations;
     solution.converged = summary.termination_type == ceres::CONVERGENCE;
   }
-  if (const auto landmark = growing.undetermined())
+  if (const auto landmark = problem.undetermined_landmark())
     throw Error(ErrorCode::input,
-                fmt::format("nothing says where landmark {} of the graph is: its bearings do not cross",
+                fmt::format("landmark {} of the graph has no position: its bearings do not cross",
                             graph.landmarks[*landmark].id),
-                "", "leave it out, or add sightings from other places");
-  solution.graph = growing.result();
+                "", "remove it, or add sightings from other positions");
+  solution.graph = problem.result();
   solution.chi2 = chi2(solution.graph);
   return solution;
 }
@@ -262,24 +262,26 @@ GraphSolution grown(const PoseGraph& graph, const std::vector<Placement>& order,
 void GraphOptions::describe(OptionVisitor& option) {
   option("graph_block", block,
          {.help = "Poses added between two optimisations of a graph; 0: all at once", .min = 0});
-  option("graph_iterations", iterations, {.help = "Iterations of the last optimisation, at most", .min = 1});
+  option("graph_iterations", iterations,
+         {.help = "Largest number of iterations of the last optimisation", .min = 1});
   option("graph_kernel", kernel,
-         {.help = "How sightings and loops that do not fit count; auto: none for graph files, huber for logs",
+         {.help = "Robust kernel of sightings and loops; auto: none for graph files, huber for logs",
           .choices = {"auto", "none", "huber", "cauchy"}});
   option("graph_kernel_width", kernel_width,
-         {.help = "Standard deviations from which the kernel counts an error less", .min = 0.01});
+         {.help = "Standard deviations from which the kernel reduces an error's weight", .min = 0.01});
 }
 
 GraphSolution optimise(PoseGraph graph, const GraphOptions& options) {
-  const std::vector<Placement> order = placing_order(graph);
+  const std::vector<InitializationStep> order = initialization_order(graph);
   const std::size_t residuals = residual_count(graph), unknowns = unknown_count(graph);
-  // Twice what the errors are when all covariances are right: then a minimum is worth no further search.
+  // Twice the expected errors if all covariances are right: such a minimum needs no further search.
   const double good = 2 * static_cast<double>(std::max(residuals, unknowns + 1) - unknowns) + 10;
   const bool guessed = std::ranges::all_of(graph.poses, &GraphPose::given);
   std::optional<GraphSolution> best;
   const auto attempt = [&](std::int64_t block, bool from_guess) {
     if (best && best->chi2 <= good) return;
-    GraphSolution one = grown(graph, order, options, static_cast<std::size_t>(block), from_guess);
+    GraphSolution one =
+        solve_incrementally(graph, order, options, static_cast<std::size_t>(block), from_guess);
     if (!best || one.chi2 < best->chi2) best = std::move(one);
   };
   if (guessed) attempt(0, true);

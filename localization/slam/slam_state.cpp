@@ -28,9 +28,9 @@ SlamState::SlamState(const PoseEstimate& start)
       theta_(Eigen::Vector3d::Zero()) {}
 
 Eigen::Matrix2d SlamState::covariance(Slot slot) const {
-  if (place_[slot] < active_.size() && active_[place_[slot]] == slot)
+  if (index_[slot] < active_.size() && active_[index_[slot]] == slot)
     return paa_.block<2, 2>(row(slot), row(slot));
-  const Index i = 2 * static_cast<Index>(place_[slot]);
+  const Index i = 2 * static_cast<Index>(index_[slot]);
   return pbb_.block<2, 2>(i, i);
 }
 
@@ -38,9 +38,9 @@ Eigen::Matrix<double, 2, 3> SlamState::cross(Slot slot) const {
   return paa_.block<2, 3>(row(slot), 0);
 }
 
-void SlamState::move(const BodyMotion& motion) {
+void SlamState::predict(const BodyMotion& motion) {
   const MotionJacobians j = motion_jacobians(pose_, motion.step);
-  const PoseEstimate robot = moved({pose_, covariance()}, motion);
+  const PoseEstimate robot = predict_pose({pose_, covariance()}, motion);
   const Index rest = paa_.rows() - 3;
   const Eigen::MatrixXd turned = j.by_pose * paa_.topRightCorner(3, rest);
   paa_.topRightCorner(3, rest) = turned;
@@ -70,7 +70,7 @@ void SlamState::update(std::span<const Correction> corrections) {
     s.middleRows<2>(k) += c.by_pose * ph.topRows<3>() + c.by_landmark * ph.middleRows<2>(row(c.slot));
   }
   const Eigen::LLT<Eigen::MatrixXd> root((s + s.transpose()) / 2);
-  if (root.info() != Eigen::Success) return;  // nothing sound can be learnt from these
+  if (root.info() != Eigen::Success) return;  // not positive definite: skip the update
   const Eigen::MatrixXd gain = root.solve(ph.transpose()).transpose();
   const Eigen::VectorXd step = gain * v;
   if (!step.allFinite()) return;
@@ -91,7 +91,7 @@ void SlamState::update(std::span<const Correction> corrections) {
 
 SlamState::Slot SlamState::append(const Eigen::Vector2d& at) {
   at_.push_back(at);
-  place_.push_back(active_.size());
+  index_.push_back(active_.size());
   active_.push_back(at_.size() - 1);
   return at_.size() - 1;
 }
@@ -122,11 +122,11 @@ void SlamState::remove(Slot slot) {
   paa_.conservativeResize(n - 2, n - 2);
   phi_.middleRows(l, rest) = phi_.bottomRows(rest).eval();
   phi_.conservativeResize(n - 2, Eigen::NoChange);
-  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(place_[slot]));
-  for (std::size_t i = place_[slot]; i < active_.size(); ++i) place_[active_[i]] = i;
+  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(index_[slot]));
+  for (std::size_t i = index_[slot]; i < active_.size(); ++i) index_[active_[i]] = i;
 }
 
-Eigen::MatrixXd SlamState::whole(std::vector<Slot>& order) const {
+Eigen::MatrixXd SlamState::full_covariance(std::vector<Slot>& order) const {
   order = active_;
   order.insert(order.end(), passive_.begin(), passive_.end());
   const Index a = paa_.rows(), b = pbb_.rows();
@@ -152,7 +152,7 @@ Eigen::MatrixXd SlamState::whole(std::vector<Slot>& order) const {
 
 void SlamState::focus(double radius) {
   std::vector<Slot> order;
-  const Eigen::MatrixXd all = whole(order);
+  const Eigen::MatrixXd all = full_covariance(order);
   if (pbb_.rows() > 0) {
     const Eigen::VectorXd step = pab_.transpose() * theta_;
     for (std::size_t i = 0; i < passive_.size(); ++i)
@@ -164,7 +164,7 @@ void SlamState::focus(double radius) {
     const Slot slot = order[i];
     const bool is_near = (at_[slot] - pose_.at()).norm() <= radius;
     std::vector<Slot>& part = is_near ? active_ : passive_;
-    place_[slot] = part.size();
+    index_[slot] = part.size();
     part.push_back(slot);
     const Index r = 3 + 2 * static_cast<Index>(i);
     std::vector<Index>& rows = is_near ? near : far;

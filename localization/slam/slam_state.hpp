@@ -6,13 +6,13 @@
 #include "localization/body_motion.hpp"
 namespace waymark {
 
-/// Robot and landmarks in one Gaussian. Only what lies near the robot, the active part A, is kept up to date;
-/// what the measurements there mean for the passive rest B is gathered in three small matrices and carried
-/// out when the robot leaves the neighbourhood (compressed filter, Guivant & Nebot 2001). The result is that
-/// of the full filter to rounding; an update costs O(A^2) instead of O((A + B)^2).
+/// Robot and landmarks in one Gaussian (compressed filter, Guivant & Nebot 2001). Only the active part A
+/// near the robot is kept up to date. The effect of its measurements on the passive rest B is collected in
+/// three small matrices and applied when the robot leaves the neighbourhood. Equals the full filter to
+/// rounding; an update costs O(A^2) instead of O((A + B)^2).
 class SlamState {
  public:
-  using Slot = std::size_t;  ///< of a landmark; never used twice
+  using Slot = std::size_t;  ///< of a landmark; never reused
 
   explicit SlamState(const PoseEstimate& start);
 
@@ -21,15 +21,15 @@ class SlamState {
   std::size_t landmarks() const { return active_.size() + passive_.size(); }
   std::span<const Slot> active() const { return active_; }
 
-  /// Of any landmark; of a passive one as it was when it became passive.
+  /// Position of any landmark; that of a passive one dates from when it became passive.
   const Eigen::Vector2d& at(Slot slot) const { return at_[slot]; }
   Eigen::Matrix2d covariance(Slot slot) const;
-  /// Covariance of an active landmark with the robot.
+  /// Returns the covariance of an active landmark with the robot.
   Eigen::Matrix<double, 2, 3> cross(Slot slot) const;
 
-  void move(const BodyMotion& motion);
+  void predict(const BodyMotion& motion);
 
-  /// What one sighting says: innovation, its derivatives, noise. The landmark is active.
+  /// Innovation of one sighting of an active landmark, its Jacobians and noise.
   struct Correction {
     Slot slot = 0;
     Eigen::Vector2d innovation;
@@ -39,31 +39,31 @@ class SlamState {
   /// Kalman update by all corrections at once, Joseph form.
   void update(std::span<const Correction> corrections);
 
-  /// A landmark placed from where the robot is: `by_pose` its derivative by the pose, `own` the rest of its
-  /// covariance. Active.
+  /// Adds an active landmark measured from the robot. `by_pose`: its Jacobian with respect to the pose;
+  /// `own`: the rest of its covariance.
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose, const Eigen::Matrix2d& own);
-  /// A landmark known from elsewhere. Active.
+  /// Adds an active landmark independent of the state.
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance);
-  /// Forgets an active landmark.
+  /// Removes an active landmark.
   void remove(Slot slot);
 
-  /// Brings all up to date, and makes active what lies within `radius` metres of the robot.
+  /// Brings the state up to date and activates the landmarks within `radius` metres of the robot.
   void focus(double radius);
 
-  /// The whole covariance, robot first, then the landmarks in the order of `order`. Everything is up to date
-  /// after focus() only.
-  Eigen::MatrixXd whole(std::vector<Slot>& order) const;
+  /// Returns the whole covariance, robot first, then the landmarks in `order`. Up to date only after
+  /// focus().
+  Eigen::MatrixXd full_covariance(std::vector<Slot>& order) const;
 
  private:
-  Eigen::Index row(Slot slot) const { return 3 + 2 * static_cast<Eigen::Index>(place_[slot]); }
+  Eigen::Index row(Slot slot) const { return 3 + 2 * static_cast<Eigen::Index>(index_[slot]); }
   Slot append(const Eigen::Vector2d& at);
 
   Pose2 pose_;
   std::vector<Eigen::Vector2d> at_;  // by slot
-  std::vector<std::size_t> place_;   // by slot: in active_ or passive_
+  std::vector<std::size_t> index_;   // by slot: in active_ or passive_
   std::vector<Slot> active_, passive_;
   Eigen::MatrixXd paa_;        // robot and active landmarks
-  Eigen::MatrixXd pab_, pbb_;  // as of the last focus(); rows of pab_: what was active then
+  Eigen::MatrixXd pab_, pbb_;  // as of the last focus(); rows of pab_: those active then
   Eigen::MatrixXd phi_, psi_;  // P_AB now = phi P_AB then; P_BB now = P_BB then - P_BA psi P_AB
   Eigen::VectorXd theta_;      // x_B now = x_B then + P_BA theta
 };

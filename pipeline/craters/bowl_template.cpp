@@ -10,11 +10,11 @@ namespace {
 
 constexpr double kReach = 1.3;        // side of the template / diameter
 constexpr int kSamples = 4;           // per pixel and axis
-constexpr double kOuterSlope = 0.45;  // of the rim's outside, of the wall's slope at the rim
+constexpr double kOuterSlope = 0.45;  // slope outside the rim / slope of the wall at the rim
 constexpr double kDepth = 0.2;        // / diameter, of a fresh simple crater (Pike 1977)
 constexpr double kRim = 0.25;         // height of the rim above the plain / depth below it
 
-// Brightness of the slope template at (u, v) radii from the centre, the light from +u.
+// Brightness of the slope template at (u, v) radii from the centre, light from +u.
 double slope_light(double u, double v) {
   const double r = std::hypot(u, v);
   if (r < 1) return -u;
@@ -27,7 +27,7 @@ double height(double r) {
   return 2 * kDepth * kRim / (r * r * r);
 }
 
-// Lambert with cast shadow, the light from +u.
+// Lambert shading with cast shadow, light from +u.
 double fresh_light(double u, double v, double elevation) {
   const double here = height(std::hypot(u, v)), rise = std::tan(elevation);
   for (double s = 0.05; s < 2.4; s += 0.05)

@@ -4,16 +4,16 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// How a bowl is lit.
+/// Illumination of a bowl template.
 enum class BowlLight {
-  slope,        ///< brightness follows the slope along the light: shallow bowls, high sun
-  low_shadow,   ///< a fresh bowl, sun 25 degrees high: the near wall lies in its own shadow
-  deep_shadow,  ///< the same, sun 12 degrees high: the floor too
+  slope,        ///< brightness proportional to the slope along the light: shallow bowls, high sun
+  low_shadow,   ///< fresh bowl, sun 25 degrees high: the near wall is in its own shadow
+  deep_shadow,  ///< fresh bowl, sun 12 degrees high: the floor is in shadow as well
 };
 
-/// How a crater of `diameter` pixels looks: a paraboloid with a rim that falls as r^-3 outside, lit from
-/// `sun_angle` (towards the sun, from x towards y), blurred by 0.7 px. A square of odd side, 1.3 diameters,
-/// the crater in the middle; zero mean and unit norm over the square.
+/// Returns the appearance of a crater of `diameter` pixels: a paraboloid with a rim that falls as r^-3
+/// outside, blurred by 0.7 px. `sun_angle` points towards the sun, from x towards y. The result is a square
+/// of odd side, 1.3 diameters, centred on the crater, with zero mean and unit norm.
 Pixels bowl_template(double diameter, Radians sun_angle, BowlLight light);
 
 }  // namespace waymark

@@ -14,11 +14,11 @@ namespace {
 constexpr int kLanes = 8;
 using Lanes [[gnu::vector_size(sizeof(float) * kLanes)]] = float;
 
-// Sums of kVectors x kLanes outputs at kTogether places of a row at once, so that a weight is read once for
-// all and no sum waits for another; all are held in registers, since the compiler knows each index. Each adds
-// its products in the order of the inputs. What is negative is multiplied by `leak`.
+// Computes kVectors x kLanes outputs at kTogether positions of a row at once: each weight is read once, sums
+// are independent and stay in registers, since all indices are known at compile time. Each sum adds its
+// products in the order of the inputs. Negative sums are multiplied by `leak`.
 template <int kVectors, int kTogether>
-[[gnu::always_inline]] inline void sums(const Convolution& layer, const float* in, const float* facts,
+[[gnu::always_inline]] inline void sums(const Convolution& layer, const float* in, const float* scalars,
                                         float leak, float* out) {
   const int places = layer.out_side(), row = layer.kernel * layer.channels;
   const std::ptrdiff_t apart = std::ptrdiff_t{layer.stride} * layer.channels;
@@ -47,7 +47,7 @@ template <int kVectors, int kTogether>
       };
       for (int j = 0; j < layer.kernel; ++j)
         add(in + ((y * layer.stride + j) * layer.side + x * layer.stride) * layer.channels, row, apart);
-      add(facts, layer.facts, 0);
+      add(scalars, layer.scalars, 0);
       each(
           all, [&](auto i) __attribute__((always_inline)) {
             const Lanes result = total[i] > 0 ? total[i] : leak * total[i];
@@ -56,7 +56,7 @@ template <int kVectors, int kTogether>
     }
 }
 
-void four_sums(const Convolution& layer, const float* in, const float* facts, float leak, float* out) {
+void four_sums(const Convolution& layer, const float* in, const float* scalars, float leak, float* out) {
   const int places = layer.out_side(), row = layer.kernel * layer.channels;
   for (int y = 0; y < places; ++y)
     for (int x = 0; x < places; ++x) {
@@ -69,60 +69,60 @@ void four_sums(const Convolution& layer, const float* in, const float* facts, fl
       };
       for (int j = 0; j < layer.kernel; ++j)
         add(in + ((y * layer.stride + j) * layer.side + x * layer.stride) * layer.channels, row);
-      add(facts, layer.facts);
+      add(scalars, layer.scalars);
       for (const float sum : total) *out++ = sum > 0 ? sum : leak * sum;
     }
 }
 
-[[gnu::always_inline]] inline void all_sums(const Convolution& layer, const float* in, const float* facts,
+[[gnu::always_inline]] inline void all_sums(const Convolution& layer, const float* in, const float* scalars,
                                             float leak, float* out) {
   const int places = layer.out_side();
   switch (layer.outputs) {
     case 4:
-      return four_sums(layer, in, facts, leak, out);
+      return four_sums(layer, in, scalars, leak, out);
     case 8:
-      return places % 5 == 0 ? sums<1, 5>(layer, in, facts, leak, out)
-                             : sums<1, 1>(layer, in, facts, leak, out);
+      return places % 5 == 0 ? sums<1, 5>(layer, in, scalars, leak, out)
+                             : sums<1, 1>(layer, in, scalars, leak, out);
     case 16:
-      return places % 4 == 0 ? sums<2, 4>(layer, in, facts, leak, out)
-                             : sums<2, 1>(layer, in, facts, leak, out);
+      return places % 4 == 0 ? sums<2, 4>(layer, in, scalars, leak, out)
+                             : sums<2, 1>(layer, in, scalars, leak, out);
     case 32:
-      return places % 2 == 0 ? sums<4, 2>(layer, in, facts, leak, out)
-                             : sums<4, 1>(layer, in, facts, leak, out);
+      return places % 2 == 0 ? sums<4, 2>(layer, in, scalars, leak, out)
+                             : sums<4, 1>(layer, in, scalars, leak, out);
     default:
       assert(false);
   }
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void sums_by_eight(const Convolution& layer, const float* in, const float* facts,
-                                           float leak, float* out) {
-  all_sums(layer, in, facts, leak, out);
+[[gnu::target("avx2")]] void sums_avx2(const Convolution& layer, const float* in, const float* scalars,
+                                       float leak, float* out) {
+  all_sums(layer, in, scalars, leak, out);
 }
 #endif
 
-void sums_anyhow(const Convolution& layer, const float* in, const float* facts, float leak, float* out) {
+void dispatch_sums(const Convolution& layer, const float* in, const float* scalars, float leak, float* out) {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return sums_by_eight(layer, in, facts, leak, out);
+  if (__builtin_cpu_supports("avx2")) return sums_avx2(layer, in, scalars, leak, out);
 #endif
-  all_sums(layer, in, facts, leak, out);
+  all_sums(layer, in, scalars, leak, out);
 }
 
 }  // namespace
 
-void convolve(const Convolution& layer, std::span<const float> in, std::span<const float> facts, bool last,
+void convolve(const Convolution& layer, std::span<const float> in, std::span<const float> scalars, bool last,
               std::vector<float>& out) {
   assert(in.size() == static_cast<std::size_t>(layer.side * layer.side * layer.channels));
-  assert(layer.facts == 0 || facts.size() == static_cast<std::size_t>(layer.facts));
+  assert(layer.scalars == 0 || scalars.size() == static_cast<std::size_t>(layer.scalars));
   out.resize(static_cast<std::size_t>(layer.out_side() * layer.out_side() * layer.outputs));
-  sums_anyhow(layer, in.data(), facts.data(), last ? 1.0F : 0.1F, out.data());
+  dispatch_sums(layer, in.data(), scalars.data(), last ? 1.0F : 0.1F, out.data());
 }
 
-std::vector<float> answer(const ConvolutionNet& net, std::span<const float> image,
-                          std::span<const float> facts) {
+std::vector<float> evaluate(const ConvolutionNet& net, std::span<const float> image,
+                            std::span<const float> scalars) {
   std::vector<float> in(image.begin(), image.end()), out;
   for (const Convolution& layer : net) {
-    convolve(layer, in, facts, &layer == &net.back(), out);
+    convolve(layer, in, scalars, &layer == &net.back(), out);
     in.swap(out);
   }
   return in;

@@ -6,10 +6,11 @@
 namespace waymark {
 namespace {
 
-// Slopes by the inputs from those by the sums; adds those by the weights. Outputs as in convolve.
+// Computes the gradient by the inputs from that by the sums and adds that by the weights. Layout as in
+// convolve.
 template <int kOutputs>
-void slopes_of(const Convolution& layer, const float* in, const float* facts, const float* error,
-               float* slope, float* back) {
+void accumulate_gradients(const Convolution& layer, const float* in, const float* scalars, const float* error,
+                          float* slope, float* back) {
   const int places = layer.out_side(), row = layer.kernel * layer.channels;
   float* bias = slope + layer.weights.size();
   for (int y = 0; y < places; ++y)
@@ -33,15 +34,15 @@ void slopes_of(const Convolution& layer, const float* in, const float* facts, co
             std::ptrdiff_t{(y * layer.stride + j) * layer.side + x * layer.stride} * layer.channels;
         add(in + at, back + at, row);
       }
-      add(facts, nullptr, layer.facts);
+      add(scalars, nullptr, layer.scalars);
     }
 }
 
 }  // namespace
 
-ConvolutionLearner::ConvolutionLearner(ConvolutionNet net, Random& random) : net_(std::move(net)) {
+ConvolutionTrainer::ConvolutionTrainer(ConvolutionNet net, Random& random) : net_(std::move(net)) {
   for (Convolution& layer : net_) {
-    const double quiet = &layer == &net_.back() ? 0.3 : 1;  // no firm opinion at first
+    const double quiet = &layer == &net_.back() ? 0.3 : 1;  // small initial outputs
     const double deviation = quiet * std::sqrt(2.0 / layer.inputs());
     layer.weights.resize(static_cast<std::size_t>(layer.inputs() * layer.outputs));
     for (float& weight : layer.weights) weight = static_cast<float>(random.normal(0, deviation));
@@ -52,16 +53,16 @@ ConvolutionLearner::ConvolutionLearner(ConvolutionNet net, Random& random) : net
   values_.resize(net_.size() + 1);
 }
 
-std::span<const float> ConvolutionLearner::forward(std::span<const float> image,
-                                                   std::span<const float> facts) {
+std::span<const float> ConvolutionTrainer::forward(std::span<const float> image,
+                                                   std::span<const float> scalars) {
   values_[0].assign(image.begin(), image.end());
-  facts_.assign(facts.begin(), facts.end());
+  scalars_.assign(scalars.begin(), scalars.end());
   for (std::size_t i = 0; i < net_.size(); ++i)
-    convolve(net_[i], values_[i], facts_, i + 1 == net_.size(), values_[i + 1]);
+    convolve(net_[i], values_[i], scalars_, i + 1 == net_.size(), values_[i + 1]);
   return values_.back();
 }
 
-void ConvolutionLearner::backward(std::span<const float> slopes) {
+void ConvolutionTrainer::backward(std::span<const float> slopes) {
   std::vector<float> error(slopes.begin(), slopes.end()), back;
   for (std::size_t i = net_.size(); i-- > 0;) {
     const Convolution& layer = net_[i];
@@ -70,27 +71,28 @@ void ConvolutionLearner::backward(std::span<const float> slopes) {
         if (values_[i + 1][k] < 0) error[k] *= 0.1F;
     back.assign(values_[i].size(), 0.0F);
     const auto go = [&](auto slopes_by) {
-      slopes_by(layer, values_[i].data(), facts_.data(), error.data(), memory_[i].slope.data(), back.data());
+      slopes_by(layer, values_[i].data(), scalars_.data(), error.data(), memory_[i].slope.data(),
+                back.data());
     };
     switch (layer.outputs) {
       case 4:
-        go(slopes_of<4>);
+        go(accumulate_gradients<4>);
         break;
       case 8:
-        go(slopes_of<8>);
+        go(accumulate_gradients<8>);
         break;
       case 16:
-        go(slopes_of<16>);
+        go(accumulate_gradients<16>);
         break;
       default:
-        go(slopes_of<32>);
+        go(accumulate_gradients<32>);
         break;
     }
     error.swap(back);
   }
 }
 
-void ConvolutionLearner::step(double rate, double decay, double examples) {
+void ConvolutionTrainer::step(double rate, double decay, double examples) {
   ++steps_;
   const double correct1 = 1 - std::pow(0.9, steps_), correct2 = 1 - std::pow(0.999, steps_);
   for (std::size_t l = 0; l < net_.size(); ++l) {

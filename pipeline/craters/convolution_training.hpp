@@ -8,16 +8,18 @@
 #include "pipeline/craters/convolution_net.hpp"
 namespace waymark {
 
-/// Slopes of a loss by the weights of a network, and Adam's memory (Kingma & Ba 2015) of them.
-class ConvolutionLearner {
+/// Accumulates the gradient of a loss by the weights of a network and updates them with Adam (Kingma & Ba
+/// 2015).
+class ConvolutionTrainer {
  public:
-  /// First weights by He et al. 2015.
-  ConvolutionLearner(ConvolutionNet net, Random& random);
+  /// Initialises the weights (He et al. 2015).
+  ConvolutionTrainer(ConvolutionNet net, Random& random);
 
-  std::span<const float> forward(std::span<const float> image, std::span<const float> facts);
-  /// `slopes` of the loss by the answer of the last forward; adds to those by the weights.
+  std::span<const float> forward(std::span<const float> image, std::span<const float> scalars);
+  /// Adds the gradient by the weights; `slopes` is the gradient of the loss by the outputs of the last
+  /// forward().
   void backward(std::span<const float> slopes);
-  /// Moves the weights against the mean slope of `examples`, with weight decay (Loshchilov & Hutter 2019).
+  /// Updates the weights by the mean gradient of `examples`, with weight decay (Loshchilov & Hutter 2019).
   void step(double rate, double decay, double examples);
   const ConvolutionNet& net() const { return net_; }
 
@@ -27,8 +29,8 @@ class ConvolutionLearner {
   };
   ConvolutionNet net_;
   std::vector<Memory> memory_;
-  std::vector<std::vector<float>> values_;  // what goes into each layer, and the answer
-  std::vector<float> facts_;
+  std::vector<std::vector<float>> values_;  // inputs of each layer, then the outputs
+  std::vector<float> scalars_;
   int steps_ = 0;
 };
 

@@ -15,13 +15,14 @@ int octave(double diameter) {
   return static_cast<int>(std::floor(std::log2(std::max(diameter, 1e-3))));
 }
 
-// Kept circles by octave of their diameter, in cells of that octave's largest diameter.
+// Index of kept circles by octave of diameter, in cells as large as the largest diameter of the octave.
 class KeptCircles {
  public:
-  bool has_same_rim(const CraterCandidate& c, double most_overlap) const {
-    // Beyond one octave the overlap is below 1/4 and no centre rule applies; a lower limit needs more.
+  bool has_duplicate(const CraterCandidate& c, double max_overlap) const {
+    // Beyond one octave the overlap is below 1/4 and the centre rule does not apply; lower limits need more
+    // octaves.
     const int reach =
-        1 + static_cast<int>(std::ceil(-std::log2(std::clamp(most_overlap, 0.01, 0.25)) / 2 - 1));
+        1 + static_cast<int>(std::ceil(-std::log2(std::clamp(max_overlap, 0.01, 0.25)) / 2 - 1));
     for (int o = octave(c.diameter) - reach; o <= octave(c.diameter) + reach; ++o) {
       const double size = std::exp2(o + 1);
       const auto rings = static_cast<std::int64_t>(std::ceil((c.diameter + size) / 2 / size));
@@ -31,7 +32,7 @@ class KeptCircles {
           const auto found = cells_.find(key(o, i, j));
           if (found == cells_.end()) continue;
           for (const CraterCandidate& k : found->second)
-            if (same_rim(k, c, most_overlap)) return true;
+            if (same_rim(k, c, max_overlap)) return true;
         }
     }
     return false;
@@ -73,20 +74,20 @@ void sort_by_score(std::vector<CraterCandidate>& candidates) {
   });
 }
 
-bool same_rim(const CraterCandidate& a, const CraterCandidate& b, double most_overlap) {
+bool same_rim(const CraterCandidate& a, const CraterCandidate& b, double max_overlap) {
   const double small = std::min(a.diameter, b.diameter), large = std::max(a.diameter, b.diameter);
   const double dx = a.x - b.x, dy = a.y - b.y;
   if (dx * dx + dy * dy >= (small + large) * (small + large) / 4) return false;
   if (large < 2 * small && dx * dx + dy * dy < small * small / 16) return true;
-  return overlap(a, b) > most_overlap;
+  return overlap(a, b) > max_overlap;
 }
 
-std::vector<CraterCandidate> suppress_overlaps(std::vector<CraterCandidate> candidates, double most_overlap) {
+std::vector<CraterCandidate> suppress_overlaps(std::vector<CraterCandidate> candidates, double max_overlap) {
   sort_by_score(candidates);
   KeptCircles kept;
   std::vector<CraterCandidate> result;
   for (const CraterCandidate& c : candidates) {
-    if (kept.has_same_rim(c, most_overlap)) continue;
+    if (kept.has_duplicate(c, max_overlap)) continue;
     kept.add(c);
     result.push_back(c);
   }

@@ -3,28 +3,30 @@
 #include <vector>
 namespace waymark {
 
-/// A circle that may be a crater's rim. Pixels; (0, 0) is the centre of the first.
+/// Circle that may be a crater rim. Pixels; (0, 0) is the centre of the first pixel.
 struct CraterCandidate {
   double x = 0, y = 0;
   double diameter = 0;
-  double score = 0;  ///< higher is better; what it means is the maker's matter
+  double score = 0;  ///< higher is better; its scale depends on the detector
   friend bool operator==(const CraterCandidate&, const CraterCandidate&) = default;
 };
 
-/// Area of the common part of two circles over the area they cover together, [0, 1].
+/// Returns the intersection over union of two circles, [0, 1].
 double overlap(const CraterCandidate& a, const CraterCandidate& b);
 
-/// Best first; equal scores by position and size, so that the order does not depend on how they were found.
+/// Sorts by descending score; ties by position and size, so that the order does not depend on the input
+/// order.
 void sort_by_score(std::vector<CraterCandidate>& candidates);
 
-/// Two circles that cannot both be rims of different craters: they overlap by more than `most_overlap`, or
-/// one lies centred (within a quarter of the smaller diameter) in another less than twice its size.
-bool same_rim(const CraterCandidate& a, const CraterCandidate& b, double most_overlap);
+/// Returns whether two circles cannot be rims of different craters:
+/// - their intersection over union exceeds `max_overlap`, or
+/// - one is centred (within a quarter of the smaller diameter) in another less than twice its size.
+bool same_rim(const CraterCandidate& a, const CraterCandidate& b, double max_overlap);
 
-/// Keeps the best of each group of the same rim, greedily from the best score down. Sorted by score.
-/// O(n) for circles spread over the image: compared only within cells of their own octave of size and its
-/// neighbours.
+/// Keeps the best of each group with the same rim, greedily from the best score down. Returns them sorted
+/// by score. O(n) for circles spread over the image: only cells of the same octave of size and its
+/// neighbours are compared.
 std::vector<CraterCandidate> suppress_overlaps(std::vector<CraterCandidate> candidates,
-                                               double most_overlap = 0.25);
+                                               double max_overlap = 0.25);
 
 }  // namespace waymark

@@ -34,7 +34,7 @@ void thumbnail(const Patch& patch, float* out) {
     }
 }
 
-// Signed directions, shared linearly between two bins; one block, norm 1 clipped at 0.25 and scaled to ~1.
+// Signed directions, interpolated between two bins; one block of norm 1, clipped at 0.25 and scaled to ~1.
 void gradients(const Patch& patch, float* out) {
   std::array<float, kHogCells * kHogCells * kHogBins> cells{};
   constexpr int cell_side = kPatchSide / kHogCells;
@@ -63,7 +63,7 @@ void gradients(const Patch& patch, float* out) {
 
 struct BowlSample {
   std::size_t index;  // in the patch
-  double bowl;        // brightness there of a bowl lit by slope
+  double bowl;        // brightness of a bowl lit by slope
 };
 
 std::vector<BowlSample> slope_bowl() {
@@ -82,16 +82,16 @@ std::vector<BowlSample> slope_bowl() {
 
 }  // namespace
 
-double normalise(std::array<float, kLookSide * kLookSide>& patch) {
-  // The whole samples within 1.6 radii of the middle.
-  constexpr int margin = 3, inner = kLookSide - 2 * margin;
-  static_assert(2 * 1.6 / (2 * kLookReach / kLookSide) < inner &&
-                inner - 2 < 2 * 1.6 / (2 * kLookReach / kLookSide));
+double normalise(std::array<float, kWidePatchSide * kWidePatchSide>& patch) {
+  // Samples entirely within 1.6 radii of the centre.
+  constexpr int margin = 3, inner = kWidePatchSide - 2 * margin;
+  static_assert(2 * 1.6 / (2 * kWidePatchReach / kWidePatchSide) < inner &&
+                inner - 2 < 2 * 1.6 / (2 * kWidePatchReach / kWidePatchSide));
   double sum = 0, squares = 0;
   const auto over_inner = [&](const auto& add) {
-    for (int j = margin; j < kLookSide - margin; ++j)
-      for (int i = margin; i < kLookSide - margin; ++i)
-        add(double(patch[static_cast<std::size_t>(j * kLookSide + i)]));
+    for (int j = margin; j < kWidePatchSide - margin; ++j)
+      for (int i = margin; i < kWidePatchSide - margin; ++i)
+        add(double(patch[static_cast<std::size_t>(j * kWidePatchSide + i)]));
   };
   over_inner([&](double v) { sum += v; });
   const double mean = sum / (inner * inner);
@@ -125,7 +125,7 @@ void PatchSource::read(const CraterCandidate& c, double reach, bool mirrored, fl
   const double step = reach * c.diameter / kSide;  // pixels of the image between samples
   const auto wanted = static_cast<int>(std::floor(std::log2(std::max(1.0, step / 0.75))));
   const Level& level = (*levels_)[std::min(static_cast<std::size_t>(wanted), levels_->size() - 1)];
-  // In pixels of the level from here on.
+  // From here on in pixels of the level.
   const double x = (c.x + 0.5) / level.shrink_x - 0.5, y = (c.y + 0.5) / level.shrink_y - 0.5;
   const double cosine = std::cos(sun_angle_.value) * step, sine = std::sin(sun_angle_.value) * step;
   const double u_x = cosine / level.shrink_x, u_y = sine / level.shrink_y;
@@ -150,7 +150,7 @@ std::array<float, kPatchSide * kPatchSide> PatchSource::patch(const CraterCandid
   return patch;
 }
 
-std::array<float, 3> PatchSource::facts(double correlation, double deviation, double diameter) const {
+std::array<float, 3> PatchSource::scalar_inputs(double correlation, double deviation, double diameter) const {
   return {static_cast<float>(4 * correlation - 2),
           static_cast<float>(std::clamp(std::log2((deviation + 1e-12) / noise_) / 3, -1.0, 2.0)),
           static_cast<float>(std::clamp(std::log2(diameter / 12), -1.0, 1.0))};
@@ -162,16 +162,16 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
   const double deviation = normalise(seen);
   thumbnail(seen, result.data());
   gradients(seen, result.data() + kThumbSide * kThumbSide);
-  const auto rest = facts(correlation, deviation, c.diameter);
+  const auto rest = scalar_inputs(correlation, deviation, c.diameter);
   std::copy(rest.begin(), rest.end(), result.end() - 3);
   return result;
 }
 
-CraterLook PatchSource::look(const CraterCandidate& c, double correlation) const {
-  CraterLook look;
-  read<kLookSide>(c, kLookReach, false, look.patch.data());
-  look.facts = facts(correlation, waymark::normalise(look.patch), c.diameter);
-  return look;
+WidePatch PatchSource::wide_patch(const CraterCandidate& c, double correlation) const {
+  WidePatch wide;
+  read<kWidePatchSide>(c, kWidePatchReach, false, wide.patch.data());
+  wide.scalars = scalar_inputs(correlation, waymark::normalise(wide.patch), c.diameter);
+  return wide;
 }
 
 double PatchSource::slope_correlation(const CraterCandidate& c) const {

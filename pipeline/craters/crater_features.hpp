@@ -14,39 +14,43 @@ inline constexpr int kHogCells = 5, kHogBins = 8;  ///< cells per side, directio
 inline constexpr int kThumbSide = 10;              ///< the patch, 2 x 2 means
 inline constexpr int kCraterFeatures = kThumbSide * kThumbSide + kHogCells * kHogCells * kHogBins + 3;
 
-/// What the model sees of a candidate: the patch about it turned so that the sun stands at +x, brightness
-/// with zero mean and unit deviation, as a thumbnail; a histogram of oriented gradients (Dalal & Triggs 2005)
-/// of it; correlation, contrast against noise, and size.
+/// Inputs of the dense part of the model for one candidate, from a patch turned so that the sun is towards
+/// +x:
+/// - thumbnail of brightness with zero mean and unit deviation,
+/// - histogram of oriented gradients (Dalal & Triggs 2005),
+/// - correlation, contrast over noise, and size.
 using CraterFeatures = std::array<float, kCraterFeatures>;
 
-inline constexpr int kLookSide = 24;       ///< samples
-inline constexpr double kLookReach = 2.2;  ///< radii from the middle to the edge
-inline constexpr int kLookFacts = 3;
+inline constexpr int kWidePatchSide = 24;       ///< samples
+inline constexpr double kWidePatchReach = 2.2;  ///< radii from the middle to the edge
+inline constexpr int kScalarInputs = 3;
 
-/// What the convolutional part of the model sees: more of the surroundings, brightness with zero mean and
-/// unit deviation over 1.6 radii, clipped to 3; correlation, contrast against noise, and size.
-struct CraterLook {
-  std::array<float, kLookSide * kLookSide> patch{};
-  std::array<float, kLookFacts> facts{};
+/// Inputs of the convolutional part of the model: a wider patch, and correlation, contrast over noise and
+/// size. Brightness has zero mean and unit deviation over 1.6 radii and is clipped to 3.
+struct WidePatch {
+  std::array<float, kWidePatchSide * kWidePatchSide> patch{};
+  std::array<float, kScalarInputs> scalars{};
 };
 
-/// Zero mean and unit deviation over the inner 1.6 radii, clipped to 3; returns the deviation before.
-double normalise(std::array<float, kLookSide * kLookSide>& patch);
+/// Scales to zero mean and unit deviation over the inner 1.6 radii, clips to 3, and returns the original
+/// deviation.
+double normalise(std::array<float, kWidePatchSide * kWidePatchSide>& patch);
 
-/// An image prepared for sampling patches of any size: octaves of half size, of which patches are read so
-/// that a sample is never much finer or coarser than a pixel. Cheap to copy.
+/// Samples patches of any size from an image pyramid of octaves, so that samples are about one pixel apart.
+/// Cheap to copy.
 class PatchSource {
  public:
   /// `image` has no NaN.
   PatchSource(const Pixels& image, Radians sun_angle);
 
-  /// About 10 us. `mirrored`: seen in a mirror along the light, as likely a crater as before.
+  /// Takes about 10 us. `mirrored`: reflected about the direction of the light, which leaves the
+  /// probability unchanged.
   CraterFeatures features(const CraterCandidate& candidate, double correlation, bool mirrored = false) const;
-  /// Brightness at kPatchSide x kPatchSide samples, +x towards the sun, row by row; not normalised.
+  /// Returns brightness at kPatchSide x kPatchSide samples, +x towards the sun, row by row; not normalised.
   std::array<float, kPatchSide * kPatchSide> patch(const CraterCandidate& candidate,
                                                    bool mirrored = false) const;
-  CraterLook look(const CraterCandidate& candidate, double correlation) const;
-  /// Correlation of the patch with a bowl lit by slope (BowlLight::slope), [-1, 1].
+  WidePatch wide_patch(const CraterCandidate& candidate, double correlation) const;
+  /// Returns the correlation of the patch with a bowl lit by slope (BowlLight::slope), [-1, 1].
   double slope_correlation(const CraterCandidate& candidate) const;
   Radians sun_angle() const { return sun_angle_; }
 
@@ -57,7 +61,7 @@ class PatchSource {
   };
   template <int kSide>
   void read(const CraterCandidate& candidate, double reach, bool mirrored, float* samples) const;
-  std::array<float, 3> facts(double correlation, double deviation, double diameter) const;
+  std::array<float, 3> scalar_inputs(double correlation, double deviation, double diameter) const;
   std::shared_ptr<const std::vector<Level>> levels_;
   Radians sun_angle_;
   double noise_ = 1;

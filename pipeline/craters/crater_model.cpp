@@ -9,8 +9,8 @@
 namespace waymark {
 namespace {
 
-// Adds weights x inputs to each output. Several outputs at once, so that no sum waits for another; each
-// adds its products in the order of the inputs, as one by one.
+// Adds weights x inputs to each output. Several outputs are computed at once for speed; each adds its
+// products in the order of the inputs, so results do not depend on that.
 void add_products(const CraterModel::Layer& layer, const std::vector<float>& in, std::vector<float>& out) {
   constexpr std::size_t together = 8;
   const std::size_t n = in.size();
@@ -26,7 +26,7 @@ void add_products(const CraterModel::Layer& layer, const std::vector<float>& in,
   }
 }
 
-CraterVerdict verdict_of(const std::vector<float>& out) {
+CraterPrediction prediction_from(const std::vector<float>& out) {
   assert(out.size() == 4);
   return {1 / (1 + std::exp(-double(out[0]))), std::clamp(0.1 * out[1], -0.5, 0.5),
           std::clamp(0.1 * out[2], -0.5, 0.5), std::clamp(0.1 * out[3], -0.7, 0.7)};
@@ -34,7 +34,7 @@ CraterVerdict verdict_of(const std::vector<float>& out) {
 
 }  // namespace
 
-CraterVerdict judge(const CraterModel& model, const CraterFeatures& features) {
+CraterPrediction predict(const CraterModel& model, const CraterFeatures& features) {
   std::vector<float> in(features.begin(), features.end()), out;
   for (const CraterModel::Layer& layer : model.layers) {
     assert(static_cast<std::size_t>(layer.inputs) == in.size());
@@ -44,24 +44,26 @@ CraterVerdict judge(const CraterModel& model, const CraterFeatures& features) {
       for (float& value : out) value = value > 0 ? value : 0.1F * value;
     in.swap(out);
   }
-  return verdict_of(in);
+  return prediction_from(in);
 }
 
-CraterVerdict judge(std::span<const ConvolutionNet> looks, const CraterLook& look) {
-  assert(!looks.empty());
+CraterPrediction predict(std::span<const ConvolutionNet> convolution_nets, const WidePatch& wide) {
+  assert(!convolution_nets.empty());
   std::vector<float> mean(4);
-  for (const ConvolutionNet& net : looks) {
-    const std::vector<float> one = answer(net, look.patch, look.facts);
-    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += one[i] / static_cast<float>(looks.size());
+  for (const ConvolutionNet& net : convolution_nets) {
+    const std::vector<float> one = evaluate(net, wide.patch, wide.scalars);
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      mean[i] += one[i] / static_cast<float>(convolution_nets.size());
   }
-  return verdict_of(mean);
+  return prediction_from(mean);
 }
 
-CraterCandidate corrected(const CraterCandidate& c, const CraterVerdict& verdict, Radians sun_angle) {
-  const double u = verdict.along * c.diameter, v = verdict.across * c.diameter;
+CraterCandidate apply_correction(const CraterCandidate& c, const CraterPrediction& prediction,
+                                 Radians sun_angle) {
+  const double u = prediction.along * c.diameter, v = prediction.across * c.diameter;
   const double cosine = std::cos(sun_angle.value), sine = std::sin(sun_angle.value);
-  return {c.x + u * cosine - v * sine, c.y + u * sine + v * cosine, c.diameter * std::exp(verdict.log_size),
-          c.score};
+  return {c.x + u * cosine - v * sine, c.y + u * sine + v * cosine,
+          c.diameter * std::exp(prediction.log_size), c.score};
 }
 
 }  // namespace waymark

@@ -8,19 +8,20 @@
 #include "pipeline/craters/crater_features.hpp"
 namespace waymark {
 
-/// What the model says of a candidate.
-struct CraterVerdict {
+/// Output of the model for one candidate.
+struct CraterPrediction {
   double probability = 0;  ///< that it is a crater
-  /// Where its rim is, in the candidate's diameters, the first along the light (towards the sun), the second
-  /// a quarter turn on (from x towards y); and the natural logarithm of the true diameter over the
-  /// candidate's.
+  /// Offset of the rim centre in diameters of the candidate: along the light (towards the sun) and across
+  /// it (from x towards y). `log_size`: natural logarithm of true over candidate diameter.
   double along = 0, across = 0, log_size = 0;
 };
 
-/// Networks of four outputs each, small on purpose, trained on made-up scenes: one of two hidden layers
-/// (rectified, leak 0.1) on gradients and a thumbnail, and convolutional ones on brightness over a wider
-/// patch, which may be missing. They err on different candidates; the convolutional ones, alike but for their
-/// first weights and the order of the lessons, are averaged, which takes the chance of training out.
+/// Classifier and regressor of crater candidates, trained on synthetic scenes. All networks have four
+/// outputs (CraterPrediction).
+/// - `layers`: dense network with two hidden layers (leaky rectifier, 0.1) on gradients and a thumbnail.
+/// - `convolution_nets`: convolutional networks on a wider patch, averaged. They differ in initial weights
+/// and order
+///   of examples; averaging reduces the variance of training. May be empty.
 struct CraterModel {
   struct Layer {
     int inputs = 0, outputs = 0;
@@ -28,27 +29,31 @@ struct CraterModel {
     std::vector<float> biases;
   };
   std::vector<Layer> layers;
-  std::vector<ConvolutionNet> looks;  ///< empty: the layers alone
-  std::string trained_on;             ///< one line for people
+  std::vector<ConvolutionNet> convolution_nets;  ///< empty: the layers alone
+  std::string trained_on;                        ///< one line for people
 };
 
-/// O(weights), about 5 us.
-CraterVerdict judge(const CraterModel& model, const CraterFeatures& features);
-/// The mean answer. O(weights x places), about 3 us each. There is one at least.
-CraterVerdict judge(std::span<const ConvolutionNet> looks, const CraterLook& look);
+/// Applies the dense network. O(weights), about 5 us.
+CraterPrediction predict(const CraterModel& model, const CraterFeatures& features);
+/// Returns the mean output of the convolutional networks, at least one. O(weights x positions), about 3 us
+/// each.
+CraterPrediction predict(std::span<const ConvolutionNet> convolution_nets, const WidePatch& wide);
 
-/// The circle the verdict speaks of.
-CraterCandidate corrected(const CraterCandidate& candidate, const CraterVerdict& verdict, Radians sun_angle);
+/// Applies the predicted offset and size to the candidate.
+CraterCandidate apply_correction(const CraterCandidate& candidate, const CraterPrediction& prediction,
+                                 Radians sun_angle);
 
-/// Text: a line `waymark crater model 1`, a line of provenance, then per layer its sizes and per output a
-/// line: bias, largest weight, and the weights as sixteen-bit shares of it in three base-64 digits each. A
-/// convolution's line is `convolution SIDE CHANNELS FACTS KERNEL STRIDE OUTPUTS`; they follow the layers,
-/// network by network: each ends with four outputs at one place.
-/// parse throws Error{input} naming the line that does not fit.
+/// Writes a model as text:
+/// - a line `waymark crater model 1` and a line of provenance;
+/// - per layer its sizes, and per output a line: bias, largest weight, and all weights as sixteen-bit
+///   fractions of it in three base-64 digits each;
+/// - per convolution `convolution SIDE CHANNELS FACTS KERNEL STRIDE OUTPUTS` and its outputs; a network
+///   ends with four outputs at one position.
+/// parse_crater_model throws Error{input} that names the malformed line.
 std::string as_text(const CraterModel& model);
 CraterModel parse_crater_model(std::string_view text, const std::string& where);
 
-/// The model that `waymark train craters` made and we ship (pipeline/craters/built_in_model.cpp).
+/// Returns the shipped model, made by `waymark train craters` (pipeline/craters/built_in_model.cpp).
 const CraterModel& built_in_crater_model();
 
 }  // namespace waymark

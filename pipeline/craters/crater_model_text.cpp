@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kFirstLine = "waymark crater model 1";
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-constexpr int kLevels = 32000;  // a weight is a sixteen-bit share of the largest of its output
+constexpr int kLevels = 32000;  // a weight is a sixteen-bit fraction of the largest of its output
 
 // Three digits of six bits for each number of -32768 to 32767.
 void append(std::string& text, int number) {
@@ -57,7 +57,7 @@ Number number(std::string_view& words, const Lines& lines) {
   return value;
 }
 
-// The weights of one output.
+// Weights of one output.
 struct Output {
   float bias = 0;
   std::vector<float> weights;
@@ -96,7 +96,7 @@ void write_output(std::string& text, const Output& output) {
 }
 
 void write_convolution(std::string& text, const Convolution& c) {
-  text += fmt::format("convolution {} {} {} {} {} {}\n", c.side, c.channels, c.facts, c.kernel, c.stride,
+  text += fmt::format("convolution {} {} {} {} {} {}\n", c.side, c.channels, c.scalars, c.kernel, c.stride,
                       c.outputs);
   const auto outputs = static_cast<std::size_t>(c.outputs);
   for (std::size_t o = 0; o < outputs; ++o) {
@@ -106,20 +106,20 @@ void write_convolution(std::string& text, const Convolution& c) {
   }
 }
 
-// `words`: the line after its name. What comes in must be what the layer before gives.
+// `words`: the line after its name. The input must have the size of the previous layer's output.
 Convolution read_convolution(std::string_view words, const ConvolutionNet& before, Lines& lines) {
   Convolution c;
-  for (int* value : {&c.side, &c.channels, &c.facts, &c.kernel, &c.stride, &c.outputs})
+  for (int* value : {&c.side, &c.channels, &c.scalars, &c.kernel, &c.stride, &c.outputs})
     *value = number<int>(words, lines);
-  const int side = before.empty() ? kLookSide : before.back().out_side(),
+  const int side = before.empty() ? kWidePatchSide : before.back().out_side(),
             channels = before.empty() ? 1 : before.back().outputs;
   if (c.side != side || c.channels != channels)
     lines.fail(fmt::format("a convolution of {0} x {0} x {1} follows {2} x {2} x {3}", c.side, c.channels,
                            side, channels));
   if (c.kernel < 1 || c.kernel > c.side || c.stride < 1)
     lines.fail("a kernel is 1 to SIDE wide, a stride 1 or more");
-  if (c.facts != 0 && (c.facts != kLookFacts || c.kernel != c.side))
-    lines.fail(fmt::format("{} facts go into a convolution as wide as its input, or none", kLookFacts));
+  if (c.scalars != 0 && (c.scalars != kScalarInputs || c.kernel != c.side))
+    lines.fail(fmt::format("{} facts go into a convolution as wide as its input, or none", kScalarInputs));
   if (std::find(kConvolutionOutputs.begin(), kConvolutionOutputs.end(), c.outputs) ==
       kConvolutionOutputs.end())
     lines.fail("a convolution has 4, 8, 16 or 32 outputs");
@@ -148,7 +148,7 @@ std::string as_text(const CraterModel& model) {
       write_output(text, {layer.biases[static_cast<std::size_t>(o)], {weights, weights + layer.inputs}});
     }
   }
-  for (const ConvolutionNet& net : model.looks)
+  for (const ConvolutionNet& net : model.convolution_nets)
     for (const Convolution& convolution : net) write_convolution(text, convolution);
   return text;
 }
@@ -163,11 +163,12 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
     std::string_view line = lines.next();
     if (line.starts_with("convolution ")) {
       line.remove_prefix(12);
-      if (model.looks.empty() || complete(model.looks.back())) model.looks.emplace_back();
-      model.looks.back().push_back(read_convolution(line, model.looks.back(), lines));
+      if (model.convolution_nets.empty() || complete(model.convolution_nets.back()))
+        model.convolution_nets.emplace_back();
+      model.convolution_nets.back().push_back(read_convolution(line, model.convolution_nets.back(), lines));
       continue;
     }
-    if (!line.starts_with("layer ") || !model.looks.empty())
+    if (!line.starts_with("layer ") || !model.convolution_nets.empty())
       lines.fail("'layer INPUTS OUTPUTS' belongs here");
     line.remove_prefix(6);
     CraterModel::Layer layer;
@@ -184,7 +185,7 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
     model.layers.push_back(std::move(layer));
   }
   if (model.layers.empty() || inputs != 4) lines.fail("the last layer must have 4 outputs");
-  if (!model.looks.empty() && !complete(model.looks.back()))
+  if (!model.convolution_nets.empty() && !complete(model.convolution_nets.back()))
     lines.fail("the last convolution must give 4 outputs at one place");
   return model;
 }

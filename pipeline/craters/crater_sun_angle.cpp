@@ -14,16 +14,16 @@ namespace waymark {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kBowl = 11;    // pixels at the level a bowl is sought on
-constexpr double kClear = 0.7;  // correlation of a bowl that counts
+constexpr double kBowl = 11;    // diameter of a bowl, pixels of its pyramid level
+constexpr double kClear = 0.7;  // minimum correlation
 constexpr int kSectors = 72;
 
 struct Bowl {
   double angle, weight;
 };
 
-// The slope template is linear in the direction of the light: two correlations, along x and along y, give
-// that of every direction, and the best direction of each bowl.
+// The slope template is linear in the direction of the light, so correlations along x and along y give that
+// of every direction, and the best direction of each bowl.
 void bowls_of_level(const cv::Mat1f& image, std::vector<Bowl>& bowls) {
   const auto shape_x = bowl_template(kBowl, Radians{0}, BowlLight::slope),
              shape_y = bowl_template(kBowl, Radians{kPi / 2}, BowlLight::slope);
@@ -61,7 +61,7 @@ double apart(double a, double b) {
   return std::abs(std::remainder(a - b, 2 * kPi));
 }
 
-// Sum of weights near each of the sectors' directions.
+// Sum of weights near a direction.
 double support(const std::vector<Bowl>& bowls, double angle) {
   double sum = 0;
   for (const Bowl& bowl : bowls) {
@@ -74,7 +74,7 @@ double support(const std::vector<Bowl>& bowls, double angle) {
 }  // namespace
 
 std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image) {
-  const FilledImage whole = filled(image);
+  const FilledImage whole = fill_holes(image);
   if (whole.flat) return {};
   cv::Mat1f level = cv::Mat1f(static_cast<int>(image.rows()), static_cast<int>(image.columns()),
                               const_cast<float*>(whole.pixels.cells().data()))
@@ -90,7 +90,7 @@ std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image) {
     const double here = 2 * kPi * i / kSectors, s = support(bowls, here);
     if (s > best) best = s, angle = here;
   }
-  // The mean of the bowls within 40 degrees, twice.
+  // Mean of the bowls within 40 degrees, twice.
   double sd = 0, count = 0;
   for (int round = 0; round < 3; ++round) {
     double sum = 0, squares = 0, total = 0;

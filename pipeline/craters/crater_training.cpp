@@ -15,14 +15,14 @@ namespace {
 constexpr double kClear = 0.4;
 
 // A layer with its gradients and Adam's moments.
-struct Learning {
+struct LayerState {
   CraterModel::Layer layer;
   std::vector<float> gradient, mean, square;  // weights, then biases
   std::vector<float> in, out, back;
 };
 
-Learning make_layer(int inputs, int outputs, Random& random) {
-  Learning l;
+LayerState make_layer(int inputs, int outputs, Random& random) {
+  LayerState l;
   l.layer = {inputs, outputs, {}, std::vector<float>(static_cast<std::size_t>(outputs), 0.0F)};
   const double deviation = std::sqrt(2.0 / inputs);
   for (int i = 0; i < inputs * outputs; ++i)
@@ -32,7 +32,7 @@ Learning make_layer(int inputs, int outputs, Random& random) {
   return l;
 }
 
-void forward(Learning& l, const std::vector<float>& in, bool last) {
+void forward(LayerState& l, const std::vector<float>& in, bool last) {
   l.in = in;
   l.out = l.layer.biases;
   const float* weight = l.layer.weights.data();
@@ -44,8 +44,8 @@ void forward(Learning& l, const std::vector<float>& in, bool last) {
   }
 }
 
-// `error` is the loss's slope by the layer's sums; leaves the slope by its inputs in `back`.
-void backward(Learning& l, const std::vector<float>& error) {
+// `error`: gradient of the loss by the sums of the layer; stores that by its inputs in `back`.
+void backward(LayerState& l, const std::vector<float>& error) {
   l.back.assign(l.in.size(), 0);
   float* gradient = l.gradient.data();
   const float* weight = l.layer.weights.data();
@@ -57,7 +57,7 @@ void backward(Learning& l, const std::vector<float>& error) {
   for (const float e : error) *gradient++ += e;
 }
 
-void step(Learning& l, double rate, double decay, int step_count, double examples) {
+void step(LayerState& l, double rate, double decay, int step_count, double examples) {
   const double correct1 = 1 - std::pow(0.9, step_count), correct2 = 1 - std::pow(0.999, step_count);
   const std::size_t weights = l.layer.weights.size();
   for (std::size_t i = 0; i < l.gradient.size(); ++i) {
@@ -71,14 +71,14 @@ void step(Learning& l, double rate, double decay, int step_count, double example
   }
 }
 
-// Slopes of the loss by the four outputs; returns the loss.
-double slopes(const std::vector<float>& out, const CraterExample& example, std::vector<float>& error) {
+// Computes the gradient of the loss by the four outputs; returns the loss.
+double loss_gradient(const std::vector<float>& out, const CraterExample& example, std::vector<float>& error) {
   const double p = 1 / (1 + std::exp(-double(out[0])));
   error[0] = static_cast<float>(p - (example.crater ? 1 : 0));
   double loss = -std::log(std::max(1e-9, example.crater ? p : 1 - p));
   const float wanted[] = {10 * example.along, 10 * example.across, 10 * example.log_size};
   for (std::size_t i = 0; i < 3; ++i) {
-    // Huber's loss: a candidate that sits on the wrong crater must not rule.
+    // Huber loss, so that candidates on the wrong crater do not dominate.
     const float off = example.crater ? out[i + 1] - wanted[i] : 0;
     error[i + 1] = 0.3F * std::clamp(off, -1.0F, 1.0F);
     loss += 0.3 * (std::abs(off) < 1 ? 0.5 * off * off : std::abs(off) - 0.5);
@@ -88,9 +88,9 @@ double slopes(const std::vector<float>& out, const CraterExample& example, std::
 
 }  // namespace
 
-CoveredCrater covered_crater(const KnownScene& scene, const CraterCandidate& circle) {
-  CoveredCrater best;
-  for (const KnownCrater& k : scene.craters) {
+MatchedCrater match_crater(const LabelledScene& scene, const CraterCandidate& circle) {
+  MatchedCrater best;
+  for (const LabelledCrater& k : scene.craters) {
     if (std::hypot(k.x - circle.x, k.y - circle.y) > (k.diameter + circle.diameter) / 2) continue;
     const double common = overlap(circle, {k.x, k.y, k.diameter, 0});
     if (common > best.overlap) best = {&k, common};
@@ -98,7 +98,7 @@ CoveredCrater covered_crater(const KnownScene& scene, const CraterCandidate& cir
   return best;
 }
 
-std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t seed) {
+std::vector<CraterExample> make_crater_examples(const LabelledScene& scene, std::uint64_t seed) {
   Random random(seed, "crater examples");
   const double side = double(std::min(scene.image.columns(), scene.image.rows()));
   const auto found = suppress_overlaps(bowl_candidates(scene.image, {.sun_angle = scene.sun_angle,
@@ -110,14 +110,14 @@ std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t se
   std::vector<CraterExample> examples;
   for (CraterCandidate c : found) {
     const double correlation = c.score;
-    // Where rounds of correction may leave it, too.
-    if (random.chance(0.5))
+    // Perturbed as by rounds of correction.
+    if (random.bernoulli(0.5))
       c.x += random.normal(0, 0.04) * c.diameter, c.y += random.normal(0, 0.04) * c.diameter,
           c.diameter *= std::exp(random.normal(0, 0.08));
-    const auto [best, most] = covered_crater(scene, c);
+    const auto [best, most] = match_crater(scene, c);
     const bool crater = most >= 0.45 && best->clarity >= kClear;
     if (!crater && most > 0.25) continue;
-    if (!crater && random.chance(0.5)) continue;
+    if (!crater && random.bernoulli(0.5)) continue;
     const double dx = best ? (best->x - c.x) / c.diameter : 0, dy = best ? (best->y - c.y) / c.diameter : 0;
     const double cosine = std::cos(scene.sun_angle.value), sine = std::sin(scene.sun_angle.value);
     for (const bool mirrored : {false, true}) {
@@ -136,7 +136,7 @@ std::vector<CraterExample> examples_of(const KnownScene& scene, std::uint64_t se
 CraterModel train_crater_model(std::span<const CraterExample> examples, const CraterTraining& training,
                                const std::function<void(int, double)>& progress) {
   Random random(training.seed, "crater training");
-  std::vector<Learning> layers;
+  std::vector<LayerState> layers;
   std::vector<int> sizes{kCraterFeatures};
   sizes.insert(sizes.end(), training.hidden.begin(), training.hidden.end());
   sizes.push_back(4);
@@ -149,19 +149,19 @@ CraterModel train_crater_model(std::span<const CraterExample> examples, const Cr
   int steps = 0;
   const double all_steps = double(training.rounds) * double(order.size() / batch + 1);
   for (int round = 0; round < training.rounds; ++round) {
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.uniform_index(i)]);
     double loss = 0;
     for (std::size_t begin = 0; begin < order.size(); begin += batch) {
       const std::size_t end = std::min(begin + batch, order.size());
       for (std::size_t i = begin; i < end; ++i) {
         const CraterExample& example = examples[order[i]];
         std::vector<float> in(example.features.begin(), example.features.end());
-        for (Learning& l : layers) {
+        for (LayerState& l : layers) {
           forward(l, in, &l == &layers.back());
           in = l.out;
         }
         std::vector<float> error(4);
-        loss += slopes(in, example, error);
+        loss += loss_gradient(in, example, error);
         for (std::size_t l = layers.size(); l-- > 0;) {
           backward(layers[l], error);
           error = layers[l].back;
@@ -172,12 +172,12 @@ CraterModel train_crater_model(std::span<const CraterExample> examples, const Cr
       }
       const double rate = 2e-3 * 0.5 * (1 + std::cos(std::numbers::pi * steps / all_steps));
       ++steps;
-      for (Learning& l : layers) step(l, rate, training.decay, steps, double(end - begin));
+      for (LayerState& l : layers) step(l, rate, training.decay, steps, double(end - begin));
     }
     if (progress) progress(round, loss / double(std::max<std::size_t>(1, order.size())));
   }
   CraterModel model;
-  for (Learning& l : layers) model.layers.push_back(std::move(l.layer));
+  for (LayerState& l : layers) model.layers.push_back(std::move(l.layer));
   return model;
 }
 

@@ -27,8 +27,8 @@ CellSize cell_size(const Georeference& where, double row) {
           std::abs(where.dy) * per_degree};
 }
 
-Observation placed(const DemCrater& crater, TypeId type, double column, double row, const Georeference& where,
-                   const CellSize& cell) {
+Observation to_observation(const DemCrater& crater, TypeId type, double column, double row,
+                           const Georeference& where, const CellSize& cell) {
   Observation o;
   o.type = type;
   o.source = "DEM";
@@ -82,7 +82,7 @@ std::vector<Observation> survey_craters(const DemSource& dem, const Window& wind
                    r = static_cast<std::int64_t>(std::lround(at_row));
         const Window core{column, row, kDemCore, kDemCore};
         if (!core.contains(c, r) || !window.contains(c, r) || !all.contains(c, r)) continue;
-        found.push_back(placed(crater, survey.type, at_column, at_row, grid.where, cell));
+        found.push_back(to_observation(crater, survey.type, at_column, at_row, grid.where, cell));
       }
     }
   std::sort(found.begin(), found.end(), [](const Observation& a, const Observation& b) {

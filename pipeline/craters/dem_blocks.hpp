@@ -5,22 +5,22 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// What to look for in a DEM of any size.
+/// Limits of a crater search in a DEM of any size.
 struct DemSurvey {
   TypeId type = 0;            ///< id of the landmark type `crater`
   double min_diameter = 9;    ///< cells
-  double max_diameter = 400;  ///< cells, <= kDemLargest
+  double max_diameter = 400;  ///< cells, <= kMaxDemDiameter
   double min_confidence = 0.5;
 };
 
-inline constexpr std::int64_t kDemCore = 2048;   ///< cells; side of the squares a DEM is searched in
-inline constexpr std::int64_t kDemMargin = 384;  ///< seen beyond each side
-inline constexpr double kDemLargest = 400;       ///< cells, diameter
+inline constexpr std::int64_t kDemCore = 2048;   ///< cells; side of the squares into which a DEM is cut
+inline constexpr std::int64_t kDemMargin = 384;  ///< cells read beyond each side
+inline constexpr double kMaxDemDiameter = 400;   ///< cells, diameter
 
-/// Craters whose centres lie in a window of the DEM, placed on the map: features radius, depth, axes,
-/// orientation, the height of the rim as z. The DEM is cut into the same squares whatever the window, so
-/// tiles of any size give the same craters. Degrees are taken as metres at each square's own latitude. Sorted
-/// by row, then column.
+/// Returns the craters whose centres lie in a window of the DEM, in map coordinates, sorted by row, then
+/// column. Features: radius, depth, axes, orientation; z is the height of the rim. The DEM is cut into the
+/// same squares for any window, so tiles of any size give the same craters. Degrees are converted to metres
+/// at the latitude of each square.
 std::vector<Observation> survey_craters(const DemSource& dem, const Window& window, const DemSurvey& survey);
 
 }  // namespace waymark

@@ -18,8 +18,8 @@ constexpr int kAzimuths = 24;
 constexpr double kNearest = 0.65, kFarthest = 1.4;  // radii
 constexpr double kExpected = 0.3;                   // radii
 
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * double(values.size() - 1) + 0.5);
+double quantile(std::vector<double> values, double fraction) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * double(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -86,11 +86,11 @@ std::optional<DemRim> measure_dem_rim(const Pixels& heights, const CraterCandida
     }
     if (crests.size() < kAzimuths / 2) return {};
     shape = fit_rim(points, 1);
-    rim.complete = double(crests.size()) / kAzimuths;
+    rim.known_fraction = double(crests.size()) / kAzimuths;
     std::vector<double> rises;
     for (const Crest& crest : crests) rises.push_back(crest.height);
     rim.depth = quantile(rises, 0.5);
-    rim.weakest = quantile(rises, 0.15);
+    rim.low_rim = quantile(rises, 0.15);
     rim.rim_height = bottom + rim.depth;
     rim.depth_sd = (quantile(rises, 0.84) - quantile(rises, 0.16)) / 2 / std::sqrt(double(rises.size()) / 3);
     double squares = 0;

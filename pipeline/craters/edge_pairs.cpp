@@ -14,15 +14,15 @@ namespace {
 
 using Vector = cv::Point2d;
 
-constexpr double kAlongLight = 0.64;  // least |cosine| between an edge's gradient and the light
-constexpr std::size_t kShortest = 6;  // pixels of an edge, at its octave
-constexpr double kLengthRatio = 2.5;  // greatest, of the two edges of a crater
-constexpr double kDistance = 3.7;     // greatest, of their middles / the shorter edge
-constexpr double kCone = 0.5;         // greatest offset across the light / distance along it
-constexpr double kEvenCost = 2.35;    // of a pair as likely as not, set on HRSC tile 1_24
-constexpr double kSmallestAtOctave = 10, kLargestAtOctave = 64;  // pixels, diameters sought at one octave
+constexpr double kAlongLight = 0.64;       // minimum |cosine| between the gradient of an edge and the light
+constexpr std::size_t kMinEdgeLength = 6;  // minimum pixels of an edge, at its octave
+constexpr double kMaxLengthRatio = 2.5;    // maximum, of the two edges of a crater
+constexpr double kMaxDistance = 3.7;       // maximum, between their centres / the shorter edge
+constexpr double kCone = 0.5;              // maximum offset across the light / distance along it
+constexpr double kNeutralCost = 2.35;      // cost of a pair with probability 0.5, tuned on HRSC tile 1_24
+constexpr double kMinAtOctave = 10, kMaxAtOctave = 64;  // pixels, diameters of one octave
 
-// One arc of a rim.
+// Arc of a rim.
 struct Arc {
   std::vector<cv::Point> pixels;
   Vector middle, chord;
@@ -31,7 +31,7 @@ struct Arc {
   bool opening = false;
 };
 
-// Connected edge pixels that bend as one sort of rim does.
+// Connected edge pixels with the curvature of the sunward (`opening`) or the far rim.
 std::vector<Arc> arcs_of(const cv::Mat1b& edges, const cv::Mat1f& along, const Vector& sun, bool opening) {
   cv::Mat1i labels;
   const int count = cv::connectedComponents(edges, labels, 8, CV_32S);
@@ -45,7 +45,7 @@ std::vector<Arc> arcs_of(const cv::Mat1b& edges, const cv::Mat1f& along, const V
       }
   std::vector<Arc> good;
   for (Arc& arc : arcs) {
-    if (arc.pixels.size() < kShortest) continue;
+    if (arc.pixels.size() < kMinEdgeLength) continue;
     const Vector across{-sun.y, sun.x};
     const auto reach = [&](const cv::Point& p) { return Vector(p).dot(across); };
     const auto [low, high] = std::minmax_element(
@@ -58,7 +58,8 @@ std::vector<Arc> arcs_of(const cv::Mat1b& edges, const cv::Mat1f& along, const V
     arc.length = cv::norm(*high - *low) + 1;
     arc.strength /= double(arc.pixels.size());
     arc.opening = opening;
-    // The sunward rim bends towards the sun, the other away from it: the arc's middle lies outside its chord.
+    // The sunward rim is convex towards the sun, the other away from it: the centre of an arc lies outside
+    // its chord.
     const double bend = (arc.middle - arc.chord).dot(sun) * (opening ? 1 : -1);
     if (bend > -0.05 * arc.length) good.push_back(std::move(arc));
   }
@@ -70,7 +71,7 @@ struct Pair {
   double cost;
 };
 
-// Brightness rises from the shaded to the lit wall: of the thirds of the way, the last against the first.
+// Brightness must rise from the shaded to the lit wall: the last third of the line against the first.
 bool brightens(const cv::Mat1f& image, const Vector& from, const Vector& to) {
   double first = 0, last = 0;
   for (int i = 1; i <= 8; ++i) {
@@ -93,8 +94,9 @@ std::vector<Pair> pairs_of(const std::vector<Arc>& arcs, const cv::Mat1f& image,
       const double along = gap.dot(sun), off = std::abs(gap.dot(across));
       const double shorter = std::min(arcs[i].length, arcs[j].length),
                    longer = std::max(arcs[i].length, arcs[j].length);
-      if (along < 0.5 * kSmallestAtOctave || along > 1.2 * kLargestAtOctave) continue;
-      if (longer > kLengthRatio * shorter || along > kDistance * shorter || off > kCone * along) continue;
+      if (along < 0.5 * kMinAtOctave || along > 1.2 * kMaxAtOctave) continue;
+      if (longer > kMaxLengthRatio * shorter || along > kMaxDistance * shorter || off > kCone * along)
+        continue;
       if (!brightens(image, arcs[i].middle, arcs[j].middle)) continue;
       const double strength = std::min(arcs[i].strength, arcs[j].strength) / contrast;
       pairs.push_back({i, j,
@@ -107,7 +109,7 @@ std::vector<Pair> pairs_of(const std::vector<Arc>& arcs, const cv::Mat1f& image,
   return pairs;
 }
 
-VerifiedBowl through(const Arc& opening, const Arc& closing, double cost, double shrink_x, double shrink_y) {
+VerifiedBowl fit_bowl(const Arc& opening, const Arc& closing, double cost, double shrink_x, double shrink_y) {
   std::vector<cv::Point> all = opening.pixels;
   all.insert(all.end(), closing.pixels.begin(), closing.pixels.end());
   const Vector middle = (opening.middle + closing.middle) / 2;
@@ -132,7 +134,7 @@ VerifiedBowl through(const Arc& opening, const Arc& closing, double cost, double
       .angle = std::remainder(width >= height ? angle : angle + std::numbers::pi / 2, std::numbers::pi)};
   if (bowl.outline.angle <= -std::numbers::pi / 2) bowl.outline.angle += std::numbers::pi;
   bowl.circle = {bowl.outline.x, bowl.outline.y, bowl.outline.diameter(),
-                 1 / (1 + std::exp(cost - kEvenCost))};
+                 1 / (1 + std::exp(cost - kNeutralCost))};
   bowl.centre_sd = 0.06 * bowl.circle.diameter + 0.3 * shrink;
   bowl.diameter_sd = 0.1 * bowl.circle.diameter + 0.5 * shrink;
   return bowl;
@@ -149,7 +151,7 @@ void search_octave(const cv::Mat1f& image, const Vector& sun, double shrink_x, d
   cv::Scalar mean, sd;
   cv::meanStdDev(strength, mean, sd);
   const double least = mean[0] + 0.3 * sd[0], contrast = mean[0] + sd[0];
-  // Thin edges: highest along the gradient's own direction, rounded to eight neighbours.
+  // Non-maximum suppression along the gradient, rounded to eight directions.
   cv::Mat1b edges(image.size(), static_cast<unsigned char>(0));
   for (int y = 1; y + 1 < image.rows; ++y)
     for (int x = 1; x + 1 < image.cols; ++x) {
@@ -159,31 +161,30 @@ void search_octave(const cv::Mat1f& image, const Vector& sun, double shrink_x, d
       if (s < strength(y + dy, x + dx) || s <= strength(y - dy, x - dx)) continue;
       edges(y, x) = 255;
     }
-  // Out of the shaded wall into the plain towards the sun, and out of the plain into the lit wall: on both
-  // rims the brightness grows towards the sun. Which way an arc bends tells them apart; a straight one may be
-  // either.
+  // On both rims brightness increases towards the sun: from the shaded wall to the plain, and from the plain
+  // to the lit wall. The curvature of an arc separates them; a straight arc may be either.
   std::vector<Arc> arcs = arcs_of(edges, along, sun, true);
   for (Arc& arc : arcs_of(edges, along, sun, false)) arcs.push_back(std::move(arc));
   std::vector<bool> used(arcs.size(), false);
   for (const Pair& pair : pairs_of(arcs, image, sun, contrast)) {
     if (used[pair.opening] || used[pair.closing]) continue;
     used[pair.opening] = used[pair.closing] = true;
-    found.push_back(through(arcs[pair.opening], arcs[pair.closing], pair.cost, shrink_x, shrink_y));
+    found.push_back(fit_bowl(arcs[pair.opening], arcs[pair.closing], pair.cost, shrink_x, shrink_y));
   }
 }
 
 }  // namespace
 
-std::vector<VerifiedBowl> craters_by_edges(const FilledImage& image, Radians sun_angle, double min_diameter,
-                                           double max_diameter) {
+std::vector<VerifiedBowl> find_craters_by_edges(const FilledImage& image, Radians sun_angle,
+                                                double min_diameter, double max_diameter) {
   const Vector sun{std::cos(sun_angle.value), std::sin(sun_angle.value)};
   const cv::Mat1f whole(static_cast<int>(image.pixels.rows()), static_cast<int>(image.pixels.columns()),
                         const_cast<float*>(image.pixels.cells().data()));
   std::vector<VerifiedBowl> found;
   cv::Mat1f octave = whole;
-  for (double shrink = 1;
-       std::min(octave.cols, octave.rows) >= 32 && kSmallestAtOctave * shrink <= max_diameter; shrink *= 2) {
-    if (kLargestAtOctave * shrink >= min_diameter)
+  for (double shrink = 1; std::min(octave.cols, octave.rows) >= 32 && kMinAtOctave * shrink <= max_diameter;
+       shrink *= 2) {
+    if (kMaxAtOctave * shrink >= min_diameter)
       search_octave(octave, sun, double(whole.cols) / octave.cols, double(whole.rows) / octave.rows, found);
     cv::Mat1f half;
     cv::resize(octave, half, {(octave.cols + 1) / 2, (octave.rows + 1) / 2}, 0, 0, cv::INTER_AREA);

@@ -8,8 +8,8 @@
 namespace waymark {
 namespace {
 
-// Half-size image of the means of what is known; NaN where nothing is.
-Pixels half_known(const Pixels& fine) {
+// Half-size image of the means of known pixels; NaN where none is known.
+Pixels half_size_known(const Pixels& fine) {
   Pixels coarse((fine.columns() + 1) / 2, (fine.rows() + 1) / 2);
   for (std::int64_t y = 0; y < coarse.rows(); ++y)
     for (std::int64_t x = 0; x < coarse.columns(); ++x) {
@@ -31,7 +31,7 @@ void fill_from_coarser(Pixels& image) {
     image(0, 0) = 0;
     return;
   }
-  Pixels coarse = half_known(image);
+  Pixels coarse = half_size_known(image);
   fill_from_coarser(coarse);
   for (std::int64_t y = 0; y < image.rows(); ++y)
     for (std::int64_t x = 0; x < image.columns(); ++x)
@@ -40,7 +40,7 @@ void fill_from_coarser(Pixels& image) {
 
 }  // namespace
 
-double FilledImage::known(double x, double y, double size) const {
+double FilledImage::known_fraction(double x, double y, double size) const {
   const auto at = [](double edge, std::int64_t end) {
     return std::clamp<std::int64_t>(std::llround(edge), 0, end);
   };
@@ -53,7 +53,7 @@ double FilledImage::known(double x, double y, double size) const {
   return std::min(1.0, count / area);
 }
 
-FilledImage filled(const Pixels& image) {
+FilledImage fill_holes(const Pixels& image) {
   FilledImage result{.pixels = image, .known_sum = {}, .complete = true, .flat = true};
   float lowest = std::numeric_limits<float>::infinity(), highest = -lowest;
   for (const float v : image.cells())

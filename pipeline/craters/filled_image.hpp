@@ -3,19 +3,19 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// An image without holes, and where they were.
+/// Image with its holes filled, and a table of the pixels that were known.
 struct FilledImage {
-  Pixels pixels;  ///< NaN replaced by the mean of what is known nearby, so that no edge appears
+  Pixels pixels;  ///< NaN replaced by the mean of known pixels nearby, so that no edge appears
   Grid<std::int64_t>
-      known_sum;         ///< summed-area table of known pixels, one row and column more than the image
+      known_sum;         ///< summed-area table of known pixels; one row and column larger than the image
   bool complete = true;  ///< there were no holes
   bool flat = true;      ///< no contrast at all, or nothing known
 
-  /// Share of known pixels in the square of side `size` about a place; what lies outside the image is
-  /// unknown.
-  double known(double x, double y, double size) const;
+  /// Returns the fraction of known pixels in the square of side `size` centred at (x, y). Pixels outside
+  /// the image count as unknown.
+  double known_fraction(double x, double y, double size) const;
 };
 
-FilledImage filled(const Pixels& image);
+FilledImage fill_holes(const Pixels& image);
 
 }  // namespace waymark

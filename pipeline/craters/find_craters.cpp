@@ -14,9 +14,9 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeastCorrelation = 0.5;
-constexpr double kMostOverlap = 0.225;   // of two rims, common area over joint area
-constexpr double kLeastKnown = 2.0 / 3;  // share of a crater's square that must have data
+constexpr double kMinCorrelation = 0.5;
+constexpr double kMaxOverlap = 0.225;  // intersection over union of two rims
+constexpr double kMinKnown = 2.0 / 3;  // minimum fraction of data in a crater's square
 
 void check(const CraterSearch& search) {
   const auto refuse = [](std::string problem, std::string hint) {
@@ -27,7 +27,7 @@ void check(const CraterSearch& search) {
            "give degrees from the image's x axis (right) towards y (down), or none");
   if (!(search.min_diameter >= 6))
     refuse(fmt::format("min_diameter is {} px", search.min_diameter),
-           "craters below 6 px cannot be told from noise");
+           "craters below 6 px cannot be distinguished from noise");
   if (search.max_diameter != 0 && !(search.max_diameter >= search.min_diameter))
     refuse(fmt::format("max_diameter is {} px, less than min_diameter, {} px", search.max_diameter,
                        search.min_diameter),
@@ -56,7 +56,7 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
       suppress_overlaps(bowl_candidates(image.pixels, {.sun_angle = sun,
                                                        .min_diameter = 0.9 * sizes.smallest,
                                                        .max_diameter = sizes.largest,
-                                                       .min_correlation = kLeastCorrelation}),
+                                                       .min_correlation = kMinCorrelation}),
                         0.5);
   return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr,
                       search.min_confidence);
@@ -67,7 +67,7 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
 std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& search) {
   check(search);
   if (std::min(image.columns(), image.rows()) < 16) return {};
-  const FilledImage whole = filled(image);
+  const FilledImage whole = fill_holes(image);
   if (whole.flat) return {};
   std::optional<Radians> sun = search.sun_angle;
   if (!sun)
@@ -79,19 +79,19 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   if (sizes.largest < sizes.smallest) return {};
 
   const auto bowls = search.method == CraterMethod::edges
-                         ? craters_by_edges(whole, *sun, sizes.smallest, sizes.largest)
+                         ? find_craters_by_edges(whole, *sun, sizes.smallest, sizes.largest)
                          : bowls_in(whole, *sun, search, sizes);
   std::vector<CraterCandidate> circles;
   for (const VerifiedBowl& bowl : bowls) {
     CraterCandidate c = bowl.circle;
     if (c.score < search.min_confidence || c.diameter < 0.9 * sizes.smallest || c.diameter > sizes.largest ||
-        whole.known(c.x, c.y, c.diameter) < kLeastKnown)
+        whole.known_fraction(c.x, c.y, c.diameter) < kMinKnown)
       continue;
     circles.push_back(c);
   }
   std::vector<Detection> found;
-  // Smaller ones than asked for have had their say in which circles stand for the same rim.
-  for (const CraterCandidate& c : suppress_overlaps(circles, kMostOverlap)) {
+  // Removed last: smaller candidates take part in the suppression of overlaps.
+  for (const CraterCandidate& c : suppress_overlaps(circles, kMaxOverlap)) {
     if (c.diameter < sizes.smallest) continue;
     const auto bowl =
         std::find_if(bowls.begin(), bowls.end(), [&](const VerifiedBowl& b) { return b.circle == c; });

@@ -7,38 +7,41 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
+/// How craters are found.
 enum class CraterMethod {
   bowl,   ///< correlation with shaded bowls, rim refinement, verification by a trained model
   edges,  ///< lit and shaded rim edges paired along the light (Cheng, Johnson, Matthies, Olson 2003)
 };
 
-/// What to look for in one image.
+/// Parameters of the crater search in one image.
 struct CraterSearch {
   CraterMethod method = CraterMethod::bowl;
   TypeId type = 0;  ///< id of the landmark type `crater`, copied into the detections
-  /// Towards the sun in the image, from x (right) towards y (down). Unknown: estimated from the craters.
+  /// Towards the sun in the image, from x (right) towards y (down). Unset: estimated from the craters.
   std::optional<Radians> sun_angle = {};
   double min_diameter = 8;      ///< pixels, >= 6
-  double max_diameter = 0;      ///< pixels; 0: 0.6 of the image's shorter side
-  double min_confidence = 0.5;  ///< weaker candidates are left out; 0 keeps all
-  bool verify = true;           ///< false: the candidates' correlation alone decides (no trained model)
+  double max_diameter = 0;      ///< pixels; 0: 0.6 times the image's shorter side
+  double min_confidence = 0.5;  ///< candidates below are discarded; 0 keeps all
+  bool verify = true;           ///< false: use the correlation alone, without the trained model
 };
 
-/// Craters of an image, the most certain first (ties by position), no two of them the same rim. The outline
-/// is the ellipse of the rim crest. NaN pixels are no data: craters that more than a third of which they hide
-/// are not found. An image smaller than 16 px, or without contrast, has none. Throws Error{usage} for
-/// diameters out of order or a sun angle that is not finite. Deterministic; about 2 Mpx/s on one core.
+/// Returns the craters of an image by descending confidence (ties by position), no two with the same rim.
+/// - The outline is the ellipse of the rim crest.
+/// - NaN pixels are no data; craters with more than a third of their square missing are not found.
+/// - An image smaller than 16 px or without contrast has no craters.
+/// Throws Error{usage} for diameters out of order or a sun angle that is not finite. Deterministic; about 2
+/// Mpx/s on one core.
 std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& search);
 
-/// Direction towards the sun, found by how well craters (not domes) correlate under each direction.
+/// Direction towards the sun under which craters (not domes) correlate best.
 struct CraterSunAngle {
   Radians angle;  ///< in the image, from x towards y, (-pi, pi]
-  Radians sd;     ///< spread of the strongest craters' own directions
-  int craters;    ///< that agreed
+  Radians sd;     ///< spread of the directions of the strongest craters
+  int craters;    ///< number that agree
 };
 
-/// Nothing where fewer than three clear bowls are seen. Relief read from one image is ambiguous by half a
-/// turn (domes under the opposite sun look the same): that the ground has more craters than domes is assumed.
+/// `std::nullopt` if fewer than three clear bowls are visible. Relief in one image is ambiguous by half a
+/// turn (domes under the opposite sun look the same): craters are assumed to outnumber domes.
 std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image);
 
 }  // namespace waymark

@@ -16,10 +16,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kShallowest = 0.02;     // depth / diameter
-constexpr double kLeastKnown = 2.0 / 3;  // share of a crater's square that must have heights
-constexpr double kLeastCorrelation = 0.45;
-constexpr double kMostOverlap = 0.15;  // of two craters
+constexpr double kShallowest = 0.02;   // depth / diameter
+constexpr double kMinKnown = 2.0 / 3;  // minimum fraction of heights in a crater's square
+constexpr double kMinCorrelation = 0.45;
+constexpr double kMaxOverlap = 0.15;  // intersection over union of two craters
 
 void check(const DemCraterSearch& search) {
   const auto refuse = [](std::string problem, std::string hint) {
@@ -30,14 +30,14 @@ void check(const DemCraterSearch& search) {
            "both sides must be above 0");
   if (!(search.min_diameter >= 6))
     refuse(fmt::format("min_diameter is {} cells", search.min_diameter),
-           "craters below 6 cells cannot be told from noise");
+           "craters below 6 cells cannot be distinguished from noise");
   if (search.max_diameter != 0 && !(search.max_diameter >= search.min_diameter))
     refuse(fmt::format("max_diameter is {} cells, less than min_diameter, {} cells", search.max_diameter,
                        search.min_diameter),
            "0 means as large as the window allows");
 }
 
-// A dish with a rim, seen from above as height.
+// Heights of a dish with a rim.
 std::vector<Pixels> dish(double diameter) {
   constexpr double reach = 1.5, rim = 0.25;
   const int half = static_cast<int>(std::ceil(diameter / 2 * reach)), side = 2 * half + 1;
@@ -76,13 +76,13 @@ Pixels square_cells(const HeightWindow& heights, double cell_width, double cell_
   return square;
 }
 
-// Logistic in correlation, the rim's weakest part and size (what lies on a large crater lowers its
-// correlation); weights by hand, the offset and the weight of size by the western half of a GLD100 piece
-// (docs/craters.md).
+// Logistic in correlation, lowest part of the rim, and size (relief on a large crater lowers its
+// correlation). Weights were set by hand; offset and weight of size on the western half of a GLD100 piece
+// (docs/methods/craters.md).
 double probability(double correlation, const DemRim& rim, double cell) {
   const double cells = std::sqrt(rim.major * rim.minor),
-               weakest = std::clamp(rim.weakest / (cells * cell), -0.02, 0.12);
-  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (weakest - 0.03) + 0.3 * std::log2(cells / 16) -
+               low_rim = std::clamp(rim.low_rim / (cells * cell), -0.02, 0.12);
+  return 1 / (1 + std::exp(-(12 * (correlation - 0.72) + 30 * (low_rim - 0.03) + 0.3 * std::log2(cells / 16) -
                              0.77)));
 }
 
@@ -92,24 +92,24 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
   check(search);
   if (std::min(heights.columns(), heights.rows()) < 16) return {};
   const Pixels square = square_cells(heights, search.cell_width, search.cell_height);
-  const FilledImage whole = filled(square);
+  const FilledImage whole = fill_holes(square);
   if (whole.flat) return {};
   const double cell = std::sqrt(search.cell_width * search.cell_height);
   const double to_square =
-      std::max(search.cell_width, search.cell_height) / cell;  // cells asked for -> of `square`
+      std::max(search.cell_width, search.cell_height) / cell;  // requested cells to cells of `square`
   const double side = double(std::min(square.columns(), square.rows()));
   const double smallest = search.min_diameter * to_square,
                largest = search.max_diameter > 0 ? search.max_diameter * to_square : 0.6 * side;
   auto candidates = suppress_overlaps(shape_candidates(whole.pixels, {.min_diameter = 0.8 * smallest,
                                                                       .max_diameter = largest,
-                                                                      .min_correlation = kLeastCorrelation,
+                                                                      .min_correlation = kMinCorrelation,
                                                                       .shapes = dish,
                                                                       .level_mean = 16}),
                                       0.5);
   std::vector<CraterCandidate> circles;
   std::vector<DemRim> rims;
   for (const CraterCandidate& c : candidates) {
-    if (whole.known(c.x, c.y, c.diameter) < kLeastKnown) continue;
+    if (whole.known_fraction(c.x, c.y, c.diameter) < kMinKnown) continue;
     const auto rim = measure_dem_rim(whole.pixels, c);
     if (!rim) continue;
     const double diameter = std::sqrt(rim->major * rim->minor);
@@ -120,7 +120,7 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
     rims.push_back(*rim);
   }
   std::vector<DemCrater> result;
-  for (const CraterCandidate& c : suppress_overlaps(circles, kMostOverlap)) {
+  for (const CraterCandidate& c : suppress_overlaps(circles, kMaxOverlap)) {
     const auto at = static_cast<std::size_t>(std::find(circles.begin(), circles.end(), c) - circles.begin());
     const DemRim& rim = rims[at];
     DemCrater crater;

@@ -6,15 +6,15 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// What to look for in a piece of a DEM.
+/// Parameters of the crater search in a window of a DEM.
 struct DemCraterSearch {
   double cell_width = 1, cell_height = 1;  ///< metres, > 0
   double min_diameter = 9;                 ///< in cells of the coarser direction, >= 6
-  double max_diameter = 0;                 ///< in cells; 0: 0.6 of the window's shorter side
+  double max_diameter = 0;                 ///< in cells; 0: 0.6 times the window's shorter side
   double min_confidence = 0.5;
 };
 
-/// A crater of a DEM. Lengths on the ground are metres.
+/// Crater of a DEM. Horizontal lengths are in metres.
 struct DemCrater {
   double column = 0, row = 0;   ///< centre; (0, 0) is the centre of the window's first cell
   double major = 0, minor = 0;  ///< full axes of the rim crest, metres
@@ -28,10 +28,10 @@ struct DemCrater {
   double diameter() const { return std::sqrt(major * minor); }
 };
 
-/// Craters whose centres lie in the window, the most certain first. Cells without height are no data.
-/// Bowl correlation over scales, then rim-minus-floor statistics over 24 azimuths: hard limits only at
-/// negative depth and depth / diameter < 0.02 (true lunar craters go down to 0.003 in maria; those are not
-/// found). Throws Error{usage} for sizes out of order.
+/// Returns the craters whose centres lie in the window, by descending confidence. Cells without height are
+/// no data. Bowls are correlated over scales, then the rim is compared with the floor along 24 azimuths.
+/// Craters with depth / diameter below 0.02 are not found; lunar maria have them down to 0.003. Throws
+/// Error{usage} for sizes out of order.
 std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCraterSearch& search);
 
 }  // namespace waymark

@@ -34,7 +34,7 @@ PixelEllipse RimShape::ellipse(double x, double y, double circle) const {
 }
 
 RimShape fit_rim(const std::vector<RimPoint>& points, double full_weight) {
-  // Soft knowledge: sd of size, shift and ellipticity, radii.
+  // Prior: sd of size, shift and ellipticity, radii.
   constexpr std::array<double, 5> prior{0.15, 0.15, 0.15, 0.04, 0.04};
   Harmonics shape = Harmonics::Zero();
   shape[0] = 1;
@@ -62,7 +62,7 @@ RimShape fit_rim(const std::vector<RimPoint>& points, double full_weight) {
     noise = std::clamp(std::sqrt(squares / std::max(1.0, total)), 0.02, 0.2);
   }
   const Eigen::Matrix<double, 5, 5> covariance = information.inverse();
-  // Neighbouring azimuths see the same ground: about half of them count.
+  // Neighbouring azimuths are correlated: about half of them are independent.
   return {shape, std::sqrt(covariance(1, 1) + covariance(2, 2)), std::sqrt(2 * covariance(0, 0))};
 }
 

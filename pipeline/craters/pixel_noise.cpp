@@ -9,7 +9,7 @@
 namespace waymark {
 namespace {
 
-// Four sums at once, none waiting for another.
+// Four independent sums at once, for speed.
 template <class Term>
 double sum_of(const float* pixels, std::size_t count, const Term& term) {
   std::array<double, 4> parts{};
@@ -40,7 +40,7 @@ double pixel_noise(const float* pixels, int columns, int rows) {
     }
   const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), middle, differences.end());
-  return std::max(floor, *middle / 0.6745 / 6);  // 6: norm of the difference's weights
+  return std::max(floor, *middle / 0.6745 / 6);  // 6: norm of the weights of the difference
 }
 
 }  // namespace waymark

@@ -14,16 +14,16 @@ namespace waymark {
 namespace {
 
 constexpr int kAzimuths = 36;
-constexpr double kNearest = 0.6, kFarthest = 1.45;  // radii searched
-constexpr double kExpected = 0.18;                  // radii: spread of the crest about the candidate's circle
-constexpr double kSunward = 0.35;  // least |cosine| of azimuth from the light that shows an edge
+constexpr double kNearest = 0.6, kFarthest = 1.45;  // radii
+constexpr double kExpected = 0.18;                  // sd of the crest about the candidate's circle, radii
+constexpr double kSunward = 0.35;  // minimum |cosine| between azimuth and light for an edge to be visible
 
-// Place of the steepest outward change of `sign` brightness along one azimuth.
+// Position of the steepest outward change of `sign` brightness along one azimuth.
 std::optional<RimPoint> edge(const Pixels& image, const CraterCandidate& c, double azimuth, double sign) {
   const double radius = c.diameter / 2, step = std::max(0.03, 0.5 / radius);  // radii
   const double towards_x = std::cos(azimuth), towards_y = std::sin(azimuth);
   const auto count = static_cast<std::size_t>((kFarthest - kNearest) / step) + 1;
-  // A slope over about 0.1 radii or 1.5 px, whichever is more.
+  // Slope over about 0.1 radii or 1.5 px, whichever is larger.
   const double half = std::max(0.06, 0.75 / radius);
   const bool inside = is_inside(image, c.x, c.y, (kFarthest + half) * radius + 1);
   const auto brightness = [&](double r) {

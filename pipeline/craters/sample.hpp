@@ -4,7 +4,8 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// Bilinear brightness at a place; beyond the edge that of the nearest pixel. The image is not empty.
+/// Returns the bilinearly interpolated brightness; beyond the edge that of the nearest pixel. The image is
+/// not empty.
 inline float sample(const Pixels& image, double x, double y) {
   x = std::clamp(x, 0.0, double(image.columns() - 1));
   y = std::clamp(y, 0.0, double(image.rows() - 1));
@@ -15,7 +16,7 @@ inline float sample(const Pixels& image, double x, double y) {
          b * ((1 - a) * image(column, below) + a * image(right, below));
 }
 
-/// The same for a place that is neither beyond nor on the edge: [0, columns - 1) x [0, rows - 1).
+/// Same as sample() for a position strictly inside: [0, columns - 1) x [0, rows - 1).
 inline float sample_inside(const float* pixels, std::int64_t columns, double x, double y) {
   const auto column = static_cast<int>(x), row = static_cast<int>(y);
   const auto a = static_cast<float>(x - column), b = static_cast<float>(y - row);
@@ -23,7 +24,7 @@ inline float sample_inside(const float* pixels, std::int64_t columns, double x, 
   return (1 - b) * ((1 - a) * p[0] + a * p[1]) + b * ((1 - a) * p[columns] + a * p[columns + 1]);
 }
 
-/// Whether all places within `reach` of (x, y) along either axis are inside in that sense.
+/// Returns whether all positions within `reach` of (x, y) along either axis are valid for sample_inside().
 inline bool is_inside(const Pixels& image, double x, double y, double reach) {
   return x - reach >= 0 && y - reach >= 0 && x + reach < double(image.columns() - 1) &&
          y + reach < double(image.rows() - 1);

@@ -11,8 +11,8 @@ namespace waymark {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr int kWears = 26;         // tabulated
-constexpr double kPerRadius = 40;  // samples
+constexpr int kDiffusionLengths = 26;  // tabulated
+constexpr double kPerRadius = 40;      // samples
 
 double fresh_height(double r) {
   constexpr double depth = 0.4, rim = 0.2;  // floor below rim, rim above plain / depth; radii
@@ -24,7 +24,7 @@ cv::Mat1f as_matrix(Grid<float>& grid) {
   return {static_cast<int>(grid.rows()), static_cast<int>(grid.columns()), grid.cells().data()};
 }
 
-// Distance of every cell to a wandering line, in cells.
+// Distance of every cell from a wandering line, in cells.
 cv::Mat1f distance_to_path(Random& random, int side) {
   cv::Mat1b off_path(side, side, static_cast<unsigned char>(1));
   double x = random.uniform(0, side), y = random.uniform(0, side), heading = random.uniform(0, kTurn);
@@ -45,7 +45,7 @@ cv::Mat1f distance_to_path(Random& random, int side) {
 void add_line(Grid<float>& heights, Random& random, double strength) {
   const int side = static_cast<int>(heights.columns());
   const cv::Mat1f distance = distance_to_path(random, side);
-  const double width = random.log_uniform(3, 60), sign = random.chance(0.65) ? -1 : 1;
+  const double width = random.log_uniform(3, 60), sign = random.bernoulli(0.65) ? -1 : 1;
   const double rise = sign * width * strength * random.uniform(0.05, 0.4), sharp = random.uniform(1, 4);
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -54,16 +54,16 @@ void add_line(Grid<float>& heights, Random& random, double strength) {
     }
 }
 
-// A hill or hollow with a wobbly outline and walls of its own steepness.
+// Adds a hill or hollow with an irregular outline and random steepness.
 void add_blob(Grid<float>& heights, Random& random, double strength) {
   const auto side = heights.columns();
   const double size = random.log_uniform(4, 110), x0 = random.uniform(0, double(side)),
                y0 = random.uniform(0, double(side));
-  const double rise = (random.chance(0.7) ? 1 : -1) * size * strength * random.uniform(0.05, 0.35);
+  const double rise = (random.bernoulli(0.7) ? 1 : -1) * size * strength * random.uniform(0.05, 0.35);
   const double sharp = random.log_uniform(1.5, 10), stretch = random.log_uniform(0.4, 2.5),
                turn = random.uniform(0, kTurn);
   std::array<double, 5> wobble{}, phase{};
-  const bool regular = random.chance(0.3);
+  const bool regular = random.bernoulli(0.3);
   for (std::size_t k = 0; k < wobble.size(); ++k) {
     wobble[k] = random.normal(0, (regular ? 0.03 : 0.22) / std::sqrt(double(k + 1)));
     phase[k] = random.uniform(0, kTurn);
@@ -103,9 +103,9 @@ void add_ripples(Grid<float>& heights, Random& random, double strength) {
     }
 }
 
-// What one crater is made of.
+// Parameters of one crater.
 struct Impact {
-  double x, y, radius, wear, depth, floor, elongation, turn, peak, flatten;
+  double x, y, radius, diffusion_length, depth, floor, elongation, turn, peak, flatten;
   std::array<double, 4> wobble, phase;
 };
 
@@ -113,7 +113,7 @@ Impact draw_impact(Random& random, double x, double y, double radius, double old
   Impact c{.x = x,
            .y = y,
            .radius = radius,
-           .wear = 0,
+           .diffusion_length = 0,
            .depth = 1,
            .floor = -9,
            .elongation = 1,
@@ -122,12 +122,13 @@ Impact draw_impact(Random& random, double x, double y, double radius, double old
            .flatten = 0.6,
            .wobble = {},
            .phase = {}};
-  c.wear = oldest * std::pow(random.uniform(), 0.8);
+  c.diffusion_length = oldest * std::pow(random.uniform(), 0.8);
   c.depth = random.uniform(0.5, 1.05);
-  if (random.chance(0.3)) c.floor = -0.4 * random.uniform(0.05, 0.6);  // filled, radii below the plain
-  if (random.chance(0.25)) c.elongation = random.uniform(1, 1.3);
+  if (random.bernoulli(0.3))
+    c.floor = -0.4 * random.uniform(0.05, 0.6);  // infilled floor, radii below the plain
+  if (random.bernoulli(0.25)) c.elongation = random.uniform(1, 1.3);
   c.turn = random.uniform(0, kTurn);
-  if (radius > 25 && random.chance(0.1)) c.peak = random.uniform(0.03, 0.12);
+  if (radius > 25 && random.bernoulli(0.1)) c.peak = random.uniform(0.03, 0.12);
   for (std::size_t k = 0; k < c.wobble.size(); ++k) {
     c.wobble[k] = random.normal(0, 0.025 / std::sqrt(double(k + 1)));
     c.phase[k] = random.uniform(0, kTurn);
@@ -135,9 +136,9 @@ Impact draw_impact(Random& random, double x, double y, double radius, double old
   return c;
 }
 
-void dig(Grid<float>& heights, Grid<float>& bright, const Impact& c, const WornCraters& worn) {
+void excavate(Grid<float>& heights, Grid<float>& bright, const Impact& c, const DegradedCraters& worn) {
   const auto side = heights.columns();
-  const auto reach = static_cast<std::int64_t>(c.radius * WornCraters::kReach) + 1;
+  const auto reach = static_cast<std::int64_t>(c.radius * DegradedCraters::kReach) + 1;
   const auto x0 = std::max<std::int64_t>(0, std::int64_t(c.x) - reach),
              x1 = std::min(side, std::int64_t(c.x) + reach);
   const auto y0 = std::max<std::int64_t>(0, std::int64_t(c.y) - reach),
@@ -146,7 +147,7 @@ void dig(Grid<float>& heights, Grid<float>& bright, const Impact& c, const WornC
   for (auto y = y0; y < y1; ++y)
     for (auto x = x0; x < x1; ++x)
       if (std::hypot(double(x) - c.x, double(y) - c.y) < 1.2 * c.radius) sum += heights(x, y), ++n;
-  const double plain = n > 0 ? sum / n : 0, freshness = std::max(0.0, 1 - c.wear / 0.12);
+  const double plain = n > 0 ? sum / n : 0, freshness = std::max(0.0, 1 - c.diffusion_length / 0.12);
   for (auto y = y0; y < y1; ++y)
     for (auto x = x0; x < x1; ++x) {
       const double dx = double(x) - c.x, dy = double(y) - c.y;
@@ -157,13 +158,14 @@ void dig(Grid<float>& heights, Grid<float>& bright, const Impact& c, const WornC
       for (std::size_t k = 0; k < c.wobble.size(); ++k)
         shape += c.wobble[k] * std::cos(double(k + 2) * angle + c.phase[k]);
       const double r = std::hypot(u, v) / c.radius / shape;
-      if (r >= WornCraters::kReach) continue;
-      double h = worn.height(c.wear, r);
+      if (r >= DegradedCraters::kReach) continue;
+      double h = worn.height(c.diffusion_length, r);
       if (h < c.floor) h = c.floor + 0.1 * (h - c.floor);
       if (c.peak > 0) h += c.peak * std::exp(-r * r / 0.02);
-      const double reset = c.flatten * std::clamp((1.2 - r) / 0.6, 0.0, 1.0);  // what was here is gone
-      heights(x, y) +=
-          static_cast<float>(c.depth * c.radius * h + reset * (plain - heights(x, y)) * (1 - c.wear));
+      const double reset =
+          c.flatten * std::clamp((1.2 - r) / 0.6, 0.0, 1.0);  // the impact erases earlier relief
+      heights(x, y) += static_cast<float>(c.depth * c.radius * h +
+                                          reset * (plain - heights(x, y)) * (1 - c.diffusion_length));
       bright(x, y) +=
           static_cast<float>(freshness * freshness * 0.35 * std::exp(-std::max(0.0, r - 0.6) * 2.5));
     }
@@ -171,18 +173,18 @@ void dig(Grid<float>& heights, Grid<float>& bright, const Impact& c, const WornC
 
 }  // namespace
 
-WornCraters::WornCraters() {
+DegradedCraters::DegradedCraters() {
   constexpr int half = static_cast<int>(kReach * kPerRadius) + 60, side = 2 * half + 1;
   cv::Mat1f fresh(side, side), worn;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
       fresh(y, x) = static_cast<float>(fresh_height(std::hypot(x - half, y - half) / kPerRadius));
-  for (int i = 0; i < kWears; ++i) {
-    const double wear = kMostWear * i / (kWears - 1);
+  for (int i = 0; i < kDiffusionLengths; ++i) {
+    const double diffusion_length = kMaxDiffusionLength * i / (kDiffusionLengths - 1);
     if (i == 0)
       worn = fresh;
     else
-      cv::GaussianBlur(fresh, worn, {}, wear * kPerRadius, 0, cv::BORDER_REPLICATE);
+      cv::GaussianBlur(fresh, worn, {}, diffusion_length * kPerRadius, 0, cv::BORDER_REPLICATE);
     auto& row = rows_.emplace_back();
     const float rest = worn(half, half + static_cast<int>(kReach * kPerRadius));
     for (int r = 0; r <= static_cast<int>(kReach * kPerRadius); ++r)
@@ -191,8 +193,9 @@ WornCraters::WornCraters() {
   }
 }
 
-double WornCraters::height(double wear, double radii) const {
-  const double w = std::clamp(wear / kMostWear, 0.0, 1.0) * (kWears - 1), r = radii * kPerRadius;
+double DegradedCraters::height(double diffusion_length, double radii) const {
+  const double w = std::clamp(diffusion_length / kMaxDiffusionLength, 0.0, 1.0) * (kDiffusionLengths - 1),
+               r = radii * kPerRadius;
   const auto i = std::min(static_cast<std::size_t>(w), rows_.size() - 2);
   if (!(r < double(rows_[0].size() - 1))) return 0;
   const auto j = static_cast<std::size_t>(r);
@@ -201,8 +204,8 @@ double WornCraters::height(double wear, double radii) const {
          a * ((1 - b) * rows_[i + 1][j] + b * rows_[i + 1][j + 1]);
 }
 
-double WornCraters::crest(double wear) const {
-  const double w = std::clamp(wear / kMostWear, 0.0, 1.0) * (kWears - 1);
+double DegradedCraters::crest(double diffusion_length) const {
+  const double w = std::clamp(diffusion_length / kMaxDiffusionLength, 0.0, 1.0) * (kDiffusionLengths - 1);
   const auto i = std::min(static_cast<std::size_t>(w), crests_.size() - 2);
   return crests_[i] + (w - double(i)) * (crests_[i + 1] - crests_[i]);
 }
@@ -220,9 +223,9 @@ Grid<float> fractal_field(Random& random, int side, double longest, double short
                {static_cast<int>(cells * wave / 2) + 1, static_cast<int>(cells * wave / 2) + 1}, 0, 0,
                cv::INTER_CUBIC);
     const int shift_x =
-        static_cast<int>(random.below(static_cast<std::uint64_t>(std::max(1, octave.cols - side))));
+        static_cast<int>(random.uniform_index(static_cast<std::uint64_t>(std::max(1, octave.cols - side))));
     const int shift_y =
-        static_cast<int>(random.below(static_cast<std::uint64_t>(std::max(1, octave.rows - side))));
+        static_cast<int>(random.uniform_index(static_cast<std::uint64_t>(std::max(1, octave.rows - side))));
     if (octave.cols < side || octave.rows < side)
       cv::resize(octave, octave, {side, side}, 0, 0, cv::INTER_CUBIC);
     const int x = std::min(shift_x, octave.cols - side), y = std::min(shift_y, octave.rows - side);
@@ -234,20 +237,20 @@ Grid<float> fractal_field(Random& random, int side, double longest, double short
   return field;
 }
 
-void add_distractions(Grid<float>& heights, Random& random, double strength) {
-  const double many = random.chance(0.3) ? 2.5 : 1;
+void add_distractors(Grid<float>& heights, Random& random, double strength) {
+  const double many = random.bernoulli(0.3) ? 2.5 : 1;
   for (auto n = random.poisson(1.5 * many); n > 0; --n) add_line(heights, random, strength);
-  for (auto n = random.poisson(random.chance(0.4) ? 50 * many : 12 * many); n > 0; --n)
+  for (auto n = random.poisson(random.bernoulli(0.4) ? 50 * many : 12 * many); n > 0; --n)
     add_blob(heights, random, strength);
-  if (random.chance(0.35)) add_ripples(heights, random, strength);
+  if (random.bernoulli(0.35)) add_ripples(heights, random, strength);
 }
 
-std::vector<KnownCrater> add_craters(Grid<float>& heights, Grid<float>& bright, Random& random) {
-  static const WornCraters worn;
+std::vector<LabelledCrater> add_craters(Grid<float>& heights, Grid<float>& bright, Random& random) {
+  static const DegradedCraters worn;
   const double side = double(heights.columns()), area = side * side;
   const double slope = random.uniform(1.7, 3.0), smallest = 2, largest = side * 0.28;
-  const double oldest = random.uniform(0.15, WornCraters::kMostWear);
-  // Share of the area within rims of 8 to 16 px sets the density.
+  const double oldest = random.uniform(0.15, DegradedCraters::kMaxDiffusionLength);
+  // The fraction of the area within rims of 8 to 16 px determines the density.
   const double cover = random.log_uniform(0.01, 0.15);
   const double at_smallest = cover * area / (std::numbers::pi / 4 * 144) /
                              (std::pow(8 / 2.0, -slope) - std::pow(16 / 2.0, -slope)) / 4;
@@ -261,19 +264,19 @@ std::vector<KnownCrater> add_craters(Grid<float>& heights, Grid<float>& bright, 
     const double diameter = 2 * smallest * std::pow(1 - random.uniform() * (1 - q), -1 / slope);
     draw(random.uniform(0, side), random.uniform(0, side), diameter / 2);
   }
-  for (auto n = random.poisson(6); n > 0; --n)  // sizes that the law makes rare
+  for (auto n = random.poisson(6); n > 0; --n)  // sizes that are rare under the power law
     draw(random.uniform(0, side), random.uniform(0, side), random.log_uniform(15, 110));
-  if (random.chance(0.4))  // a cluster of secondaries
+  if (random.bernoulli(0.4))  // a cluster of secondaries
     for (double x = random.uniform(0, side), y = random.uniform(0, side), n = random.uniform(10, 60); n > 0;
          --n)
       draw(x + random.normal(0, 60), y + random.normal(0, 60), random.log_uniform(3, 12));
   std::stable_sort(impacts.begin(), impacts.end(), [](const Impact& a, const Impact& b) {
-    return a.wear * std::sqrt(a.radius) > b.wear * std::sqrt(b.radius);
+    return a.diffusion_length * std::sqrt(a.radius) > b.diffusion_length * std::sqrt(b.radius);
   });
-  std::vector<KnownCrater> known;
+  std::vector<LabelledCrater> known;
   for (const Impact& c : impacts) {
-    dig(heights, bright, c, worn);
-    const double diameter = 2 * c.radius * worn.crest(c.wear);
+    excavate(heights, bright, c, worn);
+    const double diameter = 2 * c.radius * worn.crest(c.diffusion_length);
     if (diameter >= 5) known.push_back({c.x, c.y, diameter, c.depth});
   }
   return known;

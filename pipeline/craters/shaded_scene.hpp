@@ -7,26 +7,29 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// A crater whose place in an image is known.
-struct KnownCrater {
+/// Crater with a known position in an image.
+struct LabelledCrater {
   double x = 0, y = 0;  ///< centre of the rim crest, pixels
   double diameter = 0;  ///< of the rim crest, pixels
-  double clarity = 1;   ///< how much of the relief about it is its own, [0, 1]: below 0.5 people disagree
+  double clarity =
+      1;  ///< fraction of the surrounding relief that is its own, [0, 1]; below 0.5 annotators disagree
 };
 
-/// An image with known craters, to train on.
-struct KnownScene {
+/// Training image with known craters.
+struct LabelledScene {
   Pixels image;
   Radians sun_angle;  ///< towards the sun, from x towards y
-  std::vector<KnownCrater> craters;
+  std::vector<LabelledCrater> craters;
 };
 
-/// A square piece of made-up planet under a low or high sun, as different from one seed to the next as images
-/// of the Moon and Mars are: fractal ground, valleys, ridges, hills, hollows that are no craters, ripples;
-/// craters by a power law, from fresh to almost gone, filled, elliptic, overlapping; Lambert shading, cast
-/// shadows, albedo, blur, noise, and the hard contrast stretch of published images. Heights are in pixels.
-/// The sun stands at one of the four sides of the image. The same for the same seed everywhere; about 1 s for
-/// 768 pixels.
-KnownScene shaded_scene(std::uint64_t seed, int side = 768);
+/// Returns a square synthetic image of cratered terrain; seeds vary as much as images of the Moon and Mars
+/// do.
+/// - Relief: fractal terrain, valleys, ridges, hills, hollows that are no craters, ripples. Heights are in
+///   pixels.
+/// - Craters: power-law sizes, from fresh to almost erased, infilled, elliptic, overlapping.
+/// - Image: Lambert shading, cast shadows, albedo, blur, noise and the hard contrast stretch of published
+///   images. The sun is at one of the four sides.
+/// Deterministic for a seed on all machines; about 1 s for 768 pixels.
+LabelledScene shaded_scene(std::uint64_t seed, int side = 768);
 
 }  // namespace waymark

@@ -14,9 +14,9 @@ namespace waymark {
 namespace {
 
 constexpr int kSizesPerOctave = 7;
-constexpr double kLargestBowl = 24;  // pixels at the level it is sought on
+constexpr double kMaxBowl = 24;  // pixels of its pyramid level
 
-// One size of bowl: its templates, two in each spectrum (the second as imaginary part).
+// Templates of one diameter, two in each spectrum (the second as imaginary part).
 struct Bowl {
   double diameter = 0;  // pixels of the level
   int half = 0;         // of the template's side
@@ -29,7 +29,8 @@ cv::Mat1f as_matrix(const Pixels& pixels) {
           const_cast<float*>(pixels.cells().data())};
 }
 
-// A correlation is a product with the conjugate; the template's middle goes to the tile's first cell.
+// Correlation is a product with the conjugate; the centre of the template is moved to the first cell of the
+// tile.
 Bowl make_bowl(double diameter, const std::vector<Pixels>& shapes) {
   Bowl bowl{.diameter = diameter, .half = 0, .shapes = shapes.size(), .spectra = {}};
   for (std::size_t i = 0; i < shapes.size(); i += 2) {
@@ -44,24 +45,24 @@ Bowl make_bowl(double diameter, const std::vector<Pixels>& shapes) {
     constexpr float each = 1.0F / ComplexTile::kCells;
     put(shapes[i], tile.real, each);
     if (i + 1 < shapes.size()) put(shapes[i + 1], tile.imaginary, -each);
-    to_spectrum(tile);
+    forward_transform(tile);
     for (float& value : tile.imaginary) value = -value;
     bowl.spectra.push_back(std::move(tile));
   }
   return bowl;
 }
 
-// Squares of the correlation, with their sign, at the pixels of the tile that are `margin` from its edge: in
-// the real part of `best`.
+// Stores the squares of the correlation, with their sign, in the real part of `best`, for pixels at least
+// `margin` from the edge of the tile.
 void correlate(const ComplexTile& spectrum, const TileSums& sums, const Bowl& bowl, int margin, double noise,
                ComplexTile& best, ComplexTile& other) {
-  // The last template may stand alone.
+  // The last template may be unpaired.
   const auto paired = [&](std::size_t i) { return 2 * i + 1 < bowl.shapes; };
-  from_product(spectrum, bowl.spectra[0], best);
+  inverse_transform_product(spectrum, bowl.spectra[0], best);
   for (std::size_t i = 1; i < bowl.spectra.size(); ++i) {
-    from_product(spectrum, bowl.spectra[i], other);
-    raise(best.real, other.real);
-    if (paired(i)) raise(best.real, other.imaginary);
+    inverse_transform_product(spectrum, bowl.spectra[i], other);
+    take_maximum(best.real, other.real);
+    if (paired(i)) take_maximum(best.real, other.imaginary);
   }
   const std::span<const float> second =
       paired(0) ? std::span<const float>(best.imaginary) : std::span<const float>();
@@ -79,7 +80,7 @@ double vertex(double before, double at, double after) {
 template <class ToImage>
 void collect(const std::vector<float>& squares, const cv::Rect& core, double least, const ToImage& to_image,
              std::vector<CraterCandidate>& found) {
-  const auto least_square = static_cast<float>(least * least);
+  const auto min_square = static_cast<float>(least * least);
   const auto score = [](float square) {
     return std::copysign(std::sqrt(std::abs(double(square))), double(square));
   };
@@ -87,9 +88,9 @@ void collect(const std::vector<float>& squares, const cv::Rect& core, double lea
     const float* row = squares.data() + std::ptrdiff_t{y} * kTileSide;
     for (int x = core.x; x < core.x + core.width; ++x) {
       const float s = row[x];
-      if (!(s >= least_square) || s < row[x - 1]) continue;
+      if (!(s >= min_square) || s < row[x - 1]) continue;
       const float *above = row + x - kTileSide, *below = row + x + kTileSide;
-      // Of equals the first.
+      // Ties: the first.
       if (!(s > above[-1] && s > above[0] && s > above[1] && s > row[x - 1] && s >= row[x + 1] &&
             s >= below[-1] && s >= below[0] && s >= below[1]))
         continue;
@@ -100,13 +101,13 @@ void collect(const std::vector<float>& squares, const cv::Rect& core, double lea
   }
 }
 
-// `made`: by size, once for all levels; what is not there yet is added.
+// `made`: cache by size for all levels.
 std::vector<const Bowl*> bowls_of_level(int level, const ShapeSearch& search, std::map<int, Bowl>& made) {
   std::vector<const Bowl*> bowls;
   const double shrink = std::exp2(level);
-  // The finest level also has the bowls too small for an octave of their own.
+  // The finest level also holds diameters below the first octave.
   for (int i = level == 0 ? -kSizesPerOctave : 0; i < kSizesPerOctave; ++i) {
-    const double diameter = kLargestBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
+    const double diameter = kMaxBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
     if (diameter * shrink < search.min_diameter * 0.95 || diameter * shrink > search.max_diameter * 1.05)
       continue;
     auto known = made.find(i);
@@ -137,7 +138,7 @@ void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y,
     padded(cv::Rect(x0, y0, kTileSide, kTileSide)).copyTo(values);
     values -= cv::mean(values)[0];
     const TileSums sums(tile.real);
-    to_spectrum(tile);
+    forward_transform(tile);
     const int first = margin + 1;
     const cv::Rect inside(first, first, std::min(core, image.cols - x0), std::min(core, image.rows - y0));
     for (const Bowl* bowl : bowls) {
@@ -160,8 +161,7 @@ std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSe
   std::map<int, Bowl> made;
   cv::Mat1f at_level = as_matrix(image);
   for (int level = 0;; ++level) {
-    if (std::min(at_level.cols, at_level.rows) < 8 ||
-        kLargestBowl / 2 * std::exp2(level) > search.max_diameter)
+    if (std::min(at_level.cols, at_level.rows) < 8 || kMaxBowl / 2 * std::exp2(level) > search.max_diameter)
       break;
     const auto bowls = bowls_of_level(level, search, made);
     cv::Mat1f searched = at_level, mean;

@@ -16,7 +16,7 @@ using Wide [[gnu::vector_size(sizeof(double) * kLanes)]] = double;
                                                   const TileSums& sums, int half, int margin, double floor) {
   const int side = 2 * half + 1, last = kTileSide - margin;
   const double each = 1.0 / (double(side) * side);
-  std::array<float, kTileSide> row{};  // a row's last eight may overlap those before
+  std::array<float, kTileSide> row{};  // the last eight of a row may overlap the previous ones
   for (int y = margin; y < last; ++y) {
     const std::ptrdiff_t top = std::ptrdiff_t{y - half} * TileSums::kSide - half,
                          low = top + std::ptrdiff_t{side} * TileSums::kSide;
@@ -48,8 +48,8 @@ using Wide [[gnu::vector_size(sizeof(double) * kLanes)]] = double;
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void normalise_by_eight(std::span<float> responses, std::span<const float> others,
-                                                const TileSums& sums, int half, int margin, double floor) {
+[[gnu::target("avx2")]] void normalise_avx2(std::span<float> responses, std::span<const float> others,
+                                            const TileSums& sums, int half, int margin, double floor) {
   normalise_body(responses, others, sums, half, margin, floor);
 }
 #endif
@@ -70,7 +70,7 @@ TileSums::TileSums(std::span<const float> tile)
   }
 }
 
-void raise(std::span<float> values, std::span<const float> others) {
+void take_maximum(std::span<float> values, std::span<const float> others) {
   assert(values.size() == others.size() && values.size() % kLanes == 0);
   for (std::size_t i = 0; i < values.size(); i += kLanes) {
     Lanes a, b;
@@ -84,7 +84,7 @@ void normalise(std::span<float> responses, std::span<const float> others, const 
                int margin, double floor) {
   assert(margin > half && kTileSide - 2 * margin >= kLanes && responses.size() == ComplexTile::kCells);
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return normalise_by_eight(responses, others, sums, half, margin, floor);
+  if (__builtin_cpu_supports("avx2")) return normalise_avx2(responses, others, sums, half, margin, floor);
 #endif
   normalise_body(responses, others, sums, half, margin, floor);
 }

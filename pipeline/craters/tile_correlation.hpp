@@ -5,21 +5,22 @@
 #include "pipeline/craters/tile_spectrum.hpp"
 namespace waymark {
 
-/// Sums over all cells above and to the left, of a tile's values and of their squares: kTileSide + 1 rows
-/// and columns, the first of either zero.
+/// Summed-area tables of the values of a tile and of their squares: kTileSide + 1 rows and columns, the
+/// first of each zero.
 struct TileSums {
   explicit TileSums(std::span<const float> tile);
   static constexpr int kSide = kTileSide + 1;
   std::vector<double> values, squares;
 };
 
-/// The greater of two at each cell, in `values`.
-void raise(std::span<float> values, std::span<const float> others);
+/// Stores the greater of two values of each cell in `values`.
+void take_maximum(std::span<float> values, std::span<const float> others);
 
-/// Responses of a template of zero mean and norm 1 and of 2 half + 1 cells a side become, at the cells
-/// `margin` or more from the tile's edge, squares of its normalised correlation, with their sign: the square
-/// of the response over (sum of squared deviations under the template + `floor`). Of two templates the
-/// greater, where there are `others`. margin > half, kTileSide - 2 margin at least 8.
+/// Replaces template responses by the squares of the normalised correlation, with their sign, at cells
+/// `margin` or more from the edge of the tile. The template has zero mean, norm 1 and 2 half + 1 cells a
+/// side. The result is the squared response over (sum of squared deviations under the template + `floor`).
+/// Takes the greater of two templates if `others` is not empty. Requires margin > half and kTileSide - 2
+/// margin >= 8.
 void normalise(std::span<float> responses, std::span<const float> others, const TileSums& sums, int half,
                int margin, double floor);
 

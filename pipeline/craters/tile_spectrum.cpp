@@ -9,9 +9,9 @@
 namespace waymark {
 namespace {
 
-// Eight columns (or rows) are transformed at once, one in each lane. Radix 4, by decimation in frequency
-// there and in time back (Gentleman & Sande 1966, Cooley & Tukey 1965): what one leaves in the order of
-// reversed digits the other takes so, and nothing is ever sorted.
+// Eight columns (or rows) are transformed at once, one in each lane. Radix 4: decimation in frequency forward
+// and in time backward (Gentleman & Sande 1966, Cooley & Tukey 1965), so spectra stay in digit-reversed order
+// and need no reordering.
 constexpr int kLanes = 8, kGroups = kTileSide / kLanes;
 using Lanes [[gnu::vector_size(sizeof(float) * kLanes)]] = float;
 using Four [[gnu::vector_size(sizeof(float) * 4)]] = float;
@@ -20,14 +20,14 @@ struct Columns {
   std::array<Lanes, kTileSide> real, imaginary;
 };
 
-struct Turn {
+struct Twiddle {
   float cosine, sine;
 };
 
 // exp(-2 pi i k / kTileSide).
-const std::array<Turn, kTileSide>& turns() {
+const std::array<Twiddle, kTileSide>& twiddles() {
   static const auto made = [] {
-    std::array<Turn, kTileSide> all{};
+    std::array<Twiddle, kTileSide> all{};
     for (std::size_t k = 0; k < all.size(); ++k) {
       const double angle = -2 * std::numbers::pi * double(k) / kTileSide;
       all[k] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
@@ -38,10 +38,10 @@ const std::array<Turn, kTileSide>& turns() {
 }
 
 template <int kLength>
-[[gnu::always_inline]] inline void stage_there(Columns& c, const Turn* turn) {
+[[gnu::always_inline]] inline void forward_stage(Columns& c, const Twiddle* twiddle) {
   constexpr int quarter = kLength / 4, step = kTileSide / kLength;
   for (int j = 0; j < quarter; ++j) {
-    const Turn w1 = turn[j * step], w2 = turn[2 * j * step], w3 = turn[3 * j * step];
+    const Twiddle w1 = twiddle[j * step], w2 = twiddle[2 * j * step], w3 = twiddle[3 * j * step];
     for (int first = j; first < kTileSide; first += kLength) {
       Lanes *re = c.real.data() + first, *im = c.imaginary.data() + first;
       const Lanes sum_re = re[0] + re[2 * quarter], sum_im = im[0] + im[2 * quarter];
@@ -66,10 +66,10 @@ template <int kLength>
 }
 
 template <int kLength>
-[[gnu::always_inline]] inline void stage_back(Columns& c, const Turn* turn) {
+[[gnu::always_inline]] inline void inverse_stage(Columns& c, const Twiddle* twiddle) {
   constexpr int quarter = kLength / 4, step = kTileSide / kLength;
   for (int j = 0; j < quarter; ++j) {
-    const Turn w1 = turn[j * step], w2 = turn[2 * j * step], w3 = turn[3 * j * step];
+    const Twiddle w1 = twiddle[j * step], w2 = twiddle[2 * j * step], w3 = twiddle[3 * j * step];
     for (int first = j; first < kTileSide; first += kLength) {
       Lanes *re = c.real.data() + first, *im = c.imaginary.data() + first;
       Lanes a_re = re[quarter], a_im = im[quarter], b_re = re[2 * quarter], b_im = im[2 * quarter],
@@ -93,12 +93,14 @@ template <int kLength>
   }
 }
 
-[[gnu::always_inline]] inline void there(Columns& c, const Turn* turn) {
-  stage_there<256>(c, turn), stage_there<64>(c, turn), stage_there<16>(c, turn), stage_there<4>(c, turn);
+[[gnu::always_inline]] inline void forward_fft(Columns& c, const Twiddle* twiddle) {
+  forward_stage<256>(c, twiddle), forward_stage<64>(c, twiddle), forward_stage<16>(c, twiddle),
+      forward_stage<4>(c, twiddle);
 }
 
-[[gnu::always_inline]] inline void back(Columns& c, const Turn* turn) {
-  stage_back<4>(c, turn), stage_back<16>(c, turn), stage_back<64>(c, turn), stage_back<256>(c, turn);
+[[gnu::always_inline]] inline void inverse_fft(Columns& c, const Twiddle* twiddle) {
+  inverse_stage<4>(c, twiddle), inverse_stage<16>(c, twiddle), inverse_stage<64>(c, twiddle),
+      inverse_stage<256>(c, twiddle);
 }
 
 // Rows of `from` become columns of `to`: four by four, `stride` floats between rows.
@@ -146,13 +148,13 @@ template <int kLength>
   }
 }
 
-// A spectrum holds, for each eight rows, the lanes of its columns.
+// A spectrum stores the lanes of its columns for each group of eight rows.
 [[gnu::always_inline]] inline void spectrum_body(ComplexTile& tile) {
-  const Turn* turn = turns().data();
+  const Twiddle* twiddle = twiddles().data();
   Columns c;
   for (int group = 0; group < kGroups; ++group) {
     load_columns(tile, group, c);
-    there(c, turn);
+    forward_fft(c, twiddle);
     store_columns(c, group, tile);
   }
   for (int group = 0; group < kGroups; ++group) {
@@ -160,7 +162,7 @@ template <int kLength>
           *imaginary = tile.imaginary.data() + group * kLanes * kTileSide;
     rows_to_lanes(real, c.real.data());
     rows_to_lanes(imaginary, c.imaginary.data());
-    there(c, turn);
+    forward_fft(c, twiddle);
     std::memcpy(real, c.real.data(), sizeof c.real);
     std::memcpy(imaginary, c.imaginary.data(), sizeof c.imaginary);
   }
@@ -168,7 +170,7 @@ template <int kLength>
 
 [[gnu::always_inline]] inline void product_body(const ComplexTile& spectrum, const ComplexTile& kernel,
                                                 ComplexTile& product) {
-  const Turn* turn = turns().data();
+  const Twiddle* twiddle = twiddles().data();
   Columns c;
   for (int group = 0; group < kGroups; ++group) {
     const auto part = [&](const std::vector<float>& all, int x) {
@@ -182,39 +184,39 @@ template <int kLength>
       c.real[static_cast<std::size_t>(x)] = a * p - b * q;
       c.imaginary[static_cast<std::size_t>(x)] = a * q + b * p;
     }
-    back(c, turn);
+    inverse_fft(c, twiddle);
     lanes_to_rows(c.real.data(), product.real.data() + group * kLanes * kTileSide);
     lanes_to_rows(c.imaginary.data(), product.imaginary.data() + group * kLanes * kTileSide);
   }
   for (int group = 0; group < kGroups; ++group) {
     load_columns(product, group, c);
-    back(c, turn);
+    inverse_fft(c, twiddle);
     store_columns(c, group, product);
   }
 }
 
 #ifdef __x86_64__
-[[gnu::target("avx2")]] void spectrum_by_eight(ComplexTile& tile) {
+[[gnu::target("avx2")]] void spectrum_avx2(ComplexTile& tile) {
   spectrum_body(tile);
 }
-[[gnu::target("avx2")]] void product_by_eight(const ComplexTile& spectrum, const ComplexTile& kernel,
-                                              ComplexTile& product) {
+[[gnu::target("avx2")]] void product_avx2(const ComplexTile& spectrum, const ComplexTile& kernel,
+                                          ComplexTile& product) {
   product_body(spectrum, kernel, product);
 }
 #endif
 
 }  // namespace
 
-void to_spectrum(ComplexTile& tile) {
+void forward_transform(ComplexTile& tile) {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return spectrum_by_eight(tile);
+  if (__builtin_cpu_supports("avx2")) return spectrum_avx2(tile);
 #endif
   spectrum_body(tile);
 }
 
-void from_product(const ComplexTile& spectrum, const ComplexTile& kernel, ComplexTile& product) {
+void inverse_transform_product(const ComplexTile& spectrum, const ComplexTile& kernel, ComplexTile& product) {
 #ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2")) return product_by_eight(spectrum, kernel, product);
+  if (__builtin_cpu_supports("avx2")) return product_avx2(spectrum, kernel, product);
 #endif
   product_body(spectrum, kernel, product);
 }

@@ -5,18 +5,19 @@ namespace waymark {
 
 inline constexpr int kTileSide = 256;
 
-/// A square of kTileSide complex numbers, row by row, real and imaginary parts apart.
+/// Square of kTileSide complex numbers, row by row, real and imaginary parts apart.
 struct ComplexTile {
   static constexpr std::size_t kCells = std::size_t{kTileSide} * kTileSide;
   std::vector<float> real = std::vector<float>(kCells), imaginary = std::vector<float>(kCells);
 };
 
-/// Discrete Fourier transform in place, frequencies in the order that from_product takes them in. As
-/// fast on eight columns at once as a processor with AVX2 allows, the same bits without. About 0.1 ms.
-void to_spectrum(ComplexTile& tile);
+/// Computes the discrete Fourier transform in place; inverse_transform_product expects this order of
+/// frequencies. AVX2 transforms eight columns at once; results are bitwise the same without it. About 0.1 ms.
+void forward_transform(ComplexTile& tile);
 
-/// The transform back, times kCells, of the product of two spectra: the tiles' circular convolution.
-/// One complex kernel stands for two real ones: a real tile's products with its parts come out apart.
-void from_product(const ComplexTile& spectrum, const ComplexTile& kernel, ComplexTile& product);
+/// Computes the inverse transform, times kCells, of the product of two spectra: the circular convolution of
+/// the tiles. A complex kernel holds two real ones: the real and imaginary parts of the result are the two
+/// convolutions of a real tile.
+void inverse_transform_product(const ComplexTile& spectrum, const ComplexTile& kernel, ComplexTile& product);
 
 }  // namespace waymark

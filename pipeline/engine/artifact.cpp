@@ -8,14 +8,14 @@ Artifact::Value Artifact::value() {
   if (value_) return value_;
   if (Value used = used_.lock()) return used;
   Value fetched = load_();
-  if (once_ == Once::held)
+  if (retention_ == Retention::keep)
     value_ = fetched;
   else
     used_ = fetched;
   return fetched;
 }
 
-Artifact::Value Artifact::hand_over() {
+Artifact::Value Artifact::take() {
   Value last = value();
   const std::lock_guard lock(mutex_);
   value_.reset();

@@ -6,35 +6,36 @@
 #include <utility>
 namespace waymark {
 
-/// What a unit wrote to one port: in memory, or fetched from where it was kept when it is read. Thread-safe.
+/// Value that a unit wrote to one port, held in memory or loaded when it is read. Thread-safe.
 class Artifact {
  public:
   using Value = std::shared_ptr<const void>;
-  enum class Once { held, let_go };  ///< what becomes of it once it is fetched and nobody uses it
+  enum class Retention { keep, release };  ///< of a loaded value that is no longer in use
 
   explicit Artifact(Value value) : value_(std::move(value)) {}
-  explicit Artifact(std::function<Value()> load, Once once = Once::held)
-      : load_(std::move(load)), once_(once) {}
+  explicit Artifact(std::function<Value()> load, Retention retention = Retention::keep)
+      : load_(std::move(load)), retention_(retention) {}
 
-  /// Throws what `load` throws, and tries again at the next call.
+  /// Returns the value, loading it if necessary. Throws what `load` throws; the next call tries again.
   Value value();
-  /// The same, without keeping it: for the last one who reads it.
-  Value hand_over();
+  /// Returns the value without keeping it here. For the last reader.
+  Value take();
 
  private:
   std::mutex mutex_;
   Value value_;
-  std::weak_ptr<const void> used_;  ///< by whom it was fetched for last
+  std::weak_ptr<const void> used_;  ///< the loaded value, while a reader uses it
   std::function<Value()> load_;
-  Once once_ = Once::held;
+  Retention retention_ = Retention::keep;
 };
 
+/// Artifact with several readers.
 using ArtifactPtr = std::shared_ptr<Artifact>;
 
-/// What it points to: moved out where nobody else holds it, else copied. Artifacts are made as plain T, so
-/// that the last owner may do with them as he likes.
+/// Returns the pointed-to value: moved if this is the only owner, else copied.
+/// Artifacts are created as non-const T, so the cast is valid for the last owner.
 template <class T>
-T own(Artifact::Value value) {
+T move_or_copy(Artifact::Value value) {
   const T* const held = static_cast<const T*>(value.get());
   if (value.use_count() == 1) return std::move(*const_cast<T*>(held));
   return *held;

@@ -5,19 +5,20 @@
 #include <string_view>
 namespace waymark {
 
-/// How an artifact looks on disk. Specialise it beside the type T; only the stage that writes a T needs it:
+/// Serialization of an artifact of type T. Specialise it next to T; only the stage that writes a T needs it:
 ///   static std::string encode(const T&);        equal values give equal bytes
-///   static T decode(std::string_view bytes);    throws on bytes it does not understand
-/// Change the layout and the version of every stage that writes T rises.
+///   static T decode(std::string_view bytes);    throws on malformed bytes
+/// If the layout changes, raise the version of every stage that writes T.
 template <class T>
 struct Codec;
 
-/// A Codec whose type is forgotten.
+/// Type-erased Codec.
 struct ErasedCodec {
   std::string (*encode)(const void* value);
   std::shared_ptr<const void> (*decode)(std::string_view bytes);
 };
 
+/// Returns the codec of a type behind void pointers.
 template <class T>
 const ErasedCodec& erased_codec() {
   static constexpr ErasedCodec codec{

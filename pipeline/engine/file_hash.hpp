@@ -5,10 +5,11 @@
 #include "core/input_file.hpp"
 namespace waymark {
 
-/// Measures a file a stage reads. importers/ has one that opens /vsi paths.
+/// Returns size and hash of a file that a stage reads. importers/ has an implementation that opens /vsi
+/// paths.
 using FileHasher = std::function<InputFile(const std::string& path)>;
 
-/// Size and SHA-256 of a plain file, streamed. Throws Error{input} where it cannot be read.
+/// Returns size and SHA-256 of a plain file, read as a stream. Throws Error{input} if it cannot be read.
 InputFile hash_plain_file(const std::string& path);
 
 }  // namespace waymark

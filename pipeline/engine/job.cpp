@@ -9,8 +9,9 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/json_text.hpp"
 #include "core/text_file.hpp"
-#include "pipeline/engine/option_table.hpp"
+#include "pipeline/engine/step_options.hpp"
 
 namespace waymark {
 namespace {
@@ -21,15 +22,7 @@ using Json = nlohmann::ordered_json;
   throw Error(ErrorCode::usage, std::move(problem), std::string(origin), std::move(hint));
 }
 
-/// "3:17", line and column from 1 of a byte, as compilers print it.
-std::string line_and_column(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, std::min(byte, text.size()));
-  const auto line = 1 + std::ranges::count(before, '\n');
-  const std::size_t begin = before.rfind('\n') + 1;  // npos + 1 is 0
-  return fmt::format("{}:{}", line, std::max<std::size_t>(1, before.size() - begin));
-}
-
-/// JSON keeps the last of two equal keys in silence; a job file must not.
+/// Detects duplicate keys; the JSON parser would silently keep the last.
 class DuplicateKeys {
  public:
   bool operator()(int, Json::parse_event_t event, const Json& parsed) {
@@ -49,29 +42,22 @@ class DuplicateKeys {
 
 Json parse_json(std::string_view text, std::string_view origin) {
   DuplicateKeys duplicates;
-  try {
-    Json json = Json::parse(text, std::ref(duplicates));
-    if (!duplicates.first().empty())
-      refuse(fmt::format("the key '{}' is given twice", duplicates.first()), origin);
-    return json;
-  } catch (const nlohmann::json::parse_error& error) {
-    const std::string what = error.what();
-    const std::size_t detail = what.find(": ");
-    refuse("not valid JSON: " + (detail == std::string::npos ? what : what.substr(detail + 2)),
-           fmt::format("{}:{}", origin, line_and_column(text, error.byte)));
-  }
+  Json json = Json::parse(checked_json(text, origin, ErrorCode::usage), std::ref(duplicates));
+  if (!duplicates.first().empty())
+    refuse(fmt::format("the key '{}' is given twice", duplicates.first()), origin);
+  return json;
 }
 
-void expect(bool fits, const std::string& place, const char* kind, const Json& found,
+void expect(bool fits, const std::string& location, const char* kind, const Json& found,
             std::string_view origin) {
-  if (!fits) refuse(fmt::format("{} must be {}, is {}", place, kind, found.type_name()), origin);
+  if (!fits) refuse(fmt::format("{} must be {}, is {}", location, kind, found.type_name()), origin);
 }
 
 void add_stage(Pipeline& pipeline, const Json& entry, std::size_t index, std::string_view origin) {
-  const std::string place = fmt::format("stages[{}]", index);
-  expect(entry.is_object(), place, "an object", entry, origin);
-  if (!entry.contains("stage")) refuse(place + " has no \"stage\"", origin, "add the name of a stage");
-  expect(entry["stage"].is_string(), place + ".stage", "a string", entry["stage"], origin);
+  const std::string location = fmt::format("stages[{}]", index);
+  expect(entry.is_object(), location, "an object", entry, origin);
+  if (!entry.contains("stage")) refuse(location + " has no \"stage\"", origin, "add the name of a stage");
+  expect(entry["stage"].is_string(), location + ".stage", "a string", entry["stage"], origin);
   Json options = entry;
   options.erase("stage");
   pipeline.add(entry["stage"].get<std::string>(), options.dump());
@@ -117,8 +103,7 @@ std::string job_as_json(std::string_view name, const Pipeline& pipeline) {
   Json stages = Json::array();
   for (const auto& step : pipeline.steps()) {
     Json stage{{"stage", step->spec().name}};
-    for (const OptionRow& row : option_table(*step))
-      std::visit([&](const auto& value) { stage[row.name] = value; }, row.value);
+    stage.update(Json::parse(options_as_json(option_table(*step))));
     stages.push_back(std::move(stage));
   }
   return Json{{"name", name}, {"stages", std::move(stages)}}.dump(2, ' ', false,

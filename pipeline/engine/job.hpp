@@ -13,14 +13,15 @@ struct Job {
   Pipeline pipeline;
 };
 
-/// Reads a job file; relative paths in it start at its folder. Throws Error{usage}: for text that is not JSON
-/// with file, line and column; for all else with the place in the JSON and the nearest name.
+/// Reads a job file. Relative paths in it start at its folder.
+/// Throws Error{usage}: with file, line and column if the text is not JSON, else with the JSON location and
+/// the nearest valid name.
 Job read_job(const std::filesystem::path& file, const Registry& registry);
 
-/// The same from text; `origin` is what messages call it.
+/// Parses a job from text. `origin` is its name in messages.
 Job parse_job(std::string_view json, const Registry& registry, std::string_view origin = "job");
 
-/// The job as a file that would give the same run, every option filled in; indented JSON.
+/// Returns the job as indented JSON with every option filled in; running it repeats the run.
 std::string job_as_json(std::string_view name, const Pipeline& pipeline);
 
 }  // namespace waymark

@@ -8,24 +8,24 @@
 #include "pipeline/engine/tile.hpp"
 namespace waymark {
 
-/// One stage on one item: the smallest piece of work that is done, kept and done again.
+/// Smallest unit of work: one stage applied to one item.
 struct Unit {
   std::string stage;
   std::string item;  ///< "map", "tile_000003" or "image_a.png"
   std::optional<Tile> tile;
   std::optional<ImageItem> image;
-  std::string fingerprint;         ///< equal fingerprints, equal results; empty where nothing is kept
-  std::vector<std::size_t> after;  ///< units whose artifacts it reads, ascending indices into Plan::units
-  bool done = false;               ///< its result is in the work folder
+  std::string fingerprint;         ///< equal fingerprints mean equal results; empty without a work folder
+  std::vector<std::size_t> after;  ///< indices into Plan::units of the units it reads, ascending
+  bool done = false;               ///< whether its result is in the work folder
 
   std::string id() const { return stage + "/" + item; }
-  /// Of the tile or image, from 0; nothing for the map.
+  /// Returns the index of the tile or image, from 0; `std::nullopt` for the map.
   std::optional<std::int64_t> index() const {
     return tile ? std::optional(tile->index) : image ? std::optional(image->index) : std::nullopt;
   }
 };
 
-/// Units in an order in which they can be run: stage by stage, tiles and images in their order.
+/// Units in a valid order of execution: by stage, then by tile or image.
 struct Plan {
   std::vector<Unit> units;
   std::vector<std::size_t> begins = {0};  ///< units of stage s: [begins[s], begins[s + 1])
@@ -33,18 +33,19 @@ struct Plan {
   std::size_t stage_count() const { return begins.size() - 1; }
 };
 
-/// How a scheduler calls us for one unit.
+/// Command line by which a scheduler runs one unit.
 struct PlanCommand {
   std::string job;   ///< job file
   std::string work;  ///< work folder shared by all machines
   std::string program = "waymark";
 };
 
-/// One JSON object per line: unit, stage, item, fingerprint, done, after (ids).
+/// Returns one JSON object per line: unit, stage, item, fingerprint, done, after (ids).
 std::string plan_as_jsonl(const Plan& plan);
-/// A Snakefile: one rule per unit, its manifest as output.
+/// Returns a Snakefile with one rule per unit and its manifest as output.
 std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command);
-/// A shell script of sbatch calls: per stage one job, or one array of shares, after the stages it reads.
+/// Returns a shell script of sbatch calls: per stage one job or one array of shards, after the stages it
+/// reads.
 std::string plan_as_slurm(const Plan& plan, const PlanCommand& command);
 
 }  // namespace waymark

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-std::string demangled(std::type_index type) {
+std::string demangle(std::type_index type) {
   int status = 0;
   const std::unique_ptr<char, void (*)(void*)> name(
       abi::__cxa_demangle(type.name(), nullptr, nullptr, &status), std::free);
@@ -26,7 +26,7 @@ bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
 }
 
-/// "std::vector<(anonymous namespace)::Number>" becomes "vector<Number>".
+/// Removes namespaces: "std::vector<(anonymous namespace)::Number>" becomes "vector<Number>".
 void erase_scopes(std::string& name) {
   for (std::size_t colons; (colons = name.find("::")) != std::string::npos;) {
     std::size_t begin = colons;
@@ -36,7 +36,7 @@ void erase_scopes(std::string& name) {
   }
 }
 
-/// "vector<Number, allocator<Number>>" becomes "vector<Number>", however deep the brackets nest.
+/// Removes allocators at any depth: "vector<Number, allocator<Number>>" becomes "vector<Number>".
 void erase_allocators(std::string& name) {
   constexpr std::string_view kBegin = ", allocator<";
   for (std::size_t begin = 0; (begin = name.find(kBegin)) != std::string::npos;) {
@@ -47,13 +47,13 @@ void erase_allocators(std::string& name) {
   }
 }
 
-/// "shared_ptr<Number const>" becomes "shared_ptr<const Number>".
+/// Moves `const` to the front: "shared_ptr<Number const>" becomes "shared_ptr<const Number>".
 void move_const_forward(std::string& name) {
   constexpr std::string_view kConst = " const";
   for (std::size_t at; (at = name.find(kConst)) != std::string::npos;) {
     std::size_t begin = at;
     while (begin > 0 && is_word(name[begin - 1])) --begin;
-    if (begin == at) return;  // not after a plain word: leave the rest alone
+    if (begin == at) return;  // not after a plain word: the rest stays
     name.erase(at, kConst.size()).insert(begin, "const ");
   }
 }
@@ -61,7 +61,7 @@ void move_const_forward(std::string& name) {
 }  // namespace
 
 std::string readable_type(std::type_index type) {
-  std::string name = demangled(type);
+  std::string name = demangle(type);
   replace_all(name, "std::__cxx11::basic_string<char, std::char_traits<char>, std::allocator<char> >",
               "string");
   erase_scopes(name);

@@ -5,39 +5,49 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// What a stage reads: an artifact that an earlier stage writes under the same name and type.
+/// Declares an input: an artifact that an earlier stage writes under the same name and type.
 template <class T>
 struct In {
   const char* name;
 };
 
-/// What a stage gathers: the artifacts of every earlier stage that writes this name and type, of the same
-/// item or of all. Items whose unit failed are left out, with a warning; a result made without them is not
-/// kept in the work folder.
+/// Declares a gathered input: the artifacts of every earlier stage that writes this name and type, of the
+/// same item or of all items.
+/// Items of failed units are left out with a warning; the result is then not kept in the work folder.
 template <class T>
 struct Gather {
   const char* name;
 };
 
-/// What a stage writes. T needs a Codec. Several stages may write one name where all readers gather it.
+/// Declares an input of a map-scope stage that is read item by item (StageContext::visit), so that not all of
+/// a tile's artifacts are in memory.
+template <class T>
+struct Stream {
+  const char* name;
+};
+
+/// Declares an output. T needs a Codec. Several stages may write one name if all its readers gather it.
 template <class T>
 struct Out {
   const char* name;
 };
 
-/// An In<T> or a Gather<T> as StageSpec lists it.
+/// In<T>, Gather<T> or Stream<T> as listed by StageSpec.
 struct InputPort {
   std::string name;
   std::type_index type;
   bool gathers = false;
+  bool streams = false;
 
   template <class T>
   InputPort(In<T> port) : name(port.name), type(typeid(T)) {}
   template <class T>
   InputPort(Gather<T> port) : name(port.name), type(typeid(T)), gathers(true) {}
+  template <class T>
+  InputPort(Stream<T> port) : name(port.name), type(typeid(T)), streams(true) {}
 };
 
-/// An Out<T> as StageSpec lists it.
+/// Out<T> as listed by StageSpec.
 struct OutputPort {
   std::string name;
   std::type_index type;
@@ -47,7 +57,7 @@ struct OutputPort {
   OutputPort(Out<T> port) : name(port.name), type(typeid(T)), codec(&erased_codec<T>()) {}
 };
 
-/// The type as a person writes it: "vector<Landmark>", without namespaces and allocators.
+/// Returns the readable name of a type without namespaces and allocators: "vector<Landmark>".
 std::string readable_type(std::type_index type);
 
 }  // namespace waymark

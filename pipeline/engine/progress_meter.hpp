@@ -4,36 +4,36 @@
 #include <cstdint>
 #include <mutex>
 #include <string>
-#include "pipeline/engine/runner.hpp"
+#include "pipeline/engine/progress.hpp"
 namespace waymark {
 
-/// Sums up what many threads have done of one stage and tells a listener now and then.
+/// Sums the progress of many threads in one stage and reports it to a listener at intervals.
 class ProgressMeter {
  public:
-  using Listener = std::function<void(const Progress&)>;
-  /// An empty listener costs nothing. Tells the start.
+  using Listener = ProgressListener;
+  /// Reports the start. An empty listener costs nothing.
   ProgressMeter(const Listener& listener, std::string stage, std::int64_t total);
   /// Adds units or a part of one.
   void add(double units);
-  /// Tells the end.
+  /// Reports the end.
   void finish();
 
  private:
   using Clock = std::chrono::steady_clock;
-  void tell(Clock::time_point now);
+  void report(Clock::time_point now);
 
   const Listener& listener_;
   std::mutex mutex_;
   Progress progress_;
   const Clock::time_point begin_ = Clock::now();
-  Clock::time_point told_ = begin_;
+  Clock::time_point reported_ = begin_;
 };
 
-/// How far one unit is: never goes back, and counts as one unit in the end.
+/// Progress of one unit; never decreases and adds up to one unit.
 class UnitProgress {
  public:
   explicit UnitProgress(ProgressMeter& meter) : meter_(meter) {}
-  void reach(double done_fraction);
+  void advance_to(double done_fraction);
 
  private:
   ProgressMeter& meter_;

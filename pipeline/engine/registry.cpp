@@ -17,7 +17,7 @@ bool is_name(std::string_view text) {
          text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string_view::npos;
 }
 
-/// What contradicts itself in a spec; empty if nothing does.
+/// Returns the contradiction in a spec, or an empty text.
 std::string contradiction(const StageSpec& spec) {
   if (!is_name(spec.name)) return "its name is not [a-z][a-z0-9_]*";
   for (const OutputPort& port : spec.outputs) {

@@ -8,18 +8,18 @@
 #include "pipeline/engine/step.hpp"
 namespace waymark {
 
-/// The stages that jobs can name. An object, not a global: a test makes its own.
+/// Stages available to jobs by name. It is not a global, so each test can create its own.
 class Registry {
  public:
-  /// Throws std::logic_error where the name is taken or the spec contradicts itself.
+  /// Adds a stage. Throws std::logic_error if its name is taken or its spec contradicts itself.
   template <StageLike Stage>
   void add() {
-    add(std::make_unique<StepOf<Stage>>());
+    add(std::make_unique<TypedStep<Stage>>());
   }
 
-  /// Names in alphabetical order.
+  /// Returns the names in alphabetical order.
   std::vector<std::string> names() const;
-  /// The stage with its default options. Throws Error{usage} with the nearest name where there is none.
+  /// Returns the stage with its default options. Throws Error{usage} with the nearest name if there is none.
   const Step& at(std::string_view name) const;
 
  private:

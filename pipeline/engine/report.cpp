@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// "16 units", then what of them was not made now.
+/// Returns the number of units and how many of them were not computed in this run: "16, 3 reused".
 std::string readable_units(const StageReport& stage) {
   std::string text = fmt::format("{}", stage.units);
   const auto mention = [&](std::int64_t n, const char* what) {
@@ -26,7 +26,7 @@ std::string readable_units(const StageReport& stage) {
 }
 
 /// Indents the lines of a message after the first.
-std::string indented(std::string text) {
+std::string indent(std::string text) {
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; ++at) text.insert(at + 1, "    ");
   return text;
 }
@@ -53,10 +53,10 @@ std::string report_as_text(const RunReport& report) {
                     stage.counts.out, stage.counts.rejected_total(), stage.seconds, readable_units(stage));
     for (const auto& [reason, n] : stage.counts.rejected) text += fmt::format("    {} {}\n", n, reason);
     for (const std::string& warning : stage.warnings)
-      text += fmt::format("    warning: {}\n", indented(warning));
+      text += fmt::format("    warning: {}\n", indent(warning));
   }
   for (const Failure& failure : report.failures)
-    text += fmt::format("failed: {}\n    {}\n", failure.unit, indented(failure.message));
+    text += fmt::format("failed: {}\n    {}\n", failure.unit, indent(failure.message));
   return text;
 }
 

@@ -10,14 +10,14 @@
 #include <chrono>
 #include <exception>
 
-#include "pipeline/engine/run.hpp"
+#include "pipeline/engine/run/run.hpp"
 
 namespace waymark {
 namespace {
 
-/// Runs `work` with at most that many threads, the calling one among them.
+/// Runs `work` with at most that many threads, including the calling one.
 template <class Work>
-void with_threads(int threads, Work work) {
+void run_with_threads(int threads, Work work) {
   const int available = tbb::info::default_concurrency();
   const int wanted = threads == 0 ? available : threads;
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
@@ -31,11 +31,11 @@ RunResult run(const Pipeline& pipeline, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const bool keeps = !options.work.empty();
   Run run(pipeline, options);
-  with_threads(options.threads, [&] {
-    // A stage says better what is wrong with a file, so a hash that fails is told last; and a task group that
-    // is left by an exception must not meet a second one.
+  run_with_threads(options.threads, [&] {
+    // A stage reports an unreadable file more precisely, so a failed hash is rethrown last. The task group
+    // must not receive a second exception.
     std::exception_ptr unreadable;
-    tbb::task_group beside;  // without a work folder the hashes are provenance only: nothing waits for them
+    tbb::task_group beside;  // without a work folder hashes are provenance only
     if (keeps) run.hash_inputs();
     if (!keeps && !options.check_only)
       beside.run([&] {
@@ -58,7 +58,7 @@ RunResult run(const Pipeline& pipeline, const RunOptions& options) {
 
 Plan plan(const Pipeline& pipeline, const RunOptions& options) {
   Run run(pipeline, options);
-  with_threads(options.threads, [&] {
+  run_with_threads(options.threads, [&] {
     run.hash_inputs();
     run.make_plan(true);
   });

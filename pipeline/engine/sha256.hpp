@@ -5,13 +5,13 @@
 #include <string_view>
 namespace waymark {
 
-/// SHA-256 (FIPS 180-4) of bytes as they come.
+/// Incremental SHA-256 (FIPS 180-4).
 class Sha256 {
  public:
   Sha256();
   ~Sha256();
   Sha256& add(std::string_view bytes);
-  /// 64 lower-case hex digits. Ends the sum: nothing may be added afterwards.
+  /// Returns the hash as 64 lower-case hex digits. Nothing may be added afterwards.
   std::string hex();
 
  private:

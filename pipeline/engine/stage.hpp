@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// All a stage's file needs:
+// Everything that the file of a stage needs:
 //
 //   struct FindMountainTops {
 //     struct Options { Meters min_prominence{20}; void describe(OptionVisitor& option); };
 //     static constexpr In<DemHandle> dem{"dem"};
 //     static constexpr Out<DivideTree> tree{"divide_tree"};
-//     static StageSpec spec() { return {.name = "find_mountain_tops", ..., .inputs = {dem}, .outputs =
-//     {tree}}; } static void run(const Options& options, StageContext& unit);
+//     static StageSpec spec();  // {.name = "find_mountain_tops", ..., .inputs = {dem}, .outputs = {tree}}
+//     static void run(const Options& options, StageContext& unit);
 //   };
 //   void register_stage_find_mountain_tops(Registry& registry) { registry.add<FindMountainTops>(); }
 //
 // A stage that opens files also has `static std::vector<std::string> input_files(const Options&)`.
+// A stage whose options may not fit its inputs also has `static void check_inputs(const Options&,
+// StageContext&)`, which runs before all work, with the artifacts that planning made.
 #pragma once
 #include "core/error.hpp"
 #include "core/options.hpp"

@@ -62,13 +62,13 @@ std::vector<Artifact::Value> StageContext::read_each(std::string_view port, std:
 
 Artifact::Value StageContext::take_one(std::string_view port, std::type_index type) {
   const ArtifactPtr& item = only_item(port, type);
-  return item.use_count() > 1 ? item->value() : item->hand_over();  // the run keeps it for others, or not
+  return item.use_count() > 1 ? item->value() : item->take();  // shared while another unit needs it
 }
 
 std::vector<Artifact::Value> StageContext::take_each(std::string_view port, std::type_index type) {
   std::vector<Artifact::Value> values;
   for (const ArtifactPtr& item : declared_input(port, type).items)
-    values.push_back(item.use_count() > 1 ? item->value() : item->hand_over());
+    values.push_back(item.use_count() > 1 ? item->value() : item->take());
   return values;
 }
 
@@ -94,7 +94,7 @@ const ImageItem& StageContext::image() const {
 }
 
 Window StageContext::cells_with_halo() const {
-  return grown(tile().cells, spec_.halo);
+  return expand(tile().cells, spec_.halo);
 }
 
 std::string StageContext::path(const std::string& option) const {
@@ -104,7 +104,7 @@ std::string StageContext::path(const std::string& option) const {
 void StageContext::count_in(std::int64_t n) {
   const std::lock_guard lock(mutex_);
   outcome_.counts.in += n;
-  counts_what_goes_in_ = true;
+  counts_input_ = true;
 }
 
 void StageContext::count_out(std::int64_t n) {
@@ -115,7 +115,7 @@ void StageContext::count_out(std::int64_t n) {
 void StageContext::reject(std::string_view reason, std::int64_t n) {
   const std::lock_guard lock(mutex_);
   if (n != 0) outcome_.counts.rejected[std::string(reason)] += n;
-  counts_what_goes_in_ = true;
+  counts_input_ = true;
 }
 
 void StageContext::warn(std::string text) {
@@ -132,7 +132,7 @@ UnitOutcome StageContext::finish() {
     if (!outcome_.outputs.contains(port.name))
       throw std::logic_error(fmt::format("stage {} did not write '{}'", spec_.name, port.name));
   const Counts& counts = outcome_.counts;
-  if (counts_what_goes_in_ && counts.in != counts.out + counts.rejected_total())
+  if (counts_input_ && counts.in != counts.out + counts.rejected_total())
     throw std::logic_error(fmt::format("stage {} lost count in {}: {} in, {} out, {} rejected", spec_.name,
                                        inputs_.id, counts.in, counts.out, counts.rejected_total()));
   return std::move(outcome_);

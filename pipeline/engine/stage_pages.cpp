@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "pipeline/engine/option_table.hpp"
+#include "pipeline/engine/step_options.hpp"
 
 namespace waymark {
 namespace {
@@ -18,7 +17,7 @@ Json as_json(const OptionValue& value) {
   return std::visit([](const auto& v) { return Json(v); }, value);
 }
 
-/// The default as a person types it.
+/// Returns the default value as it is typed.
 std::string readable_default(const OptionRow& row) {
   if (const auto* text = std::get_if<std::string>(&row.value)) return text->empty() ? "none" : *text;
   if (const auto* texts = std::get_if<std::vector<std::string>>(&row.value))
@@ -36,7 +35,7 @@ std::string readable_values(const OptionRow& row) {
   return kWords[row.value.index()];
 }
 
-/// "divide_tree (DivideTree), tiles (vector<Tile>)", or "none".
+/// Returns the ports as text, "divide_tree (DivideTree), tiles (vector<Tile>)", or "none".
 template <class Ports>
 std::string readable_ports(const Ports& ports) {
   std::string text;
@@ -53,23 +52,8 @@ std::string readable_scope(const StageSpec& spec) {
   return spec.halo == 0 ? "one tile" : fmt::format("one tile and {} cells around it", spec.halo);
 }
 
-Json option_schema(const OptionRow& row) {
-  Json schema{
-      {"type", json_type(row.value)}, {"description", row.field.help}, {"default", as_json(row.value)}};
-  Json strings = row.field.choices.empty() ? Json::object() : Json{{"enum", row.field.choices}};
-  if (schema["type"] == "array") schema["items"] = Json{{"type", "string"}};
-  (schema["type"] == "array" ? schema["items"] : schema).update(strings);
-  if (!row.unit.empty()) schema["x-unit"] = row.unit;
-  if (std::isfinite(row.field.min)) schema["minimum"] = row.field.min;
-  if (std::isfinite(row.field.max)) schema["maximum"] = row.field.max;
-  if (!row.field.affects_result) schema["x-affects-result"] = false;
-  return schema;
-}
-
-Json option_schemas(const Step& step) {
-  Json schemas = Json::object();
-  for (const OptionRow& row : option_table(step)) schemas[row.name] = option_schema(row);
-  return schemas;
+Json options_schema(const Step& step) {
+  return Json::parse(option_schemas(option_table(step)));
 }
 
 template <class Ports>
@@ -79,7 +63,7 @@ Json ports_json(const Ports& ports) {
   return list;
 }
 
-/// A cell of a Markdown table.
+/// Escapes the text of a cell of a Markdown table.
 std::string cell(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
@@ -99,8 +83,8 @@ std::string stage_as_text(const Step& step) {
   const auto rows = option_table(step);
   if (!rows.empty()) text += "\nOptions:\n";
   for (const OptionRow& row : rows)
-    text += fmt::format("  {:<20} {}\n  {:<20} {}; default: {}\n", row.name, row.field.help, "",
-                        readable_values(row), readable_default(row));
+    text += fmt::format("  {:<20} {}{}\n  {:<20} {}; default: {}\n", row.name, row.field.help,
+                        former_name_remark(row), "", readable_values(row), readable_default(row));
   return text;
 }
 
@@ -114,9 +98,9 @@ std::string stage_as_markdown(const Step& step) {
   const auto rows = option_table(step);
   if (!rows.empty()) page += "\n| option | effect | values | default |\n|---|---|---|---|\n";
   for (const OptionRow& row : rows)
-    page += fmt::format("| `{}` | {}{} | {} | {} |\n", row.name, cell(row.field.help),
+    page += fmt::format("| `{}` | {}{}{} | {} | {} |\n", row.name, cell(row.field.help),
                         row.field.affects_result ? "" : " (does not change the result)",
-                        cell(readable_values(row)), cell(readable_default(row)));
+                        former_name_remark(row), cell(readable_values(row)), cell(readable_default(row)));
   page += fmt::format("\nIn a job file:\n\n```json\n{{\"stage\": \"{}\"", spec.name);
   for (const OptionRow& row : rows) page += fmt::format(", \"{}\": {}", row.name, as_json(row.value).dump());
   return page + "}\n```\n";
@@ -124,7 +108,7 @@ std::string stage_as_markdown(const Step& step) {
 
 std::string stage_as_schema(const Step& step) {
   Json properties{{"stage", {{"const", step.spec().name}}}};
-  properties.update(option_schemas(step));
+  properties.update(options_schema(step));
   return Json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"title", step.spec().name},
               {"description", step.spec().summary},
@@ -146,7 +130,7 @@ std::string stage_as_json(const Step& step) {
               {"inputs", ports_json(spec.inputs)},
               {"outputs", ports_json(spec.outputs)},
               {"finds", spec.finds},
-              {"options", option_schemas(step)}}
+              {"options", options_schema(step)}}
       .dump(2);
 }
 

@@ -4,15 +4,15 @@
 #include "pipeline/engine/step.hpp"
 namespace waymark {
 
-// A stage described from its one declaration; `step` is Registry::at(name), its options are the defaults.
+// Descriptions of a stage generated from its declaration. `step` is Registry::at(name) with default options.
 
-/// Plain text for a terminal: summary, ports, options with units, ranges and defaults.
+/// Returns text for a terminal: summary, ports, options with units, ranges and defaults.
 std::string stage_as_text(const Step& step);
-/// The reference page docs/stages/<name>.md.
+/// Returns the reference page docs/stages/NAME.md.
 std::string stage_as_markdown(const Step& step);
-/// JSON schema (2020-12) of the stage's object in a job file; units as "x-unit".
+/// Returns the JSON schema (2020-12) of the stage's object in a job file, with units as "x-unit".
 std::string stage_as_schema(const Step& step);
-/// Name, summary, version, scope, ports and options as one JSON object.
+/// Returns name, summary, version, scope, ports and options as one JSON object.
 std::string stage_as_json(const Step& step);
 
 }  // namespace waymark

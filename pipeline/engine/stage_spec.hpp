@@ -14,23 +14,23 @@ enum class Scope {
   image,  ///< once per image; reads artifacts of the same image and of the map
 };
 
-/// "map", "tile" or "image".
+/// Returns "map", "tile" or "image".
 std::string to_string(Scope scope);
 
-/// What a stage declares about itself.
+/// Declaration of a stage.
 struct StageSpec {
-  std::string name;     ///< of jobs, files and messages: [a-z][a-z0-9_]*
-  std::string summary;  ///< one line for people
-  int version = 1;      ///< raise it when the same input gives another result
+  std::string name;     ///< used in jobs, files and messages: [a-z][a-z0-9_]*
+  std::string summary;  ///< one readable line
+  int version = 1;      ///< raised when the same input gives another result
   Scope scope = Scope::map;
-  /// Scope::tile or Scope::image: this map-scope stage decides the tiles (images), in an output of type
-  /// std::vector<Tile> (std::vector<ImageItem>). It is cheap, because it runs while planning, and so do the
-  /// stages it reads.
+  /// Kind of items (tile or image) that this map-scope stage lists, in an output of type std::vector<Tile> or
+  /// std::vector<ImageItem>.
+  /// A listing stage and the stages it reads run while planning, so they must be cheap.
   std::optional<Scope> lists = {};
-  std::int64_t halo = 0;  ///< cells a tile-scope stage looks at beyond its tile
+  std::int64_t halo = 0;  ///< cells around its tile that a tile-scope stage reads
   std::vector<InputPort> inputs = {};
   std::vector<OutputPort> outputs = {};
-  /// Landmark types it finds: they get a table in the map though none of them may be there.
+  /// Landmark types that it finds; each gets a table in the map even if none is found.
   std::vector<std::string> finds = {};
 };
 

@@ -3,16 +3,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/json_text.hpp"
+
 namespace waymark {
 
-Window grown(const Window& window, std::int64_t halo) {
+Window expand(const Window& window, std::int64_t halo) {
   return {.column = window.column - halo,
           .row = window.row - halo,
           .columns = window.columns + 2 * halo,
           .rows = window.rows + 2 * halo};
 }
 
-// A row of numbers per tile: index, column, row, then the window.
+// One row of numbers per tile: index, column, row, window.
 std::string Codec<std::vector<Tile>>::encode(const std::vector<Tile>& tiles) {
   auto rows = nlohmann::json::array();
   for (const auto& [index, column, row, cells] : tiles)
@@ -22,7 +24,7 @@ std::string Codec<std::vector<Tile>>::encode(const std::vector<Tile>& tiles) {
 
 std::vector<Tile> Codec<std::vector<Tile>>::decode(std::string_view bytes) {
   std::vector<Tile> tiles;
-  for (const auto& row : nlohmann::json::parse(bytes)) {
+  for (const auto& row : nlohmann::json::parse(checked_json(bytes, "tiles"))) {
     const auto n = row.get<std::vector<std::int64_t>>();
     tiles.push_back({n.at(0), n.at(1), n.at(2), {n.at(3), n.at(4), n.at(5), n.at(6)}});
   }

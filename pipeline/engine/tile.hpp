@@ -6,7 +6,7 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// One piece of the grid; a tile-scope stage runs once per tile.
+/// Rectangular part of the grid; a tile-scope stage runs once per tile.
 struct Tile {
   std::int64_t index = 0;            ///< in row-major order of the tiling, from 0
   std::int64_t column = 0, row = 0;  ///< of the tiling
@@ -15,9 +15,10 @@ struct Tile {
   friend bool operator==(const Tile&, const Tile&) = default;
 };
 
-/// The window grown by `halo` cells on every side; may reach outside the grid.
-Window grown(const Window& window, std::int64_t halo);
+/// Returns the window grown by `halo` cells on every side; may reach outside the grid.
+Window expand(const Window& window, std::int64_t halo);
 
+/// Codec of the list of tiles of a job.
 template <>
 struct Codec<std::vector<Tile>> {
   static std::string encode(const std::vector<Tile>& tiles);

@@ -21,7 +21,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-// Cells of a line; quotes may hold commas.
+// Cells of a line; quoted cells may contain commas.
 std::vector<std::string> cells_of(std::string_view line) {
   std::vector<std::string> cells(1);
   bool quoted = false;

@@ -23,8 +23,8 @@ struct Curve {
   double operator()(double x) const { return a * std::pow(x, b); }
 };
 
-// The best factor for an exponent, and what remains.
-std::pair<double, double> factor_and_rest(const std::vector<Pair>& pairs, double b, int without) {
+// Best factor for an exponent, and the residual.
+std::pair<double, double> factor_and_residual(const std::vector<Pair>& pairs, double b, int without) {
   double df = 0, ff = 0, dd = 0;
   for (const Pair& p : pairs) {
     if (p.fold == without) continue;
@@ -35,30 +35,30 @@ std::pair<double, double> factor_and_rest(const std::vector<Pair>& pairs, double
   return {a, dd - a * df};
 }
 
-// Least squares: the factor is linear, the exponent is found by a golden section.
-Curve fitted(const std::vector<Pair>& pairs, int without) {
+// Least squares: the factor is linear, the exponent is found by golden section search.
+Curve fit_curve(const std::vector<Pair>& pairs, int without) {
   constexpr double kGolden = 0.6180339887498949;
   double low = 0.05, high = 4;
   double left = high - kGolden * (high - low), right = low + kGolden * (high - low);
-  double at_left = factor_and_rest(pairs, left, without).second;
-  double at_right = factor_and_rest(pairs, right, without).second;
+  double at_left = factor_and_residual(pairs, left, without).second;
+  double at_right = factor_and_residual(pairs, right, without).second;
   for (int i = 0; i < 60; ++i) {
     if (at_left < at_right) {
       high = right, right = left, at_right = at_left;
       left = high - kGolden * (high - low);
-      at_left = factor_and_rest(pairs, left, without).second;
+      at_left = factor_and_residual(pairs, left, without).second;
     } else {
       low = left, left = right, at_left = at_right;
       right = low + kGolden * (high - low);
-      at_right = factor_and_rest(pairs, right, without).second;
+      at_right = factor_and_residual(pairs, right, without).second;
     }
   }
   const double b = (low + high) / 2;
-  return {factor_and_rest(pairs, b, without).first, b};
+  return {factor_and_residual(pairs, b, without).first, b};
 }
 
-Allometry fitted_row(const std::vector<Pair>& pairs, AllometryForm form, const AllometryFit& how) {
-  const Curve all = fitted(pairs, -1);
+Allometry fit_row(const std::vector<Pair>& pairs, AllometryForm form, const AllometryFitOptions& how) {
+  const Curve all = fit_curve(pairs, -1);
   Allometry row{.form = form, .a = all.a, .b = all.b};
   const auto count = static_cast<double>(pairs.size());
   double squares = 0, log_squares = 0;
@@ -72,7 +72,7 @@ Allometry fitted_row(const std::vector<Pair>& pairs, AllometryForm form, const A
   double held_out = 0, bias = 0;
   for (int fold = 0; fold < how.folds; ++fold) {
     if (std::ranges::none_of(pairs, [&](const Pair& p) { return p.fold == fold; })) continue;
-    const Curve curve = fitted(pairs, fold);
+    const Curve curve = fit_curve(pairs, fold);
     for (const Pair& p : pairs)
       if (p.fold == fold) {
         held_out += std::pow(curve(p.x) - p.diameter, 2);
@@ -81,12 +81,12 @@ Allometry fitted_row(const std::vector<Pair>& pairs, AllometryForm form, const A
   }
   row.held_out_rmse = std::sqrt(held_out / count);
   row.held_out_bias = bias / count;
-  // stem_diameter() multiplies this form by exp(sigma^2 / 2); the fit is unbiased without.
+  // stem_diameter() multiplies this form by exp(sigma^2 / 2); the fit is already unbiased.
   if (form == AllometryForm::height_crown) row.a /= std::exp(row.sigma * row.sigma / 2);
   return row;
 }
 
-Allometry best_row(const std::vector<const MeasuredTree*>& trees, const AllometryFit& how) {
+Allometry best_row(const std::vector<const MeasuredTree*>& trees, const AllometryFitOptions& how) {
   std::vector<Pair> by_height, by_crown;
   std::size_t number = 0;
   for (const MeasuredTree* tree : trees) {
@@ -96,15 +96,15 @@ Allometry best_row(const std::vector<const MeasuredTree*>& trees, const Allometr
     if (tree->crown > 0) by_crown.push_back({tree->height * tree->crown, tree->diameter, fold});
     ++number;
   }
-  const Allometry plain = fitted_row(by_height, AllometryForm::height, how);
+  const Allometry plain = fit_row(by_height, AllometryForm::height, how);
   if (by_crown.size() != by_height.size()) return plain;
-  const Allometry crowned = fitted_row(by_crown, AllometryForm::height_crown, how);
+  const Allometry crowned = fit_row(by_crown, AllometryForm::height_crown, how);
   return crowned.held_out_rmse < plain.held_out_rmse ? crowned : plain;
 }
 
 }  // namespace
 
-std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const AllometryFit& how) {
+std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const AllometryFitOptions& how) {
   std::map<std::string, std::vector<const MeasuredTree*>> by_species;
   std::vector<const MeasuredTree*> all;
   for (const MeasuredTree& tree : trees) {
@@ -117,7 +117,7 @@ std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const 
         ErrorCode::input,
         fmt::format("{} trees of {} have a height above 1.3 m and a diameter: too few to fit a curve to",
                     all.size(), trees.size()),
-        "", "five are the least, fifty make a table worth using");
+        "", "at least five are needed, fifty for a useful table");
   const auto named = [](Allometry row, const std::string& species) {
     row.species = species;
     row.source = "waymark allometry fit";
@@ -125,7 +125,7 @@ std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const 
   };
   std::vector<Allometry> table{named(best_row(all, how), "all")};
   for (const auto& [species, group] : by_species)
-    if (species != "all" && !species.empty() && static_cast<int>(group.size()) >= how.least_trees)
+    if (species != "all" && !species.empty() && static_cast<int>(group.size()) >= how.min_trees)
       table.push_back(named(best_row(group, how), species));
   return table;
 }

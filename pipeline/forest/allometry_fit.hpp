@@ -5,25 +5,27 @@
 #include "pipeline/forest/allometry.hpp"
 namespace waymark {
 
-/// A tree measured in the field.
+/// Field measurements of a tree.
 struct MeasuredTree {
   std::string species = "all";
   double height = 0;                   ///< metres
   double diameter = 0;                 ///< DBH, centimetres
   double crown = Allometry::kUnknown;  ///< crown diameter, metres
-  std::string plot = {};               ///< trees of one plot are held out together; empty: each tree alone
+  std::string plot = {};               ///< plots are cross-validated as a whole; empty: each tree by itself
 };
 
-struct AllometryFit {
-  int least_trees = 20;  ///< species with fewer get no row of their own
+struct AllometryFitOptions {
+  int min_trees = 20;  ///< minimum for a row of its own, per species
   int folds = 10;
   std::uint64_t seed = 1;
 };
 
-/// One row for all trees together ("all") and one per species, sorted by name. D = a x^b is fitted by least
-/// squares in centimetres, x = H - 1.3; of species whose trees all have a crown diameter also x = H CD, and
-/// the form with the smaller held-out error is kept. Held-out errors come from cross-validation by plot where
-/// plots are named, by tree elsewhere. Throws Error{input} where fewer than 5 trees are higher than 1.3 m.
-std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const AllometryFit& how = {});
+/// Fits one row for all trees ("all") and one per species, sorted by name.
+/// - D = a x^b by least squares in centimetres, x = H - 1.3. If all trees of a species have a crown
+///   diameter, x = H CD is fitted, too, and the form with the smaller cross-validated error is kept.
+/// - Cross-validation is by plot where plots are named, else by tree.
+/// Throws Error{input} if fewer than 5 trees are higher than 1.3 m.
+std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees,
+                                     const AllometryFitOptions& how = {});
 
 }  // namespace waymark

@@ -8,10 +8,10 @@
 namespace waymark {
 namespace {
 
-constexpr double kHighest = 150;   // metres; above are birds and clouds
-constexpr double kLongestGap = 8;  // metres the lowest layer bridges
+constexpr double kHighest = 150;  // metres; returns above are birds and clouds
+constexpr double kMaxGap = 8;     // metres, longest edge of the lowest layer
 
-// The ground under a place between the cells.
+// Ground elevation between cell centres.
 double ground_at(const Grid<float>& ground, double column, double row) {
   const auto clamp = [](double v, std::int64_t count) {
     return std::clamp(v, 0.0, static_cast<double>(count - 1));
@@ -31,7 +31,7 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
   CanopyBlock block{Grid<float>(frame.columns, frame.rows, std::nanf("")),
                     rasterised_tin(points.ground, frame, 1e9, Beyond::nearest)};
   if (points.ground.empty()) return block;
-  // The highest of each cell, also around the frame: cells are numbered from their own margin.
+  // Highest point of each cell, including a margin around the frame.
   const double cell = frame.dx;
   struct Highest {
     double height = -1;
@@ -58,7 +58,7 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
     above.clear();
     for (const Highest& h : highest.cells())
       if (h.height >= threshold && h.height >= 0) above.push_back(h.point);
-    const double longest = threshold == 0 ? kLongestGap : std::max(1.0, 3 * std::max(cell, spacing));
+    const double longest = threshold == 0 ? kMaxGap : std::max(1.0, 3 * std::max(cell, spacing));
     const Grid<float> layer = rasterised_tin(above, frame, longest, Beyond::nothing);
     for (std::size_t i = 0; i < layer.cells().size(); ++i) {
       float& h = block.heights.cells()[i];

@@ -3,7 +3,7 @@
 #include "geo/canopy_source.hpp"
 namespace waymark {
 
-/// A cell of a canopy model, in its whole grid.
+/// Cell of a canopy model, in its whole grid.
 struct CanopyCell {
   std::int64_t column = 0, row = 0;
   friend bool operator==(const CanopyCell&, const CanopyCell&) = default;
@@ -11,7 +11,7 @@ struct CanopyCell {
 
 /// Heights above ground in a window of a canopy model.
 struct CanopyWindow {
-  Window cells;                            ///< of the whole grid
+  Window cells;                            ///< in the whole grid
   Grid<float> heights;                     ///< metres; kNoCanopy where unknown
   double cell_width = 1, cell_height = 1;  ///< metres
 
@@ -19,13 +19,12 @@ struct CanopyWindow {
   bool contains(const CanopyCell& c) const { return cells.contains(c.column, c.row); }
 };
 
-/// Gaussian smoothing with `sigma` metres along rows, then columns, cut at 3 sigma; unknown cells count for
-/// nothing and stay unknown. A sigma below 0.3 cells changes nothing. A cell depends on those within
-/// smoothing_reach(sigma, cell) alone and is bitwise the same whatever the window around them is.
-/// O(cells x kernel).
-CanopyWindow smoothed(const CanopyWindow& canopy, double sigma);
+/// Smooths with a Gaussian of `sigma` metres along rows, then columns, cut at 3 sigma. Unknown cells have
+/// no weight and stay unknown. A sigma below 0.3 cells changes nothing. A cell depends only on cells within
+/// smoothing_reach(sigma, cell) and is bitwise the same for any window. O(cells x kernel).
+CanopyWindow smooth_canopy(const CanopyWindow& canopy, double sigma);
 
-/// Cells that smoothing looks at on either side.
+/// Returns the number of cells on either side that smoothing reads.
 std::int64_t smoothing_reach(double sigma, double cell);
 
 }  // namespace waymark

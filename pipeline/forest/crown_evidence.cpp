@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kSurroundings = 12;                          // metres
 constexpr std::array<double, 4> kScales{0.6, 1.2, 2.4, 4.8};  // metres
-constexpr std::array<double, 2> kRoughScales{0.6, 1.2};       // metres: gradients are of these
+constexpr std::array<double, 2> kRoughScales{0.6, 1.2};       // metres, scales of the gradients
 constexpr double kRoughMean = 2.4;                            // metres
 
-/// Smooths planes; unknown pixels are NaN here and count for nothing.
+/// Smooths planes; unknown pixels are NaN and have no weight.
 class Smoothing {
  public:
   explicit Smoothing(const ColourWindow& image) : image_(image) {}
@@ -24,7 +24,7 @@ class Smoothing {
     CanopyWindow window{image_.cells, plane, image_.cell, image_.cell};
     for (float& value : window.heights.cells())
       if (std::isnan(value)) value = kNoCanopy;
-    Grid<float> smooth = smoothed(window, sigma).heights;
+    Grid<float> smooth = smooth_canopy(window, sigma).heights;
     for (float& value : smooth.cells())
       if (value == kNoCanopy) value = std::nanf("");
     return smooth;
@@ -34,16 +34,16 @@ class Smoothing {
   const ColourWindow& image_;
 };
 
-/// One plane from several, pixel by pixel.
+/// Combines planes pixel by pixel.
 template <class Rule, class... Planes>
-Grid<float> combined(Rule rule, const Grid<float>& first, const Planes&... others) {
+Grid<float> combine(Rule rule, const Grid<float>& first, const Planes&... others) {
   Grid<float> out(first.columns(), first.rows());
   for (std::size_t i = 0; i < out.cells().size(); ++i)
     out.cells()[i] = rule(first.cells()[i], others.cells()[i]...);
   return out;
 }
 
-/// Length of the gradient times `cells`; 0 across the edge of what is known.
+/// Magnitude of the gradient times `cells`; 0 at the edge of known pixels.
 Grid<float> steepness(const Grid<float>& plane, float cells) {
   Grid<float> out(plane.columns(), plane.rows());
   const auto difference = [](float a, float b) {
@@ -77,29 +77,29 @@ std::vector<Grid<float>> crown_evidence(const ColourWindow& image) {
   const Smoothing smooth(image);
   const Grid<float>&red = image.bands.at(0), &green = image.bands.at(1), &blue = image.bands.at(2);
   const Grid<float> brightness =
-      combined([](float r, float g, float b) { return (r + g + b) / 3; }, red, green, blue);
+      combine([](float r, float g, float b) { return (r + g + b) / 3; }, red, green, blue);
   const Grid<float> around = smooth(brightness, kSurroundings);
   const auto against = [](float value, float mean) { return value / (mean + 0.03F); };
-  const Grid<float> relative = combined(against, brightness, around);
+  const Grid<float> relative = combine(against, brightness, around);
   const Grid<float> excess_green =
-      combined([](float r, float g, float b) { return (2 * g - r - b) / std::max(r + g + b, 0.06F); }, red,
-               green, blue);
+      combine([](float r, float g, float b) { return (2 * g - r - b) / std::max(r + g + b, 0.06F); }, red,
+              green, blue);
   const auto dark = [](float index, float light) { return std::max(index, 0.0F) * std::exp(-1.5F * light); };
 
   std::vector<Grid<float>> bases;
   if (image.bands.size() > 3) {
     const Grid<float>& infrared = image.bands[3];
-    bases.push_back(combined([](float i, float r) { return ratio(i, r, 0.04F); }, infrared, red));
-    bases.push_back(combined(against, infrared, around));
-    bases.push_back(combined(dark, bases[0], relative));
+    bases.push_back(combine([](float i, float r) { return ratio(i, r, 0.04F); }, infrared, red));
+    bases.push_back(combine(against, infrared, around));
+    bases.push_back(combine(dark, bases[0], relative));
   } else {
-    bases.push_back(combined([](float g, float r) { return ratio(g, r, 0.04F); }, green, red));
+    bases.push_back(combine([](float g, float r) { return ratio(g, r, 0.04F); }, green, red));
     bases.push_back(
-        combined([&](float e, float light) { return 4 * dark(e, light); }, excess_green, relative));
+        combine([&](float e, float light) { return 4 * dark(e, light); }, excess_green, relative));
   }
   bases.push_back(relative);
   bases.push_back(excess_green);
-  bases.push_back(combined([](float b, float r) { return ratio(b, r, 0.04F); }, blue, red));
+  bases.push_back(combine([](float b, float r) { return ratio(b, r, 0.04F); }, blue, red));
 
   std::vector<Grid<float>> evidence;
   for (const Grid<float>& base : bases)

@@ -25,7 +25,7 @@ CrownTable name_crowns(std::span<const CrownTable> drawn, std::span<const Observ
   for (auto& [_, places] : of_source) std::ranges::sort(places, {}, by_place);
   const UidIndex index(trees);
   std::vector<const Place*> of_tree(trees.size());
-  for (const Observation& o : evidence) {  // by source, then place: the first survey by name comes first
+  for (const Observation& o : evidence) {  // sorted by source, then position: the first survey by name wins
     if (!o.rejected.empty() || o.landmark_uid.empty()) continue;
     const auto tree = index.find(o.landmark_uid);
     const auto places = of_source.find(o.source);
@@ -36,9 +36,9 @@ CrownTable name_crowns(std::span<const CrownTable> drawn, std::span<const Observ
   }
   CrownTable crowns;
   for (std::size_t i = 0; i < trees.size(); ++i)
-    if (const Place* place = of_tree[i]; place && drawn[place->part].drawn(place->row))
+    if (const Place* place = of_tree[i]; place && drawn[place->part].has_outline(place->row))
       crowns.add(drawn[place->part], place->row, trees[i].uid);
-  crowns.close();
+  crowns.shrink_to_fit();
   return crowns;
 }
 

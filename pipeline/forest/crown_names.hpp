@@ -6,9 +6,9 @@
 #include "pipeline/forest/crown_table.hpp"
 namespace waymark {
 
-/// The crowns of trees, in the order of the trees and named after them. Of a tree with several the one drawn
-/// on the canopy model whose name comes first; `evidence` in the order of comes_before
-/// (pipeline/fusion/merging.hpp). Trees whose crown was not drawn have none.
+/// Returns the crowns of `trees`, in their order, with the uids of the trees. Of several crowns of a tree
+/// the one on the canopy model whose name comes first is taken. `evidence` is sorted by comes_before
+/// (pipeline/fusion/association/merging.hpp). Trees without an outline have none.
 CrownTable name_crowns(std::span<const CrownTable> drawn, std::span<const Observation> evidence,
                        std::span<const Landmark> trees);
 

@@ -11,12 +11,12 @@ namespace waymark {
 namespace {
 
 constexpr double kSmoothing = 0.9;  // metres
-constexpr double kBell = 1.2;       // metres: about how well people mark the middle of a crown
-// Shares of the pixels near trees and of the others that are learnt from.
+constexpr double kBell = 1.2;       // metres: about the precision of annotated crown centres
+// Fractions of the pixels near and far from trees that are used for training.
 constexpr double kNear = 0.6, kFar = 0.12;
 
-/// The probability that each pixel should get.
-Grid<float> wanted_of(const ColourWindow& image, const std::vector<MarkedTree>& trees) {
+/// Target probability of each pixel.
+Grid<float> target_probability(const ColourWindow& image, const std::vector<MarkedTree>& trees) {
   Grid<float> wanted(image.cells.columns, image.cells.rows);
   for (std::int64_t r = 0; r < wanted.rows(); ++r)
     for (std::int64_t c = 0; c < wanted.columns(); ++c)
@@ -29,8 +29,8 @@ Grid<float> wanted_of(const ColourWindow& image, const std::vector<MarkedTree>& 
   return wanted;
 }
 
-/// The same scene in another light, or by another camera.
-ColourWindow in_other_light(ColourWindow image, Random& random) {
+/// The scene with random exposure, tint and contrast.
+ColourWindow augment_light(ColourWindow image, Random& random) {
   const double exposure = random.normal(0, 0.15), contrast = std::exp(random.normal(0, 0.12));
   for (Grid<float>& band : image.bands) {
     const double gain = std::exp(exposure + random.normal(0, 0.06));
@@ -54,7 +54,7 @@ Grid<float> crown_probability(const ColourWindow& image, const Window& wanted, c
   evaluate(network, inputs, odds.heights.cells());
   for (float& value : odds.heights.cells())
     value = std::isnan(value) ? kNoCanopy : 1 / (1 + std::exp(-value));
-  const CanopyWindow smooth = smoothed(odds, kSmoothing);
+  const CanopyWindow smooth = smooth_canopy(odds, kSmoothing);
   Grid<float> probability(wanted.columns, wanted.rows, std::nanf(""));
   for (std::int64_t r = 0; r < wanted.rows; ++r)
     for (std::int64_t c = 0; c < wanted.columns; ++c)
@@ -67,17 +67,17 @@ Grid<float> crown_probability(const ColourWindow& image, const Window& wanted, c
 void add_crown_examples(NetworkExamples& examples, const ColourWindow& image,
                         const std::vector<MarkedTree>& trees, int variants, std::uint64_t seed) {
   Random random(seed, "crown examples");
-  const Grid<float> wanted = wanted_of(image, trees);
-  const double share = variants > 0 ? 1.6 / (variants + 1) : 1;
+  const Grid<float> wanted = target_probability(image, trees);
+  const double fraction = variants > 0 ? 1.6 / (variants + 1) : 1;
   for (int variant = 0; variant <= variants; ++variant) {
     const std::vector<Grid<float>> evidence =
-        crown_evidence(variant == 0 ? image : in_other_light(image, random));
+        crown_evidence(variant == 0 ? image : augment_light(image, random));
     examples.inputs = static_cast<int>(evidence.size());
     for (std::size_t i = 0; i < wanted.cells().size(); ++i) {
       const bool near = wanted.cells()[i] > 0.05F;
-      if (!random.chance(share * (near ? kNear : kFar)) || std::isnan(evidence[0].cells()[i])) continue;
+      if (!random.bernoulli(fraction * (near ? kNear : kFar)) || std::isnan(evidence[0].cells()[i])) continue;
       for (const Grid<float>& plane : evidence) examples.values.push_back(plane.cells()[i]);
-      examples.wanted.push_back(wanted.cells()[i]);
+      examples.targets.push_back(wanted.cells()[i]);
     }
   }
 }

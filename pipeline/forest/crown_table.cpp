@@ -11,7 +11,7 @@
 namespace waymark {
 namespace {
 
-// Seven bits a byte, the lowest first; small numbers of either sign are short.
+// Variable-length code: seven bits a byte, the lowest first; small numbers of either sign are short.
 void put(std::string& bytes, std::int64_t value) {
   auto left = (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
   for (; left >= 128; left >>= 7) bytes.push_back(static_cast<char>(left | 128));
@@ -28,7 +28,7 @@ std::int64_t get(const std::string& bytes, std::size_t& at) {
   return static_cast<std::int64_t>(value >> 1) ^ -static_cast<std::int64_t>(value & 1);
 }
 
-// The first corner as seen from the top, then steps down or up and sideways by turns.
+// First corner relative to the top, then alternating vertical and horizontal steps.
 void put_ring(std::string& bytes, const std::vector<CanopyCell>& ring, const CanopyCell& top) {
   if (ring.empty()) return;
   put(bytes, ring[0].column - top.column);
@@ -57,7 +57,7 @@ std::uint32_t CrownTable::add_survey(const CanopySource& canopy) {
       {canopy.name(), where.x0, where.y0, where.dx, where.dy, where.dx * metres, -where.dy * metres});
 }
 
-void CrownTable::add(std::uint32_t survey, const FoundTree& tree) {
+void CrownTable::add(std::uint32_t survey, const DetectedTree& tree) {
   crowns_.push_back({.column = static_cast<std::int32_t>(tree.top.column),
                      .row = static_cast<std::int32_t>(tree.top.row),
                      .height = static_cast<float>(tree.height),
@@ -82,7 +82,7 @@ void CrownTable::add(const CrownTable& from, std::size_t row, std::string_view u
   crowns_.push_back(crown);
 }
 
-void CrownTable::close() {
+void CrownTable::shrink_to_fit() {
   crowns_.shrink_to_fit();
   bytes_.shrink_to_fit();
 }
@@ -143,7 +143,7 @@ CrownTable Codec<CrownTable>::decode(std::string_view bytes) {
   in.expect_end();
   for (const auto& crown : crowns.crowns_)
     if (crown.survey >= crowns.surveys_.size() || crown.begins >= crowns.bytes_.size())
-      throw std::runtime_error("artifact of crowns contradicts itself");
+      throw std::runtime_error("artifact of crowns is inconsistent");
   return crowns;
 }
 

@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-/// Squared: lawns are as green as crowns, but brighter. NaN where the image knows nothing.
+/// Darkness is squared, since lawns are as green as crowns, but brighter. NaN where there is no data.
 double dark_green(const ColourWindow& image, std::int64_t column, std::int64_t row) {
   const auto band = [&](std::size_t b) { return double(image.bands[b](column, row)); };
   const double red = band(0), green = band(1), blue = band(2);
@@ -22,7 +22,7 @@ double dark_green(const ColourWindow& image, std::int64_t column, std::int64_t r
 }  // namespace
 
 double crown_width(const ColourWindow& image, const CanopyCell& top) {
-  const auto rings = static_cast<std::int64_t>(kWidestCrown / 2 / image.cell) + 1;
+  const auto rings = static_cast<std::int64_t>(kMaxCrownDiameter / 2 / image.cell) + 1;
   std::vector<double> sum(static_cast<std::size_t>(rings) + 1), count(sum.size());
   for (std::int64_t dr = -rings; dr <= rings; ++dr)
     for (std::int64_t dc = -rings; dc <= rings; ++dc) {
@@ -37,13 +37,13 @@ double crown_width(const ColourWindow& image, const CanopyCell& top) {
   double before = middle;
   for (std::size_t ring = 1; ring < sum.size(); ++ring) {
     const double here = mean(ring);
-    if (here < middle / 2) {  // where between the two rings it falls through the half
+    if (here < middle / 2) {  // interpolates the half value between the two rings
       const double part = before > here ? (before - middle / 2) / (before - here) : 0;
-      return std::clamp(2 * (double(ring) - 1 + part) * image.cell, 2 * image.cell, kWidestCrown);
+      return std::clamp(2 * (double(ring) - 1 + part) * image.cell, 2 * image.cell, kMaxCrownDiameter);
     }
     before = here;
   }
-  return kWidestCrown;
+  return kMaxCrownDiameter;
 }
 
 }  // namespace waymark

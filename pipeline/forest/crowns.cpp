@@ -11,7 +11,7 @@ namespace waymark {
 namespace {
 
 using Index = std::int32_t;
-constexpr Index kNobody = -1;
+constexpr Index kNoTree = -1;
 
 class Watershed {
  public:
@@ -23,15 +23,15 @@ class Watershed {
         columns_(static_cast<Index>(heights_.columns())),
         rows_(static_cast<Index>(heights_.rows())),
         longest_(2 * crown_radius_cells()) {
-    climb();
-    name_tops();
-    pass_on();
+    follow_ascent();
+    label_tops();
+    merge_minor_maxima();
   }
 
   Crown crown_of(Index top) {
     const Treetop& tree = tops_[static_cast<std::size_t>(top)];
     const Index c0 = column_of(tree), r0 = row_of(tree);
-    const auto floor = static_cast<float>(std::max(rules_.floor, rules_.floor_share * tree.height));
+    const auto floor = static_cast<float>(std::max(rules_.floor, rules_.min_height_fraction * tree.height));
     const double radius = rules_.radius(tree.height);
     crown_.assign(1, {c0, r0});
     taken_[cell(c0, r0)] = 1;
@@ -42,7 +42,7 @@ class Watershed {
         const Index c = crown_[i].column + dc, r = crown_[i].row + dr;
         if (c < 0 || r < 0 || c >= columns_ || r >= rows_ || taken_[cell(c, r)]) continue;
         const Index peak = peak_[cell(c, r)];
-        if (peak == kNobody || label_[static_cast<std::size_t>(peak)] != top) continue;
+        if (peak == kNoTree || label_[static_cast<std::size_t>(peak)] != top) continue;
         if (!(heights_(c, r) >= floor) || !(metres(c - c0, r - r0) <= radius)) continue;
         taken_[cell(c, r)] = 1;
         crown_.push_back({c, r});
@@ -78,15 +78,15 @@ class Watershed {
     return ha != hb ? ha > hb : a < b;
   }
 
-  // The highest neighbour of each cell that stands above it, itself at a maximum.
+  // The highest neighbour above each cell; the cell itself at a maximum.
   std::vector<Index> steepest() const {
-    std::vector<Index> up(heights_.cells().size(), kNobody);
+    std::vector<Index> up(heights_.cells().size(), kNoTree);
     for (Index r = 0; r < rows_; ++r)
       for (Index c = 0; c < columns_; ++c) {
         const std::size_t here = cell(c, r);
         if (!(heights_.cells()[here] >= rules_.floor)) continue;
         std::size_t best = here;
-        for (const auto& [dc, dr] : kAround) {
+        for (const auto& [dc, dr] : kNeighbours) {
           if (c + dc < 0 || r + dr < 0 || c + dc >= columns_ || r + dr >= rows_) continue;
           const std::size_t other = cell(c + dc, r + dr);
           if (is_above(other, best)) best = other;
@@ -96,13 +96,13 @@ class Watershed {
     return up;
   }
 
-  // Follows the steepest way from every cell; those whose way is longer than `longest_` get nowhere.
-  void climb() {
+  // Follows the steepest ascent from every cell; cells whose path is longer than `longest_` get no maximum.
+  void follow_ascent() {
     const std::vector<Index> up = steepest();
-    peak_.assign(up.size(), kNobody);
+    peak_.assign(up.size(), kNoTree);
     std::vector<Index> length(up.size(), 0), way;
     for (std::size_t i = 0; i < up.size(); ++i) {
-      if (up[i] == kNobody) continue;
+      if (up[i] == kNoTree) continue;
       std::size_t at = i;
       way.clear();
       while (length[at] == 0 && static_cast<std::size_t>(up[at]) != at) {
@@ -118,42 +118,42 @@ class Watershed {
       for (auto back = way.rbegin(); back != way.rend(); ++back) {
         const auto here = static_cast<std::size_t>(*back);
         length[here] = length[static_cast<std::size_t>(up[here])] + 1;
-        peak_[here] = length[here] <= longest_ ? end : kNobody;
+        peak_[here] = length[here] <= longest_ ? end : kNoTree;
       }
     }
     taken_.assign(up.size(), 0);
   }
 
-  // The maximum above a cell whose way is known, however long it is.
+  // The maximum at the end of the steepest ascent from a cell.
   Index summit_of(std::size_t at, const std::vector<Index>& up) const {
-    while (peak_[at] == kNobody) at = static_cast<std::size_t>(up[at]);
+    while (peak_[at] == kNoTree) at = static_cast<std::size_t>(up[at]);
     return peak_[at];
   }
 
-  void name_tops() {
-    label_.assign(maxima_.size(), kNobody);
+  void label_tops() {
+    label_.assign(maxima_.size(), kNoTree);
     for (std::size_t t = 0; t < tops_.size(); ++t) {
       const Index peak = peak_[cell(column_of(tops_[t]), row_of(tops_[t]))];
-      if (peak != kNobody) label_[static_cast<std::size_t>(peak)] = static_cast<Index>(t);
+      if (peak != kNoTree) label_[static_cast<std::size_t>(peak)] = static_cast<Index>(t);
     }
   }
 
-  // Maxima that are no tops, highest first: each joins the tree it leads to.
-  void pass_on() {
+  // Merges maxima that are no tops, highest first, into the tree they lead to.
+  void merge_minor_maxima() {
     std::vector<Index> order;
     for (std::size_t m = 0; m < maxima_.size(); ++m)
-      if (label_[m] == kNobody) order.push_back(static_cast<Index>(m));
+      if (label_[m] == kNoTree) order.push_back(static_cast<Index>(m));
     const auto place = [&](Index m) {
       return static_cast<std::size_t>(maxima_[static_cast<std::size_t>(m)]);
     };
     std::sort(order.begin(), order.end(), [&](Index a, Index b) { return is_above(place(a), place(b)); });
     seen_.assign(heights_.cells().size(), 0);
     for (const Index m : order) {
-      const Index beyond = higher_ground(place(m));
-      if (beyond == kNobody) continue;
+      const Index beyond = higher_cell(place(m));
+      if (beyond == kNoTree) continue;
       const Index peak = peak_[static_cast<std::size_t>(beyond)];
-      const Index top = peak == kNobody ? kNobody : label_[static_cast<std::size_t>(peak)];
-      if (top == kNobody) continue;
+      const Index top = peak == kNoTree ? kNoTree : label_[static_cast<std::size_t>(peak)];
+      if (top == kNoTree) continue;
       const Treetop& tree = tops_[static_cast<std::size_t>(top)];
       const auto at = static_cast<Index>(place(m));
       if (metres(at % columns_ - column_of(tree), at / columns_ - row_of(tree)) <= rules_.max_radius)
@@ -161,8 +161,8 @@ class Watershed {
     }
   }
 
-  // The first cell above `from` on the highest way to any, no farther than the largest radius.
-  Index higher_ground(std::size_t from) {
+  // The first cell above `from` across the highest saddle, within the maximum radius.
+  Index higher_cell(std::size_t from) {
     const auto lower = [this](Index a, Index b) {
       return is_above(static_cast<std::size_t>(b), static_cast<std::size_t>(a));
     };
@@ -177,7 +177,7 @@ class Watershed {
       open_.pop_back();
       if (is_above(static_cast<std::size_t>(at), from)) return at;
       const Index c = at % columns_, r = at / columns_;
-      for (const auto& [dc, dr] : kAround) {
+      for (const auto& [dc, dr] : kNeighbours) {
         if (c + dc < 0 || r + dr < 0 || c + dc >= columns_ || r + dr >= rows_) continue;
         const std::size_t next = cell(c + dc, r + dr);
         if (seen_[next] == stamp_ || !(heights_.cells()[next] >= rules_.floor)) continue;
@@ -187,7 +187,7 @@ class Watershed {
         std::push_heap(open_.begin(), open_.end(), lower);
       }
     }
-    return kNobody;
+    return kNoTree;
   }
 
   const CanopyWindow& smooth_;
@@ -195,9 +195,9 @@ class Watershed {
   const CrownRules& rules_;
   const std::vector<Treetop>& tops_;
   Index columns_, rows_, longest_;
-  std::vector<Index> peak_;    // per cell: number of the maximum it climbs to
+  std::vector<Index> peak_;    // per cell: index of the maximum that it ascends to
   std::vector<Index> maxima_;  // cells
-  std::vector<Index> label_;   // per maximum: number of its tree
+  std::vector<Index> label_;   // per maximum: index of its tree
   std::vector<std::uint8_t> taken_;
   std::vector<std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;

@@ -10,7 +10,7 @@
 namespace waymark {
 namespace {
 
-Window grown(const Window& window, std::int64_t by) {
+Window grow_window(const Window& window, std::int64_t by) {
   return {window.column - by, window.row - by, window.columns + 2 * by, window.rows + 2 * by};
 }
 
@@ -35,7 +35,7 @@ RulesAt rules_at(const TreeSearch& search, const Window& cells, const Grid<std::
   };
 }
 
-// Cells beyond `owned` whose tops are needed: for crowns and for rivals.
+// Distance in cells beyond `owned` within which tops are needed, for crowns and rivals.
 std::int64_t needed_beyond(const TreeSearch& search, double cell) {
   const auto rivals = static_cast<std::int64_t>(std::ceil(kRivalReach / cell)) + 1;
   return search.crowns ? std::max(rivals, crown_reach(search.forest.crowns, cell)) : rivals;
@@ -53,7 +53,7 @@ ForestType type_of(const ForestPreset& preset) {
   return ForestType::mixed;
 }
 
-// Smoothing lowers a top: its height is that of the highest shoot around it.
+// Smoothing lowers a top, so its height is the maximum of the raw cells around it.
 double height_at(const CanopyWindow& raw, const CanopyCell& top) {
   float highest = 0;
   for (std::int64_t r = -1; r <= 1; ++r)
@@ -74,29 +74,30 @@ std::int64_t search_halo(const TreeSearch& search, double cell) {
   return std::max(5 * crown / 2 + 3, beyond + tops) + smoothing + 1;
 }
 
-std::vector<FoundTree> find_trees(const CanopySource& canopy, const Window& owned, const TreeSearch& search) {
+std::vector<DetectedTree> find_trees(const CanopySource& canopy, const Window& owned,
+                                     const TreeSearch& search) {
   const Georeference& where = canopy.geometry().where;
   const double unit = where.crs.metres_per_unit();
   const double width = where.dx * unit, height = -where.dy * unit, least = std::min(width, height);
   if (owned.columns <= 0 || owned.rows <= 0) return {};
-  const CanopyWindow raw = window_of(canopy, grown(owned, search_halo(search, least)));
-  const CanopyWindow smooth = smoothed(raw, search.forest.smoothing);
+  const CanopyWindow raw = window_of(canopy, grow_window(owned, search_halo(search, least)));
+  const CanopyWindow smooth = smooth_canopy(raw, search.forest.smoothing);
   const Grid<std::uint8_t> types =
       search.by_type.empty() ? Grid<std::uint8_t>{} : canopy.forest_types(raw.cells);
   const RulesAt rules = rules_at(search, raw.cells, types);
   const std::int64_t beyond = needed_beyond(search, least);
-  const std::vector<Treetop> tops = find_treetops(smooth, grown(owned, beyond), rules);
+  const std::vector<Treetop> tops = find_treetops(smooth, grow_window(owned, beyond), rules);
   std::vector<Crown> crowns;
   if (search.crowns) crowns = find_crowns(smooth, owned, tops, search.forest.crowns);
-  std::vector<FoundTree> trees;
+  std::vector<DetectedTree> trees;
   for (std::size_t i = 0; i < tops.size(); ++i) {
     const Treetop& top = tops[i];
     if (!owned.contains(top.cell.column, top.cell.row)) continue;
-    FoundTree tree{.top = top.cell, .height = height_at(raw, top.cell), .crown = {}};
+    DetectedTree tree{.top = top.cell, .height = height_at(raw, top.cell), .crown = {}};
     if (search.crowns) tree.crown = std::move(crowns[trees.size()]);
     tree.crown_area = static_cast<double>(tree.crown.cells) * width * height;
     tree.crown_diameter = 2 * std::sqrt(tree.crown_area / std::numbers::pi);
-    tree.confidence = tree_confidence(evidence_of(raw, smooth, tops, i),
+    tree.confidence = tree_confidence(top_evidence(raw, smooth, tops, i),
                                       type_at(types, raw.cells, top.cell, type_of(search.forest)));
     trees.push_back(std::move(tree));
   }

@@ -14,15 +14,15 @@ const std::array<ForestPreset, 3>& presets() {
       {.name = "conifer",
        .smoothing = 0.25,
        .tops = {.min_height = 3, .isolation_base = 0.6, .isolation_slope = 0.03, .prominence = 0.2},
-       .crowns = {.floor_share = 0.3, .radius_base = 2, .radius_slope = 0.2, .max_radius = 10}},
+       .crowns = {.min_height_fraction = 0.3, .radius_base = 2, .radius_slope = 0.2, .max_radius = 10}},
       {.name = "broadleaf",
        .smoothing = 0.35,
        .tops = {.min_height = 3, .isolation_base = 0.8, .isolation_slope = 0.04, .prominence = 0.3},
-       .crowns = {.floor_share = 0.3, .radius_base = 4, .radius_slope = 0.4, .max_radius = 14}},
+       .crowns = {.min_height_fraction = 0.3, .radius_base = 4, .radius_slope = 0.4, .max_radius = 14}},
       {.name = "mixed",
        .smoothing = 0.3,
        .tops = {.min_height = 3, .isolation_base = 0.7, .isolation_slope = 0.035, .prominence = 0.25},
-       .crowns = {.floor_share = 0.3, .radius_base = 3, .radius_slope = 0.3, .max_radius = 12}},
+       .crowns = {.min_height_fraction = 0.3, .radius_base = 3, .radius_slope = 0.3, .max_radius = 12}},
   }};
   return all;
 }
@@ -54,7 +54,7 @@ std::vector<std::string> forest_preset_names() {
   return names;
 }
 
-ForestPreset as_local_maxima(const ForestPreset& preset) {
+ForestPreset local_maxima_preset(const ForestPreset& preset) {
   ForestPreset reference = preset;
   reference.smoothing = 0;
   reference.tops.prominence = 0;

@@ -7,7 +7,7 @@
 #include "pipeline/forest/treetops.hpp"
 namespace waymark {
 
-/// How trees are told in one type of forest.
+/// Parameters of tree detection for one forest type.
 struct ForestPreset {
   std::string name;
   double smoothing = 0.3;  ///< sigma, metres
@@ -15,17 +15,18 @@ struct ForestPreset {
   CrownRules crowns;
 };
 
-/// conifer, broadleaf, mixed. Chosen on synthetic forests (docs/trees.md), never on the plots that are
-/// scored.
+/// Presets conifer, broadleaf, mixed. Chosen on synthetic forests (docs/methods/trees.md), never on the
+/// evaluated plots.
 const ForestPreset& forest_preset(ForestType type);
 
-/// Throws Error{usage} with the nearest name where there is no such preset.
+/// Throws Error{usage} with the nearest name if there is no such preset.
 const ForestPreset& forest_preset(std::string_view name);
 
+/// Returns conifer, broadleaf, mixed.
 std::vector<std::string> forest_preset_names();
 
-/// The reference method of the literature, variable-window local maxima (Popescu & Wynne 2004): no smoothing,
-/// no prominence, the window's width by the height of the tree in its type of forest.
-ForestPreset as_local_maxima(const ForestPreset& preset);
+/// Returns the reference method of the literature, variable-window local maxima (Popescu & Wynne 2004): no
+/// smoothing, no prominence, window width from tree height and forest type.
+ForestPreset local_maxima_preset(const ForestPreset& preset);
 
 }  // namespace waymark

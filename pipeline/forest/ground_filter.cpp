@@ -32,7 +32,7 @@ void keep_lowest(Lowest& lowest, const Eigen::Vector3d& p, double side) {
   if (!fresh && std::tie(p.z(), p.x(), p.y()) < std::tie(best.z(), best.x(), best.y())) best = p;
 }
 
-// Without returns from far below the ground: echoes that came late, wells.
+// Removes returns far below the ground: late echoes, wells.
 std::vector<Eigen::Vector3d> sound_returns(const Lowest& cells, const GroundRules& rules) {
   constexpr double kNear = 4;  // metres
   Lowest squares;
@@ -45,13 +45,13 @@ std::vector<Eigen::Vector3d> sound_returns(const Lowest& cells, const GroundRule
       for (std::int64_t c = column - 1; c <= column + 1; ++c)
         if (const auto found = squares.find({r, c}); found != squares.end() && found->second != p)
           around = std::min(around, found->second.z());
-    if (around > 1e299 || p.z() > around - rules.below) sound.push_back(p);
+    if (around > 1e299 || p.z() > around - rules.max_depth_below) sound.push_back(p);
   }
   return sound;
 }
 
-// Without seeds in crowns, where no return of the square came from the ground: they stand steeply above most
-// of the seeds around. Slivers of squares at the edge of the survey often have one.
+// Removes seeds in crowns of squares without ground returns: they are steeply above most neighbouring seeds.
+// Partial squares at the edge of the survey often have one.
 Lowest level_seeds(const Lowest& squares, const GroundRules& rules) {
   Lowest level;
   for (const auto& [at, p] : squares) {
@@ -64,7 +64,7 @@ Lowest level_seeds(const Lowest& squares, const GroundRules& rules) {
         }
     const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
     std::nth_element(slopes.begin(), middle, slopes.end());
-    if (slopes.empty() || *middle < rules.steepest) level.emplace(at, p);
+    if (slopes.empty() || *middle < rules.max_seed_slope) level.emplace(at, p);
   }
   return level;
 }
@@ -73,7 +73,7 @@ Eigen::Vector3d corner(const Tin::Vertex_handle& v) {
   return {v->point().x(), v->point().y(), v->info()};
 }
 
-// Whether a return belongs to the ground that the triangle under it belongs to.
+// Returns whether a return is ground by its triangle.
 bool joins(const Tin::Face_handle& face, const Eigen::Vector3d& p, const GroundRules& rules) {
   const Eigen::Vector3d a = corner(face->vertex(0)), b = corner(face->vertex(1)), c = corner(face->vertex(2));
   Eigen::Vector3d up = (b - a).cross(c - a);
@@ -83,13 +83,13 @@ bool joins(const Tin::Face_handle& face, const Eigen::Vector3d& p, const GroundR
   if (off > rules.distance) return false;
   for (const Eigen::Vector3d& v : {a, b, c}) {
     const double way = (p - v).norm();
-    // Close to a corner a few centimetres of noise make any angle.
+    // Close to a corner, centimetres of noise cause any angle.
     if (off > 0.1 && off > way * std::sin(rules.angle)) return false;
   }
   return true;
 }
 
-// Ground beyond the outermost seeds: corners far out at the height of the nearest seed.
+// Extends the ground beyond the outermost seeds: distant corners at the height of the nearest seed.
 void frame_in(Tin& tin, const std::vector<Eigen::Vector3d>& returns, double margin) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& p : returns) box.extend(p);

@@ -11,8 +11,8 @@ constexpr float kNone = -std::numeric_limits<float>::infinity();
 bool is_maximum_slowly(const Grid<float>& heights, std::int64_t column, std::int64_t row) {
   const float here = heights(column, row);
   if (here == kNone) return false;
-  for (std::size_t i = 0; i < kAround.size(); ++i) {
-    const std::int64_t c = column + kAround[i].column, r = row + kAround[i].row;
+  for (std::size_t i = 0; i < kNeighbours.size(); ++i) {
+    const std::int64_t c = column + kNeighbours[i].column, r = row + kNeighbours[i].row;
     if (!heights.contains(c, r)) continue;
     if (i < 4 ? heights(c, r) >= here : heights(c, r) > here) return false;
   }

@@ -4,10 +4,9 @@
 namespace waymark {
 namespace {
 
-// Marks what is reached from outside through edges. What remains is filled: after this no two cells touch by
-// a corner alone, since one of the gaps beside such a corner would be enclosed. So the ring never meets
-// itself.
-Grid<std::uint8_t> filled(const Grid<std::uint8_t>& inside) {
+// Marks cells reached from outside through edges; the others are filled. Afterwards no two cells touch at a
+// corner only, since one of the gaps beside it would be enclosed, so the ring never touches itself.
+Grid<std::uint8_t> fill_holes(const Grid<std::uint8_t>& inside) {
   const std::int64_t columns = inside.columns() + 2, rows = inside.rows() + 2;
   Grid<std::uint8_t> in(columns, rows, 1);
   std::vector<CanopyCell> open{{0, 0}};
@@ -30,7 +29,7 @@ Grid<std::uint8_t> filled(const Grid<std::uint8_t>& inside) {
 }  // namespace
 
 Outline outline_of(const Grid<std::uint8_t>& inside, std::int64_t column, std::int64_t row) {
-  const Grid<std::uint8_t> in = filled(inside);
+  const Grid<std::uint8_t> in = fill_holes(inside);
   Outline outline;
   CanopyCell start{-1, -1};
   for (std::int64_t r = 0; r < in.rows(); ++r)
@@ -40,17 +39,17 @@ Outline outline_of(const Grid<std::uint8_t>& inside, std::int64_t column, std::i
         ++outline.cells;
       }
   if (start.column < 0) return outline;
-  // Walks along cell edges with the inside to the left, seen with north up: down the left side first.
+  // Follows cell edges with the inside to the left (north up), down the left side first.
   constexpr int kColumn[] = {0, 1, 0, -1}, kRow[] = {1, 0, -1, 0};  // south, east, north, west
   const auto is_in = [&](std::int64_t c, std::int64_t r) { return in.contains(c, r) && in(c, r) != 0; };
-  // The two cells beyond a corner in walking direction d: to the left and to the right of the walk.
+  // The two cells ahead of a corner in direction d: left and right.
   constexpr int kLeftColumn[] = {0, 0, -1, -1}, kLeftRow[] = {0, -1, -1, 0};
   constexpr int kRightColumn[] = {-1, 0, 0, -1}, kRightRow[] = {0, 0, -1, -1};
   CanopyCell at = start;
   int d = 0;
   do {
     outline.ring.push_back({at.column - 1 + column, at.row - 1 + row});
-    do {  // straight on, without a point for each cell
+    do {  // straight edges get no intermediate points
       at.column += kColumn[d], at.row += kRow[d];
     } while (is_in(at.column + kLeftColumn[d], at.row + kLeftRow[d]) &&
              !is_in(at.column + kRightColumn[d], at.row + kRightRow[d]));

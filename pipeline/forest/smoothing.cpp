@@ -8,7 +8,7 @@
 namespace waymark {
 namespace {
 
-constexpr double kLeastSigma = 0.3;  // cells; a neighbour then weighs less than 0.4 %
+constexpr double kMinSigma = 0.3;  // cells; below, a neighbour weighs less than 0.4 %
 
 std::vector<float> kernel(double sigma, double cell) {
   const std::int64_t reach = smoothing_reach(sigma, cell);
@@ -20,7 +20,8 @@ std::vector<float> kernel(double sigma, double cell) {
   return weights;
 }
 
-// into += weight * from, over a row. Sums run in the order of the taps, so no window changes a bit of them.
+// into += weight * from, over a row. Sums run in the order of the taps, so results are the same in any
+// window.
 void add_row(std::span<float> into, std::span<const float> from, float weight) {
   for (std::size_t i = 0; i < into.size(); ++i) into[i] += weight * from[i];
 }
@@ -66,11 +67,11 @@ Layers along_columns(const Layers& in, const std::vector<float>& taps) {
 }  // namespace
 
 std::int64_t smoothing_reach(double sigma, double cell) {
-  if (!(sigma >= kLeastSigma * cell)) return 0;
+  if (!(sigma >= kMinSigma * cell)) return 0;
   return static_cast<std::int64_t>(std::ceil(3 * sigma / cell));
 }
 
-CanopyWindow smoothed(const CanopyWindow& canopy, double sigma) {
+CanopyWindow smooth_canopy(const CanopyWindow& canopy, double sigma) {
   const auto across = kernel(sigma, canopy.cell_width), down = kernel(sigma, canopy.cell_height);
   if (across.size() == 1 && down.size() == 1) return canopy;
   Layers layers{canopy.heights, Grid<float>(canopy.heights.columns(), canopy.heights.rows(), 1)};

@@ -10,13 +10,14 @@
 namespace waymark {
 namespace {
 
-constexpr double kMostPlaces = 4e6;
-constexpr std::int32_t kOutside = -3, kBare = -2, kShared = -1;  // else the only crown over the place
+constexpr double kMaxPoints = 4e6;
+constexpr std::int32_t kOutside = -3, kBare = -2,
+                       kShared = -1;  // else index of the only crown over the point
 
-/// Places at whole multiples of the step.
+/// Points at whole multiples of the step.
 struct Lattice {
   double step = 1;
-  std::int64_t column = 0, row = 0;  ///< of the first place, in steps
+  std::int64_t column = 0, row = 0;  ///< of the first point, in steps
   std::int64_t columns = 0, rows = 0;
 
   double x(std::int64_t i) const { return static_cast<double>(column + i) * step; }
@@ -29,14 +30,15 @@ std::int64_t steps_up(double value, double step) {
 
 Lattice lattice_over(const Eigen::AlignedBox2d& box, double step) {
   const double places = box.sizes().x() / step * (box.sizes().y() / step);
-  if (places > kMostPlaces) step *= std::sqrt(places / kMostPlaces);
+  if (places > kMaxPoints) step *= std::sqrt(places / kMaxPoints);
+  step = std::max(step, box.sizes().maxCoeff() / kMaxPoints);  // a long, narrow stand
   Lattice grid{.step = step, .column = steps_up(box.min().x(), step), .row = steps_up(box.min().y(), step)};
   grid.columns = std::max<std::int64_t>(0, steps_up(box.max().x(), step) - grid.column);
   grid.rows = std::max<std::int64_t>(0, steps_up(box.max().y(), step) - grid.row);
   return grid;
 }
 
-/// Calls visit(i, j) for the places inside even-odd rings, row by row.
+/// Calls visit(i, j) for the points inside even-odd rings, row by row.
 void fill(const Lattice& grid, std::span<const std::vector<Eigen::Vector2d>> rings, const auto& visit) {
   Eigen::AlignedBox2d box;
   for (const auto& ring : rings)
@@ -77,7 +79,7 @@ void fill_circle(const Lattice& grid, const Eigen::Vector2d& middle, double radi
 
 }  // namespace
 
-Estimate cover(std::span<const StandCrown> crowns, const StandPolygon& stand, double step) {
+Estimate canopy_cover(std::span<const StandCrown> crowns, const StandPolygon& stand, double step) {
   const Eigen::AlignedBox2d box = bounds(stand);
   if (box.isEmpty()) return {};
   const Lattice grid = lattice_over(box, step);
@@ -106,15 +108,15 @@ Estimate cover(std::span<const StandCrown> crowns, const StandPolygon& stand, do
     if (!crown.ring.empty())
       fill(grid, std::span(&crown.ring, 1), shade);
     else if (crown.diameter > 0)
-      fill_circle(grid, crown.place, crown.diameter / 2, shade);
+      fill_circle(grid, crown.position, crown.diameter / 2, shade);
   }
   const auto all = static_cast<double>(places);
   double variance = 0;
   for (std::size_t c = 0; c < crowns.size(); ++c) {
     const StandCrown& crown = crowns[c];
-    const double share = static_cast<double>(alone[c]) / all;
+    const double fraction = static_cast<double>(alone[c]) / all;
     const double relative = crown.diameter > 0 ? 2 * crown.diameter_sd / crown.diameter : 0;
-    variance += share * share * (crown.confidence * (1 - crown.confidence) + relative * relative);
+    variance += fraction * fraction * (crown.confidence * (1 - crown.confidence) + relative * relative);
   }
   return {static_cast<double>(covered) / all, std::sqrt(variance)};
 }

@@ -6,20 +6,21 @@
 #include "pipeline/forest/stand_inventory.hpp"
 namespace waymark {
 
-/// A crown seen from above: an outline, or where none is known a circle.
+/// Projected crown: an outline, or a circle if there is none.
 struct StandCrown {
-  Eigen::Vector2d place = Eigen::Vector2d::Zero();  ///< of the tree, metres
-  double diameter = 0, diameter_sd = 0;             ///< metres; the outline's own where there is one
-  std::vector<Eigen::Vector2d> ring = {};           ///< metres; empty: the circle about `place`
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();  ///< of the stem, metres
+  double diameter = 0, diameter_sd = 0;                ///< metres; of the outline if there is one
+  std::vector<Eigen::Vector2d> ring = {};              ///< metres; empty: the circle about `position`
   double confidence = 1;
 };
 
-/// Share of the stand under crowns, 0 to 1. Crowns of trees outside that reach in count; where crowns overlap
-/// the ground counts once. Measured on a lattice of places `step` metres apart that is fixed to the
-/// coordinates, at most four million of them: wider apart in a stand that would need more.
-///
-/// The standard error adds, over the crowns, what the cover would lose without each (by its confidence), and
-/// the error of its diameter on the ground that it covers alone. O(places + places under each crown).
-Estimate cover(std::span<const StandCrown> crowns, const StandPolygon& stand, double step = 0.5);
+/// Returns the canopy cover of the stand, 0 to 1, with its standard error. O(points + points under each
+/// crown).
+/// - Crowns of trees outside count where they reach in; overlapping crowns count once.
+/// - Sampled on a lattice of points `step` metres apart, fixed to the coordinates; at most four million
+///   points, so wider in large stands.
+/// - The standard error sums over crowns the cover lost without each (by its confidence) and the error of
+///   its diameter on the area that it alone covers.
+Estimate canopy_cover(std::span<const StandCrown> crowns, const StandPolygon& stand, double step = 0.5);
 
 }  // namespace waymark

@@ -10,24 +10,24 @@ namespace waymark {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kFarEdge = 5;  // deviations of a place beyond which it is surely in or out
+constexpr double kFarEdge = 5;  // standard deviations from the edge beyond which a position is certain
 constexpr double kDominantPerHa = 100;
 
-/// A tree that is, or may be, in the stand.
+/// Tree that is in the stand with a probability above 0.
 struct Member {
   const StandTree* tree = nullptr;
   std::size_t index = 0;
   bool counted = false;
-  double weight = 0;  ///< trees it stands for; 0 where it is not counted
+  double weight = 0;  ///< number of trees it represents; 0 if not counted
   double weight_variance = 0;
-  std::size_t recall_row = 0;  ///< only where there is a recall
+  std::size_t recall_row = 0;  ///< only if there is a recall
 };
 
 double normal_below(double z) {
   return std::erfc(-z / std::numbers::sqrt2) / 2;
 }
 
-/// The row that holds at a height; the first also below it.
+/// Row for a height; the first also applies below.
 std::size_t recall_row_of(std::span<const RecallRow> rows, double height) {
   std::size_t row = 0;
   for (std::size_t i = 1; i < rows.size(); ++i)
@@ -42,12 +42,12 @@ std::vector<Member> members_of(std::span<const StandTree> trees, const StandPoly
   if (box.isEmpty()) return members;
   for (std::size_t i = 0; i < trees.size(); ++i) {
     const StandTree& tree = trees[i];
-    const double reach = kFarEdge * tree.place_sd;
-    if (box.squaredExteriorDistance(tree.place) > reach * reach) continue;
-    Member member{.tree = &tree, .index = i, .counted = inside(stand, tree.place)};
+    const double reach = kFarEdge * tree.position_sd;
+    if (box.squaredExteriorDistance(tree.position) > reach * reach) continue;
+    Member member{.tree = &tree, .index = i, .counted = inside(stand, tree.position)};
     double within = member.counted ? 1 : 0;
-    if (tree.place_sd > 0) {
-      const double z = distance_to_edge(stand, tree.place) / tree.place_sd;
+    if (tree.position_sd > 0) {
+      const double z = distance_to_edge(stand, tree.position) / tree.position_sd;
       within = normal_below(member.counted ? z : -z);
       if (!member.counted && z > kFarEdge) continue;
     } else if (!member.counted) {
@@ -67,7 +67,7 @@ std::vector<Member> members_of(std::span<const StandTree> trees, const StandPoly
   return members;
 }
 
-/// A figure is sum(w a) / sum(w b), or sum(w a) / fixed. What one tree adds, and how that changes with its
+/// Contribution of one tree to an estimate sum(w a) / sum(w b) or sum(w a) / fixed, with its derivatives by
 /// height and diameter.
 struct Part {
   double a = 0, a_by_height = 0, a_by_diameter = 0;
@@ -77,10 +77,9 @@ struct Part {
 class Figures {
  public:
   Figures(const std::vector<Member>& members, const InventoryOptions& options)
-      : members_(&members), recall_(options.recall), alike_(options.recall_errs_alike) {}
+      : members_(&members), recall_(options.recall), alike_(options.recall_errors_correlated) {}
 
-  /// `part(tree)` gives the part, or a part with a = NaN for a tree that says nothing. `fixed` > 0: the
-  /// denominator.
+  /// `part(tree)` returns the contribution; a = NaN for a tree without one. `fixed` > 0: the denominator.
   Estimate ratio(const auto& part, double fixed) const {
     double a = 0, b = 0;
     int telling = 0;
@@ -146,16 +145,16 @@ Estimate dominant_height(const std::vector<Member>& members, double hectares) {
   double left = kDominantPerHa * hectares, taken = 0, sum = 0, variance = 0;
   std::size_t end = 0;
   for (; end < thickest.size() && left > 0; ++end) {
-    const double share = std::min(left, thickest[end]->weight);
+    const double fraction = std::min(left, thickest[end]->weight);
     const StandTree& t = *thickest[end]->tree;
-    left -= share;
-    taken += share;
-    sum += share * t.height;
-    variance += share * share * t.height_sd * t.height_sd;
+    left -= fraction;
+    taken += fraction;
+    sum += fraction * t.height;
+    variance += fraction * fraction * t.height_sd * t.height_sd;
   }
   if (!(taken > 0)) return {};
   const double mean = sum / taken;
-  // Without one of them the next thickest takes its place.
+  // Without one of them the next thickest replaces it.
   const double next = end < thickest.size() ? thickest[end]->tree->height : mean;
   for (std::size_t i = 0; i < end; ++i) {
     const double change = thickest[i]->tree->height - next;
@@ -166,7 +165,7 @@ Estimate dominant_height(const std::vector<Member>& members, double hectares) {
 
 std::vector<DiameterClass> diameter_classes(const std::vector<Member>& members, const Figures& figures,
                                             double hectares, const InventoryOptions& options) {
-  // 30 cm is in the class from 30 cm, however 6 x 0.05 is rounded.
+  // 30 cm belongs to the class from 30 cm despite rounding of 6 x 0.05.
   const auto class_of = [&](double diameter) {
     return static_cast<int>(std::floor(diameter / options.class_width + 1e-9));
   };
@@ -197,9 +196,9 @@ std::vector<DiameterClass> diameter_classes(const std::vector<Member>& members, 
 
 }  // namespace
 
-StandFigures inventory(std::span<const StandTree> trees, const StandPolygon& stand,
-                       const InventoryOptions& options) {
-  StandFigures out;
+StandAttributes inventory(std::span<const StandTree> trees, const StandPolygon& stand,
+                          const InventoryOptions& options) {
+  StandAttributes out;
   out.hectares = area(stand) / 1e4;
   const std::vector<Member> members = members_of(trees, stand, options.recall);
   for (const Member& m : members) {
@@ -246,11 +245,12 @@ StandFigures inventory(std::span<const StandTree> trees, const StandPolygon& sta
   return out;
 }
 
-std::vector<std::size_t> trees_in(std::span<const StandTree> trees, const StandPolygon& stand) {
+std::vector<std::size_t> trees_in_stand(std::span<const StandTree> trees, const StandPolygon& stand) {
   const Eigen::AlignedBox2d box = bounds(stand);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < trees.size(); ++i)
-    if (!box.isEmpty() && box.contains(trees[i].place) && inside(stand, trees[i].place)) found.push_back(i);
+    if (!box.isEmpty() && box.contains(trees[i].position) && inside(stand, trees[i].position))
+      found.push_back(i);
   return found;
 }
 

@@ -11,13 +11,13 @@ namespace {
 using Place = Eigen::Vector2d;
 using Ring = std::vector<Place>;
 
-constexpr double kNoArea = 1e-6;  // m2, and metres: what rounding leaves
+constexpr double kNoArea = 1e-6;  // m2, and metres: rounding residue
 
 double cross(const Place& a, const Place& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Signed, about the first corner: coordinates of a million metres lose no digits.
+/// Signed; relative to the first corner, for precision at coordinates of a million metres.
 double ring_area(const Ring& ring) {
   double doubled = 0;
   for (std::size_t i = 0; i + 1 < ring.size(); ++i)
@@ -28,7 +28,7 @@ double ring_area(const Ring& ring) {
 bool surrounds(const Ring& ring, const Place& place) {
   bool odd = false;
   for (std::size_t i = 0; i < ring.size(); ++i) {
-    // The lower corner first, so that an edge gives the same answer to the polygons on both its sides.
+    // Lower corner first, so that an edge gives the same result for the polygons on both sides.
     const Place *low = &ring[i], *high = &ring[(i + 1) % ring.size()];
     if (low->y() > high->y()) std::swap(low, high);
     if (!(low->y() <= place.y() && place.y() < high->y())) continue;
@@ -38,12 +38,12 @@ bool surrounds(const Ring& ring, const Place& place) {
   return odd;
 }
 
-/// How deep a ring lies in the others: holes at odd depth take away.
+/// Nesting depth of a ring: rings at odd depth are holes.
 int depth_of(const StandPolygon& stand, std::size_t index) {
   int depth = 0;
   const Ring& ring = stand.rings[index];
   if (ring.size() < 3) return 0;
-  // Just inside the longest edge: rings may share corners and edges.
+  // Tests a point just inside the longest edge, since rings may share corners and edges.
   std::size_t longest = 0;
   const auto edge = [&](std::size_t k) { return Place(ring[(k + 1) % ring.size()] - ring[k]); };
   for (std::size_t k = 1; k < ring.size(); ++k)
@@ -112,7 +112,7 @@ double distance_to_edge(const StandPolygon& stand, const Place& place) {
   return least;
 }
 
-StandPolygon clipped(const StandPolygon& stand, const Eigen::AlignedBox2d& box) {
+StandPolygon clip_polygon(const StandPolygon& stand, const Eigen::AlignedBox2d& box) {
   StandPolygon part;
   for (Ring ring : stand.rings) {
     for (int axis = 0; axis < 2; ++axis)
@@ -129,7 +129,7 @@ StandPolygon clipped(const StandPolygon& stand, const Eigen::AlignedBox2d& box) 
         ring = std::move(kept);
       }
     if (!(ring.size() >= 3 && std::abs(ring_area(ring)) > kNoArea)) continue;
-    // A hole that takes the whole of what is around it: neither is left.
+    // A hole that equals its outer ring removes both.
     const auto around = std::ranges::find_if(part.rings, [&](const Ring& other) {
       return std::abs(std::abs(ring_area(other)) - std::abs(ring_area(ring))) < kNoArea &&
              std::ranges::all_of(ring,
@@ -143,7 +143,7 @@ StandPolygon clipped(const StandPolygon& stand, const Eigen::AlignedBox2d& box) 
   return part;
 }
 
-StandPolygon ground_of(const std::vector<Place>& trees) {
+StandPolygon estimate_sampled_area(const std::vector<Place>& trees) {
   Ring hull = trees.size() < 4 ? Ring{} : convex_hull(trees);
   if (hull.size() < 3 || !(ring_area(hull) > 0)) return {};
   const double n = static_cast<double>(trees.size()), m = static_cast<double>(hull.size());

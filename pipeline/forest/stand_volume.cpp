@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(from, text.find_last_not_of(blanks) - from + 1);
 }
 
-/// The lines of a small CSV without quoted commas; columns by name.
+/// Small CSV without quoted commas; columns by name.
 class SmallTable {
  public:
   SmallTable(std::string_view csv, std::string_view file, const std::vector<std::string>& known)
@@ -65,7 +65,7 @@ class SmallTable {
     const auto at = std::ranges::find(names_, name) - names_.begin();
     return has(name) ? rows_[row][static_cast<std::size_t>(at)] : "";
   }
-  /// `otherwise` where there is no such column or value.
+  /// Returns `otherwise` if there is no such column or value.
   double number(std::size_t row, const std::string& name, double otherwise, double least, double most) const {
     const std::string word = text(row, name);
     if (word.empty()) return otherwise;
@@ -101,7 +101,7 @@ class SmallTable {
     for (const std::string& name : names_) {
       const std::string near = nearest_name(name, known);
       if (std::ranges::count(known, name) == 0 && !near.empty())
-        throw Error(ErrorCode::input, fmt::format("the table has no use for a column '{}'", name), file_,
+        throw Error(ErrorCode::input, fmt::format("the table has an unknown column '{}'", name), file_,
                     fmt::format("did you mean '{}'?", near));
     }
   }
@@ -159,7 +159,7 @@ std::vector<RecallRow> parse_recall(std::string_view csv, std::string_view file)
     row.height_from = table.number(i, "height_from", 0, 0, 200);
     row.recall = table.number(i, "recall", -1, 0.01, 1);
     if (row.recall < 0)
-      table.refuse(table.line(i), "a row needs a recall", "the share of trees found, 0.01 to 1");
+      table.refuse(table.line(i), "a row needs a recall", "the fraction of trees detected, 0.01 to 1");
     row.sd = table.number(i, "sd", 0, 0, 1);
     if (!rows.empty() && !(row.height_from > rows.back().height_from))
       table.refuse(table.line(i), "height_from does not rise", "sort the rows by height");

@@ -7,40 +7,39 @@
 #include <vector>
 namespace waymark {
 
-/// Stem volume and dry mass of a tree from its diameter and height: V = f pi / 4 D^2 H with the form factor
-/// f, M = V density expansion.
+/// Stem volume and dry mass of a tree from its diameter and height: V = f pi / 4 D^2 H with form factor f,
+/// M = V times mass_per_volume.
 struct VolumeRow {
-  std::string species = "all";   ///< "all": of any other species
-  double form_factor = 0.47;     ///< of the volume over bark to the tip, (0, 1]
-  double form_factor_sd = 0.04;  ///< of the factor of a whole stand: all its trees err alike
-  /// Basic density, kg / m3, times what crown and bark add; NaN: no mass is told.
+  std::string species = "all";   ///< "all": any other species
+  double form_factor = 0.47;     ///< for volume over bark to the tip, (0, 1]
+  double form_factor_sd = 0.04;  ///< of the mean factor of a stand, common to all its trees
+  /// Basic density, kg / m3, times an expansion factor for crown and bark; NaN: no mass is computed.
   double mass_per_volume = std::numeric_limits<double>::quiet_NaN();
   std::string source;
 };
 
-/// The table used where none is given: f = 0.47 +- 0.04 for every species, the middle of the 0.42 to 0.52 of
-/// textbooks for mature temperate stands (van Laar & Akca 2007, Forest Mensuration, ch. 7). Replace it where
-/// volumes matter.
+/// Returns the default table: f = 0.47 +- 0.04 for every species, the middle of 0.42 to 0.52 for mature
+/// temperate stands (van Laar & Akca 2007, Forest Mensuration, ch. 7). Replace it where volumes matter.
 const std::vector<VolumeRow>& built_in_volume();
 
-/// The row of a species, by name without regard to case; else the row "all"; null where there is neither.
+/// Returns the row of a species (case-insensitive), else the row "all", else null.
 const VolumeRow* volume_of(std::span<const VolumeRow> table, std::string_view species);
 
-/// Cubic metres; metres in.
+/// Returns cubic metres; arguments in metres.
 double stem_volume(const VolumeRow& row, double diameter, double height);
 
-/// CSV with the columns species and form_factor; form_factor_sd, mass_per_volume and source may be missing.
-/// Throws Error{input} that names the line.
+/// Reads CSV with the columns species and form_factor; form_factor_sd, mass_per_volume and source are
+/// optional. Throws Error{input} naming the line.
 std::vector<VolumeRow> parse_volume(std::string_view csv, std::string_view file);
 
-/// How many of the trees of a height are found: rows by rising height, each good up to the next.
+/// Fraction of trees detected, from a height up to that of the next row; rows by ascending height.
 struct RecallRow {
   double height_from = 0;  ///< metres
   double recall = 1;       ///< (0, 1]
   double sd = 0;           ///< of the recall
 };
 
-/// CSV with the columns height_from and recall; sd may be missing. Throws Error{input} that names the line.
+/// Reads CSV with the columns height_from and recall; sd is optional. Throws Error{input} naming the line.
 std::vector<RecallRow> parse_recall(std::string_view csv, std::string_view file);
 
 }  // namespace waymark

@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3d> distinct(std::span<const Eigen::Vector3d> points) {
   return sorted;
 }
 
-// Rows and columns may count either way, so bounds are sorted.
+// Bounds are sorted, since rows and columns may run in either direction.
 std::pair<std::int64_t, std::int64_t> cells_between(double a, double b, std::int64_t count) {
   const double low = std::min(a, b), high = std::max(a, b);
   return {std::max<std::int64_t>(0, static_cast<std::int64_t>(std::ceil(low - 1e-9))),

@@ -11,13 +11,12 @@ struct CellFrame {
   std::int64_t columns = 0, rows = 0;
 };
 
-/// What cells beyond the outermost points get.
+/// Value of cells outside the convex hull.
 enum class Beyond { nothing, nearest };
 
-/// Heights at the cells' centres from the Delaunay triangulation of points (x, y, z), linear in each
-/// triangle; NaN where there is none. Triangles with an edge longer than `longest_edge` are left out. Of
-/// points at one place the highest counts. The same points in any order give the same heights. About 1 us per
-/// point.
+/// Interpolates heights at cell centres linearly in the Delaunay triangulation of points (x, y, z); NaN
+/// outside it. Triangles with an edge longer than `longest_edge` are discarded. Of points at one position
+/// the highest is used. The order of the points does not matter. About 1 us per point.
 Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFrame& frame,
                            double longest_edge, Beyond beyond);
 

@@ -12,12 +12,12 @@ namespace {
 
 using Terms = std::array<double, 6>;
 
-// As printed by tests/forest: TreeConfidence.DISABLED_Fit.
+// Printed by tests/forest: TreeConfidence.DISABLED_Fit.
 constexpr Terms kConifer{19.075, -12.140, 0.250, 6.131, -0.069, -3.058};
 constexpr Terms kBroadleaf{20.243, -13.500, 0.594, 4.947, -0.370, -3.537};
 constexpr Terms kMixed{17.285, -9.366, 1.193, 3.210, -0.197, -2.517};
 
-constexpr double kLeast = 0.1, kMost = 0.99;  // made forests tell no more
+constexpr double kMinConfidence = 0.1, kMaxConfidence = 0.99;  // limits supported by the synthetic forests
 
 double roughness_at(const CanopyWindow& raw, const CanopyWindow& smooth, const CanopyCell& top) {
   double squares = 0;
@@ -33,7 +33,7 @@ double roughness_at(const CanopyWindow& raw, const CanopyWindow& smooth, const C
   return count > 0 ? std::sqrt(squares / count) : 0;
 }
 
-// How far the canopy descends on the straight line from one top to another, metres.
+// Descent of the canopy on the straight line from one top to another, metres.
 double drop_between(const CanopyWindow& smooth, const Treetop& from, const CanopyCell& to) {
   const std::int64_t columns = to.column - from.cell.column, rows = to.row - from.cell.row;
   const std::int64_t steps = std::max(std::abs(columns), std::abs(rows));
@@ -53,8 +53,8 @@ bool stands_over(const Treetop& a, const Treetop& b) {
 
 }  // namespace
 
-TopEvidence evidence_of(const CanopyWindow& raw, const CanopyWindow& smooth, const std::vector<Treetop>& tops,
-                        std::size_t index) {
+TopEvidence top_evidence(const CanopyWindow& raw, const CanopyWindow& smooth,
+                         const std::vector<Treetop>& tops, std::size_t index) {
   const Treetop& top = tops[index];
   TopEvidence evidence{.height = static_cast<double>(top.height),
                        .roughness = roughness_at(raw, smooth, top.cell)};
@@ -72,17 +72,17 @@ TopEvidence evidence_of(const CanopyWindow& raw, const CanopyWindow& smooth, con
     const double drop = drop_between(smooth, top, other->cell) / std::max(evidence.height, 0.1);
     if (drop * distance >= nearest) continue;
     nearest = drop * distance;
-    evidence.rivalled = true, evidence.distance = distance, evidence.drop = drop;
+    evidence.has_rival = true, evidence.distance = distance, evidence.drop = drop;
   }
   return evidence;
 }
 
-std::array<double, 6> terms_of(const TopEvidence& e) {
-  const double rivalled = e.rivalled ? 1 : 0;
+std::array<double, 6> regression_terms(const TopEvidence& e) {
+  const double has_rival = e.has_rival ? 1 : 0;
   return {1,
-          rivalled,
-          rivalled * std::log(e.drop + 0.01),
-          rivalled * std::log(std::max(e.distance, 0.1)),
+          has_rival,
+          has_rival * std::log(e.drop + 0.01),
+          has_rival * std::log(std::max(e.distance, 0.1)),
           std::log(e.roughness + 0.02),
           std::log(std::max(e.height, 0.1))};
 }
@@ -91,10 +91,10 @@ double tree_confidence(const TopEvidence& evidence, ForestType type) {
   const Terms& weights = type == ForestType::conifer     ? kConifer
                          : type == ForestType::broadleaf ? kBroadleaf
                                                          : kMixed;
-  const Terms terms = terms_of(evidence);
+  const Terms terms = regression_terms(evidence);
   double odds = 0;
   for (std::size_t i = 0; i < terms.size(); ++i) odds += weights[i] * terms[i];
-  return std::clamp(1 / (1 + std::exp(-odds)), kLeast, kMost);
+  return std::clamp(1 / (1 + std::exp(-odds)), kMinConfidence, kMaxConfidence);
 }
 
 }  // namespace waymark

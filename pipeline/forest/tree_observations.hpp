@@ -9,17 +9,17 @@
 #include "pipeline/forest/find_trees.hpp"
 namespace waymark {
 
-/// How well a canopy model tells a tree: standard deviations.
+/// Standard deviations of trees measured in a canopy model.
 struct TreeErrors {
   double height = 0.8;  ///< metres; ALS campaigns: 0.6 to 0.8 (Kaartinen et al. 2012)
-  /// Of the stem's place along each axis, metres: a top leans away from its foot.
-  double place_base = 0.3, place_slope = 0.02;
-  double crown_share = 0.2;  ///< of the crown's diameter
+  /// Stem position along each axis, metres: base + slope x height, since tops lean away from the foot.
+  double position_base = 0.3, position_slope = 0.02;
+  double crown_relative = 0.2;  ///< relative, of the crown diameter
 };
 
-/// A tree as an observation of the landmark type `tree`, placed at its top, at the elevation of the ground
-/// where that is known (else 0, its variance NaN). `species`: row of the allometry table.
-Observation observation_of(const FoundTree& tree, const CanopySource& canopy, const LandmarkType& type,
+/// Returns a tree as an observation of the landmark type `tree`, positioned at its top. z is the elevation
+/// of the ground if known, else 0 with variance NaN. `species`: row of the allometry table.
+Observation observation_of(const DetectedTree& tree, const CanopySource& canopy, const LandmarkType& type,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
                            const TreeErrors& errors = {});
 

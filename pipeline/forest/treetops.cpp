@@ -47,7 +47,7 @@ class TopTest {
     return true;
   }
 
-  // Floods what lies less than `prominence` below the top until it meets a higher cell.
+  // Floods cells less than `prominence` below the top until a higher cell is reached.
   bool is_prominent(std::int64_t column, std::int64_t row, double prominence) {
     const float height = grid_(column, row);
     const auto floor = static_cast<float>(height - prominence);
@@ -55,7 +55,7 @@ class TopTest {
     flood_.assign(1, {column, row});
     seen_(column, row) = stamp_;
     for (std::size_t i = 0; i < flood_.size(); ++i)
-      for (const auto& [dc, dr] : kAround) {
+      for (const auto& [dc, dr] : kNeighbours) {
         const std::int64_t c = flood_[i].column + dc, r = flood_[i].row + dr;
         if (!grid_.contains(c, r) || seen_(c, r) == stamp_) continue;
         seen_(c, r) = stamp_;
@@ -87,7 +87,7 @@ class TopTest {
 
 std::int64_t treetop_reach(const TreetopRules& rules, double cell) {
   const double metres =
-      std::max(rules.isolation(kTallestTree), rules.prominence > 0 ? kProminenceReach : 0.0);
+      std::max(rules.isolation(kMaxTreeHeight), rules.prominence > 0 ? kProminenceReach : 0.0);
   return static_cast<std::int64_t>(std::ceil(metres / cell)) + 1;
 }
 

@@ -11,14 +11,14 @@ namespace waymark {
 namespace {
 
 constexpr std::int64_t kTile = 500;
-constexpr double kGamma = 1.2;                          // ROSCO's default for HiRISE
-constexpr std::size_t kLeastArea = 3, kMostArea = 800;  // pixels
-constexpr double kMostElongated = 4;                    // major / minor
-constexpr double kLeastScore = 0.1;                     // of the tile's range, at either end
+constexpr double kGamma = 1.2;                       // ROSCO's default for HiRISE
+constexpr std::size_t kMinArea = 3, kMaxArea = 800;  // pixels
+constexpr double kMaxElongation = 4;                 // major / minor
+constexpr double kMinContrast = 0.1;                 // of the tile's range, at both ends
 
 enum Shade : char { light_, dark_, taken_ };
 
-// Marks the dark pixels of one tile; gives the range of its brightness.
+// Marks the dark pixels of one tile; returns the range of its brightness.
 double mark_dark(const Pixels& image, const Window& tile, Grid<char>& shade) {
   float low = 0, high = 0;
   bool any = false;
@@ -33,8 +33,8 @@ double mark_dark(const Pixels& image, const Window& tile, Grid<char>& shade) {
   const double range = static_cast<double>(high - low);
   if (!any || !(range > 0)) return 0;
   const auto bin = [&](float v) {
-    const double share = std::clamp(static_cast<double>(v - low) / range, 0.0, 1.0);
-    return static_cast<int>(255.999 * std::pow(share, kGamma));
+    const double fraction = std::clamp(static_cast<double>(v - low) / range, 0.0, 1.0);
+    return static_cast<int>(255.999 * std::pow(fraction, kGamma));
   };
   std::array<double, 256> histogram{};
   for (std::int64_t y = tile.row; y < tile.end_row(); ++y)
@@ -51,7 +51,7 @@ struct Pixel {
   std::int64_t x, y;
 };
 
-// The 4-connected dark area that holds a pixel; marks it as taken.
+// Returns the 4-connected dark area that contains a pixel and marks it as taken.
 std::vector<Pixel> dark_area(Grid<char>& shade, Pixel from) {
   std::vector<Pixel> area{from};
   shade(from.x, from.y) = taken_;
@@ -73,7 +73,7 @@ double bright(const Pixels& image, double x, double y) {
 
 std::optional<Detection> rock_of(const Pixels& image, const std::vector<Pixel>& area, const LightFrame& light,
                                  double range) {
-  if (area.size() < kLeastArea || area.size() > kMostArea) return std::nullopt;
+  if (area.size() < kMinArea || area.size() > kMaxArea) return std::nullopt;
   double x = 0, y = 0, tt = 0, ss = 0, st = 0;
   const auto count = static_cast<double>(area.size());
   for (const Pixel& p : area) {
@@ -91,7 +91,7 @@ std::optional<Detection> rock_of(const Pixels& image, const std::vector<Pixel>& 
   ss += 1.0 / 12;
   const double root = std::sqrt((tt - ss) * (tt - ss) / 4 + st * st), mean = (tt + ss) / 2;
   const double major = mean + root, minor = std::max(1e-6, mean - root);
-  if (std::sqrt(major / minor) > kMostElongated) return std::nullopt;
+  if (std::sqrt(major / minor) > kMaxElongation) return std::nullopt;
   // Half extents of the ellipse along and across the light, scaled to the area.
   const double scale = std::sqrt(count / (std::numbers::pi * 4 * std::sqrt(major * minor)));
   const double half_along = 2 * scale * std::sqrt(tt), half_across = 2 * scale * std::sqrt(ss);
@@ -99,7 +99,7 @@ std::optional<Detection> rock_of(const Pixels& image, const std::vector<Pixel>& 
   const double middle = at(0);
   const double front = (at(-half_along - 1.5) - middle) / range,
                back = (at(half_along + 1.5) - middle) / range;
-  if (!(std::min(front, back) > kLeastScore)) return std::nullopt;
+  if (!(std::min(front, back) > kMinContrast)) return std::nullopt;
   Detection rock;
   rock.outline = {.x = x - light.ux * half_along,
                   .y = y - light.uy * half_along,
@@ -108,7 +108,7 @@ std::optional<Detection> rock_of(const Pixels& image, const std::vector<Pixel>& 
                   .angle = 0};
   rock.covariance = Eigen::Matrix2d::Identity() * std::pow(std::hypot(0.5, 0.3 * half_across), 2);
   rock.diameter_sd = std::hypot(0.6, 0.2 * half_across);
-  rock.shadow_reach = Measured{2 * half_along, std::hypot(0.8, 0.4 * half_along)};
+  rock.shadow_reach = MeasuredValue{2 * half_along, std::hypot(0.8, 0.4 * half_along)};
   rock.confidence = std::clamp(2 * std::min(front, back), 0.01, 1.0);
   return rock;
 }
@@ -122,13 +122,14 @@ int maximum_entropy_threshold(std::span<const double> histogram) {
   const auto entropy_term = [&](double n) { return n > 0 ? -n / total * std::log(n / total) : 0; };
   double all = 0;
   for (const double n : histogram) all += entropy_term(n);
-  double below = 0, share = 0, most = -1;
+  double below = 0, fraction = 0, most = -1;
   int best = 0;
   for (std::size_t i = 0; i + 1 < histogram.size(); ++i) {
     below += entropy_term(histogram[i]);
-    share += histogram[i] / total;
-    if (!(share > 0) || !(share < 1 - 1e-12)) continue;
-    const double sum = std::log(share) + below / share + std::log(1 - share) + (all - below) / (1 - share);
+    fraction += histogram[i] / total;
+    if (!(fraction > 0) || !(fraction < 1 - 1e-12)) continue;
+    const double sum =
+        std::log(fraction) + below / fraction + std::log(1 - fraction) + (all - below) / (1 - fraction);
     if (sum > most) {
       most = sum;
       best = static_cast<int>(i);

@@ -19,34 +19,34 @@ void check(const RockSearch& search) {
   };
   if (search.sun_angle && !std::isfinite(search.sun_angle->value))
     refuse("the direction of the light in the image is not a number",
-           "leave it out: it is then read off the image");
+           "omit it to have it estimated from the image");
   if (search.sun_elevation) {
     const double degrees = to_degrees(*search.sun_elevation).value;
     if (!(degrees > 0))
-      refuse(fmt::format("the sun stands {:g} degrees above the ground, that is not above it", degrees),
-             "shadows need a sun above 0 degrees; check the sun's frame and time");
+      refuse(fmt::format("the sun elevation is {:g} degrees, not above the horizon", degrees),
+             "give an elevation above 0 degrees; check the frame and the time of the sun");
     if (!(degrees < 90))
-      refuse(fmt::format("the sun stands {:g} degrees above the ground", degrees),
-             "shadows need a sun below 90 degrees");
+      refuse(fmt::format("the sun elevation is {:g} degrees", degrees),
+             "give an elevation below 90 degrees: a sun at the zenith casts no shadows");
   }
   if (!(search.min_diameter > 0) || !(search.max_diameter > search.min_diameter))
-    refuse(fmt::format("diameters from {:g} to {:g} pixels are no range", search.min_diameter,
+    refuse(fmt::format("diameters from {:g} to {:g} pixels are not a range", search.min_diameter,
                        search.max_diameter),
            "give 0 < smallest < largest");
   if (!(search.min_confidence >= 0 && search.min_confidence <= 1))
-    refuse(fmt::format("{:g} is no probability", search.min_confidence),
-           "give a least confidence between 0 and 1");
+    refuse(fmt::format("min_confidence is {:g}, not a probability", search.min_confidence),
+           "give a value between 0 and 1");
   if (!(search.blur >= 0 && search.blur < 10))
-    refuse(fmt::format("a blur of {:g} pixels", search.blur),
-           "give its standard deviation, 0 to 10; 0: unknown");
+    refuse(fmt::format("blur is {:g} pixels", search.blur),
+           "give a standard deviation from 0 to 10; 0: unknown");
 }
 
-// The light's direction as pooled from shadows and lit faces is precise, but hollows can turn it round: the
-// rocks themselves decide which way it points.
+// The direction pooled from shadows and lit faces is precise, but hollows can reverse it; the number of rocks
+// under either direction decides.
 std::optional<Radians> light_of(const Pixels& image, const RockSearch& search) {
   const auto estimate = estimate_sun_angle(image);
   const auto pooled = estimate ? std::optional(estimate->angle) : std::nullopt;
-  const auto decided = direction_with_rocks(image, search, pooled);
+  const auto decided = sun_angle_by_rock_count(image, search, pooled);
   return decided ? decided : pooled;
 }
 

@@ -7,7 +7,7 @@
 namespace waymark {
 namespace {
 
-// The dark pixels of a map, numbered in reading order.
+// Dark pixels of a map, numbered in row order.
 struct DarkPixels {
   std::vector<std::int32_t> cells;  // row * columns + column
   Grid<std::int32_t> number;        // of each pixel; -1: bright
@@ -35,7 +35,7 @@ std::int32_t root(std::vector<std::int32_t>& parent, std::int32_t i) {
 }
 
 struct Pass {
-  float height;       // of the saddle between two darks
+  float height;       // of the saddle between two dark spots
   std::int32_t a, b;  // their pixels
 };
 
@@ -58,10 +58,10 @@ void for_neighbours(const DarkPixels& dark, std::int32_t cell, Visit visit) {
     }
 }
 
-constexpr float kMiddle = 0.6F;              // share of the peak that marks the dark middle of a shadow
-constexpr std::int64_t kNear = 2, kFar = 4;  // pixels: the ring that shows the ground beside it
+constexpr float kMiddle = 0.6F;  // fraction of the peak above which lies the dark core of a shadow
+constexpr std::int64_t kNear = 2, kFar = 4;  // pixels: ring of ground around it
 
-// Shading of slopes finer than the background's tiles lies on the ground beside a shadow as on the shadow.
+// Shading of slopes finer than the background tiles affects a shadow and the ground beside it alike.
 float base_of(const Grid<float>& smooth, const std::vector<std::int32_t>& middle, float peak) {
   const std::int64_t columns = smooth.columns();
   std::int64_t x0 = columns, x1 = 0, y0 = smooth.rows(), y1 = 0;
@@ -99,7 +99,7 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
   const auto value = [&](std::int32_t i) {
     return values[static_cast<std::size_t>(dark.cells[static_cast<std::size_t>(i)])];
   };
-  // Equal heights are ordered by number, so that plateaus have one top and nothing goes round in circles.
+  // Ties are ordered by number, so that plateaus have one top and ascent cannot cycle.
   const auto higher = [&](std::int32_t a, std::int32_t b) {
     return value(a) != value(b) ? value(a) > value(b) : a < b;
   };
@@ -131,7 +131,7 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
   std::vector<std::size_t> catchment(dark.cells.size(), 0);
   for (std::int32_t i = 0; i < count; ++i) ++catchment[static_cast<std::size_t>(root(parent, i))];
   const auto columns = static_cast<std::int32_t>(map.smooth.columns());
-  std::vector<std::int32_t> visit(dark.cells.size(), -1);  // stamp of the flood that reached a pixel last
+  std::vector<std::int32_t> visit(dark.cells.size(), -1);  // stamp of the last flood that reached a pixel
   std::int32_t stamp = 0;
   const auto flood = [&](std::int32_t summit, float least) {
     std::vector<std::int32_t> open{summit}, cells;
@@ -153,16 +153,16 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
     if (parent[static_cast<std::size_t>(summit)] != summit || value(summit) <= limits.seed) continue;
     const std::int32_t cell = dark.cells[static_cast<std::size_t>(summit)];
     ShadowSegment segment{.x = cell % columns, .y = cell / columns, .peak = value(summit), .cells = {}};
-    segment.surroundings = catchment[static_cast<std::size_t>(summit)];
+    segment.catchment_cells = catchment[static_cast<std::size_t>(summit)];
     const auto middle = flood(summit, kMiddle * segment.peak);
-    if (limits.most_cells > 0 && middle.size() > limits.most_cells) continue;
+    if (limits.max_cells > 0 && middle.size() > limits.max_cells) continue;
     segment.base = base_of(map.smooth, middle, segment.peak);
     if (!(segment.peak - segment.base > limits.seed)) continue;
     segment.cells = flood(summit, segment.base + limits.core * (segment.peak - segment.base));
     segments.push_back(std::move(segment));
   }
-  if (limits.most_cells > 0)
-    std::erase_if(segments, [&](const ShadowSegment& s) { return s.cells.size() > limits.most_cells; });
+  if (limits.max_cells > 0)
+    std::erase_if(segments, [&](const ShadowSegment& s) { return s.cells.size() > limits.max_cells; });
   std::sort(segments.begin(), segments.end(), [](const ShadowSegment& a, const ShadowSegment& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;
   });

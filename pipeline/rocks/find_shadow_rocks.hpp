@@ -7,39 +7,43 @@
 #include "pipeline/rocks/rock_evidence.hpp"
 namespace waymark {
 
-/// A candidate with what was gathered about it; the confidence is fitted on these.
-struct JudgedRock {
+/// Rock candidate with its evidence, on which the confidence was fitted.
+struct ScoredRock {
   RockCandidate rock;
   RockEvidence evidence{};
-  RockJudgement judgement{};      ///< of this candidate alone
-  double confidence = 0;          ///< moved towards the image's share of rocks
-  double noise = 0, texture = 0;  ///< standard deviations in alpha where it stands
-  double scale = 1;               ///< side of its map's pixels, image pixels
+  RockPrediction prediction{};    ///< from this candidate alone
+  double confidence = 0;          ///< adapted to the image's fraction of rocks
+  double noise = 0, texture = 0;  ///< standard deviations in alpha at its position
+  double scale = 1;               ///< pixel size of its map, image pixels
 
-  double radius() const;  ///< as judged, pixels of its scale
-  /// Of the rock by the table, moved by what its lean hides of the shadow; the judgement is about this.
-  Eigen::Vector2d place() const;
-  Eigen::Vector2d aside = Eigen::Vector2d::Zero();  ///< that move, pixels of the scale
+  double radius() const;  ///< after correction by the network, pixels of its scale
+  /// Position from the table, shifted by what relief displacement hides of the shadow; the prediction refers
+  /// to it.
+  Eigen::Vector2d position() const;
+  Eigen::Vector2d lateral_shift = Eigen::Vector2d::Zero();  ///< that shift, pixels of the scale
 };
 
-/// Every dark spot that could be a rock's shadow, at one scale: rocks up to about half a tile.
-/// `lean`: of the image at this scale; nothing: seen from straight above.
-std::vector<JudgedRock> judge_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table,
-                                      const std::optional<ImageLean>& lean = {});
+/// Returns every dark spot that could be the shadow of a rock at one scale: rocks up to about half a tile.
+/// `displacement`: relief displacement at this scale; unset: vertical view.
+std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table,
+                                      const std::optional<ReliefDisplacement>& displacement = {});
 
-/// The same at every scale of the image, each half as fine as the one before, until `max_diameter` or the
-/// size of the image; larger rocks are seen against a wider background. Positions are still those of each
-/// scale. Confidences are moved towards the image's own share of rocks (share_shift).
-std::vector<JudgedRock> judge_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
+/// Applies score_shadows at every scale of the image. Each is half as fine as the one before, until
+/// `max_diameter` or the size of the image is reached; larger rocks are compared with a wider background.
+/// Positions remain in pixels of each scale. Confidences are adapted to the image's own fraction of rocks
+/// (prior_shift).
+std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
-/// Direction towards the sun, given what estimate_sun_angle pooled, if anything: that, where under it at
-/// least half as many rocks are found as under the best of twenty directions; else its opposite by the same
-/// rule (hollows turn the pooled direction round); else the best. Looks at the middle 1000 x 1000 pixels.
-/// Nothing where fewer than two rocks are probable under any direction.
-std::optional<Radians> direction_with_rocks(const Pixels& image, const RockSearch& search,
-                                            std::optional<Radians> pooled);
+/// Returns the direction towards the sun; `std::nullopt` if no direction yields two probable rocks.
+/// - `pooled` (from estimate_sun_angle) if it yields at least half as many rocks as the best of twenty
+///   directions.
+/// - Else its opposite by the same rule, since hollows reverse the pooled direction.
+/// - Else the best direction.
+/// Uses the central 1000 x 1000 pixels.
+std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSearch& search,
+                                               std::optional<Radians> pooled);
 
-/// Method `shadow`: the light's direction is known.
+/// Finds rocks by the method `shadow` for a known direction of light.
 std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
 }  // namespace waymark

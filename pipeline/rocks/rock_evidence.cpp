@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-// Brightness over the ground at a place relative to the rock: `t` away from the sun, `s` across.
+// Brightness above the ground at a position relative to the rock: `t` away from the sun, `s` across.
 class Around {
  public:
   Around(const ShadowMap& map, const RockCandidate& rock, const LightFrame& light)
@@ -25,7 +25,7 @@ class Around {
     return -((1 - fv) * ((1 - fu) * a(0, 0) + fu * a(1, 0)) + fv * ((1 - fu) * a(0, 1) + fu * a(1, 1)));
   }
 
-  // Mean of three places across.
+  // Mean of three positions across.
   double band(double half_width, double t) const {
     return (excess(-half_width, t) + excess(0, t) + excess(half_width, t)) / 3;
   }
@@ -36,9 +36,9 @@ class Around {
   const LightFrame& light_;
 };
 
-// The net of places, from before the lit face to behind the shadow.
-void add_net(const Around& around, const RockCandidate& rock, RockEvidence& evidence) {
-  const double middle = rock.size.offset;  // of the shadow, from the rock's
+// Samples a grid from before the lit face to behind the shadow.
+void add_sample_grid(const Around& around, const RockCandidate& rock, RockEvidence& evidence) {
+  const double middle = rock.size.offset;  // centre of the shadow, from that of the rock
   const double step_along = std::clamp(0.9 * std::sqrt(rock.shadow.along_variance), 1.0, 20.0);
   const double step_across = std::clamp(0.9 * std::sqrt(rock.shadow.across_variance), 1.0, 20.0);
   std::size_t next = kEvidenceCount - 45;
@@ -59,7 +59,7 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
                              const SpotContext& context, const RockTable& table) {
   const Around around(map, rock, light);
   const double r = rock.size.radius, reach = rock.size.reach, tip = std::hypot(r, reach);
-  const double root = r * r / tip;  // where the shadow begins on the rock, from its middle
+  const double root = r * r / tip;  // start of the shadow on the rock, from its centre
   const double mid = 0.5 * (root + tip);
   const double near_left = around.excess(-(r + 1), mid), near_right = around.excess(r + 1, mid);
   const double far_left = around.excess(-(2 * r + 2), mid), far_right = around.excess(2 * r + 2, mid);
@@ -69,7 +69,7 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
   const double spread = std::sqrt(rock.shadow.along_variance * rock.shadow.across_variance);
   const double noise = std::max(1e-3, static_cast<double>(map.noise));
   const double texture = static_cast<double>(map.texture_at(rock.x, rock.y));
-  const ShadowMeasure shape = measure_of(rock.shadow);
+  const ShadowMeasure shape = shadow_measure(rock.shadow);
   RockEvidence evidence{
       rock.shadow.peak,
       std::log(r),
@@ -88,20 +88,20 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
       std::max(near_left, near_right),
       std::min(far_left, far_right),
       std::max(far_left, far_right),
-      std::min(4.0, std::log(static_cast<double>(rock.segment_cells) / std::max(1, rock.shadow.cells))),
-      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.usual)), -2.0, 3.0),
-      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.deep)), -2.0, 3.0),
-      std::log(0.2 + context.crowded),
+      std::min(4.0, std::log(static_cast<double>(rock.catchment_cells) / std::max(1, rock.shadow.cells))),
+      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.median_peak)), -2.0, 3.0),
+      std::clamp(std::log(rock.shadow.peak / std::max(0.02, context.upper_decile)), -2.0, 3.0),
+      std::log(0.2 + context.density),
       std::log(noise),
       table.log_tan_elevation(),
-      table.knows_elevation() ? 1.0 : 0.0,
+      table.elevation_known() ? 1.0 : 0.0,
       shape.log_area,
       shape.log_across,
       shape.log_along,
-      std::log(rock.seen.along),
-      rock.seen.aside,
-      rock.seen.lean};
-  add_net(around, rock, evidence);
+      std::log(rock.visible.along),
+      rock.visible.deviation,
+      rock.visible.displacement};
+  add_sample_grid(around, rock, evidence);
   return evidence;
 }
 

@@ -7,7 +7,7 @@ namespace waymark::rock_network {
 
 inline constexpr std::size_t kOutputs = 8;
 // Share of rocks among the dark spots it was fitted on.
-inline constexpr float kShareOfRocks = 0.3737F;
+inline constexpr float kRockPrior = 0.3737F;
 // Mean and deviation of each evidence; weights of the hidden units by input, their biases last; of the outputs by unit.
 inline constexpr float kMean[] = {0.2919F, 0.5647F, -0.4992F, 0.2854F, 2.921F, 2.234F, 0.1574F, 0.0177F, 0.02097F, 0.1189F, -0.2868F, -0.08574F, 0.01391F, -0.1039F, -0.03789F, -0.0835F, 0.04597F, 0.8004F, 0.09367F, -0.7699F, 1.898F, -3.773F, -0.3414F, 0.5978F, 1.103F, 0.3257F, 0.03293F, -0.005542F, 0.06367F, 0.1238F, 0.01084F,
     0.005132F, 0.08985F, -0.007133F, 0.1211F, 0.03446F, 0.02165F, 0.08964F, -0.003319F, 0.1189F, 0.05001F, 0.03092F, 0.08951F, -0.005166F, 0.1149F, -0.03827F, -0.04313F, 0.0926F, -0.03844F, 0.1049F, -0.2203F, -0.1833F, 0.07383F, -0.08629F, 0.0784F, -0.3166F, -0.2418F, 0.04442F, -0.1018F, 0.05485F, -0.2282F, -0.1778F, 0.07069F,

@@ -9,9 +9,9 @@
 namespace waymark {
 namespace {
 
-constexpr float kDarkest = 1.3F, kBrightest = -1.5F;   // beyond lies noise, not shadow
-constexpr float kSide = 1.0F / 6, kCentre = 4.0F / 6;  // small rocks side by side stay two
-constexpr float kBrightestSmoothed = -0.2F;  // a lit face must not blot out the small shadow beside it
+constexpr float kDarkest = 1.3F, kBrightest = -1.5F;   // values beyond are noise
+constexpr float kSide = 1.0F / 6, kCentre = 4.0F / 6;  // weak enough to keep adjacent small rocks apart
+constexpr float kBrightestSmoothed = -0.2F;  // keeps a lit face from hiding the small shadow beside it
 
 float median_of(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -19,12 +19,12 @@ float median_of(std::vector<float> values) {
   return *middle;
 }
 
-constexpr float kFlat = 0.85F;              // depth of the four neighbours, share of the floor's
-constexpr float kDeeperThanPointed = 1.3F;  // depth of full shadow, times that of the deepest pointed floors
+constexpr float kFlat = 0.85F;              // depth of the four neighbours / depth of the floor
+constexpr float kDeeperThanPointed = 1.3F;  // depth of full shadow / depth of the deepest pointed floors
 
-// Where light and shadow of the ground itself alternate no spot stands out: the darkest pixels but 2 in 1000.
-// White noise alone reaches 2.9 standard deviations there, which the caller takes for no contrast.
-std::optional<float> darkest_share(const Pixels& image) {
+// Returns the 0.2 % quantile, for terrain whose own light and shadow hide single spots. White noise alone
+// reaches 2.9 standard deviations there, which the caller treats as no contrast.
+std::optional<float> low_quantile(const Pixels& image) {
   std::vector<float> values;
   const std::size_t stride = 1 + image.cells().size() / 100000;
   for (std::size_t i = 0; i < image.cells().size(); i += stride)
@@ -36,12 +36,12 @@ std::optional<float> darkest_share(const Pixels& image) {
 }
 
 struct Floor {
-  float value = 0, level = 0;  // of the floor and of the ground around it
+  float value = 0, level = 0;  // of the floor and of the surrounding ground
 };
 
-// Brightness of full shadow. The floors of the deepest shadows pile up there, those of the many small
-// shadows, which the blur fills with light, lie above it: take a low share of all floors. A floor is a pixel
-// no brighter than its eight neighbours and well below the ground.
+// Estimates the brightness of full shadow as a low quantile of all floors: those of deep shadows accumulate
+// there, those of small shadows, brightened by blur, lie above. A floor is a pixel no brighter than its eight
+// neighbours and well below the ground.
 std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground, float noise) {
   const auto columns = image.columns();
   std::vector<float> level(static_cast<std::size_t>(columns)), spread(level.size());
@@ -56,15 +56,15 @@ std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground
       const float corners =
           std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1]));
       if (!(value <= std::min(sides, corners))) continue;
-      // The mean of the floor and its darkest side: single hot or dead pixels are no floors.
+      // Mean of the floor and its darkest side, so that single dead pixels do not count.
       floors.push_back({0.5F * (value + sides), level[x]});
       const float around = 0.25F * (here[x - 1] + here[x + 1] + above[x] + below[x]);
       if (level[x] - around > kFlat * (level[x] - value)) flat.push_back(floors.back());
     }
   }
-  // A floor as dark as its neighbours is full shadow; pointed ones are shadows that the blur fills.
+  // A flat floor is full shadow; pointed floors are brightened by blur.
   auto& known = flat.size() >= 4 ? flat : floors;
-  if (known.empty()) return darkest_share(image);
+  if (known.empty()) return low_quantile(image);
   const auto low = std::max<std::size_t>(std::min<std::size_t>(2, known.size() / 4), known.size() / 50);
   const auto rank = known.begin() + static_cast<std::ptrdiff_t>(std::min(known.size() - 1, low));
   std::nth_element(known.begin(), rank, known.end(),
@@ -76,7 +76,7 @@ std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground
 
 }  // namespace
 
-Grid<float> smoothed(const Grid<float>& alpha) {
+Grid<float> smooth_alpha(const Grid<float>& alpha) {
   Grid<float> smooth(alpha.columns(), alpha.rows());
   if (alpha.columns() == 0) return smooth;
   const auto rows = alpha.rows();
@@ -112,7 +112,7 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
   for (const float level : ground.level.cells())
     if (std::isfinite(level)) levels.push_back(level);
   if (!umbra || levels.empty()) return std::nullopt;
-  // Of the lit tiles: under a low sun most of an image may lie in the shadow of hills and craters.
+  // Lit tiles only: under a low sun most of an image may lie in the shadow of hills and craters.
   const float brightest = *std::max_element(levels.begin(), levels.end());
   std::erase_if(levels, [&](float level) { return !(level >= *umbra + 0.25F * (brightest - *umbra)); });
   const float typical_depth = levels.empty() ? 0 : median_of(levels) - *umbra;
@@ -124,11 +124,11 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
                 .noise = noise / typical_depth,
                 .texture = ground.spread,
                 .tile = tile};
-  // Ground that is nearly as dark as the umbra lies in shadow itself: nothing casts one there.
-  const float least_depth = std::max(0.25F * typical_depth, 4 * noise);
+  // Ground almost as dark as the umbra is itself in shadow, so no rock casts one there.
+  const float min_depth = std::max(0.25F * typical_depth, 4 * noise);
   for (std::int64_t r = 0; r < map.texture.rows(); ++r)
     for (std::int64_t c = 0; c < map.texture.columns(); ++c)
-      map.texture(c, r) /= std::max(least_depth, ground.level(c, r) - *umbra);
+      map.texture(c, r) /= std::max(min_depth, ground.level(c, r) - *umbra);
   std::vector<float> level(static_cast<std::size_t>(image.columns()));
   for (std::int64_t y = 0; y < image.rows(); ++y) {
     ground.read_row(y, level, {});
@@ -137,10 +137,10 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
     for (std::size_t x = 0; x < level.size(); ++x) {
       const float depth = level[x] - *umbra;
       const float alpha = (level[x] - in[x]) / depth;
-      out[x] = depth > least_depth && alpha == alpha ? std::clamp(alpha, kBrightest, kDarkest) : 0;
+      out[x] = depth > min_depth && alpha == alpha ? std::clamp(alpha, kBrightest, kDarkest) : 0;
     }
   }
-  map.smooth = smoothed(map.alpha);
+  map.smooth = smooth_alpha(map.alpha);
   return map;
 }
 

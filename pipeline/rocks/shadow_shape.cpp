@@ -6,12 +6,13 @@
 namespace waymark {
 namespace {
 
-constexpr float kOtherShadow = 0.5F;         // share of the peak above which a ring pixel is another shadow's
+constexpr float kOtherShadow =
+    0.5F;  // fraction of the peak above which a ring pixel belongs to another shadow
 constexpr float kMeanOfClippedNoise = 0.4F;  // E max(0, n) of a unit normal is 1 / sqrt(2 pi)
 
 enum Role : char { outside, ring, core };
 
-// The surroundings of a segment as a small picture of roles.
+// Roles of the pixels in and around a segment.
 struct Stencil {
   std::int32_t x0 = 0, y0 = 0;
   Grid<char> role;
@@ -61,10 +62,10 @@ ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, c
         ++shape.cells;
         weight = std::min(weight, 1.15);
       } else {
-        if (map.smooth(x, y) > least) continue;  // of another shadow
+        if (map.smooth(x, y) > least) continue;  // belongs to another shadow
         weight -= static_cast<double>(kMeanOfClippedNoise * map.noise);
       }
-      // Relative to the darkest pixel, so that far from the origin no digits are lost.
+      // Relative to the darkest pixel, for precision far from the origin.
       const double dx = static_cast<double>(x - segment.x), dy = static_cast<double>(y - segment.y);
       const double t = light.along(dx, dy), s = light.across(dx, dy);
       shape.area += weight;

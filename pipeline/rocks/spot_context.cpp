@@ -14,14 +14,14 @@ constexpr std::size_t kFew = 12;      // spots
 SpotContext context_of(std::vector<double>& peaks, double pixels) {
   SpotContext context;
   if (peaks.empty()) return context;
-  const auto at = [&](double share) {
-    const auto place = peaks.begin() + static_cast<std::ptrdiff_t>(share * double(peaks.size() - 1));
+  const auto at = [&](double fraction) {
+    const auto place = peaks.begin() + static_cast<std::ptrdiff_t>(fraction * double(peaks.size() - 1));
     std::nth_element(peaks.begin(), place, peaks.end());
     return *place;
   };
-  context.usual = at(0.5);
-  context.deep = at(0.9);
-  context.crowded = 1000 * double(peaks.size()) / std::max(1.0, pixels);
+  context.median_peak = at(0.5);
+  context.upper_decile = at(0.9);
+  context.density = 1000 * double(peaks.size()) / std::max(1.0, pixels);
   return context;
 }
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/alignment.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/image_view_codec.hpp"
-#include "pipeline/fusion/terrain_of.hpp"
+#include "pipeline/fusion/association/alignment.hpp"
+#include "pipeline/fusion/projection/dem_terrain.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/projection/image_view_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -15,13 +15,14 @@ namespace {
 struct AlignImages {
   struct Options {
     bool enabled = true;
-    std::int64_t most_images = AlignmentRules{}.most_images;
+    std::int64_t max_images = AlignmentRules{}.max_images;
     void describe(OptionVisitor& option) {
-      option("enabled", enabled, {.help = "false: poses are left as they are told"});
-      option("most_images", most_images,
-             {.help = "More images are left as they are: the time grows with the third power",
+      option("enabled", enabled, {.help = "Correct poses; false leaves them as given"});
+      option("max_images", max_images,
+             {.help = "Most images that are aligned; the time grows with the third power",
               .min = 2,
-              .max = 2000});
+              .max = 2000,
+              .formerly = "most_images"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -32,7 +33,7 @@ struct AlignImages {
 
   static StageSpec spec() {
     return {.name = "align_images",
-            .summary = "Takes out what the poses of images are off by, from landmarks they share",
+            .summary = "Corrects the poses of images by the landmarks they share",
             .version = 4,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
@@ -48,13 +49,13 @@ struct AlignImages {
     Alignment aligned{unit.read(cleaned), std::move(images), {}, 0, false};
     if (options.enabled) {
       AlignmentRules rules;
-      rules.most_images = static_cast<int>(options.most_images);
-      aligned = align_images(std::move(aligned.observations), std::move(aligned.images), terrain_of(ground),
+      rules.max_images = static_cast<int>(options.max_images);
+      aligned = align_images(std::move(aligned.observations), std::move(aligned.images), load_terrain(ground),
                              types, ground->geometry().where.crs, rules);
     }
     if (aligned.too_many)
-      unit.warn(fmt::format("{} images are too many to align; most_images allows {}", aligned.images.size(),
-                            options.most_images));
+      unit.warn(fmt::format("{} images are not aligned: max_images allows {}", aligned.images.size(),
+                            options.max_images));
     unit.write(observations, std::move(aligned.observations));
     unit.write(aligned_views, std::move(aligned.images));
   }

@@ -8,13 +8,13 @@
 #include "geo/image_source.hpp"
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/vision/image_light.hpp"
 #include "pipeline/vision/sun_angle.hpp"
+#include "pipeline/vision/sun_angle_in_image.hpp"
 
 namespace waymark {
 namespace {
 
-/// What the image says about the light it was taken in.
+/// Comparison of the given sun with the shadows of an image.
 struct SunCheck {
   bool known = false, seen = false;
   double off = 0;  ///< degrees, [0, 180]
@@ -25,16 +25,17 @@ struct SunCheck {
 struct CheckSun {
   struct Options {
     Degrees tolerance{15};
-    std::int64_t most_pixels = 2048;
+    std::int64_t max_pixels = 2048;
     void describe(OptionVisitor& option) {
       option("tolerance", tolerance,
-             {.help = "Difference between the given sun and the shadows above which a warning is given",
+             {.help = "Largest difference between given sun and shadows without a warning",
               .min = 1,
               .max = 180});
-      option("most_pixels", most_pixels,
-             {.help = "Side of the square in the middle of the image that is looked at",
+      option("max_pixels", max_pixels,
+             {.help = "Side of the central square of the image that is examined",
               .min = 64,
-              .max = 65536});
+              .max = 65536,
+              .formerly = "most_pixels"});
     }
   };
   static constexpr In<ImageSet> image_set{"image_set"};
@@ -47,11 +48,11 @@ struct CheckSun {
             .inputs = {image_set}};
   }
 
-  static double apart(Radians a, Radians b) {
+  static double angle_between(Radians a, Radians b) {
     return std::abs(std::remainder(a.value - b.value, 2 * std::numbers::pi)) / kRadiansPerDegree;
   }
 
-  static Pixels middle_of(const ImageSource& image, std::int64_t most) {
+  static Pixels central_window(const ImageSource& image, std::int64_t most) {
     const std::int64_t columns = std::min(image.info().columns, most),
                        rows = std::min(image.info().rows, most);
     return image.read({(image.info().columns - columns) / 2, (image.info().rows - rows) / 2, columns, rows});
@@ -59,19 +60,20 @@ struct CheckSun {
 
   static SunCheck check(const ImageSource& image, const Options& options) {
     SunCheck made;
-    const auto given = image_light(image.info());
+    const auto given = sun_angle_in_image(image.info());
     made.known = given.has_value();
     if (!given) return made;
-    const auto seen = estimate_sun_angle(middle_of(image, options.most_pixels));
+    const auto seen = estimate_sun_angle(central_window(image, options.max_pixels));
     if (!seen) return made;
-    made.off = apart(seen->angle, *given);
+    made.off = angle_between(seen->angle, *given);
     made.sd = seen->sd.value / kRadiansPerDegree;
     made.shadows = seen->shadows;
-    // Small hollows look like rocks under the opposite sun: ask the craters.
+    // Small hollows look like rocks under the opposite sun, so craters decide.
     if (made.off > 180 - options.tolerance.value) {
       constexpr std::int64_t kEnough = 1024;  // a second of work
-      const auto bowls = estimate_crater_sun_angle(middle_of(image, std::min(options.most_pixels, kEnough)));
-      if (bowls && apart(bowls->angle, *given) < options.tolerance.value + 30) return made;
+      const auto bowls =
+          estimate_crater_sun_angle(central_window(image, std::min(options.max_pixels, kEnough)));
+      if (bowls && angle_between(bowls->angle, *given) < options.tolerance.value + 30) return made;
     }
     made.seen = true;
     return made;
@@ -79,12 +81,12 @@ struct CheckSun {
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    if (image.info().columns == 0) return;  // missing: load_images has said so
+    if (image.info().columns == 0) return;  // missing: load_images has warned
     const SunCheck found = check(image, options);
     const std::string& name = image.info().name;
     if (!found.known)
       unit.warn(fmt::format("{}: the sun is not known: detectors estimate it from the image", name));
-    // Three standard deviations, or the shadows prove nothing.
+    // Differences below three standard deviations are not significant.
     if (!found.seen || !(found.off > std::max(options.tolerance.value, 3 * found.sd))) return;
     const bool opposite = found.off > 180 - options.tolerance.value;
     unit.warn(fmt::format(

@@ -3,7 +3,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -15,11 +15,11 @@ struct CratersFromDem {
     double min_confidence = DemSurvey{}.min_confidence;
     void describe(OptionVisitor& option) {
       option("min_diameter", min_diameter,
-             {.help = "Smallest crater kept, in cells of the DEM", .min = 6, .max = kDemLargest});
+             {.help = "Smallest crater kept, in cells of the DEM", .min = 6, .max = kMaxDemDiameter});
       option("max_diameter", max_diameter,
              {.help = "Largest crater kept, in cells; larger ones need a coarser DEM",
               .min = 6,
-              .max = kDemLargest});
+              .max = kMaxDemDiameter});
       option("min_confidence", min_confidence,
              {.help = "Craters less probable than this are left out", .min = 0, .max = 1});
     }

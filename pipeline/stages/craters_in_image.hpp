@@ -4,19 +4,18 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/vision/image_faults.hpp"
-#include "pipeline/vision/image_light.hpp"
+#include "pipeline/vision/sun_angle_in_image.hpp"
 namespace waymark {
 
-/// A stage that searches one image for craters; which method it takes is all that tells two apart.
+/// Stage that detects craters in one image by a given method.
 template <CraterMethod kMethod>
 struct CratersInImage {
   struct Options {
     double min_diameter = CraterSearch{}.min_diameter;
     double max_diameter = 0;
-    /// Bowls that the image alone leaves in doubt are judged again where heights are known
-    /// (project_to_ground).
+    /// Doubtful bowls are kept, since project_to_ground decides on them where heights are known.
     double min_confidence = kMethod == CraterMethod::bowl ? 0.1 : CraterSearch{}.min_confidence;
     void describe(OptionVisitor& option) {
       option("min_diameter", min_diameter,
@@ -32,7 +31,7 @@ struct CratersInImage {
   static constexpr In<ImageSet> image_set{"image_set"};
   static constexpr Out<std::vector<Detection>> detections{"detections"};
 
-  static StageSpec specified(std::string name, std::string summary, int version) {
+  static StageSpec make_spec(std::string name, std::string summary, int version) {
     return {.name = std::move(name),
             .summary = std::move(summary),
             .version = version,
@@ -49,7 +48,7 @@ struct CratersInImage {
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
     auto found = find_craters(pixels, {.method = kMethod,
                                        .type = types.id("crater"),
-                                       .sun_angle = image_light(image.info()),
+                                       .sun_angle = sun_angle_in_image(image.info()),
                                        .min_diameter = options.min_diameter,
                                        .max_diameter = options.max_diameter,
                                        .min_confidence = options.min_confidence});

@@ -2,6 +2,7 @@
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/terrain/codecs.hpp"
+#include "pipeline/terrain/hidden_ground.hpp"
 
 namespace waymark {
 namespace {
@@ -21,7 +22,7 @@ struct FindMountainTops {
   static StageSpec spec() {
     return {.name = "find_mountain_tops",
             .summary = "Finds the summits and saddles of a tile",
-            .version = 1,
+            .version = 2,
             .scope = Scope::tile,
             .halo = 1,
             .inputs = {dem},
@@ -32,11 +33,12 @@ struct FindMountainTops {
     const DemSource& source = *unit.read(dem);
     const HeightWindow heights = source.read(unit.cells_with_halo());
     unit.progress(0.5);
-    unit.write(block_relief_out, block_relief(heights, unit.tile().cells));
+    const double hidden = hidden_above(source);
+    unit.write(block_relief_out, block_relief(heights, unit.tile().cells, hidden));
     auto tree = build_divide_tree(heights, unit.tile().cells, source.geometry(),
-                                  {.min_prominence = options.min_prominence.value,
-                                   .voids_hide_ground = source.nodata_policy() != NodataPolicy::ocean});
-    unit.count_out(tree.maxima);  // a source: what goes in are cells
+                                  {.min_prominence = options.min_prominence.value, .hidden_above = hidden});
+    tree.voids.faults = source.faults(unit.tile().cells);
+    unit.count_out(tree.maxima);  // a source: its input is cells
     unit.write(divide_tree, std::move(tree));
   }
 };

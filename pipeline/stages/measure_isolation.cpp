@@ -11,13 +11,11 @@ struct MeasureIsolation {
     std::string isolation = "cell";
     std::string distance = "geodesic";
     void describe(OptionVisitor& option) {
-      option(
-          "isolation", isolation,
-          {.help =
-               "Where isolation ends: the nearest higher cell, or the interpolated point of equal elevation",
-           .choices = {"cell", "contact"}});
+      option("isolation", isolation,
+             {.help = "End point of isolation: nearest higher cell, or interpolated point of equal elevation",
+              .choices = {"cell", "contact"}});
       option("distance", distance,
-             {.help = "Along the body's ellipsoid, or straight on a projected map",
+             {.help = "Distances on the body's ellipsoid, or straight on a projected map",
               .choices = {"geodesic", "planar"}});
     }
   };
@@ -28,11 +26,19 @@ struct MeasureIsolation {
 
   static StageSpec spec() {
     return {.name = "measure_isolation",
-            .summary = "Measures how far each summit is from higher ground",
+            .summary = "Measures the distance of each summit to higher terrain",
             .version = 1,
             .scope = Scope::map,
             .inputs = {dem, summits, relief},
             .outputs = {isolation_out}};
+  }
+
+  static DistanceKind distance(const Options& options) {
+    return options.distance == "planar" ? DistanceKind::planar : DistanceKind::geodesic;
+  }
+
+  static void check_inputs(const Options& options, StageContext& unit) {
+    if (unit.has(dem)) check_distance(distance(options), unit.read(dem)->geometry());
   }
 
   static void run(const Options& options, StageContext& unit) {
@@ -41,14 +47,14 @@ struct MeasureIsolation {
     for (const Summit& top : tops) points.push_back({top.cell, top.height});
     unit.count_in(static_cast<std::int64_t>(tops.size()));
     unit.count_out(static_cast<std::int64_t>(tops.size()));
-    unit.write(isolation_out,
-               measure_isolation(
-                   points, *unit.read(dem), unit.read(relief),
-                   {.end = options.isolation == "contact" ? IsolationEnd::contact : IsolationEnd::cell,
-                    .distance = options.distance == "planar" ? DistanceKind::planar : DistanceKind::geodesic},
-                   [&](std::size_t done) {
-                     unit.progress(static_cast<double>(done) / static_cast<double>(points.size()));
-                   }));
+    unit.write(
+        isolation_out,
+        measure_isolation(points, *unit.read(dem), unit.read(relief),
+                          {.end = options.isolation == "contact" ? IsolationEnd::contact : IsolationEnd::cell,
+                           .distance = distance(options)},
+                          [&](std::size_t done) {
+                            unit.progress(static_cast<double>(done) / static_cast<double>(points.size()));
+                          }));
   }
 };
 

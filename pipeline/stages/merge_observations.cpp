@@ -3,10 +3,10 @@
 
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/count_kept.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/merging.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/association/merging.hpp"
+#include "pipeline/fusion/cleaning/rejection_counter.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -14,35 +14,40 @@ namespace {
 struct MergeObservations {
   struct Options {
     Meters max_distance{0};
-    double position_gate = IdentityRules{}.position_gate;
-    double size_gate = IdentityRules{}.size_gate;
-    double overlap = IdentityRules{}.overlap;
-    double common_share = MergeRules{}.common_share;
+    double position_gate = AssociationRules{}.position_gate;
+    double size_gate = AssociationRules{}.size_gate;
+    double overlap = AssociationRules{}.overlap;
+    double common_fraction = MergeRules{}.common_fraction;
     std::string weights = "quality";
     void describe(OptionVisitor& option) {
       option("max_distance", max_distance,
-             {.help = "Observations further apart are never one landmark; 0: their covariances alone decide",
+             {.help = "Largest distance between observations of one landmark; 0: only covariances decide",
               .min = 0,
               .max = 1e7});
-      option("position_gate", position_gate,
-             {.help = "Largest squared distance in standard deviations (chi-square of 2) of one landmark's "
-                      "observations",
+      option(
+          "position_gate", position_gate,
+          {.help =
+               "Gate of the squared Mahalanobis distance between observations of one landmark (chi-square, 2 "
+               "degrees of freedom)",
+           .min = 0.1,
+           .max = 1000});
+      option("size_gate", size_gate,
+             {.help = "Gate for the logarithm of the size (chi-square, 1 degree of freedom)",
               .min = 0.1,
               .max = 1000});
-      option("size_gate", size_gate,
-             {.help = "The same for the logarithm of the size (chi-square of 1)", .min = 0.1, .max = 1000});
-      option(
-          "overlap", overlap,
-          {.help = "Bodies of like size in different images, nearer than this share of their radius, are one "
-                   "whatever the covariances say",
-           .min = 0,
-           .max = 2});
-      option("common_share", common_share,
-             {.help = "Share of a position's variance that more images do not reduce: shape, light, DEM",
+      option("overlap", overlap,
+             {.help = "Bodies of similar size in different images, nearer than this fraction of their "
+                      "radius, are one "
+                      "regardless of covariances",
               .min = 0,
-              .max = 1});
+              .max = 2});
+      option("common_fraction", common_fraction,
+             {.help = "Fraction of a position's variance common to all images (shape, light, DEM)",
+              .min = 0,
+              .max = 1,
+              .formerly = "common_share"});
       option("weights", weights,
-             {.help = "What an observation counts in a merged feature: quality (eq. 3) or precision",
+             {.help = "Weight of an observation in a merged feature: quality (eq. 3) or precision",
               .choices = {"quality", "precision"}});
     }
   };
@@ -53,15 +58,15 @@ struct MergeObservations {
 
   static StageSpec spec() {
     return {.name = "merge_observations",
-            .summary = "Makes one landmark of the observations of one thing in different images",
-            .version = 4,
+            .summary = "Merges observations of different images into landmarks",
+            .version = 5,
             .scope = Scope::map,
             .inputs = {dem, observations},
             .outputs = {merged, merged_evidence}};
   }
 
-  // Part by part, each let go of at once.
-  static std::vector<Observation> joined(std::vector<std::vector<Observation>> parts) {
+  // Releases each part as soon as it is appended.
+  static std::vector<Observation> concatenate(std::vector<std::vector<Observation>> parts) {
     std::size_t count = 0;
     for (const auto& part : parts) count += part.size();
     std::vector<Observation> all;
@@ -73,16 +78,16 @@ struct MergeObservations {
   static void run(const Options& options, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
-    std::vector<Observation> all = joined(unit.take_all(observations));
+    std::vector<Observation> all = concatenate(unit.take_all(observations));
     MergeRules rules;
-    rules.identity.position_gate = options.position_gate;
-    rules.identity.size_gate = options.size_gate;
-    rules.identity.overlap = options.overlap;
-    if (options.max_distance.value > 0) rules.identity.max_distance = options.max_distance.value;
-    rules.common_share = options.common_share;
+    rules.association.position_gate = options.position_gate;
+    rules.association.size_gate = options.size_gate;
+    rules.association.overlap = options.overlap;
+    if (options.max_distance.value > 0) rules.association.max_distance = options.max_distance.value;
+    rules.common_fraction = options.common_fraction;
     rules.weights = options.weights == "precision" ? FeatureWeights::precision : FeatureWeights::quality;
     std::sort(all.begin(), all.end(), comes_before);
-    KeptCount count(unit, all);
+    RejectionCounter count(unit, all);
     MergedObservations made =
         merge_observations(std::move(all), types, unit.read(dem)->geometry().where.crs, rules);
     count.close(made.evidence);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/count_kept.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/rejections.hpp"
+#include "pipeline/fusion/cleaning/rejection_counter.hpp"
+#include "pipeline/fusion/cleaning/rejections.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -13,12 +13,11 @@ struct RejectImplausible {
     double max_height_ratio = PlausibilityRules{}.max_height_ratio;
     void describe(OptionVisitor& option) {
       option("min_depth_ratio", min_depth_ratio,
-             {.help = "Craters shallower than this share of their diameter are rejected, where the DEM shows "
-                      "their depth",
+             {.help = "Smallest depth / diameter of a crater whose depth the DEM resolves",
               .min = 0,
               .max = 0.5});
       option("max_height_ratio", max_height_ratio,
-             {.help = "Rocks higher than this many diameters are rejected: cliffs and ridges",
+             {.help = "Largest height / diameter of a rock; higher ones are cliffs and ridges",
               .min = 0.5,
               .max = 100});
     }
@@ -39,7 +38,7 @@ struct RejectImplausible {
     TypeRegistry types;
     register_landmark_types(types);
     std::vector<Observation> all = unit.read(placed);
-    KeptCount count(unit, all);
+    RejectionCounter count(unit, all);
     reject_implausible(
         all, types,
         {.min_depth_ratio = options.min_depth_ratio, .max_height_ratio = options.max_height_ratio});

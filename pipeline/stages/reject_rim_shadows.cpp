@@ -1,36 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/count_kept.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/image_view_codec.hpp"
-#include "pipeline/fusion/rejections.hpp"
+#include "pipeline/fusion/cleaning/rejection_counter.hpp"
+#include "pipeline/fusion/cleaning/rejections.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/projection/image_view_codec.hpp"
 
 namespace waymark {
 namespace {
 
-// Of the whole map: a crater seen in a coarse image explains shadows in a fine one that shows only its rim.
+// Map scope: a crater in a coarse image explains shadows in a fine one that shows only its rim.
 struct RejectRimShadows {
   struct Options {
     double inner = RimShadowRules{}.inner, outer = RimShadowRules{}.outer;
     Degrees half_angle = to_degrees(Radians{RimShadowRules{}.half_angle});
-    double min_share = RimShadowRules{}.min_share;
+    double min_fraction = RimShadowRules{}.min_fraction;
     double min_confidence = RimShadowRules{}.min_confidence;
     void describe(OptionVisitor& option) {
       option("inner", inner,
-             {.help = "Rocks nearer to the crater's middle than this many radii stay", .min = 0, .max = 1});
-      option(
-          "outer", outer,
-          {.help = "Rocks further from the crater's middle than this many radii stay", .min = 1, .max = 5});
-      option(
-          "half_angle", half_angle,
-          {.help = "How far either side of the sun's direction a rim faces the light", .min = 0, .max = 180});
-      option("min_share", min_share,
-             {.help = "Rocks narrower than this share of the crater stay: a rim's shadow is wide",
+             {.help = "Inner limit of the rim band, in radii of the crater", .min = 0, .max = 1});
+      option("outer", outer,
+             {.help = "Outer limit of the rim band, in radii of the crater", .min = 1, .max = 5});
+      option("half_angle", half_angle,
+             {.help = "Half angle around the sun's direction in which a rim faces the light",
               .min = 0,
-              .max = 1});
+              .max = 180});
+      option("min_fraction", min_fraction,
+             {.help = "Smallest size, as a fraction of the crater's, of a rock that is rejected",
+              .min = 0,
+              .max = 1,
+              .formerly = "min_share"});
       option("min_confidence", min_confidence,
-             {.help = "Craters less certain than this reject no rocks", .min = 0, .max = 1});
+             {.help = "Smallest confidence of a crater whose rim rejects rocks", .min = 0, .max = 1});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -40,7 +41,7 @@ struct RejectRimShadows {
 
   static StageSpec spec() {
     return {.name = "reject_rim_shadows",
-            .summary = "Rejects rocks on the light-facing rims of craters: the shadow is the crater's",
+            .summary = "Rejects rocks on the light-facing rims of craters, where the shadow is the crater's",
             .version = 1,
             .scope = Scope::map,
             .inputs = {dem, image_view, lit},
@@ -55,12 +56,12 @@ struct RejectRimShadows {
       if (image->sun) suns[image->name] = *image->sun;
     std::vector<Observation> all;
     for (const auto& part : unit.read_all(lit)) all.insert(all.end(), part->begin(), part->end());
-    KeptCount count(unit, all);
+    RejectionCounter count(unit, all);
     reject_rim_shadows(all, all, types, suns, unit.read(dem)->geometry().where.crs,
                        {.inner = options.inner,
                         .outer = options.outer,
                         .half_angle = to_radians(options.half_angle).value,
-                        .min_share = options.min_share,
+                        .min_fraction = options.min_fraction,
                         .min_confidence = options.min_confidence});
     count.close(all);
     unit.write(cleaned, std::move(all));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/count_kept.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/image_view_codec.hpp"
-#include "pipeline/fusion/rejections.hpp"
-#include "pipeline/fusion/terrain_of.hpp"
+#include "pipeline/fusion/cleaning/rejection_counter.hpp"
+#include "pipeline/fusion/cleaning/rejections.hpp"
+#include "pipeline/fusion/projection/dem_terrain.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/projection/image_view_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -14,7 +14,7 @@ struct RejectTerrainShadows {
     double min_distance_cells = TerrainShadowRules{}.min_distance_cells;
     void describe(OptionVisitor& option) {
       option("min_distance_cells", min_distance_cells,
-             {.help = "Ground nearer than this many cells of the DEM is not held to cast the shadow",
+             {.help = "Smallest distance of shadow-casting terrain, in cells of the DEM",
               .min = 0,
               .max = 1000});
     }
@@ -26,7 +26,7 @@ struct RejectTerrainShadows {
 
   static StageSpec spec() {
     return {.name = "reject_terrain_shadows",
-            .summary = "Rejects rocks whose shadow is the terrain's, by casting rays to the sun",
+            .summary = "Rejects rocks whose shadow is cast by terrain, by tracing rays to the sun",
             .version = 1,
             .scope = Scope::image,
             .inputs = {dem, image_view, plausible},
@@ -37,9 +37,9 @@ struct RejectTerrainShadows {
     TypeRegistry types;
     register_landmark_types(types);
     std::vector<Observation> all = unit.read(plausible);
-    KeptCount count(unit, all);
+    RejectionCounter count(unit, all);
     const DemHandle& ground = unit.read(dem);
-    reject_terrain_shadows(all, types, unit.read(image_view), terrain_of(ground),
+    reject_terrain_shadows(all, types, unit.read(image_view), load_terrain(ground),
                            ground->geometry().where.crs.metres_per_unit(),
                            {.min_distance_cells = options.min_distance_cells});
     count.close(all);

@@ -2,10 +2,10 @@
 #include "geo/image_source.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/image_faults.hpp"
-#include "pipeline/vision/image_light.hpp"
+#include "pipeline/vision/sun_angle_in_image.hpp"
 
 namespace waymark {
 namespace {
@@ -19,8 +19,8 @@ struct RocksFromShadows {
     double blur = 0;
     void describe(OptionVisitor& option) {
       option("method", method,
-             {.help = "How shadows are told from ground: shadow (against the ground around each), "
-                      "classic (one threshold, as published)",
+             {.help = "Segmentation of shadows: shadow (against the ground around each), classic (one "
+                      "threshold, as published)",
               .choices = {"shadow", "classic"}});
       option("min_diameter", min_diameter,
              {.help = "Smallest rock kept, in pixels of the image", .min = 0.5, .max = 1e4});
@@ -29,7 +29,7 @@ struct RocksFromShadows {
       option("min_confidence", min_confidence,
              {.help = "Rocks less probable than this are left out", .min = 0, .max = 1});
       option("blur", blur,
-             {.help = "Standard deviation of the camera's point spread, in pixels; 0: unknown, 0.6 is taken",
+             {.help = "Standard deviation of the camera's point spread, in pixels; 0: unknown, uses 0.6",
               .min = 0,
               .max = 5});
     }
@@ -52,12 +52,12 @@ struct RocksFromShadows {
     register_landmark_types(types);
     RockSearch search{.method = options.method == "classic" ? RockMethod::classic : RockMethod::shadow,
                       .type = types.id("rock"),
-                      .sun_angle = image_light(image.info()),
+                      .sun_angle = sun_angle_in_image(image.info()),
                       .blur = options.blur,
                       .min_diameter = options.min_diameter,
                       .max_diameter = options.max_diameter,
                       .min_confidence = options.min_confidence};
-    if (image.info().view) search.lean = lean_of(*image.info().view);
+    if (image.info().view) search.displacement = relief_displacement_of(*image.info().view);
     if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fstream>
-#include <sstream>
-
+#include "core/text_file.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/tree_observations.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark {
 namespace {
@@ -20,31 +18,31 @@ struct TreesFromCanopy {
 
     void describe(OptionVisitor& option) {
       option("preset", preset,
-             {.help = "Type of forest the trees are told by; see docs/trees.md",
+             {.help = "Parameters for a type of forest; see docs/methods/trees.md",
               .choices = forest_preset_names()});
       option("method", method,
              {.help = "peaks (smoothing, isolation, prominence) or lmf (variable-window local maxima, the "
                       "reference)",
               .choices = {"peaks", "lmf"}});
       option("min_height", min_height, {.help = "Lowest tree kept", .min = 0.5, .max = 100});
-      option(
-          "isolation_base", isolation_base,
-          {.help =
-               "No higher cell within isolation_base + isolation_slope x height, metres; -1: as the preset",
-           .min = -1,
-           .max = 100});
+      option("isolation_base", isolation_base,
+             {.help = "A treetop has no higher cell within isolation_base + isolation_slope x height, "
+                      "metres; -1: as the preset",
+              .min = -1,
+              .max = 100});
       option("isolation_slope", isolation_slope,
              {.help = "See isolation_base; -1: as the preset", .min = -1, .max = 2});
-      option("prominence", prominence,
-             {.help = "Metres a top stands above the saddle to higher ground nearby; -1: as the preset",
-              .min = -1,
-              .max = 50});
+      option(
+          "prominence", prominence,
+          {.help = "Smallest height of a treetop above its saddle to a higher one, metres; -1: as the preset",
+           .min = -1,
+           .max = 50});
       option(
           "smoothing", smoothing,
           {.help = "Standard deviation of the smoothing, metres; -1: as the preset", .min = -1, .max = 20});
       option("crowns", crowns, {.help = "Outline the crowns; without them trees have no crown diameter"});
       option("max_crown_radius", max_crown_radius,
-             {.help = "A crown reaches no farther from its top, metres; -1: as the preset",
+             {.help = "Largest distance of a crown's edge from its top, metres; -1: as the preset",
               .min = -1,
               .max = 40});
       option(
@@ -74,7 +72,7 @@ struct TreesFromCanopy {
     return o.allometry.empty() ? std::vector<std::string>{} : std::vector{o.allometry};
   }
 
-  static TreetopRules with_options(TreetopRules rules, const Options& o) {
+  static TreetopRules apply_options(TreetopRules rules, const Options& o) {
     rules.min_height = o.min_height.value;
     if (o.isolation_base >= 0) rules.isolation_base = o.isolation_base;
     if (o.isolation_slope >= 0) rules.isolation_slope = o.isolation_slope;
@@ -82,54 +80,52 @@ struct TreesFromCanopy {
     return rules;
   }
 
-  static ForestPreset chosen(const ForestPreset& preset, const Options& o) {
-    ForestPreset forest = o.method == "lmf" ? as_local_maxima(preset) : preset;
-    forest.tops = with_options(forest.tops, o);
+  static ForestPreset configure(const ForestPreset& preset, const Options& o) {
+    ForestPreset forest = o.method == "lmf" ? local_maxima_preset(preset) : preset;
+    forest.tops = apply_options(forest.tops, o);
     if (o.smoothing >= 0) forest.smoothing = o.smoothing;
     if (o.max_crown_radius > 0) forest.crowns.max_radius = o.max_crown_radius;
     return forest;
   }
 
-  static std::vector<Allometry> table_of(const Options& options, const StageContext& unit) {
+  static std::vector<Allometry> load_table(const Options& options, const StageContext& unit) {
     if (options.allometry.empty()) return built_in_allometry();
     const std::string path = unit.path(options.allometry);
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    if (!(text << file.rdbuf()))
-      throw Error(ErrorCode::input, "the allometry table cannot be read", path,
-                  "`waymark allometry fit TREES.csv -o TABLE.csv` writes one");
-    return parse_allometry(text.str(), path);
+    return parse_allometry(read_text(path, "the allometry table", ErrorCode::input,
+                                     "`waymark allometry fit TREES.csv -o TABLE.csv` writes one"),
+                           path);
   }
 
   static void run(const Options& options, StageContext& unit) {
     TypeRegistry types;
     register_landmark_types(types);
     const TypeId id = types.id("tree");
-    const std::vector<Allometry> table = table_of(options, unit);
-    TreeSearch search{.forest = chosen(forest_preset(options.preset), options), .crowns = options.crowns};
+    const std::vector<Allometry> table = load_table(options, unit);
+    TreeSearch search{.forest = configure(forest_preset(options.preset), options), .crowns = options.crowns};
     for (const ForestType type : {ForestType::conifer, ForestType::broadleaf, ForestType::mixed})
-      search.by_type.push_back(chosen(forest_preset(type), options).tops);
+      search.by_type.push_back(configure(forest_preset(type), options).tops);
     const Canopies& surveys = unit.read(canopies);
     const GridGeometry common = common_grid(surveys);
     std::vector<Observation> seen;
     CrownTable outlines;
     for (const auto& canopy : surveys) {
-      const Window owned = part_of(canopy->geometry(), common, unit.tile().cells);
+      const Window owned = tile_window(canopy->geometry(), common, unit.tile().cells);
       const std::uint32_t survey = outlines.add_survey(*canopy);
-      for (const FoundTree& tree : find_trees(*canopy, owned, search)) {
+      for (const DetectedTree& tree : find_trees(*canopy, owned, search)) {
         seen.push_back(
-            observation_of(tree, *canopy, types[id], id, table, species_of(tree, *canopy, options)));
+            observation_of(tree, *canopy, types[id], id, table, tree_species(tree, *canopy, options)));
         if (options.crowns) outlines.add(survey, tree);
       }
     }
     unit.count_out(static_cast<std::int64_t>(seen.size()));
     seen.shrink_to_fit();
-    outlines.close();
+    outlines.shrink_to_fit();
     unit.write(observations, std::move(seen));
     unit.write(seen_crowns, std::move(outlines));
   }
 
-  static std::string species_of(const FoundTree& tree, const CanopySource& canopy, const Options& options) {
+  static std::string tree_species(const DetectedTree& tree, const CanopySource& canopy,
+                                  const Options& options) {
     if (!options.species.empty()) return options.species;
     const Grid<std::uint8_t> type = canopy.forest_types({tree.top.column, tree.top.row, 1, 1});
     const auto known = type.columns() ? static_cast<ForestType>(type(0, 0)) : ForestType::unknown;

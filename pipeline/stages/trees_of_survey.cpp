@@ -2,16 +2,16 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/merging.hpp"
-#include "pipeline/fusion/valuing.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/association/merging.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark {
 namespace {
 
-// What merge_observations and value_flights do, where nothing is to be merged: tile by tile, so that the
-// trees need not be in memory all at once.
+// Equivalent of merge_observations and value_flights for a single survey, where nothing is merged: tile by
+// tile, so that not all trees are in memory.
 struct TreesOfSurvey {
   struct Options {
     void describe(OptionVisitor&) {}
@@ -25,22 +25,26 @@ struct TreesOfSurvey {
 
   static StageSpec spec() {
     return {.name = "trees_of_survey",
-            .summary = "Makes each tree of one canopy model a landmark and names its crown",
-            .version = 1,
+            .summary = "Converts the trees of one canopy model to landmarks and assigns their crowns",
+            .version = 2,
             .scope = Scope::tile,
             .inputs = {canopies, observations, seen_crowns},
             .outputs = {landmarks, evidence, crowns}};
   }
 
-  static void run(const Options&, StageContext& unit) {
+  static void check_inputs(const Options&, StageContext& unit) {
+    if (unit.has(canopies) && unit.read(canopies).size() != 1)
+      throw Error(ErrorCode::usage, "trees of several surveys must be merged", "trees_of_survey",
+                  "replace this stage by merge_observations and value_flights");
+  }
+
+  static void run(const Options& options, StageContext& unit) {
+    check_inputs(options, unit);
     const Canopies& surveys = unit.read(canopies);
-    if (surveys.size() != 1)
-      throw Error(ErrorCode::usage, "trees of several surveys are to be merged", "trees_of_survey",
-                  "in place of this stage, take merge_observations and value_flights");
     TypeRegistry types;
     register_landmark_types(types);
     MergeRules apart;
-    apart.identity.twin = 0;  // two tops of one canopy model are two trees
+    apart.association.duplicate_overlap = 0;  // two tops of one canopy model are two trees
     MergedObservations made =
         merge_observations(unit.take(observations), types, surveys[0]->geometry().where.crs, apart);
     value_landmarks(made.landmarks, made.evidence, {}, nullptr, types, 1);

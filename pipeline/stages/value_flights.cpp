@@ -4,14 +4,14 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/valuing.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark {
 namespace {
 
-// A canopy model is a survey: it could have shown a tree where it knows the canopy's height.
+// A canopy model is a survey that could have shown a tree wherever the canopy's height is known.
 struct ValueFlights {
   struct Options {
     void describe(OptionVisitor&) {}
@@ -27,7 +27,7 @@ struct ValueFlights {
   static StageSpec spec() {
     return {.name = "value_flights",
             .summary =
-                "Values trees: how many canopy models show them of how many could have; names their crowns",
+                "Values trees by the canopy models that show them and that could have; assigns their crowns",
             .version = 4,
             .scope = Scope::map,
             .inputs = {canopies, merged, merged_evidence, seen_crowns},
@@ -43,9 +43,9 @@ struct ValueFlights {
     const Canopies& surveys = unit.read(canopies);
     if (surveys.size() > 1) {
       for (Landmark& landmark : all) {
-        landmark.quality.visible = std::max(landmark.quality.seen, covering(surveys, landmark));
+        landmark.quality.visible = std::max(landmark.quality.seen, count_covering(surveys, landmark));
         const int missed = landmark.quality.visible - landmark.quality.seen;
-        landmark.confidence *= std::pow(kDoubtWhenMissed, missed);
+        landmark.confidence *= std::pow(kMissedFactor, missed);
       }
     }
     unit.write(crowns, name_crowns(unit.take_all(seen_crowns), seen, all));
@@ -54,10 +54,10 @@ struct ValueFlights {
     unit.write(evidence, std::move(seen));
   }
 
-  // A survey that should show a tree and does not takes this share of its confidence.
-  static constexpr double kDoubtWhenMissed = 0.7;
+  // Factor on the confidence of a tree for each survey that should show it but does not.
+  static constexpr double kMissedFactor = 0.7;
 
-  static int covering(const Canopies& surveys, const Landmark& landmark) {
+  static int count_covering(const Canopies& surveys, const Landmark& landmark) {
     int count = 0;
     for (const auto& canopy : surveys) {
       const Georeference& where = canopy->geometry().where;

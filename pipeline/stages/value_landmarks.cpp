@@ -2,11 +2,11 @@
 #include <cmath>
 
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/image_view_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/terrain_of.hpp"
-#include "pipeline/fusion/valuing.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/projection/dem_terrain.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/projection/image_view_codec.hpp"
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark {
 namespace {
@@ -15,23 +15,25 @@ struct ValueLandmarks {
   struct Options {
     std::string covers = "sound";
     std::string spread = "sound";
-    double least_diameter = 0;
+    double min_diameter = 0;
     bool keep_improbable = false;
     void describe(OptionVisitor& option) {
-      option("covers", covers,
-             {.help = "When an image could have shown a landmark: sound (whole, unhidden, at least as sharp "
-                      "there as the coarsest that did) or paper (eq. 4: footprint and its area)",
-              .choices = {"sound", "paper"}});
+      option(
+          "covers", covers,
+          {.help = "Rule for images that cover a landmark: sound (complete, not occluded, at least as sharp "
+                   "as the coarsest that detected it) or paper (eq. 4: footprint and its area)",
+           .choices = {"sound", "paper"}});
       option("spread", spread,
-             {.help = "How spread becomes confidence: sound (by scale, absent for one observation) or paper "
+             {.help = "Confidence from spread: sound (by scale, absent for one observation) or paper "
                       "(eqs. 6-7 literally)",
               .choices = {"sound", "paper"}});
-      option("least_diameter", least_diameter,
-             {.help = "Images that show a landmark smaller than this, in pixels, could not have detected it",
+      option("min_diameter", min_diameter,
+             {.help = "Smallest landmark that an image can detect, in pixels",
               .min = 0,
-              .max = 1000});
+              .max = 1000,
+              .formerly = "least_diameter"});
       option("keep_improbable", keep_improbable,
-             {.help = "Keep landmarks that most probably are none (rocks below 0.5)"});
+             {.help = "Keep landmarks that are probably false (rocks below 0.5)"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -44,7 +46,7 @@ struct ValueLandmarks {
 
   static StageSpec spec() {
     return {.name = "value_landmarks",
-            .summary = "Values landmarks: how often seen of how often visible, spread of features, existence",
+            .summary = "Values landmarks: multiplicity, spread of features, probability of existence",
             .version = 4,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
@@ -58,11 +60,11 @@ struct ValueLandmarks {
     std::vector<Landmark> all = unit.take(merged);
     std::vector<Observation> seen = unit.take(merged_evidence);
     const DemHandle& ground = unit.read(dem);
-    const Terrain terrain = terrain_of(ground);
+    const Terrain terrain = load_terrain(ground);
     ValuationRules rules;
     rules.cover = options.covers == "paper" ? CoverRule::paper : CoverRule::sound;
     rules.spread = options.spread == "paper" ? SpreadRule::paper : SpreadRule::sound;
-    rules.covering.least_diameter = options.least_diameter;
+    rules.coverage.min_diameter = options.min_diameter;
     value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
                     rules);
     unit.count_in(static_cast<std::int64_t>(all.size()));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/detection_codec.hpp"
-#include "pipeline/fusion/landmark_codec.hpp"
-#include "pipeline/fusion/valuing.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark {
 namespace {
 
-// Landmarks of a DEM alone: each source saw its own and could have.
+// Landmarks of a DEM alone: each source detected its own.
 struct ValueSurveys {
   struct Options {
     void describe(OptionVisitor&) {}
@@ -21,7 +21,7 @@ struct ValueSurveys {
 
   static StageSpec spec() {
     return {.name = "value_surveys",
-            .summary = "Values landmarks that no image showed: a DEM or a table is one survey",
+            .summary = "Values landmarks without images; a DEM or a table is one survey",
             .version = 1,
             .scope = Scope::map,
             .inputs = {dem, merged, merged_evidence},

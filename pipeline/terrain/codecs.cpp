@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-// Each layout is told once and serves both ways: `io` is a ByteWriter or a ByteReader.
+// Each layout is defined once for both directions: `io` is a ByteWriter or a ByteReader.
 
 void layout(auto& io, auto& node) requires requires {
   node.portal;
@@ -30,6 +30,14 @@ void layout(auto& io, auto& summit) requires requires {
 {
   io(summit.cell), io(summit.height), io(summit.prominence), io(summit.prominence_low);
   io(summit.saddle), io(summit.saddle_height), io(summit.parent);
+}
+
+void layout(auto& io, auto& voids) requires requires {
+  voids.faults;
+}
+{
+  io(voids.empty), io(voids.rim), io(voids.faults.filled), io(voids.faults.implausible);
+  io(voids.faults.height), io(voids.faults.column), io(voids.faults.row);
 }
 
 template <class T>
@@ -58,20 +66,24 @@ std::optional<double> read_optional(ByteReader& in) {
 
 std::string Codec<DivideTree>::encode(const DivideTree& tree) {
   ByteWriter out;
+  layout(out, tree.window);
   write_all(out, tree.nodes);
   write_all(out, tree.saddles);
   write_all(out, tree.border);
   out(tree.cells), out(tree.maxima), out(tree.min_prominence), out(tree.lowest), out(tree.highest);
+  layout(out, tree.voids);
   return out.take();
 }
 
 DivideTree Codec<DivideTree>::decode(std::string_view bytes) {
   ByteReader in(bytes);
   DivideTree tree;
+  layout(in, tree.window);
   tree.nodes = read_all<DivideTree::Node>(in);
   tree.saddles = read_all<DivideTree::Saddle>(in);
   tree.border = read_all<DivideTree::Border>(in);
   in(tree.cells), in(tree.maxima), in(tree.min_prominence), in(tree.lowest), in(tree.highest);
+  layout(in, tree.voids);
   in.expect_end();
   return tree;
 }
@@ -92,7 +104,7 @@ BlockRelief Codec<BlockRelief>::decode(std::string_view bytes) {
   return relief;
 }
 
-// The finest level is a single tile's relief; the others follow from it.
+// Stores the finest level as the relief of a single tile; the others are computed from it.
 std::string Codec<ReliefPyramid>::encode(const ReliefPyramid& pyramid) {
   ByteWriter out;
   out(pyramid.columns()), out(pyramid.rows()), out(Codec<BlockRelief>::encode(pyramid.finest()));

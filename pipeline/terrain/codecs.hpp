@@ -10,7 +10,7 @@
 #include "pipeline/terrain/relief_pyramid.hpp"
 namespace waymark {
 
-// How the artifacts of the mountain-top stages look on disk: numbers, member by member (core/bytes.hpp).
+// Serialization of the artifacts of the mountain-top stages: numbers, member by member (core/bytes.hpp).
 
 template <>
 struct Codec<DivideTree> {

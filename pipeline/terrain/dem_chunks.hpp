@@ -7,16 +7,17 @@
 #include "geo/dem_source.hpp"
 namespace waymark {
 
-/// Random access to the cells of a DEM: squares of 64 cells, read when first asked for; the oldest are
-/// dropped. For one thread. Small, because a search looks at few blocks here and there.
+/// Random access to the cells of a DEM through a cache of squares of 64 cells; the oldest are dropped. For
+/// one thread.
+/// The squares are small because a search reads few scattered blocks.
 class DemChunks {
  public:
   static constexpr std::int64_t kSide = 64;
 
-  /// Holds at most `limit` chunks of 32 KiB.
+  /// Caches at most `limit` chunks of 32 KiB.
   explicit DemChunks(const DemSource& dem, std::size_t limit = 256) : dem_(dem), limit_(limit) {}
 
-  /// Height of a cell; kNoHeight outside the grid. Columns wrap round where the grid does.
+  /// Returns the height of a cell; kNoHeight outside the grid. Columns wrap around if the grid does.
   double operator()(std::int64_t column, std::int64_t row) {
     const GridGeometry& grid = dem_.geometry();
     if (grid.wraps) column = (column + grid.columns) % grid.columns;

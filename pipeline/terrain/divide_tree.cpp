@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int32_t kUnlabelled = -1;
 
-// One tile at work. "Local" columns and rows count in the grown window, so owned cells begin at (1, 1).
+// Computation of one tile. Local columns and rows refer to the grown window, so owned cells begin at (1, 1).
 class TileSurvey {
  public:
   TileSurvey(const HeightWindow& heights, const Window& owned, const GridGeometry& grid,
@@ -26,13 +26,14 @@ class TileSurvey {
         labels_(owned.columns, owned.rows, kUnlabelled) {
     for (std::int64_t c = owned.column - 1; c <= owned.end_column(); ++c)
       grid_column_.push_back(grid.wraps ? (c + grid.columns) % grid.columns : c);
+    tree_.window = owned;
   }
 
   DivideTree survey() {
     std::vector<std::uint8_t> masks(static_cast<std::size_t>(owned_.columns));
     for (std::int64_t r = 1; r <= owned_.rows; ++r) {
       higher_neighbours(&heights_(1, r - 1), &heights_(1, r), &heights_(1, r + 1), masks);
-      mend_ties_across_the_wrap(masks, r);
+      fix_ties_at_wrap(masks, r);
       find_critical_cells(masks, r);
     }
     for (const auto& saddle : saddle_cells_) add_saddle(saddle);
@@ -54,8 +55,8 @@ class TileSurvey {
     return c >= 1 && c <= owned_.columns && r >= 1 && r <= owned_.rows;
   }
 
-  // Row order and cell order agree except between the first and last column of a grid that wraps.
-  void mend_ties_across_the_wrap(std::span<std::uint8_t> masks, std::int64_t r) const {
+  // Row order and cell order differ between the first and last column of a grid that wraps.
+  void fix_ties_at_wrap(std::span<std::uint8_t> masks, std::int64_t r) const {
     if (!grid_.wraps) return;
     constexpr unsigned east = 1u << 2, west = 1u << 6;
     if (owned_.column == 0 && heights_(0, r) == heights_(1, r))
@@ -67,9 +68,12 @@ class TileSurvey {
 
   void find_critical_cells(std::span<const std::uint8_t> masks, std::int64_t r) {
     for (std::int64_t c = 1; c <= owned_.columns; ++c) {
-      const std::uint8_t parts = one_of_each_part(masks[static_cast<std::size_t>(c - 1)]);
+      const std::uint8_t parts = connected_parts(masks[static_cast<std::size_t>(c - 1)]);
       const double height = heights_(c, r);
-      if (height == kNoHeight) continue;
+      if (height == kNoHeight) {
+        ++tree_.voids.empty;
+        continue;
+      }
       count(height);
       if (std::has_single_bit(parts)) continue;  // a slope
       if (parts == 0)
@@ -107,7 +111,7 @@ class TileSurvey {
     }
   }
 
-  // Follows steepest ascent to a local maximum or out of the tile, and remembers the answer for each cell
+  // Follows steepest ascent to a local maximum or out of the tile, and caches the result for each cell
   // passed.
   std::int32_t summit_above(std::int64_t c, std::int64_t r) {
     path_.clear();
@@ -144,14 +148,16 @@ class TileSurvey {
     return found->second;
   }
 
-  // A neighbour whose height nobody knows, though it may be anything.
-  bool hides_ground(std::int64_t c, std::int64_t r) const {
-    if (heights_(c, r) != kNoHeight) return false;
+  enum class Unknown { none, beyond_grid, empty };
+
+  // Returns whether the height of a neighbour is unknown, and why.
+  Unknown unknown(std::int64_t c, std::int64_t r) const {
+    if (heights_(c, r) != kNoHeight) return Unknown::none;
     const std::int64_t row = owned_.row + r - 1;
-    if (row < 0) return !grid_.north_pole;
-    if (row >= grid_.rows) return !grid_.south_pole;
+    if (row < 0) return grid_.north_pole ? Unknown::none : Unknown::beyond_grid;
+    if (row >= grid_.rows) return grid_.south_pole ? Unknown::none : Unknown::beyond_grid;
     const std::int64_t column = grid_column_[static_cast<std::size_t>(c)];
-    return column < 0 || column >= grid_.columns || options_.voids_hide_ground;
+    return column < 0 || column >= grid_.columns ? Unknown::beyond_grid : Unknown::empty;
   }
 
   void note_contacts() {
@@ -162,15 +168,23 @@ class TileSurvey {
       const auto at = static_cast<std::size_t>(r);
       if (!row_has_void[at - 1] && !row_has_void[at] && !row_has_void[at + 1]) continue;
       for (std::int64_t c = 1; c <= owned_.columns; ++c)
-        if (heights_(c, r) != kNoHeight && touches_hidden_ground(c, r)) {
+        if (heights_(c, r) != kNoHeight && touches_hidden_terrain(c, r)) {
           DivideTree::Node& node = tree_.nodes[static_cast<std::size_t>(summit_above(c, r))];
           node.contact = std::max(node.contact, heights_(c, r));
         }
     }
   }
 
-  bool touches_hidden_ground(std::int64_t c, std::int64_t r) const {
-    return std::ranges::any_of(kRing, [&](NeighbourStep s) { return hides_ground(c + s.column, r + s.row); });
+  bool touches_hidden_terrain(std::int64_t c, std::int64_t r) {
+    bool beyond_grid = false, empty = false;
+    for (const NeighbourStep s : kRing) {
+      const Unknown why = unknown(c + s.column, r + s.row);
+      beyond_grid |= why == Unknown::beyond_grid;
+      empty |= why == Unknown::empty;
+    }
+    const bool gap = empty && heights_(c, r) > options_.hidden_above;
+    tree_.voids.rim += gap ? 1 : 0;
+    return beyond_grid || gap;
   }
 
   void label_border() {
@@ -202,6 +216,19 @@ class TileSurvey {
 };
 
 }  // namespace
+
+DivideTree::Voids& DivideTree::Voids::operator+=(const Voids& other) {
+  empty += other.empty;
+  rim += other.rim;
+  faults.filled += other.faults.filled;
+  if (faults.implausible == 0) {
+    faults.height = other.faults.height;
+    faults.column = other.faults.column;
+    faults.row = other.faults.row;
+  }
+  faults.implausible += other.faults.implausible;
+  return *this;
+}
 
 DivideTree build_divide_tree(const HeightWindow& heights, const Window& owned, const GridGeometry& grid,
                              const DivideTreeOptions& options) {

@@ -43,30 +43,29 @@ GeographicMetric::Parallel GeographicMetric::parallel_at(double latitude) const 
   return {std::max(0.0, normal * cosine), normal * (1 - e2) * sine};
 }
 
-// With the same longitude, the nearest parallel is the one nearest in latitude; with the same latitudes, the
-// nearest meridian is the one nearest in longitude; and longitude counts least where the parallel is
-// shortest.
+// At equal longitude the nearest parallel is nearest in latitude; at equal latitudes the nearest meridian is
+// nearest in longitude. Longitude has the least effect on the shortest parallel.
 double GeographicMetric::lower_bound(const Origin& o, const Window& cells) const {
   const auto row = std::clamp(o.row, cells.row, cells.end_row() - 1);
   const Parallel& near = parallel(row);
   const double dr = o.radius - near.radius, dz = o.axis - near.axis;
   const double shortest = std::min(parallel(cells.row).radius, parallel(cells.end_row() - 1).radius);
   double apart = 0;
-  if (o.column < cells.column || o.column >= cells.end_column())  // beyond half a turn they come nearer again
+  if (o.column < cells.column || o.column >= cells.end_column())  // beyond half a turn the distance decreases
     apart = std::min(half_sine_squared(cells.column - o.column),
                      half_sine_squared(cells.end_column() - 1 - o.column));
   return dr * dr + dz * dz + 4 * o.radius * shortest * apart;
 }
 
-// A geodesic of length s and its chord c differ by c^3 / (24 R^2), and R by at most 3 f of itself from place
-// to place and from azimuth to azimuth. 1e-6 m covers the rounding of chords between neighbouring cells.
+// A geodesic of length s and its chord c differ by c^3 / (24 R^2); R varies by at most 3 f with position and
+// azimuth. 1e-6 m covers the rounding of chords between neighbouring cells.
 double GeographicMetric::slack(double metres) const {
   const Body& body = where_.crs.body();
-  const double share = std::min(1.0, metres / body.equatorial_radius);
-  return metres * (3 * body.flattening * share * share + 1e-9) + 1e-6;
+  const double fraction = std::min(1.0, metres / body.equatorial_radius);
+  return metres * (3 * body.flattening * fraction * fraction + 1e-9) + 1e-6;
 }
 
-double GeographicMetric::distance(Place a, Place b) const {
+double GeographicMetric::distance(GridPoint a, GridPoint b) const {
   return geodesic_.distance({where_.x(a.column), where_.y(a.row)}, {where_.x(b.column), where_.y(b.row)});
 }
 
@@ -76,7 +75,7 @@ double GeographicMetric::cell_diagonal() const {
   return 1.001 * largest_radius * std::hypot(where_.dx, where_.dy) * kRadiansPerDegree;
 }
 
-Eigen::Vector3d GeographicMetric::position(Place p) const {
+Eigen::Vector3d GeographicMetric::position(GridPoint p) const {
   const Parallel at = parallel_at(std::clamp(where_.y(p.row), -90.0, 90.0));
   const double longitude = where_.x(p.column) * kRadiansPerDegree;
   return {at.radius * std::cos(longitude), at.radius * std::sin(longitude), at.axis};

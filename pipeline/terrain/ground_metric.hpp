@@ -7,27 +7,23 @@
 #include "core/grid.hpp"
 #include "core/units.hpp"
 #include "geo/georeference.hpp"
+#include "pipeline/terrain/grid_point.hpp"
 namespace waymark {
 
-/// A place on a grid, in cells; fractions lie between cell centres.
-struct Place {
-  double column = 0, row = 0;
-  friend bool operator==(const Place&, const Place&) = default;
-};
+// Distances between cells of a grid. A search ranks millions of cells by `squared` (a straight line through
+// the body, two table look-ups), skips blocks by `lower_bound`, and calls `distance` only for the remaining
+// candidates.
+// Each metric has the same members:
+//   Origin origin(column, row)              the cell that distances are measured from
+//   double squared(Origin, column, row)     m2; ordered as `distance` up to the slack
+//   double lower_bound(Origin, Window)      m2; at most `squared` of every cell in the window
+//   double slack(double metres)             a cell farther than the nearest by more cannot be nearest
+//   double distance(GridPoint, GridPoint)           metres, exact
+//   Eigen::Vector3d position(GridPoint)         Cartesian, metres; agrees with `squared`
+//   double cell_diagonal()                  metres, an upper bound for all cells
 
-// How far cells of a grid are from each other. A search ranks millions of cells by `squared` (a straight line
-// through the body, for which two table look-ups do), skips blocks by `lower_bound`, and asks `distance` only
-// for the few that could be the nearest. Each metric has the same members:
-//   Origin origin(column, row)                 the cell distances are measured from
-//   double squared(Origin, column, row)        m2; order as `distance`, but for the slack
-//   double lower_bound(Origin, Window)         m2; at most `squared` of every cell in the window
-//   double slack(double metres)                a cell farther than the nearest by more than this cannot win
-//   double distance(Place, Place)              metres, the answer
-//   Eigen::Vector3d position(Place)            metres in space; straight-line distances agree with `squared`
-//   double cell_diagonal()                     metres, an upper bound for all cells
-
-/// Longitude and latitude on the body's ellipsoid; heights above it are ignored, as in all published
-/// isolations.
+/// Geodesic distances on the body's ellipsoid for geographic grids. Heights above it are ignored, as in
+/// published isolations.
 class GeographicMetric {
  public:
   explicit GeographicMetric(const GridGeometry& grid);
@@ -46,13 +42,13 @@ class GeographicMetric {
   }
   double lower_bound(const Origin& o, const Window& cells) const;
   double slack(double metres) const;
-  double distance(Place a, Place b) const;
-  Eigen::Vector3d position(Place p) const;
+  double distance(GridPoint a, GridPoint b) const;
+  Eigen::Vector3d position(GridPoint p) const;
   double cell_diagonal() const;
 
  private:
   struct Parallel {
-    double radius, axis;  // distance from the body's axis, and along it; metres
+    double radius, axis;  // distances from and along the body's axis, metres
   };
   const Parallel& parallel(std::int64_t row) const { return parallels_[static_cast<std::size_t>(row + 1)]; }
   double half_sine_squared(std::int64_t columns_apart) const {
@@ -66,7 +62,7 @@ class GeographicMetric {
   std::vector<double> half_sines_;   // sin^2 of half the longitude between columns
 };
 
-/// Straight lines on the map, in metres: what a person measures with a ruler on a projected map.
+/// Straight lines on the map, in metres.
 class PlanarMetric {
  public:
   explicit PlanarMetric(const GridGeometry& grid)
@@ -84,16 +80,16 @@ class PlanarMetric {
   }
   double lower_bound(const Origin& o, const Window& cells) const;
   double slack(double metres) const { return 1e-12 * metres; }
-  double distance(Place a, Place b) const { return (position(a) - position(b)).norm(); }
-  Eigen::Vector3d position(Place p) const { return {p.column * cell_width_, p.row * cell_height_, 0}; }
+  double distance(GridPoint a, GridPoint b) const { return (position(a) - position(b)).norm(); }
+  Eigen::Vector3d position(GridPoint p) const { return {p.column * cell_width_, p.row * cell_height_, 0}; }
   double cell_diagonal() const { return position({1, 1}).norm(); }
 
  private:
   double cell_width_, cell_height_;
 };
 
-/// Geodesic distances on a projected grid: map metres are not ground metres. Positions in space are known
-/// exactly on a lattice of every 16th cell and interpolated between.
+/// Geodesic distances on a projected grid. Cartesian positions are exact on a lattice of every 16th cell
+/// (fewer on grids of more than 67 M cells) and interpolated between. At most 20 MB.
 class ProjectedMetric {
  public:
   explicit ProjectedMetric(const GridGeometry& grid);
@@ -110,9 +106,9 @@ class ProjectedMetric {
   }
   double lower_bound(const Origin& o, const Window& cells) const;
   double slack(double metres) const;
-  double distance(Place a, Place b) const;
-  Eigen::Vector3d position(Place p) const;
-  double cell_diagonal() const;
+  double distance(GridPoint a, GridPoint b) const;
+  Eigen::Vector3d position(GridPoint p) const;
+  double cell_diagonal() const { return cell_diagonal_; }
 
  private:
   struct Projection;
@@ -120,8 +116,8 @@ class ProjectedMetric {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
     double radius = 0;
   };
-  Eigen::Vector3d in_space(LonLat p) const;
-  LonLat lon_lat(Place p) const;
+  Eigen::Vector3d to_cartesian(LonLat p) const;
+  LonLat lon_lat(GridPoint p) const;
   void build_lattice();
   void measure_interpolation();
   void build_balls();
@@ -129,9 +125,11 @@ class ProjectedMetric {
   GridGeometry grid_;
   Geodesic geodesic_;
   std::unique_ptr<Projection> projection_;
-  Grid<Eigen::Vector3d> lattice_;   // node (i, j) is cell (16 i, 16 j)
+  std::int64_t stride_;             // cells between nodes
+  Grid<Eigen::Vector3d> lattice_;   // node (i, j) is cell (stride i, stride j)
   std::vector<Grid<Ball>> balls_;   // level 0: between four nodes; each next level holds 2 x 2
   double interpolation_error_ = 0;  // metres
+  double cell_diagonal_ = 0;        // metres
 };
 
 }  // namespace waymark

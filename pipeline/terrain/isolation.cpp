@@ -10,24 +10,26 @@
 #include <queue>
 
 #include "core/error.hpp"
+#include "geo/metric_crs.hpp"
 #include "pipeline/terrain/contact.hpp"
 #include "pipeline/terrain/dem_chunks.hpp"
-#include "pipeline/terrain/nearest_place.hpp"
+#include "pipeline/terrain/hidden_ground.hpp"
+#include "pipeline/terrain/nearest_grid_point.hpp"
 
 namespace waymark {
 namespace {
 
-Place place_of(std::int64_t column, std::int64_t row) {
+GridPoint grid_point(std::int64_t column, std::int64_t row) {
   return {static_cast<double>(column), static_cast<double>(row)};
 }
 
-// Searches from one summit after another; for one thread.
+// Search for successive summits; for one thread.
 template <class Metric>
 class Search {
  public:
   Search(const Metric& metric, const DemSource& dem, const ReliefPyramid& relief, IsolationEnd end)
       : metric_(metric), grid_(dem.geometry()), relief_(relief), cells_(dem), end_(end) {
-    voids_hide_ground_ = dem.nodata_policy() != NodataPolicy::ocean;
+    hidden_above_ = hidden_above(dem);
   }
 
   Isolation measure(const HighPoint& summit) {
@@ -39,7 +41,7 @@ class Search {
         end_ == IsolationEnd::cell ? nearest_higher(summit.height) : nearest_contact(summit.height);
     if (higher) {
       isolation.metres = isolation.metres_low = higher->metres;
-      isolation.higher = higher->place;
+      isolation.higher = higher->point;
     }
     const auto hidden = nearest_hidden(isolation.metres);
     if (hidden) {
@@ -52,25 +54,25 @@ class Search {
   }
 
  private:
-  using Nearest = NearestPlace<Metric>;
+  using Nearest = NearestGridPoint<Metric>;
   using Found = std::optional<typename Nearest::Found>;
 
   Found nearest_higher(double height) {
-    Nearest nearest(metric_, place_of(column_, row_));
+    Nearest nearest(metric_, grid_point(column_, row_));
     search_blocks([&](const ReliefPyramid::Relief& r) { return r.highest > height; },
                   [&] { return nearest.limit(); },
                   [&](const Window& block) {
                     for_cells(block, [&](std::int64_t c, std::int64_t r, double z) {
-                      if (z > height) nearest.offer(place_of(c, r), metric_.squared(origin_, c, r));
+                      if (z > height) nearest.offer(grid_point(c, r), metric_.squared(origin_, c, r));
                     });
                   });
     return nearest.resolve();
   }
 
   Found nearest_contact(double height) {
-    Nearest nearest(metric_, place_of(column_, row_));
-    const Eigen::Vector3d from = metric_.position(place_of(column_, row_));
-    // A contour lies within a cell's diagonal of the higher cell it belongs to.
+    Nearest nearest(metric_, grid_point(column_, row_));
+    const Eigen::Vector3d from = metric_.position(grid_point(column_, row_));
+    // A contour lies within a cell diagonal of its higher cell.
     const auto limit = [&] {
       const double metres = std::sqrt(nearest.limit()) + metric_.cell_diagonal();
       return metres * metres;
@@ -86,19 +88,19 @@ class Search {
   }
 
   Found nearest_hidden(std::optional<double> within) {
-    Nearest nearest(metric_, place_of(column_, row_));
+    Nearest nearest(metric_, grid_point(column_, row_));
     if (within) {
       const double metres = *within + metric_.slack(*within) + metric_.cell_diagonal();
       nearest.stop_at(metres * metres);
     }
-    if (voids_hide_ground_)
-      search_blocks([](const ReliefPyramid::Relief& r) { return r.voids; }, [&] { return nearest.limit(); },
-                    [&](const Window& block) {
-                      for_cells(block, [&](std::int64_t c, std::int64_t r, double z) {
-                        if (z == kNoHeight) nearest.offer(place_of(c, r), metric_.squared(origin_, c, r));
-                      });
+    search_blocks([](const ReliefPyramid::Relief& r) { return r.voids; }, [&] { return nearest.limit(); },
+                  [&](const Window& block) {
+                    for_cells(block, [&](std::int64_t c, std::int64_t r, double z) {
+                      if (z == kNoHeight && is_hidden(c, r, hidden_above_, cells_))
+                        nearest.offer(grid_point(c, r), metric_.squared(origin_, c, r));
                     });
-    // Beyond the edge: the cells just outside the grid.
+                  });
+    // Cells just outside the grid.
     if (!grid_.wraps) {
       search_rim({-1, -1, 1, grid_.rows + 2}, nearest);
       search_rim({grid_.columns, -1, 1, grid_.rows + 2}, nearest);
@@ -113,7 +115,7 @@ class Search {
     if (strip.cells() <= kReliefBlock) {
       for (std::int64_t r = strip.row; r < strip.end_row(); ++r)
         for (std::int64_t c = strip.column; c < strip.end_column(); ++c)
-          nearest.offer(place_of(c, r), metric_.squared(origin_, c, r));
+          nearest.offer(grid_point(c, r), metric_.squared(origin_, c, r));
       return;
     }
     Window first = strip, second = strip;
@@ -175,7 +177,7 @@ class Search {
   const ReliefPyramid& relief_;
   DemChunks cells_;
   IsolationEnd end_;
-  bool voids_hide_ground_ = false;
+  double hidden_above_ = 0;
   std::int64_t column_ = 0, row_ = 0;
   typename Metric::Origin origin_{};
   std::vector<Queued> queue_;
@@ -183,8 +185,8 @@ class Search {
 
 static_assert(DemChunks::kSide % kReliefBlock == 0);
 
-// Neighbouring summits need the same chunks, so they are worked off chunk by chunk.
-std::vector<std::size_t> by_chunk(std::span<const HighPoint> summits, std::int64_t columns) {
+// Neighbouring summits need the same chunks, so they are processed chunk by chunk.
+std::vector<std::size_t> chunk_order(std::span<const HighPoint> summits, std::int64_t columns) {
   std::vector<std::size_t> order(summits.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t i) {
@@ -201,7 +203,7 @@ std::vector<Isolation> measure_all(std::span<const HighPoint> summits, const Dem
                                    const IsolationOptions& options,
                                    const std::function<void(std::size_t)>& done) {
   std::vector<Isolation> isolations(summits.size());
-  const auto order = by_chunk(summits, dem.geometry().columns);
+  const auto order = chunk_order(summits, dem.geometry().columns);
   tbb::enumerable_thread_specific<Search<Metric>> searches(
       [&] { return Search<Metric>(metric, dem, relief, options.end); });
   std::atomic<std::size_t> finished{0};
@@ -217,14 +219,20 @@ std::vector<Isolation> measure_all(std::span<const HighPoint> summits, const Dem
 
 }  // namespace
 
+void check_distance(DistanceKind distance, const GridGeometry& grid) {
+  const Crs& crs = grid.where.crs;
+  if (distance != DistanceKind::planar || crs.kind() != CrsKind::geographic) return;
+  throw Error(ErrorCode::usage,
+              "planar isolation needs a projected DEM; this one is in degrees (" + crs.id() + ")",
+              "distance = planar",
+              "use distance = geodesic, or project the DEM: gdalwarp -t_srs " + fitting_metric_crs(grid));
+}
+
 std::vector<Isolation> measure_isolation(std::span<const HighPoint> summits, const DemSource& dem,
                                          const ReliefPyramid& relief, const IsolationOptions& options,
                                          const std::function<void(std::size_t)>& done) {
   const Crs& crs = dem.geometry().where.crs;
-  if (options.distance == DistanceKind::planar && crs.kind() == CrsKind::geographic)
-    throw Error(ErrorCode::usage,
-                "planar isolation needs a projected DEM; this one is in degrees (" + crs.id() + ")",
-                "distance = planar", "use distance = geodesic, or project the DEM with gdalwarp -t_srs");
+  check_distance(options.distance, dem.geometry());
   if (options.distance == DistanceKind::planar || crs.kind() == CrsKind::local)
     return measure_all(summits, dem, relief, PlanarMetric(dem.geometry()), options, done);
   if (crs.kind() == CrsKind::geographic)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
+#include <string>
 #include <unordered_map>
 
 #include "landmarks/uid.hpp"
@@ -17,7 +17,8 @@ AttributeValue known_or_null(double value) {
   return std::isnan(value) ? AttributeValue{} : AttributeValue{value};
 }
 
-// Variance of the summit's true place, uniform over its cell: side^2 / 12.
+// Returns the variance of a position uniform over the cell: side^2 / 12. The height's is unknown (NaN) unless
+// the DEM states its deviation.
 Eigen::Matrix3d cell_covariance(const Georeference& where, double latitude, double height_sd) {
   double width = where.dx * where.crs.metres_per_unit(), length = where.dy * where.crs.metres_per_unit();
   if (where.crs.kind() == CrsKind::geographic) {
@@ -25,7 +26,8 @@ Eigen::Matrix3d cell_covariance(const Georeference& where, double latitude, doub
     width = where.dx * per_degree * std::cos(latitude * kRadiansPerDegree);
     length = where.dy * per_degree;
   }
-  return Eigen::Vector3d(width * width / 12, length * length / 12, height_sd * height_sd).asDiagonal();
+  const double height_variance = height_sd > 0 ? height_sd * height_sd : std::nan("");
+  return Eigen::Vector3d(width * width / 12, length * length / 12, height_variance).asDiagonal();
 }
 
 class TopMaker {
@@ -59,8 +61,8 @@ class TopMaker {
       attribute(top, "higher_y", where_.y(isolation.higher.row));
     }
     attribute(top, "visibility", visibility(summit, isolation));
-    top.quality = {.seen = 1, .visible = 1, .of_feature = {}};
-    top.quality.of_feature.resize(type_.features.size());
+    top.quality = {.seen = 1, .visible = 1, .feature_confidences = {}};
+    top.quality.feature_confidences.resize(type_.features.size());
     top.confidence = confidence(summit);
     return top;
   }
@@ -92,7 +94,7 @@ class TopMaker {
   }
 
   static double confidence(const Summit& summit) {
-    if (std::isnan(summit.prominence_low)) return 1;  // nothing is hidden, and nothing is higher
+    if (std::isnan(summit.prominence_low)) return 1;  // no unknown terrain, and nothing is higher
     if (std::isnan(summit.prominence)) return 0.5;
     return std::clamp(summit.prominence_low / summit.prominence, 0.0, 1.0);
   }
@@ -104,35 +106,114 @@ class TopMaker {
   const LandmarkType& type_;
 };
 
+/// Decides which summits become landmarks, and names them.
+class SummitFilter {
+ public:
+  SummitFilter(std::span<const Summit> summits, std::span<const Isolation> isolations, const DemSource& dem,
+               const TypeRegistry& types, const MountainTopOptions& options)
+      : summits_(summits),
+        isolations_(isolations),
+        dem_(dem),
+        type_(types[types.id("mountain_top")]),
+        elevation_(type_.features[feature_index(type_, "elevation")]),
+        options_(options) {
+    if (cells_may_share_uids()) name_all(types);
+  }
+
+  /// Returns why a summit is left out; empty: it is kept.
+  std::string reason_to_reject(std::size_t i) const {
+    const auto& metres = isolations_[i].metres;
+    if (metres && !(*metres >= options_.min_isolation.value)) return "isolation too small";
+    if (const auto at = position(i); !dem_.in_area(at.xyz.x(), at.xyz.y()))
+      return "outside the area of interest";
+    if (!(summits_[i].height >= elevation_.min_value && summits_[i].height <= elevation_.max_value))
+      return "elevation outside the range of the type";
+    return "";
+  }
+
+  /// Returns the index of the first summit at or after a cell.
+  std::size_t find(std::int64_t cell) const {
+    return static_cast<std::size_t>(std::ranges::lower_bound(summits_, cell, {}, &Summit::cell) -
+                                    summits_.begin());
+  }
+
+  /// Returns the uid of the nearest ancestor that is kept; empty if there is none.
+  std::string parent_uid(std::size_t i) const {
+    for (std::int64_t parent = summits_[i].parent; parent >= 0;) {
+      const std::size_t at = find(parent);
+      if (at == summits_.size() || summits_[at].cell != parent) return "";
+      if (reason_to_reject(at).empty()) return uid(at);
+      parent = summits_[at].parent;
+    }
+    return "";
+  }
+
+  std::string uid(std::size_t i) const {
+    const Crs& crs = dem_.geometry().where.crs;
+    return uids_.empty() ? make_uid(type_, crs, position(i)) : uids_.at(i);
+  }
+
+ private:
+  Point<MapCrs> position(std::size_t i) const {
+    const GridGeometry& grid = dem_.geometry();
+    return {{grid.where.x(static_cast<double>(summits_[i].cell % grid.columns)),
+             grid.where.y(static_cast<double>(summits_[i].cell / grid.columns)), summits_[i].height}};
+  }
+
+  // Uids round positions to 1e-7 degrees or 1 cm.
+  bool cells_may_share_uids() const {
+    const Georeference& where = dem_.geometry().where;
+    const bool degrees = where.crs.kind() == CrsKind::geographic;
+    const double unit = degrees ? 1e-7 : 0.01 / where.crs.metres_per_unit();
+    return std::min(where.dx, -where.dy) < 2 * unit;
+  }
+
+  void name_all(const TypeRegistry& types) {
+    std::vector<Landmark> all;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < summits_.size(); ++i) {
+      if (!reason_to_reject(i).empty()) continue;
+      all.emplace_back().type = types.id("mountain_top");
+      all.back().position = position(i);
+      index.push_back(i);
+    }
+    assign_uids(types, dem_.geometry().where.crs, all);
+    for (std::size_t k = 0; k < all.size(); ++k) uids_[index[k]] = all[k].uid;
+  }
+
+  std::span<const Summit> summits_;
+  std::span<const Isolation> isolations_;
+  const DemSource& dem_;
+  const LandmarkType& type_;
+  const FeatureSpec& elevation_;
+  const MountainTopOptions& options_;
+  std::unordered_map<std::size_t, std::string> uids_;  // only where cells may share one
+};
+
 }  // namespace
 
-std::vector<Landmark> mountain_tops(std::span<const Summit> summits, std::span<const Isolation> isolations,
-                                    const DemSource& dem, const TypeRegistry& types,
-                                    const MountainTopOptions& options) {
+MountainTops mountain_tops(std::span<const Summit> summits, std::span<const Isolation> isolations,
+                           const DemSource& dem, const TypeRegistry& types, const MountainTopOptions& options,
+                           const Window& window) {
   assert(summits.size() == isolations.size());
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < summits.size(); ++i)
-    if (!isolations[i].metres || *isolations[i].metres >= options.min_isolation.value) kept.push_back(i);
-  std::ranges::sort(kept, {}, [&](std::size_t i) { return summits[i].cell; });
-
+  assert(std::ranges::is_sorted(summits, {}, &Summit::cell));
+  const SummitFilter filter(summits, isolations, dem, types, options);
   const TopMaker make(dem, types, options);
-  std::vector<Landmark> tops;
-  for (const std::size_t i : kept) tops.push_back(make(summits[i], isolations[i]));
-  assign_uids(types, dem.geometry().where.crs, tops);
-
-  std::unordered_map<std::int64_t, std::size_t> top_at;
-  for (std::size_t t = 0; t < kept.size(); ++t) top_at[summits[kept[t]].cell] = t;
-  std::unordered_map<std::int64_t, std::int64_t> parent_of;
-  for (const Summit& summit : summits) parent_of[summit.cell] = summit.parent;
-  for (std::size_t t = 0; t < kept.size(); ++t) {
-    std::int64_t parent = summits[kept[t]].parent;
-    while (parent >= 0 && !top_at.contains(parent)) {
-      const auto next = parent_of.find(parent);
-      parent = next == parent_of.end() ? -1 : next->second;
+  const GridGeometry& grid = dem.geometry();
+  MountainTops made;
+  for (std::int64_t row = window.row; row < window.end_row(); ++row) {
+    const std::size_t end = filter.find(grid.index(window.end_column() - 1, row) + 1);
+    for (std::size_t i = filter.find(grid.index(window.column, row)); i < end; ++i) {
+      if (const std::string reason = filter.reason_to_reject(i); !reason.empty()) {
+        ++made.rejected[reason];
+        continue;
+      }
+      Landmark& top = made.landmarks.emplace_back(make(summits[i], isolations[i]));
+      top.uid = filter.uid(i);
+      if (const std::string parent = filter.parent_uid(i); !parent.empty()) make.set_parent(top, parent);
     }
-    if (parent >= 0) make.set_parent(tops[t], tops[top_at[parent]].uid);
   }
-  return tops;
+  return made;
 }
 
 }  // namespace waymark

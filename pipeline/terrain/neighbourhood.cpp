@@ -12,7 +12,7 @@ bool touch(int a, int b) {
   return std::abs(p.column - q.column) <= 1 && std::abs(p.row - q.row) <= 1;
 }
 
-std::uint8_t part_of(int start, std::uint8_t mask) {
+std::uint8_t flood_part(int start, std::uint8_t mask) {
   unsigned part = 1u << start;
   for (bool grown = true; grown;) {
     grown = false;
@@ -26,14 +26,14 @@ std::uint8_t part_of(int start, std::uint8_t mask) {
   return static_cast<std::uint8_t>(part);
 }
 
-std::array<std::uint8_t, 256> parts_of_all_masks() {
+std::array<std::uint8_t, 256> tabulate_parts() {
   std::array<std::uint8_t, 256> table{};
   for (unsigned mask = 0; mask < 256; ++mask) {
     unsigned left = mask, chosen = 0;
     for (int i = 0; i < 8; ++i) {
       if (!(left >> i & 1)) continue;
       chosen |= 1u << i;
-      left &= ~static_cast<unsigned>(part_of(i, static_cast<std::uint8_t>(mask)));
+      left &= ~static_cast<unsigned>(flood_part(i, static_cast<std::uint8_t>(mask)));
     }
     table[mask] = static_cast<std::uint8_t>(chosen);
   }
@@ -42,8 +42,8 @@ std::array<std::uint8_t, 256> parts_of_all_masks() {
 
 }  // namespace
 
-std::uint8_t one_of_each_part(std::uint8_t mask) {
-  static const std::array<std::uint8_t, 256> table = parts_of_all_masks();
+std::uint8_t connected_parts(std::uint8_t mask) {
+  static const std::array<std::uint8_t, 256> table = tabulate_parts();
   return table[mask];
 }
 

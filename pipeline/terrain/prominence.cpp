@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "pipeline/terrain/cell_order.hpp"
-#include "pipeline/terrain/islands.hpp"
+#include "pipeline/terrain/disjoint_sets.hpp"
 
 namespace waymark {
 namespace {
@@ -28,35 +28,36 @@ struct Link {
   std::size_t a, b;  // peaks
 };
 
-// The node of each cell on the tiles' borders: open addressing, at most half full. Building a
-// std::unordered_map of them would take longer than the rest of the join.
+// Hash map from border cells to nodes: open addressing, at most half full. Building a std::unordered_map
+// would take longer than the rest of the join.
 class BorderNodes {
  public:
-  explicit BorderNodes(std::size_t count) : places_(std::bit_ceil(2 * count + 1)) {}
+  explicit BorderNodes(std::size_t count) : slots_(std::bit_ceil(2 * count + 1)) {}
 
-  void add(std::int64_t cell, std::size_t node) { places_[place_of(cell)] = {cell, node}; }
+  void add(std::int64_t cell, std::size_t node) { slots_[find_slot(cell)] = {cell, node}; }
   std::size_t node(std::int64_t cell) const {
-    const Place& place = places_[place_of(cell)];
-    if (place.cell != cell) throw std::logic_error("a tile of the divide tree is missing");
-    return place.node;
+    const Slot& slot = slots_[find_slot(cell)];
+    if (slot.cell != cell) throw std::logic_error("a tile of the divide tree is missing");
+    return slot.node;
   }
 
  private:
-  struct Place {
+  struct Slot {
     std::int64_t cell = -1;  // -1: free
     std::size_t node = 0;
   };
 
-  // Where the cell is, or should be. Neighbouring cells are spread by the golden ratio (Knuth, vol. 3, 6.4).
-  std::size_t place_of(std::int64_t cell) const {
-    const std::size_t last = places_.size() - 1;
+  // Returns the slot of the cell or a free slot. Neighbouring cells are spread by the golden ratio (Knuth,
+  // vol. 3, 6.4).
+  std::size_t find_slot(std::int64_t cell) const {
+    const std::size_t last = slots_.size() - 1;
     const std::uint64_t spread = static_cast<std::uint64_t>(cell) * 0x9E3779B97F4A7C15u;
     std::size_t at = static_cast<std::size_t>(spread >> 32) & last;
-    while (places_[at].cell != cell && places_[at].cell >= 0) at = (at + 1) & last;
+    while (slots_[at].cell != cell && slots_[at].cell >= 0) at = (at + 1) & last;
     return at;
   }
 
-  std::vector<Place> places_;
+  std::vector<Slot> slots_;
 };
 
 std::size_t border_count(Tiles tiles) {
@@ -65,8 +66,7 @@ std::size_t border_count(Tiles tiles) {
   return count;
 }
 
-// The summits of all tiles, and the saddles between them with every portal replaced by the summit it leads
-// to.
+// Summits of all tiles and the saddles between them, with every portal replaced by its summit.
 class WholeGrid {
  public:
   explicit WholeGrid(Tiles tiles) : border_(border_count(tiles)) {
@@ -122,11 +122,11 @@ class WholeGrid {
   std::vector<std::size_t> path_;
 };
 
-// Sinks the water from saddle to saddle. All links of one saddle cell act at once: the highest of the islands
-// that meet there survives and is the parent of all others.
-class Sinking {
+// Merges islands from the highest saddle down. All links of one saddle cell act together: the highest island
+// survives and is the parent of the others.
+class SaddleSweep {
  public:
-  explicit Sinking(WholeGrid& grid) : grid_(grid), islands_(grid.peaks.size()), ends_(grid.peaks.size()) {
+  explicit SaddleSweep(WholeGrid& grid) : grid_(grid), islands_(grid.peaks.size()), ends_(grid.peaks.size()) {
     auto& links = grid.links;
     for (std::size_t first = 0, last; first < links.size(); first = last) {
       for (last = first; last < links.size() && links[last].cell == links[first].cell;) ++last;
@@ -137,7 +137,7 @@ class Sinking {
   struct End {
     const Link* saddle = nullptr;  // nullptr: no higher ground
     std::size_t parent = 0;
-    double contact = kNoHeight;  // of the island when it ended
+    double contact = kNoHeight;  // of the island when it was merged
   };
   const End& end(std::size_t peak) {
     if (!ends_[peak].saddle) ends_[peak].contact = grid_.peaks[peak].contact;
@@ -156,7 +156,7 @@ class Sinking {
       sunk_.push_back(low);
       islands_.join(low, high);
     }
-    // What an island touched counts for its survivor only below this saddle.
+    // The contact of an island counts for its survivor only below this saddle.
     for (const std::size_t low : sunk_) {
       const std::size_t survivor = islands_.root(low);
       ends_[low].parent = survivor;
@@ -166,9 +166,9 @@ class Sinking {
   }
 
   WholeGrid& grid_;
-  Islands islands_;
+  DisjointSets islands_;
   std::vector<End> ends_;
-  std::vector<std::size_t> sunk_;  // at the saddle at work
+  std::vector<std::size_t> sunk_;  // at the current saddle
 };
 
 double base_height(Tiles tiles, BasePolicy base) {
@@ -197,13 +197,13 @@ double base_height(Tiles tiles, BasePolicy base) {
 
 std::vector<Summit> join_divide_trees(Tiles tiles, double min_prominence, BasePolicy base) {
   WholeGrid grid(tiles);
-  Sinking sinking(grid);
+  SaddleSweep sweep(grid);
   const double ground = base_height(tiles, base);
 
   std::vector<Summit> summits;
   for (std::size_t i = 0; i < grid.peaks.size(); ++i) {
     const Peak& peak = grid.peaks[i];
-    const Sinking::End& end = sinking.end(i);
+    const SaddleSweep::End& end = sweep.end(i);
     Summit summit{.cell = peak.cell, .height = peak.height};
     const double floor = end.saddle ? end.saddle->height : ground;
     summit.prominence = peak.height - floor;

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The saddles of a tile are worked off from the highest down, as if water sank around the summits: each
-// saddle joins two islands. If the lower island's summit has not reached the prominence asked for, and the
-// island holds nothing another tile can ask for above the saddle (a portal, a kept summit, a cell on the
-// tile's border or beside hidden ground), the island is contracted into the higher one. Every path that other
-// tiles can use keeps its height: it can enter a contracted island only below the saddle that joined it.
+// Saddles of a tile are processed from the highest down, as if the water level sank; each saddle joins two
+// islands.
+// The lower island is contracted into the higher one if its summit has not reached the required prominence
+// and it contains nothing that another tile needs above the saddle: a portal, a kept summit, a cell on the
+// tile's border or next to unknown terrain.
+// Every path that other tiles can use keeps its height: it enters a contracted island only below the saddle
+// that joined it.
 #include <algorithm>
 
 #include "pipeline/terrain/cell_order.hpp"
+#include "pipeline/terrain/disjoint_sets.hpp"
 #include "pipeline/terrain/divide_tree.hpp"
-#include "pipeline/terrain/islands.hpp"
 
 namespace waymark {
 namespace {
@@ -16,10 +18,10 @@ namespace {
 struct Island {
   std::int32_t summit = -1;    // highest summit known in this tile; -1: portals only
   bool holds_others = false;   // a portal or a kept summit besides `summit`
-  double exposed = kNoHeight;  // highest cell on the tile's border or beside hidden ground
+  double exposed = kNoHeight;  // highest cell on the tile's border or next to unknown terrain
 };
 
-std::vector<Island> one_island_each(const DivideTree& tree) {
+std::vector<Island> initial_islands(const DivideTree& tree) {
   std::vector<Island> islands;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     const auto& node = tree.nodes[i];
@@ -32,17 +34,18 @@ std::vector<Island> one_island_each(const DivideTree& tree) {
   return islands;
 }
 
-// Renumbers the kept nodes and hangs saddles and border cells of contracted ones on what they were contracted
-// into.
-DivideTree without_contracted(const DivideTree& tree, const std::vector<DivideTree::Saddle>& saddles,
-                              std::vector<std::int32_t> contracted_into) {
+// Renumbers the kept nodes and reconnects saddles and border cells of contracted ones.
+DivideTree remove_contracted(const DivideTree& tree, const std::vector<DivideTree::Saddle>& saddles,
+                             std::vector<std::int32_t> contracted_into) {
   std::vector<std::int32_t> number(tree.nodes.size(), -1);
   DivideTree kept;
+  kept.window = tree.window;
   kept.cells = tree.cells;
   kept.maxima = tree.maxima;
   kept.min_prominence = tree.min_prominence;
   kept.lowest = tree.lowest;
   kept.highest = tree.highest;
+  kept.voids = tree.voids;
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
     if (contracted_into[i] >= 0) continue;
     number[i] = static_cast<std::int32_t>(kept.nodes.size());
@@ -74,10 +77,10 @@ DivideTree without_contracted(const DivideTree& tree, const std::vector<DivideTr
 DivideTree prune(DivideTree tree, double min_prominence) {
   const auto height = [&](std::int32_t node) { return tree.nodes[static_cast<std::size_t>(node)].height; };
   const auto cell = [&](std::int32_t node) { return tree.nodes[static_cast<std::size_t>(node)].cell; };
-  std::vector<Island> islands = one_island_each(tree);
+  std::vector<Island> islands = initial_islands(tree);
   std::vector<std::int32_t> contracted_into(tree.nodes.size(), -1);
   std::vector<DivideTree::Saddle> saddles;
-  Islands sets(tree.nodes.size());
+  DisjointSets sets(tree.nodes.size());
 
   for (const auto& saddle : tree.saddles) {
     std::size_t low = sets.root(static_cast<std::size_t>(saddle.a));
@@ -99,7 +102,7 @@ DivideTree prune(DivideTree tree, double min_prominence) {
     into.exposed = std::max(into.exposed, sunk.exposed);
     sets.join(low, high);
   }
-  return without_contracted(tree, saddles, std::move(contracted_into));
+  return remove_contracted(tree, saddles, std::move(contracted_into));
 }
 
 }  // namespace waymark

@@ -12,7 +12,7 @@ std::int64_t blocks_for(std::int64_t cells) {
 
 }  // namespace
 
-BlockRelief block_relief(const HeightWindow& heights, const Window& owned) {
+BlockRelief block_relief(const HeightWindow& heights, const Window& owned, double hidden_above) {
   BlockRelief relief;
   relief.blocks.column = owned.column / kReliefBlock;
   relief.blocks.row = owned.row / kReliefBlock;
@@ -30,7 +30,9 @@ BlockRelief block_relief(const HeightWindow& heights, const Window& owned) {
       const auto at = static_cast<std::size_t>(block_row * relief.blocks.columns + b);
       for (std::size_t c = from; c < to; ++c) {
         relief.highest[at] = std::max(relief.highest[at], cells[c]);
-        if (cells[c] == kNoHeight) relief.voids[at] = 1;
+        if (cells[c] == kNoHeight && !relief.voids[at] &&
+            is_hidden(static_cast<std::int64_t>(c) + 1, r + 1, hidden_above, heights))
+          relief.voids[at] = 1;
       }
     }
   }
@@ -39,21 +41,27 @@ BlockRelief block_relief(const HeightWindow& heights, const Window& owned) {
 
 ReliefPyramid::ReliefPyramid(std::span<const std::shared_ptr<const BlockRelief>> tiles, std::int64_t columns,
                              std::int64_t rows)
-    : columns_(columns), rows_(rows) {
-  highest_.emplace_back(blocks_for(columns), blocks_for(rows), kNoHeight);
-  voids_.emplace_back(blocks_for(columns), blocks_for(rows), std::uint8_t{0});
-  for (const auto& tile : tiles)
-    for (std::int64_t r = 0; r < tile->blocks.rows; ++r)
-      for (std::int64_t c = 0; c < tile->blocks.columns; ++c) {
-        const auto at = static_cast<std::size_t>(r * tile->blocks.columns + c);
-        double& highest = highest_[0](tile->blocks.column + c, tile->blocks.row + r);
-        highest = std::max(highest, tile->highest[at]);
-        voids_[0](tile->blocks.column + c, tile->blocks.row + r) |= tile->voids[at];
-      }
-  add_levels();
+    : ReliefPyramid(columns, rows) {
+  for (const auto& tile : tiles) add(*tile);
+  build_levels();
 }
 
-void ReliefPyramid::add_levels() {
+ReliefPyramid::ReliefPyramid(std::int64_t columns, std::int64_t rows) : columns_(columns), rows_(rows) {
+  highest_.emplace_back(blocks_for(columns), blocks_for(rows), kNoHeight);
+  voids_.emplace_back(blocks_for(columns), blocks_for(rows), std::uint8_t{0});
+}
+
+void ReliefPyramid::add(const BlockRelief& tile) {
+  for (std::int64_t r = 0; r < tile.blocks.rows; ++r)
+    for (std::int64_t c = 0; c < tile.blocks.columns; ++c) {
+      const auto at = static_cast<std::size_t>(r * tile.blocks.columns + c);
+      double& highest = highest_[0](tile.blocks.column + c, tile.blocks.row + r);
+      highest = std::max(highest, tile.highest[at]);
+      voids_[0](tile.blocks.column + c, tile.blocks.row + r) |= tile.voids[at];
+    }
+}
+
+void ReliefPyramid::build_levels() {
   while (highest_.back().columns() > 1 || highest_.back().rows() > 1) {
     const auto& fine = highest_.back();
     const auto& fine_voids = voids_.back();

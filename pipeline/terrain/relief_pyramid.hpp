@@ -6,35 +6,53 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "geo/dem_source.hpp"
+#include "pipeline/terrain/neighbourhood.hpp"
 namespace waymark {
 
 /// Side of the finest blocks, in cells.
 inline constexpr std::int64_t kReliefBlock = 16;
 
-/// The highest cell of each block that a tile touches; blocks are aligned to the whole grid, so a tile may
-/// hold only part of one.
+/// Highest cell of each block that a tile intersects. Blocks are aligned to the whole grid, so a tile may
+/// contain only part of one.
 struct BlockRelief {
   Window blocks;                    ///< in blocks
   std::vector<double> highest;      ///< row by row
-  std::vector<std::uint8_t> voids;  ///< 1: some cell has no height
+  std::vector<std::uint8_t> voids;  ///< 1: some cell has no height and hides terrain (is_hidden)
 };
 
-/// `heights` is the window `owned` grown by one cell on each side.
-BlockRelief block_relief(const HeightWindow& heights, const Window& owned);
+/// Returns whether a cell without height hides terrain: a neighbour is higher than `hidden_above`
+/// (hidden_ground.hpp). `height(column, row)` returns cell heights.
+bool is_hidden(std::int64_t column, std::int64_t row, double hidden_above, auto&& height) {
+  if (hidden_above == kNoHeight) return true;
+  for (const NeighbourStep step : kRing)
+    if (height(column + step.column, row + step.row) > hidden_above) return true;
+  return false;
+}
 
-/// Highest cells of ever larger blocks: level 0 has blocks of kReliefBlock cells, each next level twice that,
-/// the last one block. About 0.05 bytes per cell of the grid.
+/// Computes the relief of the cells `owned`. `heights` is that window grown by one cell on each side.
+BlockRelief block_relief(const HeightWindow& heights, const Window& owned, double hidden_above);
+
+/// Pyramid of highest cells: level 0 has blocks of kReliefBlock cells, each further level doubles them up to
+/// a single block. About 0.05 bytes per cell of the grid.
 class ReliefPyramid {
  public:
   ReliefPyramid() = default;
-  /// Joins the tiles; each block is the maximum of its parts.
+  /// Begins an empty pyramid: `add` every tile, then `build_levels`.
+  ReliefPyramid(std::int64_t columns, std::int64_t rows);
+  /// Adds a tile to level 0; each block is the maximum of its parts.
+  void add(const BlockRelief& tile);
+  /// Computes the further levels.
+  void build_levels();
+  /// Joins the tiles.
   ReliefPyramid(std::span<const std::shared_ptr<const BlockRelief>> tiles, std::int64_t columns,
                 std::int64_t rows);
 
+  /// Block of a level; levels count from the finest.
   struct Block {
     int level = 0;
     std::int64_t column = 0, row = 0;
   };
+  /// Highest cell of a block, and whether a height is unknown.
   struct Relief {
     double highest = kNoHeight;
     bool voids = false;
@@ -50,14 +68,12 @@ class ReliefPyramid {
   }
   std::int64_t columns() const { return columns_; }  ///< of the grid, in cells
   std::int64_t rows() const { return rows_; }
-  /// Level 0 as if one tile had held the whole grid.
+  /// Returns level 0 as the relief of a single tile.
   BlockRelief finest() const;
-  /// The cells of a block, cut to the grid.
+  /// Returns the cells of a block, clipped to the grid.
   Window cells(const Block& b) const;
 
  private:
-  void add_levels();
-
   std::int64_t columns_ = 0, rows_ = 0;
   std::vector<Grid<double>> highest_;
   std::vector<Grid<std::uint8_t>> voids_;

@@ -13,9 +13,9 @@ double expected_visibility(Meters prominence, Meters isolation, Meters body_radi
   const double free_length = std::sqrt(kSightLength * std::sqrt(prominence.value * apart));
   const double x = horizon / free_length;
   // 1 - (1 + x) exp(-x), without cancellation for small x
-  const double share = x < 1e-4 ? x * x / 2 : 1 - (1 + x) * std::exp(-x);
+  const double fraction = x < 1e-4 ? x * x / 2 : 1 - (1 + x) * std::exp(-x);
   const double ratio = free_length / range.value;
-  return std::clamp(2 * ratio * ratio * share, 0.0, 1.0);
+  return std::clamp(2 * ratio * ratio * fraction, 0.0, 1.0);
 }
 
 }  // namespace waymark

@@ -11,9 +11,9 @@
 namespace waymark {
 namespace {
 
-constexpr std::size_t kTogether = 256;  // examples: their values stay in the first cache
+constexpr std::size_t kBatch = 256;  // examples whose values fit in the L1 cache
 
-/// Reads numbers from words; remembers where it is for messages.
+/// Reads numbers from text.
 class Words {
  public:
   Words(std::string_view text, const std::string& where) : text_(text), where_(where) {}
@@ -57,8 +57,8 @@ void add_numbers(std::string& text, std::span<const float> numbers) {
 
 void evaluate(const DenseNetwork& network, std::span<const float* const> inputs, std::span<float> log_odds) {
   std::vector<float> in, out;
-  for (std::size_t first = 0; first < log_odds.size(); first += kTogether) {
-    const std::size_t count = std::min(kTogether, log_odds.size() - first);
+  for (std::size_t first = 0; first < log_odds.size(); first += kBatch) {
+    const std::size_t count = std::min(kBatch, log_odds.size() - first);
     in.resize(inputs.size() * count);
     for (std::size_t i = 0; i < inputs.size(); ++i)
       for (std::size_t x = 0; x < count; ++x)

@@ -8,8 +8,8 @@
 #include <vector>
 namespace waymark {
 
-/// A small network of dense layers with rectifiers between them and one output, the log odds that something
-/// is what it was trained to tell. Inputs are standardized: (value - centre) / scale.
+/// Small network of dense layers with rectifiers between them and one output: the log odds of the trained
+/// class. Inputs are standardised: (value - centre) / scale.
 struct DenseNetwork {
   struct Layer {
     int inputs = 0, outputs = 0;
@@ -17,40 +17,40 @@ struct DenseNetwork {
     std::vector<float> biases;
     friend bool operator==(const Layer&, const Layer&) = default;
   };
-  std::vector<float> centre, scale;  ///< of each input
+  std::vector<float> centre, scale;  ///< per input
   std::vector<Layer> layers;         ///< the last has one output
-  std::string trained_on;            ///< one line, for people
+  std::string trained_on;            ///< provenance, one line of text
 
   friend bool operator==(const DenseNetwork&, const DenseNetwork&) = default;
 };
 
-/// Log odds of `log_odds.size()` examples at once: inputs[i] points at their values of input i. Sums run in
-/// the order of the inputs, so an example gets the same bits among whatever others.
-/// O(examples x weights), 5 to 10 weights per ns.
+/// Computes the log odds of `log_odds.size()` examples; inputs[i] points at their values of input i. Sums
+/// run in the order of the inputs, so the result of an example does not depend on the others. O(examples x
+/// weights), 5 to 10 weights per ns.
 void evaluate(const DenseNetwork& network, std::span<const float* const> inputs, std::span<float> log_odds);
 
-/// Text that parse_dense_network reads back; numbers with four digits, which is what `rounded` leaves.
+/// Writes the network for parse_dense_network; numbers have four significant digits.
 std::string as_text(const DenseNetwork& network);
-/// Throws Error{input} naming `where`.
+/// Throws Error{input} naming `where` if the text is not a network.
 DenseNetwork parse_dense_network(std::string_view text, const std::string& where);
 
-/// What a network learns from: `wanted` is the probability each example should get, [0, 1].
+/// Training examples; `targets` is the target probability of each, [0, 1].
 struct NetworkExamples {
   int inputs = 0;
   std::vector<float> values;  ///< example by example
-  std::vector<float> wanted;
+  std::vector<float> targets;
 };
 
 struct NetworkTraining {
   std::vector<int> hidden{32, 16};
-  int rounds = 8;      ///< times through all examples
-  int together = 256;  ///< examples per step
-  double rate = 3e-3;  ///< of the first step; falls as a cosine
+  int rounds = 8;        ///< epochs
+  int batch_size = 256;  ///< batch size
+  double rate = 3e-3;    ///< initial learning rate; decays as a cosine
   std::uint64_t seed = 1;
 };
 
-/// Least cross entropy by Adam (Kingma & Ba 2015). The same examples and seed give the same network.
-/// `progress` is told the mean loss after each round.
+/// Minimises cross entropy with Adam (Kingma & Ba 2015). Deterministic for the same examples and seed.
+/// `progress` receives the mean loss after each epoch.
 DenseNetwork train_network(const NetworkExamples& examples, const NetworkTraining& training,
                            const std::function<void(int round, double loss)>& progress = {});
 

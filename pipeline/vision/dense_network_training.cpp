@@ -10,19 +10,19 @@
 namespace waymark {
 namespace {
 
-// A layer at work: values and slopes are held unit by unit, `count` examples side by side.
-struct Learning {
+// State of a layer in training: values and gradients by unit, `count` examples each.
+struct LayerState {
   DenseNetwork::Layer& layer;
-  std::vector<float> in, out, slope;          // slope: of the loss by the sums of this layer
+  std::vector<float> in, out, slope;          // slope: gradient of the loss by the sums of this layer
   std::vector<float> gradient, mean, square;  // of weights, then biases: this step's, Adam's moments
 
-  explicit Learning(DenseNetwork::Layer& l) : layer(l) {
+  explicit LayerState(DenseNetwork::Layer& l) : layer(l) {
     gradient.assign(l.weights.size() + l.biases.size(), 0);
     mean = square = gradient;
   }
 };
 
-void forward(Learning& l, std::size_t count, bool last) {
+void forward(LayerState& l, std::size_t count, bool last) {
   const auto width = static_cast<std::size_t>(l.layer.inputs);
   l.out.assign(l.layer.biases.size() * count, 0);
   for (std::size_t o = 0; o < l.layer.biases.size(); ++o) {
@@ -37,8 +37,8 @@ void forward(Learning& l, std::size_t count, bool last) {
     for (float& value : l.out) value = std::max(value, 0.0F);
 }
 
-// Leaves the slopes by the inputs in `below`, where wanted.
-void backward(Learning& l, std::size_t count, std::vector<float>* below) {
+// Stores the gradient by the inputs in `below`, if not null.
+void backward(LayerState& l, std::size_t count, std::vector<float>* below) {
   const auto width = static_cast<std::size_t>(l.layer.inputs);
   if (below) below->assign(width * count, 0);
   for (std::size_t o = 0; o < l.layer.biases.size(); ++o) {
@@ -56,22 +56,24 @@ void backward(Learning& l, std::size_t count, std::vector<float>* below) {
   }
 }
 
-void step(Learning& l, double rate, int steps) {
-  const double of_mean = 1 - std::pow(0.9, steps), of_square = 1 - std::pow(0.999, steps);
+void step(LayerState& l, double rate, int steps) {
+  const double mean_correction = 1 - std::pow(0.9, steps), square_correction = 1 - std::pow(0.999, steps);
   const std::size_t weights = l.layer.weights.size();
   for (std::size_t i = 0; i < l.gradient.size(); ++i) {
     const double g = l.gradient[i];
     l.mean[i] = static_cast<float>(0.9 * l.mean[i] + 0.1 * g);
     l.square[i] = static_cast<float>(0.999 * l.square[i] + 0.001 * g * g);
     float& value = i < weights ? l.layer.weights[i] : l.layer.biases[i - weights];
-    value -= static_cast<float>(rate * (l.mean[i] / of_mean) / (std::sqrt(l.square[i] / of_square) + 1e-8));
+    value -= static_cast<float>(rate * (l.mean[i] / mean_correction) /
+                                (std::sqrt(l.square[i] / square_correction) + 1e-8));
   }
 }
 
-DenseNetwork beginning(const NetworkExamples& examples, const NetworkTraining& training, Random& random) {
+DenseNetwork initial_network(const NetworkExamples& examples, const NetworkTraining& training,
+                             Random& random) {
   DenseNetwork network;
   const auto width = static_cast<std::size_t>(examples.inputs);
-  const double count = std::max(1.0, static_cast<double>(examples.wanted.size()));
+  const double count = std::max(1.0, static_cast<double>(examples.targets.size()));
   std::vector<double> sum(width), square(width);
   for (std::size_t i = 0; i < examples.values.size(); ++i) sum[i % width] += double(examples.values[i]);
   for (std::size_t i = 0; i < examples.values.size(); ++i) {
@@ -101,19 +103,19 @@ DenseNetwork beginning(const NetworkExamples& examples, const NetworkTraining& t
 DenseNetwork train_network(const NetworkExamples& examples, const NetworkTraining& training,
                            const std::function<void(int, double)>& progress) {
   Random random(training.seed, "network training");
-  DenseNetwork network = beginning(examples, training, random);
-  std::vector<Learning> layers(network.layers.begin(), network.layers.end());
+  DenseNetwork network = initial_network(examples, training, random);
+  std::vector<LayerState> layers(network.layers.begin(), network.layers.end());
   const auto width = static_cast<std::size_t>(examples.inputs);
-  std::vector<std::size_t> order(examples.wanted.size());
+  std::vector<std::size_t> order(examples.targets.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto together = static_cast<std::size_t>(training.together);
-  const double all_steps = training.rounds * std::ceil(double(order.size()) / double(together));
+  const auto batch = static_cast<std::size_t>(training.batch_size);
+  const double all_steps = training.rounds * std::ceil(double(order.size()) / double(batch));
   int steps = 0;
   for (int round = 0; round < training.rounds; ++round) {
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.uniform_index(i)]);
     double loss = 0;
-    for (std::size_t first = 0; first < order.size(); first += together) {
-      const std::size_t count = std::min(together, order.size() - first);
+    for (std::size_t first = 0; first < order.size(); first += batch) {
+      const std::size_t count = std::min(batch, order.size() - first);
       auto& in = layers.front().in;
       in.resize(width * count);
       for (std::size_t x = 0; x < count; ++x)
@@ -127,7 +129,7 @@ DenseNetwork train_network(const NetworkExamples& examples, const NetworkTrainin
       auto& slope = layers.back().slope;
       slope.resize(count);
       for (std::size_t x = 0; x < count; ++x) {
-        const double z = double(layers.back().out[x]), wanted = double(examples.wanted[order[first + x]]);
+        const double z = double(layers.back().out[x]), wanted = double(examples.targets[order[first + x]]);
         loss += std::max(z, 0.0) - z * wanted + std::log1p(std::exp(-std::abs(z)));
         slope[x] = static_cast<float>((1 / (1 + std::exp(-z)) - wanted) / double(count));
       }
@@ -139,7 +141,7 @@ DenseNetwork train_network(const NetworkExamples& examples, const NetworkTrainin
       }
       const double rate = training.rate * 0.5 * (1 + std::cos(std::numbers::pi * steps / all_steps));
       ++steps;
-      for (Learning& l : layers) step(l, rate, steps);
+      for (LayerState& l : layers) step(l, rate, steps);
     }
     if (progress) progress(round, loss / std::max(1.0, double(order.size())));
   }

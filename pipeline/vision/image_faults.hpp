@@ -5,9 +5,10 @@
 #include "geo/image_source.hpp"
 namespace waymark {
 
-/// Why nothing, or little, can be found in an image, for people: it is smaller than 16 pixels, all its pixels
-/// are alike (black, blown out, no data), or more than a twentieth of them are `saturated` or above (0:
-/// unknown). Nothing where it looks usable. O(pixels).
+/// Returns why an image yields few or no detections; `std::nullopt` if it is usable. O(pixels).
+/// - It is smaller than 16 pixels.
+/// - All pixels are equal (black, saturated, no data).
+/// - More than a twentieth of the pixels are at or above `saturated` (0: unknown).
 std::optional<std::string> image_fault(const Pixels& pixels, double saturated);
 
 }  // namespace waymark

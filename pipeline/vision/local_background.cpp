@@ -94,8 +94,7 @@ void LocalBackground::read_row(std::int64_t row, std::span<float> level_out,
     return std::clamp((static_cast<float>(x) - half) / step, 0.0F, last);
   };
   constexpr std::int64_t kAtOnce = 8;
-  // Run by run of pixels between the same two tile centres, several at a time: the compiler takes them
-  // together.
+  // Processes runs of pixels between the same two tile centres, several at a time, so that they vectorise.
   for (std::int64_t x = 0; x < columns;) {
     const auto c0 = static_cast<std::int64_t>(place(x));
     const auto c1 = std::min(c0 + 1, level.columns() - 1);
@@ -125,7 +124,7 @@ void LocalBackground::read_row(std::int64_t row, std::span<float> level_out,
 
 float noise_sd(const Pixels& image) {
   if (image.columns() < 3 || image.rows() < 3) return 0;
-  // At most about 40000 places, spread evenly; odd strides so that no regular pattern is met in step.
+  // At most about 40000 positions, evenly spread; odd strides avoid aliasing with regular patterns.
   const double places = static_cast<double>((image.columns() - 2) * (image.rows() - 2));
   const auto stride = static_cast<std::int64_t>(std::sqrt(places / 40000.0)) | 1;
   std::vector<float> sizes;

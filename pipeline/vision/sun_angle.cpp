@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// One dark spot: where its light side lies, and how clearly.
+// Direction from a dark spot to its bright side, and its weight.
 struct Pair {
   double angle = 0;  // from the dark towards the bright, from x towards y
   double weight = 0;
 };
 
-// Excess brightness over the local ground, in its standard deviations.
-Grid<float> excess_of(const Pixels& image, int tile) {
+// Brightness above the local ground, in its standard deviations.
+Grid<float> excess_brightness(const Pixels& image, int tile) {
   const LocalBackground ground = local_background(image, tile);
   const float least = std::max(noise_sd(image), 1e-6F);
   Grid<float> excess(image.columns(), image.rows());
@@ -41,9 +41,9 @@ float smooth_at(const Grid<float>& g, std::int64_t x, std::int64_t y) {
          0.0625F * (g(x - 1, y - 1) + g(x + 1, y - 1) + g(x - 1, y + 1) + g(x + 1, y + 1));
 }
 
-// Half the diameter of the dark spot: how far its darkness holds above a third, averaged over eight
-// directions.
-double reach_of_dark(const Grid<float>& excess, std::int64_t x, std::int64_t y, float floor, int most) {
+// Returns half the diameter of the dark spot: the distance over which its darkness exceeds a third, averaged
+// over eight directions.
+double dark_radius(const Grid<float>& excess, std::int64_t x, std::int64_t y, float floor, int most) {
   static constexpr int kX[] = {1, 1, 0, -1, -1, -1, 0, 1}, kY[] = {0, 1, 1, 1, 0, -1, -1, -1};
   double sum = 0;
   for (int d = 0; d < 8; ++d) {
@@ -57,7 +57,7 @@ double reach_of_dark(const Grid<float>& excess, std::int64_t x, std::int64_t y, 
   return sum / 8;
 }
 
-// First moment of brightness about the spot, in a disc three times as wide: bright on one side, dark on none.
+// First moment of brightness in a disc three times as wide as the spot.
 Pair pair_at(const Grid<float>& excess, std::int64_t x, std::int64_t y, double half, float floor) {
   const auto disc = static_cast<std::int64_t>(std::ceil(2.2 * half + 1.5));
   double mx = 0, my = 0, bright = 0;
@@ -74,7 +74,7 @@ Pair pair_at(const Grid<float>& excess, std::int64_t x, std::int64_t y, double h
     }
   const double moment = std::hypot(mx, my);
   if (!(bright > 0)) return {};
-  // The share of the light that lies on one side, and how much light there is against the darkness.
+  // Fraction of the light on one side, and amount of light relative to the darkness.
   const double one_sided = moment / bright, amount = std::min(1.0, moment / (cap * std::max(1.0, half)));
   return {std::atan2(my, mx), one_sided * one_sided * amount};
 }
@@ -83,7 +83,7 @@ Pair pair_at(const Grid<float>& excess, std::int64_t x, std::int64_t y, double h
 
 std::optional<SunAngle> estimate_sun_angle(const Pixels& image, int max_extent) {
   if (image.columns() < 16 || image.rows() < 16) return std::nullopt;
-  const Grid<float> excess = excess_of(image, std::max(16, 2 * max_extent));
+  const Grid<float> excess = excess_brightness(image, std::max(16, 2 * max_extent));
   std::vector<Pair> pairs;
   for (std::int64_t y = 2; y + 2 < image.rows(); ++y)
     for (std::int64_t x = 2; x + 2 < image.columns(); ++x) {
@@ -98,14 +98,14 @@ std::optional<SunAngle> estimate_sun_angle(const Pixels& image, int max_extent) 
             darkest = here < other || (here == other && (dy > 0 || (dy == 0 && dx > 0)));
           }
       if (!darkest) continue;
-      const double half = reach_of_dark(excess, x, y, here, max_extent / 2);
+      const double half = dark_radius(excess, x, y, here, max_extent / 2);
       if (half > max_extent / 2.0) continue;
       Pair pair = pair_at(excess, x, y, half, here);
-      pair.weight *= std::min(12.0F, -here) / 12;  // clear ones count more, none without limit
+      pair.weight *= std::min(12.0F, -here) / 12;  // limits the weight of very clear spots
       if (pair.weight > 0.01) pairs.push_back(pair);
     }
   if (pairs.size() < 4) return std::nullopt;
-  // The direction most pairs agree on within 40 degrees, then their weighted mean, sharpened.
+  // Mode of the directions with a kernel of 0.4 rad, refined by a weighted mean.
   double centre = 0, best = -1;
   for (int k = 0; k < 72; ++k) {
     const double angle = k * kPi / 36 - kPi;
@@ -141,10 +141,10 @@ std::optional<SunAngle> estimate_sun_angle(const Pixels& image, int max_extent) 
     spread = std::sqrt(squares) / sum;
   }
   // By chance a quarter of the pairs would fall into 0.8 rad either side.
-  const double chance = 1.6 / (2 * kPi), share = agreeing / total;
+  const double chance = 1.6 / (2 * kPi), fraction = agreeing / total;
   const double deviation = std::sqrt(chance * (1 - chance) / static_cast<double>(pairs.size()));
-  if (count < 4 || share < chance + std::max(0.12, 4 * deviation)) return std::nullopt;
-  return SunAngle{{centre}, {std::hypot(spread, 0.02) * (share > 0.6 ? 1.0 : 2.0)}, count};
+  if (count < 4 || fraction < chance + std::max(0.12, 4 * deviation)) return std::nullopt;
+  return SunAngle{{centre}, {std::hypot(spread, 0.02) * (fraction > 0.6 ? 1.0 : 2.0)}, count};
 }
 
 }  // namespace waymark

@@ -12,22 +12,22 @@
 namespace waymark {
 namespace {
 
-constexpr double kSlipLength = 5;  // metres over which the slip wavers
+constexpr double kSlipLength = 5;  // metres, correlation length of the slip
 
-StandingPose standing(const Terrain& terrain, const Pose2& pose, const Wheels& wheels) {
-  const auto at = stand_on(terrain, pose, wheels);
+VehiclePose require_pose(const Terrain& terrain, const Pose2& pose, const Wheels& wheels) {
+  const auto at = vehicle_pose_on(terrain, pose, wheels);
   if (!at)
     throw Error(ErrorCode::usage,
-                fmt::format("the drive leaves the ground at {:.1f}, {:.1f}", pose.x, pose.y), "drive",
-                "make the ground wider (ground.width, ground.height), or move the waypoints");
+                fmt::format("the drive leaves the terrain at {:.1f}, {:.1f}", pose.x, pose.y), "drive",
+                "enlarge the site (ground.width, ground.height), or move the waypoints");
   return *at;
 }
 
 }  // namespace
 
-std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen::Vector2d> way,
+std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen::Vector2d> path,
                                    const DriveSettings& settings, std::uint64_t seed) {
-  if (way.size() < 2) throw Error(ErrorCode::usage, "a drive needs a way of two points at least", "drive");
+  if (path.size() < 2) throw Error(ErrorCode::usage, "a drive needs a path of at least two points", "drive");
   const OdometryModel model = settings.odometry;
   const bool exact = model.perfect;
   Random random(seed, "odometry");
@@ -35,22 +35,22 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
   const double bias = exact ? 0 : random.normal(0, to_radians(model.yaw_bias_sd).value);
   const double dt = 1 / model.rate, ahead = std::max(1.5, 2 * settings.speed);
 
-  const Eigen::Vector2d first = way[std::min<std::size_t>(way.size() - 1, 4)] - way[0];
-  Pose2 pose{way[0].x(), way[0].y(), std::atan2(first.y(), first.x())};
+  const Eigen::Vector2d first = path[std::min<std::size_t>(path.size() - 1, 4)] - path[0];
+  Pose2 pose{path[0].x(), path[0].y(), std::atan2(first.y(), first.x())};
   std::vector<DriveStep> steps;
   double driven = 0, waver = 0;
   std::size_t target = 0;
   const auto limit = static_cast<std::size_t>(3e5);
   for (std::size_t k = 0; k < limit; ++k) {
-    const StandingPose at = standing(terrain, pose, settings.wheels);
-    // The point headed for only moves on, so that the way may cross itself and turn back.
-    while (target + 1 < way.size() && (way[target] - pose.at()).norm() < ahead) ++target;
-    const bool arrived = target + 1 == way.size() && (way[target] - pose.at()).norm() < ahead;
+    const VehiclePose at = require_pose(terrain, pose, settings.wheels);
+    // The target point only moves forward, so that the path may cross itself and turn back.
+    while (target + 1 < path.size() && (path[target] - pose.at()).norm() < ahead) ++target;
+    const bool arrived = target + 1 == path.size() && (path[target] - pose.at()).norm() < ahead;
     steps.push_back({static_cast<double>(k) * dt, at, driven, 0, 0});
     if (arrived) return steps;
 
-    const Eigen::Vector2d to = way[target] - pose.at();
-    const double off = wrapped(std::atan2(to.y(), to.x()) - pose.yaw);
+    const Eigen::Vector2d to = path[target] - pose.at();
+    const double off = wrap_angle(std::atan2(to.y(), to.x()) - pose.yaw);
     const double wheels = settings.speed * std::max(0.25, std::cos(off));
     double turn = 2 * std::sin(off) / to.norm() * wheels;
     if (std::abs(off) > 1.4) turn = std::copysign(0.5, off);
@@ -68,14 +68,14 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
     steps.back().turn =
         exact ? turn
               : turn + bias + random.normal(0, to_radians(model.yaw_sd).value) * std::sqrt(metres) / dt;
-    // The arc that a differential drive takes, as odometry integrates it.
+    // Arc of a differential drive, as integrated by odometry.
     const double angle = turn * dt, half = angle / 2;
     const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1;
     const double c = std::cos(half) * chord, s = std::sin(half) * chord;
     pose = pose * Pose2{c * forward - s * sideways, s * forward + c * sideways, angle};
     driven += std::hypot(forward, sideways);
   }
-  throw Error(ErrorCode::usage, "the drive does not reach the end of its way", "drive",
+  throw Error(ErrorCode::usage, "the drive does not reach the end of its path", "drive",
               "a slower turn needs more room: fewer waypoints, or more speed");
 }
 

@@ -5,17 +5,17 @@
 #include "testbed/drive/drive_settings.hpp"
 namespace waymark {
 
-/// A moment of a drive: where the vehicle truly is, and what odometry says of the time until the next.
+/// State of a simulated drive: true pose, and the odometry reading until the next step.
 struct DriveStep {
   double t = 0;
-  StandingPose at;
-  double way = 0;              ///< metres along the route
-  double speed = 0, turn = 0;  ///< told, m/s and rad/s; hold until the next step
+  VehiclePose at;
+  double distance = 0;         ///< metres driven along the route
+  double speed = 0, turn = 0;  ///< measured by odometry, m/s and rad/s, until the next step
 };
 
-/// Follows a way (pure pursuit, Coulter 1992) with slip that depends on the slope. The same for the same
-/// seed. Throws Error{usage} where the way leaves the ground.
-std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen::Vector2d> way,
+/// Follows a path by pure pursuit (Coulter 1992) with slip that depends on the slope. Deterministic for a
+/// seed. Throws Error{usage} if the path leaves the terrain.
+std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen::Vector2d> path,
                                    const DriveSettings& settings, std::uint64_t seed);
 
 }  // namespace waymark

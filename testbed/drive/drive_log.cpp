@@ -15,7 +15,7 @@
 namespace waymark {
 namespace {
 
-// A reading to be made: lines of one time keep the order in which they were asked for.
+// Reading to be simulated; readings of equal time keep the order in which they were added.
 struct Reading {
   double t = 0;
   std::function<std::string()> line;
@@ -23,7 +23,7 @@ struct Reading {
 
 class LogMaker {
  public:
-  LogMaker(const DriveWorld& world, const LogPlace& place) : world_(world), place_(place) {}
+  LogMaker(const DriveWorld& world, const LogCrs& place) : world_(world), place_(place) {}
 
   std::string log() {
     odometry();
@@ -52,7 +52,7 @@ class LogMaker {
     const DriveSettings& s = world_.settings;
     const Pose2& start = world_.steps.front().at.plane;
     const double x = start.x + random.normal(0, s.start_sd), y = start.y + random.normal(0, s.start_sd);
-    const double yaw = wrapped(start.yaw + random.normal(0, to_radians(s.start_yaw_sd).value));
+    const double yaw = wrap_angle(start.yaw + random.normal(0, to_radians(s.start_yaw_sd).value));
     const bool local = place_.crs == "local";
     return fmt::format(
         "{{\"kind\":\"header\",\"version\":1,\"frame\":\"{}\"{},\"start\":{{\"x\":{:.4f},\"y\":{:.4f},"
@@ -71,7 +71,7 @@ class LogMaker {
                  fmt::format("{{\"kind\":\"odometry\",\"t\":{:.3f},\"v\":{:.5f},\"omega\":{:.6f}}}\n", step.t,
                              step.speed, step.turn);
              if (!world_.settings.truth_in_log) return lines;
-             const StandingPose& at = step.at;
+             const VehiclePose& at = step.at;
              return lines + fmt::format(
                                 "{{\"kind\":\"truth\",\"t\":{:.3f},\"x\":{:.4f},\"y\":{:.4f},"
                                 "\"yaw\":{:.5f},\"z\":{:.4f},\"roll\":{:.5f},\"pitch\":{:.5f}}}\n",
@@ -80,7 +80,7 @@ class LogMaker {
            }});
   }
 
-  // Steps at which a sensor that measures every so many seconds measures.
+  // Calls `visit` with the steps at which a sensor of this period measures.
   template <class Visit>
   void at_times(double every, Visit&& visit) {
     double next = 0;
@@ -119,7 +119,7 @@ class LogMaker {
     const Eigen::Matrix3d body =
         model.levelled ? Eigen::AngleAxisd(step.at.plane.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix()
                        : Eigen::Matrix3d(grid_from_robot.linear());
-    const RayFan fan(world_.targets, origin, model.most_range, step.t);
+    const RayFan fan(world_.targets, origin, model.max_range, step.t);
     const LaserScan scan = sweep(fan, body * turn, model, random);
     const double tilt = model.perfect ? 0 : to_radians(model.tilt_sd).value;
     const double roll = model.levelled ? 0 : step.at.roll + random.normal(0, tilt);
@@ -130,7 +130,7 @@ class LogMaker {
         "\"pitch\":{:.5f},\"first_angle\":{:.7f},\"angle_step\":{:.9f},\"most_range\":{:g},\"beam_width\":{:."
         "6f},"
         "\"ranges\":[",
-        step.t, mount.x, mount.y, mount.yaw, roll, pitch, scan.first_angle, scan.angle_step, scan.most_range,
+        step.t, mount.x, mount.y, mount.yaw, roll, pitch, scan.first_angle, scan.angle_step, scan.max_range,
         model.perfect ? 0 : to_radians(model.divergence).value * std::max(0.0, 1 - 2 * model.sensitivity));
     for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
       if (k > 0) line += ',';
@@ -151,7 +151,7 @@ class LogMaker {
     const StereoModel& model = world_.settings.stereo;
     Random random(named_seed(world_.seed, "stereo") + i);
     const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
-    const RayFan fan(world_.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.most_range, step.t);
+    const RayFan fan(world_.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.max_range, step.t);
     const DepthImage image = depth_image(fan, body.linear(), model, random);
     std::string line = fmt::format(
         "{{\"kind\":\"depth\",\"t\":{:.3f},\"mount\":{{\"x\":0.5,\"y\":0}},\"height\":{:g},\"tilt\":{:.6f},"
@@ -173,11 +173,12 @@ class LogMaker {
     const BearingModel& model = world_.settings.camera;
     Random random(named_seed(world_.seed, "camera") + i);
     const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
-    const RayFan fan(world_.targets, body * Eigen::Vector3d(0, 0, model.height), model.most_range, step.t);
+    const RayFan fan(world_.targets, body * Eigen::Vector3d(0, 0, model.height), model.max_range, step.t);
     const double sd = std::max(1e-4, to_radians(model.bearing_sd).value);
     std::string line = fmt::format("{{\"kind\":\"sightings\",\"t\":{:.3f},\"items\":[", step.t);
     bool first = true;
-    for (const SeenBearing& seen : bearings(world_.targets, fan, step.at.plane.yaw, model, step.t, random)) {
+    for (const BearingDetection& seen :
+         bearings(world_.targets, fan, step.at.plane.yaw, model, step.t, random)) {
       line += fmt::format("{}{{\"bearing\":{:.5f},\"bearing_sd\":{:.5f},\"type\":\"{}\"}}", first ? "" : ",",
                           seen.bearing, sd, seen.kind == TargetKind::stem ? "tree" : "rock");
       first = false;
@@ -204,7 +205,7 @@ class LogMaker {
     return line + "]}\n";
   }
 
-  // The wandering error is an Ornstein-Uhlenbeck process; fixes that are missed move it on too.
+  // The correlated error is an Ornstein-Uhlenbeck process; missing fixes advance it, too.
   void gnss() {
     const GnssModel& g = world_.settings.gnss;
     Random random(world_.seed, "gnss");
@@ -213,7 +214,7 @@ class LogMaker {
     at_times(g.every, [&](std::size_t i) {
       const DriveStep& step = world_.steps[i];
       const Eigen::Vector2d noise(random.normal(0, g.sd), random.normal(0, g.sd));
-      const bool missed = random.chance(g.dropouts);
+      const bool missed = random.bernoulli(g.dropouts);
       const Eigen::Vector2d at = step.at.plane.at() + (g.perfect ? Eigen::Vector2d(0, 0) : noise + bias);
       bias = fade * bias + std::sqrt(1 - fade * fade) *
                                Eigen::Vector2d(random.normal(0, g.bias_sd), random.normal(0, g.bias_sd));
@@ -238,7 +239,7 @@ class LogMaker {
       const Eigen::Vector2d to = tree.foot.head<2>() - at.at();
       const double range = std::max(0.1, to.norm() + random.normal(0, c.range_sd));
       const double bearing =
-          wrapped(std::atan2(to.y(), to.x()) - at.yaw + random.normal(0, to_radians(c.bearing_sd).value));
+          wrap_angle(std::atan2(to.y(), to.x()) - at.yaw + random.normal(0, to_radians(c.bearing_sd).value));
       const double diameter = std::max(0.01, tree.dbh + random.normal(0, c.diameter_sd));
       const double height = std::max(1.3, tree.height + random.normal(0, c.height_sd));
       readings_.push_back(
@@ -253,17 +254,17 @@ class LogMaker {
   }
 
   const DriveWorld& world_;
-  const LogPlace& place_;
+  const LogCrs& place_;
   std::vector<Reading> readings_;
 };
 
 }  // namespace
 
-std::string drive_log(const DriveWorld& world, const LogPlace& place) {
+std::string drive_log(const DriveWorld& world, const LogCrs& place) {
   return LogMaker(world, place).log();
 }
 
-std::string true_track(const DriveWorld& world, const LogPlace& place) {
+std::string true_track(const DriveWorld& world, const LogCrs& place) {
   std::string text = "t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected\n";
   for (const DriveStep& s : world.steps)
     text += fmt::format("{:.3f},{:.4f},{:.4f},{:.4f},{:.5f},{:.5f},{:.5f},0,0,0,0,0,0\n", s.t,
@@ -272,7 +273,7 @@ std::string true_track(const DriveWorld& world, const LogPlace& place) {
   return text;
 }
 
-std::string felled_table(const DriveWorld& world, const LogPlace& place) {
+std::string felled_table(const DriveWorld& world, const LogCrs& place) {
   std::string text = "t,x,y,z,diameter,height,tree\n";
   for (const FelledTree& f : world.felled) {
     const StandingTree& tree = world.trees[f.tree];
@@ -283,7 +284,7 @@ std::string felled_table(const DriveWorld& world, const LogPlace& place) {
   return text;
 }
 
-std::string standing_table(const DriveWorld& world, const LogPlace& place) {
+std::string standing_table(const DriveWorld& world, const LogCrs& place) {
   std::vector<std::string> felled(world.trees.size());
   for (const FelledTree& f : world.felled) felled[f.tree] = fmt::format("{:.3f}", f.t);
   std::string text = "type,x,y,z,height,diameter,crown_diameter,felled\n";

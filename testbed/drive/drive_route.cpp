@@ -18,8 +18,8 @@ std::vector<Obstacle> obstacles_of(std::span<const RockSolid> rocks, double heig
   return all;
 }
 
-FreeGround::FreeGround(const Terrain& terrain, std::span<const Obstacle> obstacles, double clearance,
-                       double margin, double steepest)
+TraversableMap::TraversableMap(const Terrain& terrain, std::span<const Obstacle> obstacles, double clearance,
+                               double margin, double max_slope)
     : x0_(terrain.x0()), y0_(terrain.y0()) {
   const double width = double(terrain.heights().columns() - 1) * terrain.step_x();
   const double depth = double(terrain.heights().rows() - 1) * terrain.step_y();
@@ -33,7 +33,7 @@ FreeGround::FreeGround(const Terrain& terrain, std::span<const Obstacle> obstacl
       const auto west = terrain.height(at.x() - 1, at.y()), east = terrain.height(at.x() + 1, at.y());
       const auto south = terrain.height(at.x(), at.y() - 1), north = terrain.height(at.x(), at.y() + 1);
       const bool known = west && east && south && north;
-      free_(c, r) = inside && known && std::hypot(*east - *west, *north - *south) / 2 <= steepest ? 1 : 0;
+      free_(c, r) = inside && known && std::hypot(*east - *west, *north - *south) / 2 <= max_slope ? 1 : 0;
     }
   for (const Obstacle& o : obstacles) {
     const double reach = o.radius + clearance;
@@ -45,21 +45,21 @@ FreeGround::FreeGround(const Terrain& terrain, std::span<const Obstacle> obstacl
   }
 }
 
-FreeGround::Cell FreeGround::cell(const Eigen::Vector2d& at) const {
+TraversableMap::Cell TraversableMap::cell(const Eigen::Vector2d& at) const {
   return {static_cast<std::int64_t>(std::floor((at.x() - x0_) / kSquare)),
           static_cast<std::int64_t>(std::floor((y0_ - at.y()) / kSquare))};
 }
 
-Eigen::Vector2d FreeGround::middle(const Cell& cell) const {
+Eigen::Vector2d TraversableMap::middle(const Cell& cell) const {
   return {x0_ + (double(cell.column) + 0.5) * kSquare, y0_ - (double(cell.row) + 0.5) * kSquare};
 }
 
-bool FreeGround::free(const Eigen::Vector2d& at) const {
+bool TraversableMap::free(const Eigen::Vector2d& at) const {
   const Cell c = cell(at);
   return free_.contains(c.column, c.row) && free_(c.column, c.row) != 0;
 }
 
-std::optional<FreeGround::Cell> FreeGround::nearest_free(const Cell& from) const {
+std::optional<TraversableMap::Cell> TraversableMap::nearest_free(const Cell& from) const {
   for (std::int64_t ring = 0; ring < 60; ++ring) {
     std::optional<Cell> best;
     std::int64_t least = 0;
@@ -75,7 +75,8 @@ std::optional<FreeGround::Cell> FreeGround::nearest_free(const Cell& from) const
   return std::nullopt;
 }
 
-std::vector<Eigen::Vector2d> FreeGround::way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
+std::vector<Eigen::Vector2d> TraversableMap::shortest_path(const Eigen::Vector2d& from,
+                                                           const Eigen::Vector2d& to) const {
   const auto start = nearest_free(cell(from)), goal = nearest_free(cell(to));
   if (!start || !goal) return {};
   constexpr float kFar = std::numeric_limits<float>::infinity();
@@ -83,7 +84,7 @@ std::vector<Eigen::Vector2d> FreeGround::way(const Eigen::Vector2d& from, const 
   Grid<std::int8_t> came(free_.columns(), free_.rows(), -1);
   struct Open {
     float estimate;
-    std::int64_t index;  // breaks ties, so that the way is the same everywhere
+    std::int64_t index;  // breaks ties, so that the path is the same on all machines
     bool operator<(const Open& o) const { return std::tie(o.estimate, o.index) < std::tie(estimate, index); }
   };
   const auto left = [&](std::int64_t c, std::int64_t r) {
@@ -118,7 +119,7 @@ std::vector<Eigen::Vector2d> FreeGround::way(const Eigen::Vector2d& from, const 
     at = {at.column - kStep[k][0], at.row - kStep[k][1]};
   }
   std::ranges::reverse(cells);
-  // String pulling: corners that see each other over free squares are joined.
+  // String pulling: corners with a line of sight over free squares are joined.
   std::vector<Eigen::Vector2d> corners{cells.front()};
   for (std::size_t i = 0; i + 1 < cells.size();) {
     std::size_t next = i + 1;
@@ -135,7 +136,7 @@ std::vector<Eigen::Vector2d> FreeGround::way(const Eigen::Vector2d& from, const 
   return corners;
 }
 
-std::vector<Eigen::Vector2d> smooth_way(std::vector<Eigen::Vector2d> corners, double spacing) {
+std::vector<Eigen::Vector2d> smooth_path(std::vector<Eigen::Vector2d> corners, double spacing) {
   for (int round = 0; round < 3 && corners.size() > 2; ++round) {
     std::vector<Eigen::Vector2d> cut{corners.front()};
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
@@ -145,16 +146,16 @@ std::vector<Eigen::Vector2d> smooth_way(std::vector<Eigen::Vector2d> corners, do
     cut.push_back(corners.back());
     corners = std::move(cut);
   }
-  std::vector<Eigen::Vector2d> way;
+  std::vector<Eigen::Vector2d> path;
   double left = 0;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
     const Eigen::Vector2d step = corners[i + 1] - corners[i];
     const double length = step.norm();
-    for (; left < length; left += spacing) way.push_back(corners[i] + step * (left / length));
+    for (; left < length; left += spacing) path.push_back(corners[i] + step * (left / length));
     left -= length;
   }
-  if (!corners.empty()) way.push_back(corners.back());
-  return way;
+  if (!corners.empty()) path.push_back(corners.back());
+  return path;
 }
 
 std::vector<Eigen::Vector2d> automatic_route(const std::string& kind, const Eigen::Vector2d& middle,
@@ -169,7 +170,7 @@ std::vector<Eigen::Vector2d> automatic_route(const std::string& kind, const Eige
   if (kind == "lanes") {
     const int lanes = std::max(1, static_cast<int>(2 * half_size.x() / lane_spacing));
     for (int i = 0; driven < length; ++i) {
-      // Over the whole ground and back again between the lanes of before.
+      // Covers the whole area, then returns between the previous lanes.
       const int pass = i / (lanes + 1), lane = pass % 2 == 0 ? i % (lanes + 1) : lanes - i % (lanes + 1);
       const double x = -half_size.x() + 2 * half_size.x() * (lane + (pass % 2) * 0.5) / (lanes + 0.5);
       const double y = i % 2 == 0 ? -half_size.y() : half_size.y();

@@ -8,26 +8,26 @@
 #include "testbed/drive/laser_targets.hpp"
 namespace waymark {
 
-/// A round thing not to be driven into.
+/// Circular obstacle.
 struct Obstacle {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double radius = 0;
 };
 
-/// Rocks higher than `height` metres; stems are no obstacles for a machine that fells them.
+/// Returns the rocks higher than `height` metres; stems are no obstacles for a harvester.
 std::vector<Obstacle> obstacles_of(std::span<const RockSolid> rocks, double height);
 
-/// Where a vehicle may go: squares that are far enough from obstacles, from the edge of the ground and from
-/// slopes that are too steep.
-class FreeGround {
+/// Traversable terrain: squares far enough from obstacles and the edge of the terrain, and not too steep.
+class TraversableMap {
  public:
-  /// `clearance`: metres kept from obstacles; `margin`: from the edge; `steepest`: metres per metre.
-  FreeGround(const Terrain& terrain, std::span<const Obstacle> obstacles, double clearance, double margin,
-             double steepest);
+  /// `clearance`: minimum distance to obstacles, metres; `margin`: to the edge; `max_slope`: maximum slope,
+  /// metres per metre.
+  TraversableMap(const Terrain& terrain, std::span<const Obstacle> obstacles, double clearance, double margin,
+                 double max_slope);
   bool free(const Eigen::Vector2d& at) const;
-  /// The shortest way from one place to another over free squares (A*, Hart et al. 1968, eight neighbours).
-  /// Both ends are moved to the nearest free square. Empty where there is none.
-  std::vector<Eigen::Vector2d> way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
+  /// Returns the shortest path over free squares (A*, Hart et al. 1968, eight neighbours). Both ends are
+  /// moved to the nearest free square. Empty if there is none.
+  std::vector<Eigen::Vector2d> shortest_path(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
 
  private:
   static constexpr double kSquare = 0.5;
@@ -42,11 +42,14 @@ class FreeGround {
   Grid<std::uint8_t> free_;
 };
 
-/// Corners cut (Chaikin 1974) until it is smooth, then points every `spacing` metres.
-std::vector<Eigen::Vector2d> smooth_way(std::vector<Eigen::Vector2d> corners, double spacing);
+/// Smooths a polyline by corner cutting (Chaikin 1974) and resamples it every `spacing` metres.
+std::vector<Eigen::Vector2d> smooth_path(std::vector<Eigen::Vector2d> corners, double spacing);
 
-/// Corners of an automatic route within a rectangle of this half size about the middle: `loop`, a ring that
-/// wavers; `lanes`, to and fro; `wander`, random places one after another. At least `length` metres long.
+/// Returns the corners of an automatic route of at least `length` metres in a rectangle of half size
+/// `half_size` about the middle. Kinds:
+/// - `loop`: irregular ring,
+/// - `lanes`: parallel lanes to and fro,
+/// - `wander`: random positions one after another.
 std::vector<Eigen::Vector2d> automatic_route(const std::string& kind, const Eigen::Vector2d& middle,
                                              const Eigen::Vector2d& half_size, double length,
                                              double lane_spacing, Random& random);

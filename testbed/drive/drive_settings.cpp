@@ -7,44 +7,53 @@ namespace {
 void describe_drive(DriveSettings& d, OptionVisitor& field) {
   field("vehicle", d.vehicle, {.help = "What drives", .choices = {"rover", "harvester"}});
   field("route", d.route,
-        {.help = "The given waypoints, or made: a ring, to and fro, or random places",
+        {.help = "Route: given waypoints, or automatic: ring, parallel lanes, random positions",
          .choices = {"waypoints", "loop", "lanes", "wander"}});
-  field("length", d.length, {.help = "Of a made route, metres", .min = 1, .max = 1e6});
-  field("lane_spacing", d.lane_spacing, {.help = "Metres between lanes", .min = 2, .max = 1e4});
-  field("margin", d.margin, {.help = "Metres kept from the edge of the ground", .min = 2, .max = 1e5});
-  field("speed", d.speed, {.help = "Metres per second", .min = 0.01, .max = 20});
+  field("length", d.length, {.help = "Length of an automatic route, metres", .min = 1, .max = 1e6});
+  field("lane_spacing", d.lane_spacing, {.help = "Spacing of lanes, metres", .min = 2, .max = 1e4});
+  field("margin", d.margin,
+        {.help = "Minimum distance to the edge of the terrain, metres", .min = 2, .max = 1e5});
+  field("speed", d.speed, {.help = "Speed, metres per second", .min = 0.01, .max = 20});
   field("clearance", d.clearance,
-        {.help = "Metres kept between the vehicle's middle and the edge of rocks", .min = 0, .max = 50});
-  field("steepest", d.steepest, {.help = "Slope it drives on, metres per metre", .min = 0.01, .max = 2});
+        {.help = "Minimum distance between the vehicle's centre and rocks, metres", .min = 0, .max = 50});
+  field("max_slope", d.max_slope,
+        {.help = "Maximum slope, metres per metre", .min = 0.01, .max = 2, .formerly = "steepest"});
   field("start_sd", d.start_sd,
-        {.help = "Error of the start that the log tells, metres", .min = 0, .max = 1e4});
-  field("start_yaw_sd", d.start_yaw_sd, {.help = "Error of its heading", .min = 0, .max = 180});
+        {.help = "Error of the start position in the log, metres", .min = 0, .max = 1e4});
+  field("start_yaw_sd", d.start_yaw_sd,
+        {.help = "Error of the start heading in the log", .min = 0, .max = 180});
   field("seed", d.seed,
-        {.help = "Another seed, another drive on the same site; -1: the scenario's", .min = -1});
-  field("truth_in_log", d.truth_in_log, {.help = "Write true poses into the log too"});
-  field("wheel_base", d.wheels.base, {.help = "Front to rear axle, metres", .min = 0.1, .max = 20});
-  field("wheel_track", d.wheels.track, {.help = "Left to right wheels, metres", .min = 0.1, .max = 20});
+        {.help = "Seed of the drive on the same site; -1: the seed of the scenario", .min = -1});
+  field("truth_in_log", d.truth_in_log, {.help = "Write true poses to the log"});
+  field("wheel_base", d.wheels.base,
+        {.help = "Distance between front and rear axle, metres", .min = 0.1, .max = 20});
+  field("wheel_track", d.wheels.track,
+        {.help = "Distance between left and right wheels, metres", .min = 0.1, .max = 20});
   field("trees", d.trees,
         {.help = "CSV of real trees (x or x_coord, y or y_coord, dbh in cm or diameter in m, height) instead "
                  "of the scenario's forest"});
-  field("stand", d.stand, {.help = "Only rows of that table with this stand_id"});
+  field("stand", d.stand, {.help = "Use only rows of the table with this stand_id"});
   field("undergrowth", d.clutter.undergrowth, {.help = "Bushes per hectare of forest", .min = 0, .max = 1e5});
   field("branchy", d.clutter.branchy,
-        {.help = "Share of trees with dead branches about the scanner's height", .min = 0, .max = 1});
+        {.help = "Fraction of trees with dead branches at scanner height", .min = 0, .max = 1});
 }
 
 void describe_odometry(DriveSettings& d, OptionVisitor& field) {
   OdometryModel& o = d.odometry;
   field("rate", o.rate, {.help = "Readings per second", .min = 2.5, .max = 200});
-  field("slip", o.slip, {.help = "Share of the way lost on level ground", .min = 0, .max = 0.9});
+  field("slip", o.slip,
+        {.help = "Fraction of the wheel distance lost on level ground", .min = 0, .max = 0.9});
   field("slip_per_slope", o.slip_per_slope,
-        {.help = "More share lost per metre risen per metre", .min = 0, .max = 5});
-  field("slip_sd", o.slip_sd, {.help = "Of the share lost, over some metres", .min = 0, .max = 0.5});
+        {.help = "Additional fraction lost per unit of slope", .min = 0, .max = 5});
+  field(
+      "slip_sd", o.slip_sd,
+      {.help = "Standard deviation of the fraction lost, correlated over some metres", .min = 0, .max = 0.5});
   field("side_slip", o.side_slip,
         {.help = "Sideways speed per forward speed and sine of the roll", .min = 0, .max = 5});
-  field("scale_sd", o.scale_sd, {.help = "Of the size of the wheels, per drive", .min = 0, .max = 0.5});
-  field("speed_sd", o.speed_sd, {.help = "Noise of a speed, share of it", .min = 0, .max = 1});
-  field("yaw_bias_sd", o.yaw_bias_sd, {.help = "Per second, of the gyro, per drive", .min = 0, .max = 5});
+  field("scale_sd", o.scale_sd,
+        {.help = "Relative error of the wheel radius, per drive", .min = 0, .max = 0.5});
+  field("speed_sd", o.speed_sd, {.help = "Relative noise of a speed", .min = 0, .max = 1});
+  field("yaw_bias_sd", o.yaw_bias_sd, {.help = "Gyro bias per second, per drive", .min = 0, .max = 5});
   field("yaw_sd", o.yaw_sd, {.help = "Noise of the yaw per square root of a metre", .min = 0, .max = 20});
   field("perfect", o.perfect, {.help = "No slip and no noise"});
 }
@@ -52,7 +61,9 @@ void describe_odometry(DriveSettings& d, OptionVisitor& field) {
 void describe_drive_laser(DriveSettings& d, OptionVisitor& field) {
   describe_laser(d.laser, field);
   field("height", d.laser_height,
-        {.help = "Metres above the ground; 0: 0.35 of a rover, 2 of a harvester", .min = 0, .max = 50});
+        {.help = "Height above the ground, metres; 0: 0.35 for a rover, 2 for a harvester",
+         .min = 0,
+         .max = 50});
 }
 
 void describe_drive_stereo(DriveSettings& d, OptionVisitor& field) {
@@ -67,12 +78,13 @@ void describe_drive_panorama(DriveSettings& d, OptionVisitor& field) {
 
 void describe_gnss(DriveSettings& d, OptionVisitor& field) {
   GnssModel& g = d.gnss;
-  field("on", g.on, {.help = "Whether there are satellite positions"});
+  field("on", g.on, {.help = "Simulate GNSS positions"});
   field("every", g.every, {.help = "Seconds between fixes", .min = 0.01, .max = 1e4});
   field("sd", g.sd, {.help = "Noise of a coordinate, metres", .min = 0, .max = 1e3});
-  field("bias_sd", g.bias_sd, {.help = "Wandering error, metres", .min = 0, .max = 1e3});
-  field("bias_time", g.bias_time, {.help = "Seconds over which that changes", .min = 0.1, .max = 1e6});
-  field("dropouts", g.dropouts, {.help = "Share of fixes missed", .min = 0, .max = 1});
+  field("bias_sd", g.bias_sd, {.help = "Correlated error, metres", .min = 0, .max = 1e3});
+  field("bias_time", g.bias_time,
+        {.help = "Correlation time of that error, seconds", .min = 0.1, .max = 1e6});
+  field("dropouts", g.dropouts, {.help = "Fraction of fixes missing", .min = 0, .max = 1});
   field("perfect", g.perfect, {.help = "No error and no dropouts"});
 }
 
@@ -82,11 +94,11 @@ void describe_crane(DriveSettings& d, OptionVisitor& field) {
   field("corridor", c.corridor,
         {.help = "Metres to each side of the route where all trees are felled", .min = 0, .max = 20});
   field("thinning", c.thinning,
-        {.help = "Share of the other trees within reach that are felled", .min = 0, .max = 1});
-  field("range_sd", c.range_sd, {.help = "Error of the crane's reach, metres", .min = 0, .max = 10});
-  field("bearing_sd", c.bearing_sd, {.help = "Error of its direction", .min = 0, .max = 45});
-  field("diameter_sd", c.diameter_sd, {.help = "Error of the head, metres", .min = 0, .max = 1});
-  field("height_sd", c.height_sd, {.help = "Error of the length, metres", .min = 0, .max = 10});
+        {.help = "Fraction of the other trees within reach that are felled", .min = 0, .max = 1});
+  field("range_sd", c.range_sd, {.help = "Error of the crane range, metres", .min = 0, .max = 10});
+  field("bearing_sd", c.bearing_sd, {.help = "Error of the crane bearing", .min = 0, .max = 45});
+  field("diameter_sd", c.diameter_sd, {.help = "Error of the stem diameter, metres", .min = 0, .max = 1});
+  field("height_sd", c.height_sd, {.help = "Error of the stem length, metres", .min = 0, .max = 10});
 }
 
 }  // namespace
@@ -94,13 +106,13 @@ void describe_crane(DriveSettings& d, OptionVisitor& field) {
 const std::vector<DrivePart>& drive_parts() {
   static const std::vector<DrivePart> parts{
       {"", "A vehicle that drives over the site and measures", describe_drive},
-      {"odometry", "What wheels and gyro get wrong", describe_odometry},
-      {"laser", "Line scanner: one of a rover, two of a harvester", describe_drive_laser},
+      {"odometry", "Wheel slip and odometry errors", describe_odometry},
+      {"laser", "Line scanner: one on a rover, two on a harvester", describe_drive_laser},
       {"stereo", "Depth camera: a stereo pair or time of flight", describe_drive_stereo},
-      {"camera", "Camera that measures directions to landmarks", describe_drive_camera},
-      {"panorama", "Horizon all round", describe_drive_panorama},
-      {"gnss", "Satellite positions", describe_gnss},
-      {"crane", "What a harvester fells", describe_crane},
+      {"camera", "Camera that measures bearings to landmarks", describe_drive_camera},
+      {"panorama", "Skyline of the full circle", describe_drive_panorama},
+      {"gnss", "GNSS positions", describe_gnss},
+      {"crane", "Felling by a harvester", describe_crane},
   };
   return parts;
 }

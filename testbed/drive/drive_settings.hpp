@@ -9,40 +9,40 @@
 #include "testbed/drive/laser_scanner.hpp"
 #include "testbed/drive/laser_targets.hpp"
 #include "testbed/drive/panorama.hpp"
-#include "testbed/drive/rover_body.hpp"
 #include "testbed/drive/stereo_camera.hpp"
+#include "testbed/drive/vehicle_pose.hpp"
 namespace waymark {
 
-/// What goes wrong between the wheels and the ground, and in what odometry tells of it.
+/// Wheel slip and odometry errors.
 struct OdometryModel {
   double rate = 5;              ///< readings per second
-  double slip = 0.03;           ///< share of the wheels' way that is lost on level ground
-  double slip_per_slope = 0.4;  ///< more share lost per metre risen per metre
-  double slip_sd = 0.02;        ///< of the share lost, wavering over some metres
+  double slip = 0.03;           ///< fraction of the wheel distance lost on level ground
+  double slip_per_slope = 0.4;  ///< additional fraction lost per unit of slope
+  double slip_sd = 0.02;        ///< of the fraction lost, correlated over some metres
   double side_slip = 0.15;      ///< sideways speed per speed and sine of the roll
-  double scale_sd = 0.01;       ///< of the wheels' size, one draw per drive
-  double speed_sd = 0.01;       ///< noise of a speed, share of it
-  Degrees yaw_bias_sd{0.01};    ///< per second, of the gyro, one draw per drive
+  double scale_sd = 0.01;       ///< of the wheel radius, drawn once per drive
+  double speed_sd = 0.01;       ///< noise of a speed, relative
+  Degrees yaw_bias_sd{0.01};    ///< per second, gyro bias, drawn once per drive
   Degrees yaw_sd{0.15};         ///< noise of the yaw per square root of a metre
   bool perfect = false;
 };
 
-/// Satellite positions, as the harvester has them under the canopy.
+/// GNSS positions of a harvester under canopy.
 struct GnssModel {
   bool on = false;
   double every = 1;       ///< s
-  double sd = 2;          ///< metres, each coordinate, of single fixes
-  double bias_sd = 3;     ///< metres, wandering
-  double bias_time = 60;  ///< s over which the bias changes
-  double dropouts = 0.3;  ///< share of fixes missed
+  double sd = 2;          ///< metres, each coordinate, noise of single fixes
+  double bias_sd = 3;     ///< metres, correlated error
+  double bias_time = 60;  ///< s, correlation time of the bias
+  double dropouts = 0.3;  ///< fraction of fixes missing
   bool perfect = false;
 };
 
-/// A crane that fells trees and says where they stood.
+/// Harvester crane that fells trees and reports their stem positions.
 struct CraneModel {
   double reach = 10;       ///< metres
-  double corridor = 2.2;   ///< metres to each side of the route: all trees are felled
-  double thinning = 0.25;  ///< share of the other trees within reach that are felled
+  double corridor = 2.2;   ///< metres to each side of the route where all trees are felled
+  double thinning = 0.25;  ///< fraction of the other trees within reach that are felled
   double range_sd = 0.1;   ///< metres
   Degrees bearing_sd{0.5};
   double diameter_sd = 0.005;  ///< metres, of the harvester head
@@ -56,13 +56,13 @@ struct DriveSettings {
   std::vector<Eigen::Vector2d> waypoints;  ///< metres from the middle of the site
   double length = 200;                     ///< metres, of an automatic route
   double lane_spacing = 20;                ///< metres
-  double margin = 15;                      ///< metres kept from the edge of the ground
+  double margin = 15;                      ///< minimum distance to the edge of the terrain, metres
   double speed = 0.5;                      ///< m/s
-  double clearance = 1.3;                  ///< metres between the vehicle's middle and rocks
-  double steepest = 0.45;                  ///< metres per metre
-  double start_sd = 0.1;                   ///< metres, error of the start the log tells
+  double clearance = 1.3;   ///< minimum distance between the vehicle's centre and rocks, metres
+  double max_slope = 0.45;  ///< maximum slope, metres per metre
+  double start_sd = 0.1;    ///< metres, error of the start position in the log
   Degrees start_yaw_sd{1};
-  std::int64_t seed = -1;  ///< -1: the scenario's; another seed, another drive on the same site
+  std::int64_t seed = -1;  ///< -1: seed of the scenario; another seed gives another drive on the same site
   bool truth_in_log = true;
   Wheels wheels;
   OdometryModel odometry;
@@ -74,13 +74,13 @@ struct DriveSettings {
   GnssModel gnss;
   ForestClutter clutter;
   CraneModel crane;
-  std::string trees;  ///< table of real trees instead of the forest of the scenario
-  std::string stand;  ///< rows of the table with this stand_id only
+  std::string trees;  ///< table of real trees; replaces the forest of the scenario
+  std::string stand;  ///< use only rows of the table with this stand_id
 
   bool harvester() const { return vehicle == "harvester"; }
 };
 
-/// A part of the section `drive`; the empty name: its own fields.
+/// Part of the section `drive`; an empty name denotes its own fields.
 struct DrivePart {
   std::string name, help;
   void (*describe)(DriveSettings&, OptionVisitor&);

@@ -14,18 +14,18 @@
 namespace waymark {
 namespace {
 
-constexpr double kSpacing = 0.5;    // metres between points of the way
-constexpr double kObstacle = 0.15;  // metres: higher rocks are driven round
-constexpr double kFelledAhead = 5;  // metres along the way from which a tree in it is felled
+constexpr double kSpacing = 0.5;    // metres between points of the path
+constexpr double kObstacle = 0.15;  // metres: higher rocks are obstacles
+constexpr double kFelledAhead = 5;  // metres ahead at which a tree on the path is felled
 
-std::vector<Eigen::Vector2d> planned_way(const DriveSettings& s, const Scene& scene, std::uint64_t seed) {
+std::vector<Eigen::Vector2d> plan_path(const DriveSettings& s, const Scene& scene, std::uint64_t seed) {
   const Eigen::Vector2d middle(scene.ground.east, scene.ground.north);
   const Eigen::Vector2d half(scene.ground.width / 2 - s.margin, scene.ground.height / 2 - s.margin);
   if (!(half.minCoeff() > 0))
     throw Error(ErrorCode::usage,
-                fmt::format("the ground of {:.0f} x {:.0f} m leaves no room within drive.margin = {:g} m",
+                fmt::format("the site of {:.0f} x {:.0f} m has no room within drive.margin = {:g} m",
                             scene.ground.width, scene.ground.height, s.margin),
-                "drive", "make the ground wider, or the margin smaller");
+                "drive", "enlarge the site, or reduce the margin");
   std::vector<Eigen::Vector2d> corners;
   if (s.route == "waypoints") {
     for (const Eigen::Vector2d& at : s.waypoints) corners.push_back(middle + at);
@@ -34,46 +34,47 @@ std::vector<Eigen::Vector2d> planned_way(const DriveSettings& s, const Scene& sc
                   "or set drive.route to loop, lanes or wander");
   } else {
     Random random(seed, "route");
-    // Longer than needed: places that cannot be reached are left out.
+    // Longer than needed, since unreachable corners are skipped.
     corners = automatic_route(s.route, middle, half, 3 * s.length + 4 * half.norm(), s.lane_spacing, random);
   }
   const std::vector<Obstacle> obstacles = obstacles_of(scene.solids, kObstacle);
   const double edge = std::max(2.0, s.wheels.base);
-  const FreeGround ground(scene.terrain, obstacles, s.clearance, edge, s.steepest);
-  std::vector<Eigen::Vector2d> way;
+  const TraversableMap ground(scene.terrain, obstacles, s.clearance, edge, s.max_slope);
+  std::vector<Eigen::Vector2d> path;
   double driven = 0;
   Eigen::Vector2d reached = corners.front();
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-    const auto leg = ground.way(reached, corners[i + 1]);
+    const auto leg = ground.shortest_path(reached, corners[i + 1]);
     if (leg.empty()) {
-      if (way.empty()) reached = corners[i + 1];  // begin elsewhere
+      if (path.empty()) reached = corners[i + 1];  // start at the next corner
       if (s.route != "waypoints") continue;
       throw Error(
           ErrorCode::usage,
-          fmt::format("no way leads from waypoint {} ({:.1f}, {:.1f}) to the next ({:.1f}, {:.1f})", i,
+          fmt::format("no path leads from waypoint {} ({:.1f}, {:.1f}) to the next ({:.1f}, {:.1f})", i,
                       s.waypoints[i].x(), s.waypoints[i].y(), s.waypoints[i + 1].x(), s.waypoints[i + 1].y()),
-          "drive", "move it, or change drive.clearance or drive.steepest");
+          "drive", "move it, or change drive.clearance or drive.max_slope");
     }
     reached = leg.back();
     for (const Eigen::Vector2d& at : leg) {
-      const double step = way.empty() ? 0 : (at - way.back()).norm();
-      if (!way.empty() && step < 1e-6) continue;
-      // A made route is cut at its length.
+      const double step = path.empty() ? 0 : (at - path.back()).norm();
+      if (!path.empty() && step < 1e-6) continue;
+      // An automatic route is cut at its length.
       if (s.route != "waypoints" && driven + step > s.length) {
-        way.push_back(way.back() + (at - way.back()) * ((s.length - driven) / step));
-        return smooth_way(way, kSpacing);
+        path.push_back(path.back() + (at - path.back()) * ((s.length - driven) / step));
+        return smooth_path(path, kSpacing);
       }
       driven += step;
-      way.push_back(at);
+      path.push_back(at);
     }
   }
-  if (way.size() < 2)
-    throw Error(ErrorCode::usage, "no route can be driven on this ground", "drive",
-                "change drive.clearance or drive.steepest, or use another seed");
-  return smooth_way(way, kSpacing);
+  if (path.size() < 2)
+    throw Error(ErrorCode::usage, "no route can be driven on this terrain", "drive",
+                "change drive.clearance or drive.max_slope, or use another seed");
+  return smooth_path(path, kSpacing);
 }
 
-// When each tree is felled: those in the corridor before the machine is there, others when it is beside them.
+// Time at which each tree is felled: in the corridor before the vehicle arrives, others when it is beside
+// them.
 std::vector<FelledTree> fell(const DriveWorld& world, std::uint64_t seed) {
   const CraneModel& crane = world.settings.crane;
   std::vector<FelledTree> felled;
@@ -84,18 +85,18 @@ std::vector<FelledTree> fell(const DriveWorld& world, std::uint64_t seed) {
     for (std::size_t k = 0; k < world.steps.size(); ++k) {
       const double d = (world.steps[k].at.plane.at() - at).squaredNorm();
       if (d < nearest) nearest = d, beside = k;
-      // In the way at any time: it must be gone before the first of them.
+      // On the path: felled before the vehicle first reaches it.
       if (d < crane.corridor * crane.corridor && first == world.steps.size()) first = k;
     }
     nearest = std::sqrt(nearest);
     Random random(named_seed(seed, "thinning") + i);
-    const bool in_way = first < world.steps.size();
-    const bool thinned = nearest < crane.reach && random.chance(crane.thinning);
-    if (!in_way && !thinned) continue;
-    std::size_t when = in_way ? first : beside;
-    const double way = world.steps[when].way - (in_way ? kFelledAhead : 0.0);
-    while (when > 0 && world.steps[when].way > way) --when;
-    if ((world.steps[when].at.plane.at() - at).norm() > crane.reach && in_way) when = first;
+    const bool on_path = first < world.steps.size();
+    const bool thinned = nearest < crane.reach && random.bernoulli(crane.thinning);
+    if (!on_path && !thinned) continue;
+    std::size_t when = on_path ? first : beside;
+    const double distance = world.steps[when].distance - (on_path ? kFelledAhead : 0.0);
+    while (when > 0 && world.steps[when].distance > distance) --when;
+    if ((world.steps[when].at.plane.at() - at).norm() > crane.reach && on_path) when = first;
     felled.push_back({world.steps[when].t, static_cast<std::uint32_t>(i)});
   }
   std::ranges::stable_sort(felled, {}, &FelledTree::t);
@@ -110,17 +111,17 @@ DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::ve
   DriveSettings s = settings;
   if (s.harvester() && s.laser.field.value == 240) s.laser.field = Degrees{180};
   if (s.laser_height == 0) s.laser_height = s.harvester() ? 2.0 : 0.35;
-  DriveWorld world{s, own, planned_way(s, scene, own), {}, std::move(trees), {}, {scene.terrain, {}}};
-  world.steps = drive_along(scene.terrain, world.way, s, own);
-  // Where bushes and branches are belongs to the site, not to the drive.
+  DriveWorld world{s, own, plan_path(s, scene, own), {}, std::move(trees), {}, {scene.terrain, {}}};
+  world.steps = drive_along(scene.terrain, world.path, s, own);
+  // Bushes and branches depend on the site, not on the drive.
   ForestSolids solids =
       world.trees.empty() ? ForestSolids{} : forest_solids(world.trees, s.clutter, scene.terrain, seed);
   if (s.harvester()) {
     world.felled = fell(world, own);
     for (const FelledTree& f : world.felled) {
-      solids.stems[f.tree].until = f.t;
+      solids.stems[f.tree].felled_at = f.t;
       for (Thicket& t : solids.thickets)
-        if (t.of == f.tree) t.until = f.t;
+        if (t.stem == f.tree) t.felled_at = f.t;
     }
   }
   world.targets =
@@ -179,16 +180,16 @@ std::vector<StandingTree> trees_from_table(std::string_view csv, const std::stri
     if (row.size() < names.size() || (stands && !stand.empty() && row[*stands] != stand)) continue;
     const auto east = number(row[*x]), north = number(row[*y]);
     const auto wide = number(row[dbh ? *dbh : *diameter]);
-    if (!east || !north || !wide || !(*wide > 0)) continue;  // a tree without a place or size is not measured
+    if (!east || !north || !wide || !(*wide > 0)) continue;  // trees without position or size are skipped
     StandingTree tree;
     tree.dbh = dbh ? *wide / 100 : *wide;
-    const auto told = tall ? number(row[*tall]) : std::nullopt;
-    tree.height = told && *told > 1.3 ? *told : 1.3 + 30 * (1 - std::exp(-3 * tree.dbh));
+    const auto given = tall ? number(row[*tall]) : std::nullopt;
+    tree.height = given && *given > 1.3 ? *given : 1.3 + 30 * (1 - std::exp(-3 * tree.dbh));
     tree.crown_diameter = 1 + 12 * tree.dbh;
     tree.crown_base = 0.4 * tree.height;
     tree.foot = {*east, *north, 0};
     if (id) {
-      // The same tree of a later year comes later.
+      // The last year of a tree replaces earlier ones.
       const auto [place, is_new] = seen.try_emplace(std::string(row[*id]), trees.size());
       if (!is_new) {
         trees[place->second] = tree;
@@ -198,7 +199,7 @@ std::vector<StandingTree> trees_from_table(std::string_view csv, const std::stri
     trees.push_back(tree);
   }
   if (trees.empty())
-    throw Error(ErrorCode::input, "the table has no tree with a place and a diameter", source,
+    throw Error(ErrorCode::input, "the table has no tree with a position and a diameter", source,
                 stand.empty() ? "" : "is there a stand_id '" + stand + "'?");
   Eigen::Vector2d low = trees[0].foot.head<2>(), high = low;
   for (const StandingTree& t : trees)

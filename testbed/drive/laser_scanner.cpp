@@ -8,20 +8,21 @@
 namespace waymark {
 namespace {
 
-constexpr double kOneThing = 0.25;  // metres between returns that one pulse cannot tell apart
-constexpr std::size_t kMostRays = 31;
+constexpr double kRangeResolution = 0.25;  // metres, range resolution of one pulse
+constexpr std::size_t kMaxRays = 31;
 
-// What comes back of a beam whose rays end at these ranges, ascending; rays that meet nothing are left out.
-double returned(std::span<const double> ranges, std::size_t rays, const LaserModel& laser, Random& random) {
+// Range measured by a beam whose rays end at these ranges, ascending; rays without hit are left out.
+double measured_range(std::span<const double> ranges, std::size_t rays, const LaserModel& laser,
+                      Random& random) {
   const double enough = std::max(1.0, laser.sensitivity * static_cast<double>(rays));
   for (std::size_t first = 0; first < ranges.size();) {
     std::size_t end = first;
     double sum = 0;
-    while (end < ranges.size() && ranges[end] - ranges[first] <= kOneThing) sum += ranges[end++];
+    while (end < ranges.size() && ranges[end] - ranges[first] <= kRangeResolution) sum += ranges[end++];
     const double count = static_cast<double>(end - first), mean = sum / count;
     if (count >= enough) {
       const bool edge = end < ranges.size() && ranges[end] - mean < 2;
-      if (!edge || !random.chance(laser.mixed)) return mean;
+      if (!edge || !random.bernoulli(laser.mixed)) return mean;
       return mean + random.uniform() * (ranges[end] - mean);
     }
     first = end;
@@ -35,7 +36,7 @@ std::int64_t LaserModel::beams() const {
   return static_cast<std::int64_t>(std::floor(field.value / step.value + 1e-9)) + 1;
 }
 
-LaserModel LaserModel::without_errors() const {
+LaserModel LaserModel::ideal_model() const {
   LaserModel exact = *this;
   exact.divergence = Degrees{0};
   exact.rays = 1;
@@ -46,16 +47,16 @@ LaserModel LaserModel::without_errors() const {
 
 LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor, const LaserModel& given,
                 Random& random) {
-  const LaserModel laser = given.perfect ? given.without_errors() : given;
+  const LaserModel laser = given.perfect ? given.ideal_model() : given;
   LaserScan scan;
   const std::int64_t beams = laser.beams();
   scan.angle_step = to_radians(laser.step).value;
   scan.first_angle = -0.5 * scan.angle_step * static_cast<double>(beams - 1);
-  scan.most_range = laser.most_range;
+  scan.max_range = laser.max_range;
   scan.ranges.resize(static_cast<std::size_t>(beams));
-  const auto rays = std::clamp<std::size_t>(static_cast<std::size_t>(laser.rays), 1, kMostRays);
+  const auto rays = std::clamp<std::size_t>(static_cast<std::size_t>(laser.rays), 1, kMaxRays);
   const double width = to_radians(laser.divergence).value;
-  std::array<double, kMostRays> hits{};
+  std::array<double, kMaxRays> hits{};
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     std::size_t count = 0;
     for (std::size_t k = 0; k < rays; ++k) {
@@ -65,35 +66,35 @@ LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor, cons
       if (const auto hit = fan.cast(along, &random)) hits[count++] = hit->range;
     }
     std::sort(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count));
-    double range = count > 0 ? returned({hits.data(), count}, rays, laser, random) : 0;
+    double range = count > 0 ? measured_range({hits.data(), count}, rays, laser, random) : 0;
     if (range > 0) range += laser.range_bias + random.normal(0, laser.range_sd);
-    if (random.chance(laser.dropouts)) range = 0;
-    if (random.chance(laser.clutter)) range = random.uniform(0.3, laser.most_range);
-    scan.ranges[i] = range > 0 && range < laser.most_range ? static_cast<float>(range) : 0.0F;
+    if (random.bernoulli(laser.dropouts)) range = 0;
+    if (random.bernoulli(laser.clutter)) range = random.uniform(0.3, laser.max_range);
+    scan.ranges[i] = range > 0 && range < laser.max_range ? static_cast<float>(range) : 0.0F;
   }
   return scan;
 }
 
 void describe_laser(LaserModel& l, OptionVisitor& field) {
-  field("on", l.on, {.help = "Whether there is a line scanner"});
+  field("on", l.on, {.help = "Simulate a line scanner"});
   field("every", l.every, {.help = "Seconds between two scans", .min = 0.01, .max = 1e4});
-  field("field", l.field, {.help = "From the first beam to the last", .min = 1, .max = 360});
-  field("step", l.step, {.help = "Between two beams", .min = 0.01, .max = 10});
-  field("most_range", l.most_range, {.help = "Metres it sees", .min = 0.5, .max = 1000});
-  field("divergence", l.divergence, {.help = "Full width of a beam", .min = 0, .max = 5});
+  field("field", l.field, {.help = "Angle from the first beam to the last", .min = 1, .max = 360});
+  field("step", l.step, {.help = "Angle between two beams", .min = 0.01, .max = 10});
+  field("max_range", l.max_range,
+        {.help = "Maximum range, metres", .min = 0.5, .max = 1000, .formerly = "most_range"});
+  field("divergence", l.divergence, {.help = "Full divergence of a beam", .min = 0, .max = 5});
   field("rays", l.rays, {.help = "Rays cast across the width of a beam", .min = 1, .max = 31});
   field("sensitivity", l.sensitivity,
-        {.help = "Share of a beam that must meet a thing for it to be seen", .min = 0, .max = 1});
-  field("range_bias", l.range_bias, {.help = "Metres that ranges are too long", .min = -10, .max = 10});
+        {.help = "Minimum fraction of a beam that an object must intercept", .min = 0, .max = 1});
+  field("range_bias", l.range_bias, {.help = "Bias of a range, metres", .min = -10, .max = 10});
   field("range_sd", l.range_sd, {.help = "Noise of a range, metres", .min = 0, .max = 10});
-  field("dropouts", l.dropouts, {.help = "Share of beams that return nothing", .min = 0, .max = 1});
-  field("clutter", l.clutter,
-        {.help = "Share of beams that return a range from nowhere", .min = 0, .max = 1});
-  field("mixed", l.mixed,
-        {.help = "Share of beams on an edge that return a range between both things", .min = 0, .max = 1});
-  field("levelled", l.levelled, {.help = "Held level; false: it tilts with the vehicle"});
-  field("tilt_sd", l.tilt_sd,
-        {.help = "Error of the roll and pitch that the log tells", .min = 0, .max = 10});
+  field("dropouts", l.dropouts, {.help = "Fraction of beams without return", .min = 0, .max = 1});
+  field("clutter", l.clutter, {.help = "Fraction of beams with a false range", .min = 0, .max = 1});
+  field(
+      "mixed", l.mixed,
+      {.help = "Fraction of beams on an edge that return a range between both objects", .min = 0, .max = 1});
+  field("levelled", l.levelled, {.help = "Levelled mount; false: tilts with the vehicle"});
+  field("tilt_sd", l.tilt_sd, {.help = "Error of roll and pitch in the log", .min = 0, .max = 10});
   field("perfect", l.perfect, {.help = "No beam width, noise, dropouts or clutter"});
 }
 

@@ -8,7 +8,7 @@ namespace waymark {
 
 double StemSolid::radius(double above) const {
   if (!(above >= 0 && above < height)) return 0;
-  // Stem form of a paraboloid-like softwood above the butt (exponent 0.7); 1.3 m is where dbh holds.
+  // Taper of a paraboloid-like softwood stem above the butt (exponent 0.7), equal to dbh at 1.3 m.
   const double part = (height - above) / std::max(height - 1.3, 0.1);
   return dbh / 2 * std::pow(part, 0.7);
 }
@@ -63,17 +63,18 @@ ForestSolids forest_solids(std::span<const StandingTree> trees, const ForestClut
     StemSolid stem{.foot = tree.foot, .dbh = tree.dbh, .height = tree.height};
     stem.lean = {lean.normal(0, 0.012), lean.normal(0, 0.012)};
     solids.stems.push_back(stem);
-    // Dead branches thin out upwards; where the living crown reaches down, foliage hides the stem.
-    const bool branchy = branches.chance(clutter.branchy);
+    // Dead branches become sparser upwards; foliage of a low living crown hides the stem.
+    const bool branchy = branches.bernoulli(clutter.branchy);
     const double side = branches.uniform(0, 6.3), out = branches.uniform(0.2, 0.6);
     const double above = branches.uniform(1.2, 2.8), thick = branches.uniform(0.05, 0.5);
     if (tree.dbh > 0 && branchy)
       solids.thickets.push_back(
           {tree.foot + Eigen::Vector3d(out * std::cos(side), out * std::sin(side), above), out, thick,
-           stem.until, of});
+           stem.felled_at, of});
     if (tree.crown_base < 2.5 && tree.crown_diameter > 0 && tree.height > 1)
       solids.thickets.push_back({tree.foot + Eigen::Vector3d(0, 0, std::max(1.0, tree.height / 3)),
-                                 std::min(tree.crown_diameter / 2, tree.height / 2), 0.8, stem.until, of});
+                                 std::min(tree.crown_diameter / 2, tree.height / 2), 0.8, stem.felled_at,
+                                 of});
   }
   const double width = double(terrain.heights().columns() - 1) * terrain.step_x();
   const double depth = double(terrain.heights().rows() - 1) * terrain.step_y();

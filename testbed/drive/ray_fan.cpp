@@ -18,13 +18,13 @@ int sector(double azimuth) {
   return std::clamp(s, 0, kSectors - 1);
 }
 
-std::optional<double> meet_stem(const StemSolid& stem, const Eigen::Vector3d& origin,
-                                const Eigen::Vector3d& along) {
+std::optional<double> intersect_stem(const StemSolid& stem, const Eigen::Vector3d& origin,
+                                     const Eigen::Vector3d& along) {
   const Eigen::Vector2d d = along.head<2>();
   const double a = d.squaredNorm();
   if (!(a > 0)) return {};
-  // The stem at the height where the ray passes it: for rays that rise little over a stem's width this is
-  // exact to the taper and lean over that width, below a millimetre.
+  // Circle of the stem at the height where the ray passes: the error is the taper and lean over the rise of
+  // the ray within one stem width, below a millimetre for flat rays.
   double t = (stem.foot.head<2>() - origin.head<2>()).dot(d) / a;
   for (int i = 0; i < 2; ++i) {
     const double above = origin.z() + t * along.z() - stem.foot.z();
@@ -38,8 +38,8 @@ std::optional<double> meet_stem(const StemSolid& stem, const Eigen::Vector3d& or
   return t > 0 ? std::optional(t) : std::nullopt;
 }
 
-std::optional<double> meet_thicket(const Thicket& thicket, const Eigen::Vector3d& origin,
-                                   const Eigen::Vector3d& along, Random& random) {
+std::optional<double> intersect_thicket(const Thicket& thicket, const Eigen::Vector3d& origin,
+                                        const Eigen::Vector3d& along, Random& random) {
   const Eigen::Vector3d to = thicket.centre - origin;
   const double middle = to.dot(along);
   const double square = thicket.radius * thicket.radius - (to - middle * along).squaredNorm();
@@ -60,8 +60,8 @@ RayFan::RayFan(const LaserTargets& targets, const Eigen::Vector3d& origin, doubl
   };
   std::vector<Span> spans;
   for (const auto& target : targets.near(origin.head<2>(), reach)) {
-    if (target.kind == TargetKind::stem && t >= targets.stems()[target.index].until) continue;
-    if (target.kind == TargetKind::thicket && t >= targets.thickets()[target.index].until) continue;
+    if (target.kind == TargetKind::stem && t >= targets.stems()[target.index].felled_at) continue;
+    if (target.kind == TargetKind::thicket && t >= targets.thickets()[target.index].felled_at) continue;
     const double dx = double(target.x) - origin.x(), dy = double(target.y) - origin.y();
     const double distance = std::hypot(dx, dy), wide = double(target.reach) + 1e-3;
     Span span{{std::max(0.0, distance - wide), target.kind, target.index}, 0, kSectors - 1};
@@ -90,14 +90,14 @@ RayFan::RayFan(const LaserTargets& targets, const Eigen::Vector3d& origin, doubl
   }
 }
 
-std::optional<double> RayFan::meet_one(const Candidate& c, const Eigen::Vector3d& along,
-                                       Random* random) const {
+std::optional<double> RayFan::intersect_target(const Candidate& c, const Eigen::Vector3d& along,
+                                               Random* random) const {
   if (c.kind == TargetKind::rock) {
-    const auto hit = meet(targets_.rocks()[c.index], origin_, along);
+    const auto hit = intersect(targets_.rocks()[c.index], origin_, along);
     return hit ? std::optional(hit->t) : std::nullopt;
   }
-  if (c.kind == TargetKind::stem) return meet_stem(targets_.stems()[c.index], origin_, along);
-  return random ? meet_thicket(targets_.thickets()[c.index], origin_, along, *random) : std::nullopt;
+  if (c.kind == TargetKind::stem) return intersect_stem(targets_.stems()[c.index], origin_, along);
+  return random ? intersect_thicket(targets_.thickets()[c.index], origin_, along, *random) : std::nullopt;
 }
 
 template <class Candidates>
@@ -112,7 +112,7 @@ std::optional<FanHit> RayFan::first(const Candidates& order, const Eigen::Vector
       if (sorted) break;
       continue;
     }
-    const auto t = meet_one(c, along, random);
+    const auto t = intersect_target(c, along, random);
     if (t && *t < best.range) best = {*t, c.kind, c.index}, any = true;
   }
   const RayHit ground = targets_.terrain().cast({{origin_}, {along}}, best.range);
@@ -127,7 +127,7 @@ std::optional<FanHit> RayFan::cast(const Eigen::Vector3d& along, Random* random)
   return first(order, along, random, true);
 }
 
-std::optional<FanHit> RayFan::cast_slowly(const Eigen::Vector3d& along, Random* random) const {
+std::optional<FanHit> RayFan::cast_exhaustively(const Eigen::Vector3d& along, Random* random) const {
   return first(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(candidates_.size())), along,
                random, false);
 }

@@ -11,19 +11,19 @@ struct FanHit {
   std::uint32_t index = 0;  ///< of the rock, stem or thicket
 };
 
-/// Rays from one point: what stands near it, sorted by azimuth and distance, so that a ray asks only what
-/// lies in its direction. Meets the same as asking every target.
+/// Casts rays from one point. Targets are sorted by azimuth and distance, so that a ray tests only those in
+/// its direction. Same result as testing every target.
 class RayFan {
  public:
-  /// Sees `reach` metres far; `t` s: what is felled by then is gone.
+  /// `reach`: maximum range, metres; `t`: time, s; trees felled by then are absent.
   RayFan(const LaserTargets& targets, const Eigen::Vector3d& origin, double reach, double t = 0);
 
-  /// The first thing a ray meets; nothing within reach: none. `along` is a unit vector. `random` decides
-  /// where a beam ends in a thicket; without it thickets let everything through.
+  /// Returns the first hit of a ray; `std::nullopt` if nothing lies within reach. `along` is a unit vector.
+  /// `random` draws where a beam ends in a thicket; without it thickets are transparent.
   std::optional<FanHit> cast(const Eigen::Vector3d& along, Random* random = nullptr) const;
 
-  /// The same without the sorting: its twin in tests.
-  std::optional<FanHit> cast_slowly(const Eigen::Vector3d& along, Random* random = nullptr) const;
+  /// Same as cast() without sorting; the reference in tests.
+  std::optional<FanHit> cast_exhaustively(const Eigen::Vector3d& along, Random* random = nullptr) const;
 
   const Eigen::Vector3d& origin() const { return origin_; }
 
@@ -33,7 +33,8 @@ class RayFan {
     TargetKind kind;
     std::uint32_t index;
   };
-  std::optional<double> meet_one(const Candidate& c, const Eigen::Vector3d& along, Random* random) const;
+  std::optional<double> intersect_target(const Candidate& c, const Eigen::Vector3d& along,
+                                         Random* random) const;
   template <class Candidates>
   std::optional<FanHit> first(const Candidates& order, const Eigen::Vector3d& along, Random* random,
                               bool sorted) const;

@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
-#include "testbed/scenario_fields.hpp"
+#include "core/json_text.hpp"
+#include "core/options/option_reader.hpp"
 
 namespace waymark {
 namespace {
@@ -27,14 +28,15 @@ std::vector<Eigen::Vector2d> waypoints_of(const Json& list, const std::string& s
   return all;
 }
 
-FieldsOf fields_of(const DrivePart& part, DriveSettings& drive) {
+DescribeOptions fields_of(const DrivePart& part, DriveSettings& drive) {
   return [&part, &drive](OptionVisitor& field) { part.describe(drive, field); };
 }
 
 }  // namespace
 
-void read_drive(DriveSettings& into, std::string_view json, const std::string& source) {
-  const Json file = Json::parse(json);
+void read_drive(DriveSettings& into, std::string_view json, const std::string& source,
+                const OptionWarning& warn) {
+  const Json file = Json::parse(checked_json(json, source, ErrorCode::usage));
   if (!file.is_object()) throw Error(ErrorCode::usage, "drive must be an object", source);
   into.on = true;
   std::vector<std::string> also{"waypoints"};
@@ -42,9 +44,12 @@ void read_drive(DriveSettings& into, std::string_view json, const std::string& s
     if (!part.name.empty()) also.push_back(part.name);
   for (const DrivePart& part : drive_parts()) {
     if (part.name.empty())
-      read_fields(fields_of(part, into), json, "drive", source, also);
+      read_and_warn(fields_of(part, into), json,
+                    {.owner = "drive", .prefix = "drive.", .where = source, .also = also}, warn);
     else if (file.contains(part.name))
-      read_fields(fields_of(part, into), file[part.name].dump(), "drive." + part.name, source);
+      read_and_warn(fields_of(part, into), file[part.name].dump(),
+                    {.owner = "drive." + part.name, .prefix = "drive." + part.name + ".", .where = source},
+                    warn);
   }
   if (file.contains("waypoints")) {
     into.waypoints = waypoints_of(file["waypoints"], source);
@@ -59,7 +64,7 @@ std::string drive_json(const DriveSettings& drive) {
   DriveSettings copy = drive;
   Json all;
   for (const DrivePart& part : drive_parts()) {
-    const Json fields = Json::parse(written_fields(fields_of(part, copy)));
+    const Json fields = Json::parse(options_as_json(option_table(fields_of(part, copy))));
     if (part.name.empty())
       all.update(fields);
     else
@@ -77,7 +82,7 @@ std::string drive_schema() {
   Json properties;
   std::string help;
   for (const DrivePart& part : drive_parts()) {
-    const Json fields = Json::parse(schema_of_fields(fields_of(part, defaults)));
+    const Json fields = Json::parse(option_schemas(option_table(fields_of(part, defaults))));
     if (part.name.empty())
       properties.update(fields), help = part.help;
     else

@@ -2,14 +2,17 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include "core/options/option_reader.hpp"
 #include "testbed/drive/drive_settings.hpp"
 namespace waymark {
 
-/// The section `drive` of a scenario: its own fields, `waypoints`, and one object for each part. Throws
-/// Error{usage} with the JSON path for what is unknown, out of range or of the wrong kind.
-void read_drive(DriveSettings& into, std::string_view json, const std::string& source);
+/// Reads the section `drive` of a scenario: its own fields, `waypoints`, and one object per part. Throws
+/// Error{usage} with the JSON path for fields that are unknown, out of range or of the wrong kind. Warns of
+/// former names.
+void read_drive(DriveSettings& into, std::string_view json, const std::string& source,
+                const OptionWarning& warn = {});
 
-/// The section with every value written out, and its JSON schema.
+/// Return the section with all values, and its JSON schema.
 std::string drive_json(const DriveSettings& drive);
 std::string drive_schema();
 

@@ -6,7 +6,7 @@
 #include "testbed/drive/ray_fan.hpp"
 namespace waymark {
 
-/// A pair of cameras, or one that measures times of flight: a depth for each pixel.
+/// Depth camera: stereo pair or time of flight.
 struct StereoModel {
   bool on = false;
   double every = 4;  ///< s between two images
@@ -14,16 +14,16 @@ struct StereoModel {
   Degrees field{70};          ///< across the columns
   double height = 1.5;        ///< metres above the ground
   Degrees tilt{15};           ///< downwards
-  double most_range = 18;     ///< metres
-  double baseline = 0.3;      ///< metres; 0: time of flight, the error does not grow with range
+  double max_range = 18;      ///< metres
+  double baseline = 0.3;      ///< metres; 0: time of flight, with an error independent of range
   double disparity_sd = 0.1;  ///< pixels of an image of 1000 columns
-  double range_sd = 0.01;     ///< metres, of time of flight and beside the disparity's error
-  double dropouts = 0.05;     ///< share of pixels without depth
+  double range_sd = 0.01;     ///< metres, independent of range; added to the disparity error
+  double dropouts = 0.05;     ///< fraction of pixels without depth
   bool perfect = false;
 };
 void describe_stereo(StereoModel& stereo, OptionVisitor& field);
 
-/// Depths along the optical axis. The camera looks forward and down by `tilt` from the robot's axes.
+/// Returns depths along the optical axis. The camera looks forward, `tilt` below the robot axes.
 DepthImage depth_image(const RayFan& fan, const Eigen::Matrix3d& grid_from_robot, const StereoModel& stereo,
                        Random& random);
 

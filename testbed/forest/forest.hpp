@@ -3,11 +3,10 @@
 #include <Eigen/Core>
 namespace waymark {
 
-/// A tree as it stands, metres, GridFrame. `species` indexes the forest's list of species
-/// (ForestLaw::species); 0 where there is only one.
+/// Standing tree, metres, GridFrame. `species` is an index into ForestModel::species; 0 if there is only one.
 struct StandingTree {
-  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< middle of the stem on the ground
-  double height = 0;                               ///< foot to highest shoot
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< centre of the stem at ground level
+  double height = 0;                               ///< foot to highest shoot (tree height)
   double dbh = 0;                                  ///< stem diameter at 1.3 m, over bark; 0: below 1.3 m
   double crown_diameter = 0;                       ///< mean width
   double crown_base = 0;                           ///< height above the foot where the living crown begins

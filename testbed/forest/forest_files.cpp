@@ -9,15 +9,15 @@ namespace waymark {
 
 using Json = nlohmann::ordered_json;
 
-ForestTruth forest_truth(const ForestLaw& law, const MadeForest& forest, const std::vector<double>& exposed,
-                         double unit) {
+ForestTruth forest_truth(const ForestModel& law, const SyntheticForest& forest,
+                         const std::vector<double>& exposed, double unit) {
   ForestTruth truth;
   truth.trees = truth.understory =
       "type,x,y,z,height,diameter,crown_diameter,crown_base,species,stand,exposed\n";
   for (std::size_t i = 0; i < forest.trees.size(); ++i) {
     const StandingTree& t = forest.trees[i];
-    const int stand = stand_at(forest.stands, t.foot.head<2>());
-    (t.dbh >= kLeastDbh ? truth.trees : truth.understory) +=
+    const int stand = stand_index_at(forest.stands, t.foot.head<2>());
+    (t.dbh >= kMinDbh ? truth.trees : truth.understory) +=
         fmt::format("tree,{:.3f},{:.3f},{:.3f},{:.2f},{:.4f},{:.2f},{:.2f},{},{},{:.2f}\n", t.foot.x() / unit,
                     t.foot.y() / unit, t.foot.z(), t.height, t.dbh, t.crown_diameter, t.crown_base,
                     law.species().at(static_cast<std::size_t>(t.species)).name,
@@ -26,14 +26,14 @@ ForestTruth forest_truth(const ForestLaw& law, const MadeForest& forest, const s
   return truth;
 }
 
-std::string stands_geojson(const MadeForest& forest, const Crs& crs, double unit) {
+std::string stands_geojson(const SyntheticForest& forest, const Crs& crs, double unit) {
   Json file{{"type", "FeatureCollection"}, {"name", "stands"}};
   if (!crs.code().empty())
     file["crs"] = {
         {"type", "name"},
         {"properties", {{"name", fmt::format("urn:ogc:def:crs:{}::{}", crs.authority(), crs.code())}}}};
   Json& features = file["features"] = Json::array();
-  for (const MadeStand& stand : forest.stands) {
+  for (const SyntheticStand& stand : forest.stands) {
     Json ring = Json::array();
     for (std::size_t i = 0; i <= stand.outline.size(); ++i) {
       const Eigen::Vector2d corner = stand.outline[i % stand.outline.size()] / unit;
@@ -46,7 +46,7 @@ std::string stands_geojson(const MadeForest& forest, const Crs& crs, double unit
   return file.dump(1) + "\n";
 }
 
-std::string forest_job(const std::string& name, const ForestLaw& law, const std::string& crs) {
+std::string forest_job(const std::string& name, const ForestModel& law, const std::string& crs) {
   Json canopy{{"stage", "load_canopy"}, {"chm", {"chm.tif"}}};
   if (crs == "local") canopy["crs"] = "local";
   const char* preset = law.conifers > 0.8 ? "conifer" : law.conifers < 0.2 ? "broadleaf" : "mixed";

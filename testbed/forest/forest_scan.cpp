@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kBucket = 5;  // metres
-constexpr int kMostReturns = 5;
-constexpr double kGoesOn = 0.55, kLeastGap = 1.0;
+constexpr int kMaxReturns = 5;
+constexpr double kPassProbability = 0.55, kMinReturnGap = 1.0;
 
-/// A crown in the air: heights are absolute.
+/// Crown in the scan; heights are absolute.
 struct Crown {
   Eigen::Vector2d middle;
   double radius = 0, base = 0, length = 0, shape = 1, bumps = 0, depth = 0.25;
@@ -32,17 +32,17 @@ struct Crown {
     double outline = 1;
     const double angle = std::atan2(dy, dx);
     for (int k = 0; k < 3; ++k) outline += lobe[k] * std::cos((k + 2) * angle + phase[k]);
-    const double share = r / (radius * std::clamp(outline, 0.4, 1.5));
-    if (share >= 1) return -1e9;
-    // Twigs and gaps; none at the top, so that the tree is as high as it is told to be.
-    const double rough = bumps * share * (gradient_noise_value(x / 0.9, y / 0.9, noise) - 1);
-    return base + std::max(0.05, length * (1 - std::pow(share, shape)) + rough);
+    const double relative_radius = r / (radius * std::clamp(outline, 0.4, 1.5));
+    if (relative_radius >= 1) return -1e9;
+    // Twigs and gaps; none at the top, so that the tree has its nominal height.
+    const double rough = bumps * relative_radius * (gradient_noise_value(x / 0.9, y / 0.9, noise) - 1);
+    return base + std::max(0.05, length * (1 - std::pow(relative_radius, shape)) + rough);
   }
 };
 
-Crown crown_of(const ForestLaw& law, const StandingTree& tree, std::uint64_t seed, std::size_t index) {
-  Random random(mixed(named_seed(seed, "crowns") + index));
-  const SpeciesLaw& kind = law.species().at(static_cast<std::size_t>(tree.species));
+Crown crown_of(const ForestModel& law, const StandingTree& tree, std::uint64_t seed, std::size_t index) {
+  Random random(mix_bits(named_seed(seed, "crowns") + index));
+  const SpeciesModel& kind = law.species().at(static_cast<std::size_t>(tree.species));
   Crown crown;
   crown.middle =
       tree.foot.head<2>() + 0.012 * tree.height * Eigen::Vector2d(random.normal(), random.normal());
@@ -59,10 +59,10 @@ Crown crown_of(const ForestLaw& law, const StandingTree& tree, std::uint64_t see
   return crown;
 }
 
-/// Crowns by the squares they reach into.
+/// Index of crowns by the squares that they reach into.
 class CrownIndex {
  public:
-  CrownIndex(const ForestLaw& law, const MadeForest& forest, std::uint64_t seed)
+  CrownIndex(const ForestModel& law, const SyntheticForest& forest, std::uint64_t seed)
       : noise_(static_cast<std::uint32_t>(named_seed(seed, "twigs"))) {
     Eigen::Vector2d high(-1e18, -1e18);
     low_ = -high;
@@ -88,8 +88,8 @@ class CrownIndex {
 
   const std::vector<Crown>& crowns() const { return crowns_; }
 
-  /// Crowns over a place with the height of their surface there, highest first.
-  void over(double x, double y, std::vector<std::pair<double, const Crown*>>& found) const {
+  /// Crowns over a position with the height of their surface there, highest first.
+  void crowns_over(double x, double y, std::vector<std::pair<double, const Crown*>>& found) const {
     found.clear();
     const std::int64_t c = bucket(x - low_.x()), r = bucket(y - low_.y());
     if (c < 0 || r < 0 || c >= columns_ || r >= rows_) return;
@@ -119,26 +119,27 @@ std::uint8_t kind_of(double above_ground) {
 }
 
 /// Appends the returns of a pulse.
-void shoot(double x, double y, double ground, const std::vector<std::pair<double, const Crown*>>& crowns,
-           const ForestLaw& law, double time, Random& random, std::vector<LaserReturn>& returns) {
+void trace_pulse(double x, double y, double ground,
+                 const std::vector<std::pair<double, const Crown*>>& crowns, const ForestModel& law,
+                 double time, Random& random, std::vector<LaserReturn>& returns) {
   const std::size_t first = returns.size();
   double last = 1e9;
   bool lost = false;
   const auto add = [&](double z, std::uint8_t kind) {
     last = z;
-    returns.push_back({.x = x + random.normal(0, law.place_sd),
-                       .y = y + random.normal(0, law.place_sd),
+    returns.push_back({.x = x + random.normal(0, law.position_sd),
+                       .y = y + random.normal(0, law.position_sd),
                        .z = z + random.normal(0, law.range_sd),
                        .kind = kind,
-                       .intensity = static_cast<std::uint16_t>(kind == 2 ? 900 + random.below(400)
-                                                                         : 250 + random.below(500)),
+                       .intensity = static_cast<std::uint16_t>(kind == 2 ? 900 + random.uniform_index(400)
+                                                                         : 250 + random.uniform_index(500)),
                        .time = time});
   };
   for (const auto& [top, crown] : crowns) {
     const double z = top + crown->depth * std::log(1 - random.uniform());
-    if (z < std::max(crown->base, ground) || z > last - kLeastGap) continue;
+    if (z < std::max(crown->base, ground) || z > last - kMinReturnGap) continue;
     add(z, kind_of(z - ground));
-    if (returns.size() - first == kMostReturns || !random.chance(kGoesOn)) {
+    if (returns.size() - first == kMaxReturns || !random.bernoulli(kPassProbability)) {
       lost = true;
       break;
     }
@@ -151,7 +152,7 @@ void shoot(double x, double y, double ground, const std::vector<std::pair<double
   }
 }
 
-/// One round of filling cells without a value with the mean of those around them.
+/// Fills cells without a value with the mean of their known neighbours, once.
 void fill_pits(Grid<float>& heights) {
   const Grid<float> before = heights;
   for (std::int64_t j = 0; j < heights.rows(); ++j)
@@ -169,8 +170,8 @@ void fill_pits(Grid<float>& heights) {
 
 }  // namespace
 
-ForestRasters scan_forest(const ForestLaw& law, const MadeForest& forest, const Terrain& terrain, double east,
-                          double north, std::uint64_t seed,
+ForestRasters scan_forest(const ForestModel& law, const SyntheticForest& forest, const Terrain& terrain,
+                          double east, double north, std::uint64_t seed,
                           const std::function<void(std::span<const LaserReturn>)>& take) {
   const CrownIndex index(law, forest, seed);
   const auto columns = static_cast<std::int64_t>(std::floor(law.width / law.cell + 1e-9)),
@@ -201,10 +202,10 @@ ForestRasters scan_forest(const ForestLaw& law, const MadeForest& forest, const 
                      y = middle_y + random.uniform(-0.5, 0.5) * law.cell;
         const auto ground = terrain.height(x, y);
         if (!ground) continue;
-        index.over(x, y, over);
+        index.crowns_over(x, y, over);
         const double time =
             static_cast<double>(j) * 0.02 + static_cast<double>(i) * 1e-5 + static_cast<double>(p) * 1e-7;
-        shoot(x, y, *ground, over, law, time, random, returns);
+        trace_pulse(x, y, *ground, over, law, time, random, returns);
       }
     }
     for (const LaserReturn& hit : returns) {
@@ -224,7 +225,8 @@ ForestRasters scan_forest(const ForestLaw& law, const MadeForest& forest, const 
   return out;
 }
 
-std::vector<double> seen_from_above(const ForestLaw& law, const MadeForest& forest, std::uint64_t seed) {
+std::vector<double> visible_crown_fraction(const ForestModel& law, const SyntheticForest& forest,
+                                           std::uint64_t seed) {
   const CrownIndex index(law, forest, seed);
   std::vector<double> seen;
   std::vector<std::pair<double, const Crown*>> over;
@@ -234,7 +236,7 @@ std::vector<double> seen_from_above(const ForestLaw& law, const MadeForest& fore
     int inside = 0, free = 0;
     for (int k = 0; k < kSamples; ++k) {
       const double r = crown.radius * std::sqrt((k + 0.5) / kSamples), angle = k * golden;
-      index.over(crown.middle.x() + r * std::cos(angle), crown.middle.y() + r * std::sin(angle), over);
+      index.crowns_over(crown.middle.x() + r * std::cos(angle), crown.middle.y() + r * std::sin(angle), over);
       const auto own = std::ranges::find(over, &crown, [](const auto& pair) { return pair.second; });
       if (own == over.end()) continue;
       ++inside;

@@ -8,7 +8,7 @@
 #include "testbed/forest/plant_forest.hpp"
 namespace waymark {
 
-/// A return of an airborne laser. Metres, GridFrame.
+/// Return of an airborne laser scanner. Metres, GridFrame.
 struct LaserReturn {
   double x = 0, y = 0, z = 0;
   std::uint8_t number = 1, of = 1;  ///< return `number` of `of`, from 1
@@ -17,26 +17,28 @@ struct LaserReturn {
   double time = 0;  ///< seconds
 };
 
-/// The rasters of a flight over the forest; row 0 in the north. No return: NaN.
+/// Rasters of a survey flight; row 0 is the northernmost. NaN: no return.
 struct ForestRasters {
-  double x0 = 0, y0 = 0, cell = 0.5;  ///< middle of the first cell, GridFrame
+  double x0 = 0, y0 = 0, cell = 0.5;  ///< centre of the first cell, GridFrame
   Grid<float> dsm;                    ///< highest first return
-  Grid<float> dtm;                    ///< the terrain with smooth errors
+  Grid<float> dtm;                    ///< terrain with correlated errors
   Grid<float> chm;                    ///< dsm - dtm, not below 0
 };
 
-/// Flies over the forest: pulses straight down, Poisson in every cell of the raster, up to five returns each.
-/// A pulse that meets a crown goes in by an exponential depth and returns there, unless it comes out below;
-/// what is left of it goes on with probability 0.55, the next return at least 1 m lower, down to the ground.
-/// Cells without a first return take the mean of their neighbours that have one (a second time round where
-/// none has), as gridding tools fill single pits. `take` gets the returns row of cells by row of cells, so
-/// that they need not be kept; null: nobody wants them. Same returns for the same forest and seed. About 1 us
-/// per pulse.
-ForestRasters scan_forest(const ForestLaw& law, const MadeForest& forest, const Terrain& terrain, double east,
-                          double north, std::uint64_t seed,
+/// Simulates an airborne laser scan: vertical pulses, Poisson in every raster cell, up to five returns
+/// each. About 1 us per pulse.
+/// - A pulse that hits a crown penetrates by an exponential depth and returns there, unless it leaves
+///   below. It continues with probability 0.55; the next return is at least 1 m lower, down to the ground.
+/// - Cells without a first return take the mean of their neighbours that have one (two rounds), as gridding
+///   tools fill pits.
+/// - `take` receives the returns by row of cells; null: returns are discarded.
+/// Deterministic for the same forest and seed.
+ForestRasters scan_forest(const ForestModel& law, const SyntheticForest& forest, const Terrain& terrain,
+                          double east, double north, std::uint64_t seed,
                           const std::function<void(std::span<const LaserReturn>)>& take);
 
-/// Of each tree the share of its crown, seen from above, that no other crown stands over: 0 hidden, 1 free.
-std::vector<double> seen_from_above(const ForestLaw& law, const MadeForest& forest, std::uint64_t seed);
+/// Returns for each tree the fraction of its crown visible from above: 0 hidden, 1 free.
+std::vector<double> visible_crown_fraction(const ForestModel& law, const SyntheticForest& forest,
+                                           std::uint64_t seed);
 
 }  // namespace waymark

@@ -16,19 +16,19 @@ namespace {
 
 using Place = Eigen::Vector2d;
 
-void check(const ForestLaw& law) {
+void check(const ForestModel& law) {
   const double hectares = law.width * law.height / 1e4;
   const double trees = hectares * (std::max(law.density, law.density_to) + law.understory);
   if (!(law.width >= 10 && law.height >= 10))
     throw Error(ErrorCode::usage, fmt::format("a forest of {} x {} m is too small", law.width, law.height),
-                "forest", "width and height are 10 m or more");
+                "forest", "set width and height to 10 m or more");
   if (!(trees <= 4e6))
     throw Error(ErrorCode::usage, fmt::format("the forest would have {:.0f} trees", trees), "forest",
-                "at most 4 million: a smaller site or fewer stems");
+                "at most 4 million are possible: reduce the site or the density");
 }
 
-/// Strips from west to east; borders between them waver, so that stands are no rectangles.
-std::vector<MadeStand> lay_out(const ForestLaw& law, double east, double north, std::uint64_t seed) {
+/// Strips from west to east with irregular borders.
+std::vector<SyntheticStand> lay_out(const ForestModel& law, double east, double north, std::uint64_t seed) {
   Random random(seed, "stands");
   const auto count = static_cast<int>(law.stands);
   constexpr int kPieces = 8;
@@ -41,9 +41,9 @@ std::vector<MadeStand> lay_out(const ForestLaw& law, double east, double north, 
       border.emplace_back(east + x + random.uniform(-sway, sway),
                           north + law.height * (static_cast<double>(i) / kPieces - 0.5));
   }
-  std::vector<MadeStand> stands;
+  std::vector<SyntheticStand> stands;
   for (int s = 0; s < count; ++s) {
-    MadeStand stand{.name = fmt::format("{}", s + 1), .outline = borders[static_cast<std::size_t>(s)]};
+    SyntheticStand stand{.name = fmt::format("{}", s + 1), .outline = borders[static_cast<std::size_t>(s)]};
     std::ranges::reverse(stand.outline);  // down the west side, up the east side
     const auto& right = borders[static_cast<std::size_t>(s) + 1];
     stand.outline.insert(stand.outline.end(), right.begin(), right.end());
@@ -67,10 +67,10 @@ bool surrounds(const std::vector<Place>& ring, const Place& at) {
   return odd;
 }
 
-/// Places kept so far, by squares of the clearance.
-class Clearings {
+/// Index of accepted positions by squares of the clearance.
+class SpacingFilter {
  public:
-  explicit Clearings(double clearance) : clearance_(std::max(clearance, 1e-3)) {}
+  explicit SpacingFilter(double clearance) : clearance_(std::max(clearance, 1e-3)) {}
   bool take(const Place& place) {
     const auto column = index(place.x()), row = index(place.y());
     for (std::int64_t r = row - 1; r <= row + 1; ++r)
@@ -89,9 +89,9 @@ class Clearings {
   std::unordered_map<std::int64_t, std::vector<Place>> taken_;
 };
 
-/// Stems of one stand: as many as its density asks, or as its clearance lets in.
-std::vector<Place> stems_of(const ForestLaw& law, const MadeStand& stand, double hectares, Random& random,
-                            Clearings& clearings) {
+/// Stems of one stand: as many as its density requires, or as the clearance permits.
+std::vector<Place> stems_of(const ForestModel& law, const SyntheticStand& stand, double hectares,
+                            Random& random, SpacingFilter& clearings) {
   Place low = stand.outline[0], high = low;
   for (const Place& corner : stand.outline) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
   std::vector<Place> stems;
@@ -130,13 +130,13 @@ double area_of(const std::vector<Place>& ring) {
   return doubled / 2;
 }
 
-StandingTree grown(const SpeciesLaw& kind, int species, double dbh, Random& random) {
+StandingTree grow_tree(const SpeciesModel& kind, int species, double dbh, Random& random) {
   StandingTree tree;
   tree.species = species;
   tree.dbh = dbh;
   const double mean = kind.top * std::pow(1 - std::exp(-kind.rate * 100 * dbh), kind.bend);
   tree.height = 1.3 + mean * std::clamp(random.normal(1, kind.height_scatter), 0.6, 1.4);
-  tree.crown_diameter = (kind.crown_least + kind.crown_share * dbh) *
+  tree.crown_diameter = (kind.crown_intercept + kind.crown_slope * dbh) *
                         std::clamp(random.normal(1, kind.crown_scatter), 0.5, 1.6);
   tree.crown_base = tree.height * (1 - kind.crown_length * std::clamp(random.normal(1, 0.1), 0.7, 1.3));
   return tree;
@@ -144,60 +144,60 @@ StandingTree grown(const SpeciesLaw& kind, int species, double dbh, Random& rand
 
 }  // namespace
 
-const std::vector<SpeciesLaw>& ForestLaw::species() const {
-  static const std::vector<SpeciesLaw> kinds{{.name = "conifer"},
-                                             {.name = "broadleaf",
-                                              .conifer = false,
-                                              .top = 28,
-                                              .rate = 0.05,
-                                              .bend = 1.1,
-                                              .height_scatter = 0.09,
-                                              .crown_least = 1.6,
-                                              .crown_share = 17,
-                                              .crown_scatter = 0.18,
-                                              .crown_length = 0.55,
-                                              .shape = 2.2,
-                                              .lobes = 0.14,
-                                              .depth = 0.4}};
+const std::vector<SpeciesModel>& ForestModel::species() const {
+  static const std::vector<SpeciesModel> kinds{{.name = "conifer"},
+                                               {.name = "broadleaf",
+                                                .conifer = false,
+                                                .top = 28,
+                                                .rate = 0.05,
+                                                .bend = 1.1,
+                                                .height_scatter = 0.09,
+                                                .crown_intercept = 1.6,
+                                                .crown_slope = 17,
+                                                .crown_scatter = 0.18,
+                                                .crown_length = 0.55,
+                                                .shape = 2.2,
+                                                .lobes = 0.14,
+                                                .depth = 0.4}};
   return kinds;
 }
 
-MadeForest plant_forest(const ForestLaw& law, const Terrain& terrain, double east, double north,
-                        std::uint64_t seed) {
+SyntheticForest plant_forest(const ForestModel& law, const Terrain& terrain, double east, double north,
+                             std::uint64_t seed) {
   check(law);
-  MadeForest forest{.stands = lay_out(law, east, north, seed), .trees = {}};
+  SyntheticForest forest{.stands = lay_out(law, east, north, seed), .trees = {}};
   Random places(seed, "stems"), sizes(seed, "tree sizes");
-  Clearings clearings(law.clearance);
+  SpacingFilter clearings(law.clearance);
   const auto plant = [&](const Place& place, double dbh) {
-    const int species = sizes.chance(law.conifers) ? 0 : 1;
-    StandingTree tree = grown(law.species()[static_cast<std::size_t>(species)], species, dbh, sizes);
+    const int species = sizes.bernoulli(law.conifers) ? 0 : 1;
+    StandingTree tree = grow_tree(law.species()[static_cast<std::size_t>(species)], species, dbh, sizes);
     const auto ground = terrain.height(place.x(), place.y());
     tree.foot = {place.x(), place.y(), ground.value_or(0)};
     if (ground) forest.trees.push_back(tree);
   };
-  for (const MadeStand& stand : forest.stands) {
-    // Stems of fully stocked stands are the thinner the more there are: N D^1.605 is the same (Reineke 1933).
+  for (const SyntheticStand& stand : forest.stands) {
+    // Fully stocked stands have constant N D^1.605 (Reineke 1933).
     const double crowding = stand.density > 0 ? std::pow(law.density / stand.density, 1 / 1.605) : 1;
-    // A Weibull law from kLeastDbh with that mean.
+    // Weibull distribution above kMinDbh with that mean.
     const double scale =
-        std::max(law.mean_dbh * crowding - kLeastDbh, 0.01) / std::tgamma(1 + 1 / law.dbh_shape);
+        std::max(law.mean_dbh * crowding - kMinDbh, 0.01) / std::tgamma(1 + 1 / law.dbh_shape);
     for (const Place& place : stems_of(law, stand, area_of(stand.outline) / 1e4, places, clearings))
       plant(place,
-            std::min(kLeastDbh + scale * std::pow(-std::log(1 - sizes.uniform()), 1 / law.dbh_shape), 1.5));
+            std::min(kMinDbh + scale * std::pow(-std::log(1 - sizes.uniform()), 1 / law.dbh_shape), 1.5));
   }
   Random young(seed, "understory");
   const auto count = young.poisson(law.understory * law.width * law.height / 1e4);
   for (std::uint64_t i = 0; i < count; ++i) {
     const Place place{east + young.uniform(-0.5, 0.5) * law.width,
                       north + young.uniform(-0.5, 0.5) * law.height};
-    const double dbh = young.uniform(0.015, kLeastDbh - 0.001);
+    const double dbh = young.uniform(0.015, kMinDbh - 0.001);
     if (clearings.take(place)) plant(place, dbh);
   }
   std::ranges::stable_sort(forest.trees, [](const auto& a, const auto& b) { return a.height > b.height; });
   return forest;
 }
 
-int stand_at(const std::vector<MadeStand>& stands, const Place& place) {
+int stand_index_at(const std::vector<SyntheticStand>& stands, const Place& place) {
   for (std::size_t i = 0; i < stands.size(); ++i)
     if (surrounds(stands[i].outline, place)) return static_cast<int>(i);
   return -1;

@@ -2,24 +2,27 @@
 #pragma once
 #include <vector>
 #include "geo/terrain.hpp"
-#include "testbed/forest/forest_law.hpp"
+#include "testbed/forest/forest_model.hpp"
 namespace waymark {
 
-/// A made forest with everything known about it.
-struct MadeForest {
-  std::vector<MadeStand> stands;
+/// Synthetic forest with its truth.
+struct SyntheticForest {
+  std::vector<SyntheticStand> stands;
   std::vector<StandingTree> trees;  ///< tallest first; understory too
 };
 
-/// Plants the forest about (east, north). Stems by the pattern of the law, thinned to its clearance: poisson
-/// (a Matern hard-core process), clustered (Thomas process), rows (a jittered lattice). Diameters by a
-/// Weibull law, heights and crowns by the species. The understory stands anywhere. The same forest for the
-/// same law, terrain and seed, bit for bit. Throws Error{usage} for sizes that make no sense and above 4
-/// million trees. Trees where the terrain is unknown are left out.
-MadeForest plant_forest(const ForestLaw& law, const Terrain& terrain, double east, double north,
-                        std::uint64_t seed);
+/// Generates a forest about (east, north). Deterministic for the same parameters, terrain and seed, bit for
+/// bit.
+/// - Stem patterns, thinned to the clearance: poisson (Matern hard-core process), clustered (Thomas
+///   process), rows (jittered lattice).
+/// - Diameters are Weibull distributed; heights and crowns follow the species. Understory is placed
+///   anywhere.
+/// - Trees on unknown terrain are left out.
+/// Throws Error{usage} for invalid sizes and above 4 million trees.
+SyntheticForest plant_forest(const ForestModel& law, const Terrain& terrain, double east, double north,
+                             std::uint64_t seed);
 
-/// Stand that holds a place; -1 outside all.
-int stand_at(const std::vector<MadeStand>& stands, const Eigen::Vector2d& place);
+/// Returns the index of the stand that contains a position; -1 if none does.
+int stand_index_at(const std::vector<SyntheticStand>& stands, const Eigen::Vector2d& place);
 
 }  // namespace waymark

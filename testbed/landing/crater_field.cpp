@@ -24,7 +24,7 @@ double soft_max(double a, double b, double softness) {
   return 0.5 * (a + b + std::sqrt((a - b) * (a - b) + softness * softness));
 }
 
-// Rim radius over azimuth against the ellipse's: a few harmonics, stronger for fresh craters.
+// Rim radius over azimuth relative to the ellipse: a few harmonics, stronger for fresh craters.
 std::array<double, 65> rim_wobble(const CraterPlan& crater) {
   Random random(crater.seed);
   std::array<double, 65> factor{};
@@ -38,7 +38,7 @@ std::array<double, 65> rim_wobble(const CraterPlan& crater) {
   return factor;
 }
 
-// From map offsets to units of the rim ellipse: 0.5 on the rim.
+// Map offsets in units of the rim ellipse: 0.5 on the rim.
 struct EllipseFrame {
   double cos, sin, major, minor;
   explicit EllipseFrame(const CraterPlan& c)
@@ -52,7 +52,7 @@ struct EllipseFrame {
   }
 };
 
-// The plane through the ground about the crater: height at its middle and slopes.
+// Plane through the terrain about the crater: height at its centre and slopes.
 Eigen::Vector3d plane_around(const Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater,
                              const EllipseFrame& frame) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -71,9 +71,9 @@ Eigen::Vector3d plane_around(const Grid<float>& heights, const NodeGrid& nodes, 
   return normal.ldlt().solve(right);
 }
 
-// Swarms of craters thrown out by a distant impact: along a line, drawn out along it, half as deep.
-void add_secondaries(std::vector<CraterPlan>& plans, const MadeGround& ground, std::uint64_t seed) {
-  const CraterLaw& law = ground.craters;
+// Secondary craters of a distant impact: along a line, elongated along it, half as deep.
+void add_secondaries(std::vector<CraterPlan>& plans, const SiteModel& ground, std::uint64_t seed) {
+  const CraterPopulation& law = ground.craters;
   const CraterProfiles& profiles = CraterProfiles::instance();
   Random random(seed, "secondary craters");
   for (int cluster = 0; cluster < law.clusters; ++cluster) {
@@ -81,7 +81,7 @@ void add_secondaries(std::vector<CraterPlan>& plans, const MadeGround& ground, s
     const double y = ground.north + random.uniform(-0.5, 0.5) * ground.height;
     const double azimuth = random.uniform(-kPi / 2, kPi / 2), wear = random.uniform(0.3, 1);
     const double size = std::min(law.min_diameter * random.uniform(1, 3), law.max_diameter);
-    const auto count = 8 + random.below(25);
+    const auto count = 8 + random.uniform_index(25);
     for (std::uint64_t i = 0; i < count; ++i) {
       const double along = 12 * size * random.normal(), across = 3 * size * random.normal();
       const double diameter = std::min(size * random.log_uniform(1, 2.5), law.max_diameter);
@@ -100,13 +100,14 @@ void add_secondaries(std::vector<CraterPlan>& plans, const MadeGround& ground, s
 
 }  // namespace
 
-std::vector<CraterPlan> draw_craters(const MadeGround& ground, std::uint64_t seed) {
-  const CraterLaw& law = ground.craters;
+std::vector<CraterPlan> draw_craters(const SiteModel& ground, std::uint64_t seed) {
+  const CraterPopulation& law = ground.craters;
   const CraterProfiles& profiles = CraterProfiles::instance();
   std::vector<CraterPlan> plans;
   if (!(law.density > 0)) return plans;
   Random random(seed, "craters");
-  // Diameters largest first along the cumulative law; the area grows with the crater's reach.
+  // Diameters in descending order along the cumulative distribution; the area grows with the reach of the
+  // crater.
   const double margin = law.max_diameter;
   const double width = ground.width + 2 * margin, height = ground.height + 2 * margin;
   const auto expected = [&](double d) {
@@ -124,9 +125,9 @@ std::vector<CraterPlan> draw_craters(const MadeGround& ground, std::uint64_t see
     plan.minor = diameter * std::sqrt(ratio);
     plan.turn = random.uniform(-kPi / 2, kPi / 2);
     const double wear =
-        random.chance(law.fresh) ? random.uniform(0.85, 1) : std::pow(random.uniform(), 1.2) * 0.85;
+        random.bernoulli(law.fresh) ? random.uniform(0.85, 1) : std::pow(random.uniform(), 1.2) * 0.85;
     plan.age = profiles.age(std::lerp(law.oldest_depth, CraterProfiles::kFreshDepth, wear));
-    plan.infill = random.chance(law.infill) ? random.uniform(0.1, 0.5) : 0;
+    plan.infill = random.bernoulli(law.infill) ? random.uniform(0.1, 0.5) : 0;
     plan.seed = static_cast<std::uint32_t>(random.bits());
     if (std::abs(plan.east - ground.east) < ground.width / 2 + CraterProfiles::kReach * diameter &&
         std::abs(plan.north - ground.north) < ground.height / 2 + CraterProfiles::kReach * diameter)
@@ -139,7 +140,7 @@ std::vector<CraterPlan> draw_craters(const MadeGround& ground, std::uint64_t see
   return plans;
 }
 
-void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) {
+void excavate(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) {
   const CraterProfiles& profiles = CraterProfiles::instance();
   const EllipseFrame frame(crater);
   const double diameter = crater.diameter(), reach = CraterProfiles::kReach * crater.major;
@@ -154,7 +155,7 @@ void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) 
 
   const Eigen::Vector3d plane = plane_around(heights, nodes, crater, frame);
   const std::array<double, 65> wobble = rim_wobble(crater);
-  // The profile of this age, tabulated: samples every 1/128 of a diameter.
+  // Profile of this age, tabulated every 1/128 of a diameter.
   std::array<double, static_cast<std::size_t>(CraterProfiles::kReach * 128) + 2> profile{};
   const double fill = profiles.height(crater.age, 0) + crater.infill * profiles.depth(crater.age);
   for (std::size_t i = 0; i < profile.size(); ++i) {
@@ -168,7 +169,7 @@ void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) 
       const Eigen::Vector2d unit = frame.unit(dx, dy);
       double r = unit.norm();
       if (r >= CraterProfiles::kReach) continue;
-      // The rim wavers, the bowl and the far ejecta do not.
+      // Only the rim is irregular, not the bowl and the distal ejecta.
       if (const double rim = 4 * r * r * std::exp(1 - 4 * r * r); rim > 0.02) {
         const double azimuth = (std::atan2(unit.y(), unit.x()) + kPi) * 32 / kPi;
         const auto k = std::min<std::size_t>(static_cast<std::size_t>(azimuth), 63);
@@ -183,7 +184,7 @@ void dig(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& crater) 
     }
 }
 
-std::optional<TrueCrater> measure(const Terrain& terrain, const CraterPlan& crater) {
+std::optional<TrueCrater> measure_crater(const Terrain& terrain, const CraterPlan& crater) {
   const EllipseFrame frame(crater);
   std::vector<double> rim, floor;
   for (int k = 0; k < 36; ++k) {
@@ -209,7 +210,7 @@ std::optional<TrueCrater> measure(const Terrain& terrain, const CraterPlan& crat
                     .minor = crater.minor,
                     .orientation = from_north,
                     .depth = rim[18] - floor[14],
-                    .made_depth = made,
+                    .formation_depth = made,
                     .age = crater.age};
 }
 

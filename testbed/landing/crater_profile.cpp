@@ -54,7 +54,7 @@ CraterProfiles::CraterProfiles() {
     for (int i = 0; i <= kReach * kPerDiameter; ++i) {
       const double r = i / kPerDiameter;
       const double taper = std::clamp((kReach - r) / (0.4 * kReach), 0.0, 1.0);
-      // One old diameter is `rim` new ones long; heights shrink with it when counted in new diameters.
+      // Lengths and heights are rescaled from fresh to degraded diameters.
       heights.push_back(static_cast<float>(sampled(z, 2 * r * rim) / rim * taper * taper * (3 - 2 * taper)));
     }
     ages_.push_back(now);

@@ -3,10 +3,11 @@
 #include <vector>
 namespace waymark {
 
-/// Height of a crater over its radius, from fresh to almost gone. A fresh bowl (depth / diameter 0.2, raised
-/// rim 0.036, ejecta falling as r^-3; Pike 1977, Melosh 1989) is worn down by diffusion of the ground
-/// (Soderblom 1970, Fassett & Thomson 2014), solved numerically once. Lengths in diameters of the *worn* rim
-/// crest, which creeps outwards as the crater ages: r = 0.5 is always the crest.
+/// Height profile of a crater over its radius, from fresh to almost erased.
+/// - Fresh bowl: depth / diameter 0.2, raised rim 0.036, ejecta falling as r^-3 (Pike 1977, Melosh 1989).
+/// - Degradation: topographic diffusion (Soderblom 1970, Fassett & Thomson 2014), solved numerically once.
+/// - Lengths are in diameters of the *degraded* rim crest, which moves outwards with age: r = 0.5 is always
+///   the crest.
 class CraterProfiles {
  public:
   CraterProfiles();
@@ -15,9 +16,10 @@ class CraterProfiles {
   static constexpr double kFreshDepth = 0.2;
   static constexpr double kReach = 2.4;  ///< diameters; beyond, the height is 0
 
-  /// Age kappa t / R^2 at which depth / diameter has fallen to this; 0 for kFreshDepth and above.
+  /// Returns the age kappa t / R^2 at which depth / diameter has fallen to `depth`; 0 for kFreshDepth and
+  /// above.
   double age(double depth) const;
-  /// Height above the plain, in diameters, at r diameters from the middle.
+  /// Returns the height above the plain, in diameters, at r diameters from the centre.
   double height(double age, double r) const;
   double depth(double age) const;  ///< rim crest to floor, in diameters
 

@@ -14,18 +14,18 @@
 namespace waymark {
 namespace {
 
-Eigen::Vector3d wavering(Random& random, double sd) {
+Eigen::Vector3d random_vector(Random& random, double sd) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return sd * Eigen::Vector3d(x, y, z);
 }
 
-Eigen::Matrix3d turned(const Eigen::Vector3d& angles) {
+Eigen::Matrix3d rotation_from(const Eigen::Vector3d& angles) {
   const double angle = angles.norm();
   if (!(angle > 0)) return Eigen::Matrix3d::Identity();
   return Eigen::AngleAxisd(angle, angles / angle).toRotationMatrix();
 }
 
-// Straight down with the upper edge towards the heading, then tilted forwards.
+// Nadir view with the upper edge towards the heading, then tilted forwards.
 Eigen::Matrix3d attitude(const Eigen::Vector2d& forward, double tilt) {
   const Eigen::Vector3d ahead(forward.x(), forward.y(), 0), right(forward.y(), -forward.x(), 0),
       up = Eigen::Vector3d::UnitZ();
@@ -64,7 +64,7 @@ Camera camera_of(const Lens& lens) {
 
 std::vector<Shot> plan_shots(const Scenario& scenario) {
   const Camera camera = camera_of(scenario.lens);
-  const MadeGround& ground = scenario.ground;
+  const SiteModel& ground = scenario.ground;
   const double position_sd = scenario.pose_errors.position_sd;
   const double attitude_sd = to_radians(scenario.pose_errors.attitude_sd).value;
   std::vector<Shot> shots;
@@ -85,36 +85,36 @@ std::vector<Shot> plan_shots(const Scenario& scenario) {
         shot.name = fmt::format("{}_{:04}.png", f.name, line * f.images + i + 1);
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.linear() = attitude(back ? Eigen::Vector2d(-ahead) : ahead, to_radians(f.tilt).value) *
-                        turned(wavering(random, to_radians(f.attitude_sd).value));
-        const Eigen::Vector3d off = wavering(random, f.track_sd);
+                        rotation_from(random_vector(random, to_radians(f.attitude_sd).value));
+        const Eigen::Vector3d off = random_vector(random, f.track_sd);
         const double altitude = f.from_altitude * std::pow(f.to_altitude / f.from_altitude, along);
         pose.translation() =
             Eigen::Vector3d(ground.east + place.x(), ground.north + place.y(), ground.up + altitude) + off;
         shot.view = {.camera = camera, .grid_from_camera = {pose}};
         shot.view.covariance.diagonal() << Eigen::Vector3d::Constant(attitude_sd * attitude_sd),
             Eigen::Vector3d::Constant(position_sd * position_sd);
-        shot.told.transform = pose;
-        shot.told.transform.linear() = pose.linear() * turned(wavering(errors, attitude_sd));
-        shot.told.transform.translation() += wavering(errors, position_sd);
+        shot.reported.transform = pose;
+        shot.reported.transform.linear() = pose.linear() * rotation_from(random_vector(errors, attitude_sd));
+        shot.reported.transform.translation() += random_vector(errors, position_sd);
         shots.push_back(std::move(shot));
       }
   }
   return shots;
 }
 
-MadeGround sized_for(const Scenario& scenario, const std::vector<Shot>& shots) {
-  MadeGround ground = scenario.ground;
+SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots) {
+  SiteModel ground = scenario.ground;
   if (ground.width > 0 && ground.height > 0) return ground;
   double half_width = 0, half_height = 0;
   for (const Shot& shot : shots)
     for (const Eigen::Vector2d& pixel : border(shot.view.camera)) {
       const auto line = ray(shot.view, pixel);
-      if (!line || line->along.unit.z() > -0.02)
+      if (!line || line->direction.unit.z() > -0.02)
         throw Error(ErrorCode::usage,
-                    fmt::format("image {} sees the sky: its footprint has no end", shot.name), "",
-                    "tilt the flight less, narrow the field of view, or give ground.width and ground.height");
-      const double range = (ground.up - line->origin.xyz.z()) / line->along.unit.z();
-      const Eigen::Vector3d spot = line->origin.xyz + range * line->along.unit;
+                    fmt::format("image {} sees the sky: its footprint is unbounded", shot.name), "",
+                    "reduce the tilt or the field of view, or give ground.width and ground.height");
+      const double range = (ground.up - line->origin.xyz.z()) / line->direction.unit.z();
+      const Eigen::Vector3d spot = line->origin.xyz + range * line->direction.unit;
       half_width = std::max(half_width, std::abs(spot.x() - ground.east));
       half_height = std::max(half_height, std::abs(spot.y() - ground.north));
     }
@@ -136,10 +136,10 @@ void check_footprints(const Scene& scene, const std::vector<Shot>& shots) {
       if (end == RayEnd::ground) continue;
       throw Error(ErrorCode::usage,
                   fmt::format("image {} {}", shot.name,
-                              end == RayEnd::underground ? "is taken from below the ground"
-                                                         : "looks past the ground"),
-                  fmt::format("the ground is {} x {} m", scene.ground.width, scene.ground.height),
-                  "raise the flight or its altitude, or leave ground.width and ground.height out");
+                              end == RayEnd::underground ? "is taken from below the terrain"
+                                                         : "extends beyond the terrain"),
+                  fmt::format("the site is {} x {} m", scene.ground.width, scene.ground.height),
+                  "change the path or the altitude of the flight, or omit ground.width and ground.height");
     }
 }
 

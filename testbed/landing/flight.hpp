@@ -5,21 +5,21 @@
 #include "testbed/scenario.hpp"
 namespace waymark {
 
-/// One image to be taken.
+/// Image to be taken.
 struct Shot {
-  std::string name;                   ///< file name
-  PosedCamera view;                   ///< true pose; the covariance is that of the pose told
-  Pose<GridFrame, CameraFrame> told;  ///< with the errors of the scenario
+  std::string name;                       ///< file name
+  PosedCamera view;                       ///< true pose, with the covariance of the reported pose
+  Pose<GridFrame, CameraFrame> reported;  ///< reported pose, with the errors of the scenario
 };
 
-/// Every image of every flight, in the order of the file.
+/// Returns every image of every flight, in the order of the file.
 std::vector<Shot> plan_shots(const Scenario& scenario);
 
-/// The site with width and height filled in where they are 0: all footprints on level ground at its mean
-/// height and a tenth more. Throws Error{usage} for a camera that sees the sky.
-MadeGround sized_for(const Scenario& scenario, const std::vector<Shot>& shots);
+/// Returns the site with width and height filled in where they are 0: the footprints of all images on level
+/// ground at its mean height, plus a tenth. Throws Error{usage} for a camera that sees the sky.
+SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots);
 
-/// Throws Error{usage} naming the first image that looks past the terrain, with what to change.
+/// Throws Error{usage} naming the first image that extends beyond the terrain, with what to change.
 void check_footprints(const Scene& scene, const std::vector<Shot>& shots);
 
 }  // namespace waymark

@@ -48,8 +48,8 @@ Outline outline(const std::vector<Eigen::Vector4f>& planes) {
   return o;
 }
 
-// The highest point. Planes make a concave roof, so a grid about the best point of a coarser one finds it;
-// good to a hundredth of the reach.
+// Height of the highest point. The upper surface is concave, so grids refined about the best point find it;
+// accurate to a hundredth of the reach.
 double peak(const std::vector<Eigen::Vector4f>& planes, double reach) {
   double best = -1e9, x = 0, y = 0;
   for (double half = reach; half > reach / 50; half /= 3) {
@@ -63,19 +63,18 @@ double peak(const std::vector<Eigen::Vector4f>& planes, double reach) {
   return best;
 }
 
-// A convex stone: tangent planes of a ball, some pushed in. Then scaled to the outline and the height asked
-// for.
-void break_stone(RockSolid& rock, Random& random) {
+// Convex rock from tangent planes of a ball, some pushed in, scaled to the requested outline and height.
+void carve_rock(RockSolid& rock, Random& random) {
   auto& planes = rock.planes;
   planes.clear();
-  const int sides = 6 + int(random.below(5));
+  const int sides = 6 + int(random.uniform_index(5));
   for (int i = 0; i < sides; ++i) {
     const double a = 2 * kPi * (i + random.uniform(-0.35, 0.35)) / sides, lean = random.uniform(-0.15, 0.55);
     planes.push_back(
         Eigen::Vector3d(std::cos(a), std::sin(a), lean).normalized().cast<float>().homogeneous());
     planes.back().w() = static_cast<float>(random.uniform(0.72, 1));
   }
-  const int tops = 3 + int(random.below(4));
+  const int tops = 3 + int(random.uniform_index(4));
   for (int i = 0; i < tops; ++i) {
     const double a = random.uniform(0, 2 * kPi), lean = random.uniform(0.7, 2.5);
     planes.push_back(
@@ -116,7 +115,7 @@ RockSolid make_rock(RockShape shape, double width, double height, Random& random
   rock.top = height;
   rock.reach = shape == RockShape::cylinder ? std::hypot(rock.half_x, height) : std::max(rock.half_x, height);
   rock.brightness = std::exp(random.normal(0.08, 0.15));
-  if (shape == RockShape::irregular) break_stone(rock, random);
+  if (shape == RockShape::irregular) carve_rock(rock, random);
   return rock;
 }
 

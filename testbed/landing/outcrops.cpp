@@ -9,9 +9,9 @@
 
 namespace waymark {
 
-Grid<float> raise_outcrops(Grid<float>& heights, const MadeGround& ground, const NodeGrid& nodes,
-                           std::uint64_t seed) {
-  const OutcropLaw& law = ground.outcrops;
+Grid<float> add_outcrops(Grid<float>& heights, const SiteModel& ground, const NodeGrid& nodes,
+                         std::uint64_t seed) {
+  const OutcropModel& law = ground.outcrops;
   Grid<float> cover(nodes.columns, nodes.rows, 0.0F);
   if (!(law.cover > 0)) return cover;
   NodeGrid about_middle = nodes;
@@ -40,7 +40,7 @@ Grid<float> raise_outcrops(Grid<float>& heights, const MadeGround& ground, const
   const Grid<float> rough = fractal_grid(knobs, about_middle);
   tbb::parallel_for(std::int64_t{0}, nodes.rows, [&](std::int64_t j) {
     for (std::int64_t i = 0; i < nodes.columns; ++i) {
-      // A scarp at the border, knobs and hollows on top: ridges where the noise changes sign.
+      // Scarp at the border, knobs and hollows on top, ridges where the noise changes sign.
       const double inside = std::clamp((double(fields(i, j)) - threshold) / 0.12, 0.0, 1.0);
       if (!(inside > 0)) continue;
       const double edge = inside * inside * (3 - 2 * inside);

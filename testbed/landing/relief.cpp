@@ -16,8 +16,8 @@ std::uint32_t noise_seed(std::uint64_t seed, std::string_view name) {
   return static_cast<std::uint32_t>(named_seed(seed, name));
 }
 
-void raise_mountain(Grid<float>& heights, const NodeGrid& nodes, const MadeRelief& relief, Random& random,
-                    double x, double y) {
+void add_mountain(Grid<float>& heights, const NodeGrid& nodes, const ReliefModel& relief, Random& random,
+                  double x, double y) {
   const double radius = relief.mountain_radius * random.uniform(0.5, 1);
   const double height = relief.mountain_height * random.uniform(0.5, 1);
   const Fractal folds{.longest = radius,
@@ -39,7 +39,7 @@ void raise_mountain(Grid<float>& heights, const NodeGrid& nodes, const MadeRelie
 
 }  // namespace
 
-NodeGrid nodes_of(const MadeGround& ground) {
+NodeGrid nodes_of(const SiteModel& ground) {
   const auto count = [&](double length) {
     return static_cast<std::int64_t>(std::llround(length / ground.cell)) + 1;
   };
@@ -49,16 +49,15 @@ NodeGrid nodes_of(const MadeGround& ground) {
   return nodes;
 }
 
-Fractal relief_fractal(const MadeRelief& relief, double shortest, std::uint64_t seed) {
+Fractal relief_fractal(const ReliefModel& relief, double shortest, std::uint64_t seed) {
   Fractal fractal{relief.longest, shortest, 1, relief.hurst, noise_seed(seed, "relief")};
   // The octaves' variances form a geometric series whose sum is rms^2.
   fractal.amplitude = relief.rms * std::sqrt(1 - std::exp2(-2 * relief.hurst));
   return fractal;
 }
 
-Grid<float> coarse_relief(const MadeGround& ground, const NodeGrid& nodes, double finest,
-                          std::uint64_t seed) {
-  const MadeRelief& relief = ground.relief;
+Grid<float> coarse_relief(const SiteModel& ground, const NodeGrid& nodes, double finest, std::uint64_t seed) {
+  const ReliefModel& relief = ground.relief;
   NodeGrid about_middle = nodes;
   about_middle.x0 -= ground.east;
   about_middle.y0 -= ground.north;
@@ -72,14 +71,14 @@ Grid<float> coarse_relief(const MadeGround& ground, const NodeGrid& nodes, doubl
   Random random(seed, "mountains");
   for (int m = 0; m < relief.mountains; ++m) {
     const double x = random.uniform(-0.5, 0.5) * ground.width, y = random.uniform(-0.5, 0.5) * ground.height;
-    raise_mountain(heights, about_middle, relief, random, x, y);
+    add_mountain(heights, about_middle, relief, random, x, y);
   }
   return heights;
 }
 
-Grid<float> blow_dunes(Grid<float>& heights, const MadeGround& ground, const NodeGrid& nodes,
-                       std::uint64_t seed) {
-  const DuneLaw& law = ground.dunes;
+Grid<float> add_dunes(Grid<float>& heights, const SiteModel& ground, const NodeGrid& nodes,
+                      std::uint64_t seed) {
+  const DuneModel& law = ground.dunes;
   Grid<float> cover(nodes.columns, nodes.rows, 0.0F);
   if (!(law.cover > 0) || !(law.height > 0)) return cover;
   NodeGrid about_middle = nodes;
@@ -121,7 +120,7 @@ Grid<float> blow_dunes(Grid<float>& heights, const MadeGround& ground, const Nod
       const double size =
           std::clamp(0.7 + 0.25 * breaks.at(x * wx + y * wy, 0.35 * (y * wx - x * wy)).value, 0.0, 1.2) *
           std::min(1.0, 1.5 * std::hypot(re, im));
-      // A long windward slope and a short lee, crests sharp, troughs round.
+      // Long windward and short lee slope, sharp crests, round troughs.
       const double part = phase - std::floor(phase), rise = part < 0.62 ? part / 0.62 : (1 - part) / 0.38;
       const double ripple_phase = 6.3 * phase + 1.7 * breaks.at(y, x).value;
       const double ripple = 0.04 * std::abs(std::sin(std::numbers::pi * ripple_phase));
@@ -133,9 +132,10 @@ Grid<float> blow_dunes(Grid<float>& heights, const MadeGround& ground, const Nod
   return cover;
 }
 
-Grid<float> paint(const MadeGround& ground, const NodeGrid& nodes, const Grid<float>& dunes,
-                  const Grid<float>& outcrops, const std::vector<CraterPlan>& craters, std::uint64_t seed) {
-  const AlbedoLaw& law = ground.albedo;
+Grid<float> paint_albedo(const SiteModel& ground, const NodeGrid& nodes, const Grid<float>& dunes,
+                         const Grid<float>& outcrops, const std::vector<CraterPlan>& craters,
+                         std::uint64_t seed) {
+  const AlbedoModel& law = ground.albedo;
   NodeGrid about_middle = nodes;
   about_middle.x0 -= ground.east;
   about_middle.y0 -= ground.north;

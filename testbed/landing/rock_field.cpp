@@ -16,7 +16,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kPatch = 6;  // metres, squares in which the density is constant
 
 // N(> D) at `count` diameters from the smallest to the largest, equal steps.
-std::vector<double> cumulative_numbers(const RockLaw& law, std::size_t count) {
+std::vector<double> cumulative_numbers(const RockPopulation& law, std::size_t count) {
   const double q = 1.79 + 0.152 / law.k, step = (law.max_diameter - law.min_diameter) / double(count - 1);
   const auto per_metre = [&](double d) { return law.k * q * std::exp(-q * d) / (kPi * d * d / 4); };
   std::vector<double> numbers(count, 0.0);
@@ -29,8 +29,8 @@ std::vector<double> cumulative_numbers(const RockLaw& law, std::size_t count) {
   return numbers;
 }
 
-// How much denser than the mean the rocks of each square are; mean 1.
-Grid<double> density_map(const MadeGround& ground, const std::vector<CraterPlan>& craters,
+// Rock density of each square relative to the mean.
+Grid<double> density_map(const SiteModel& ground, const std::vector<CraterPlan>& craters,
                          std::uint64_t seed) {
   const NodeGrid squares{static_cast<std::int64_t>(std::ceil(ground.width / kPatch)),
                          static_cast<std::int64_t>(std::ceil(ground.height / kPatch)),
@@ -63,7 +63,7 @@ Grid<double> density_map(const MadeGround& ground, const std::vector<CraterPlan>
   return density;
 }
 
-RockShape draw_shape(const RockLaw& law, Random& random) {
+RockShape draw_shape(const RockPopulation& law, Random& random) {
   const double at = random.uniform(0, law.ellipsoids + law.irregular + law.cylinders);
   if (at < law.ellipsoids) return RockShape::ellipsoid;
   return at < law.ellipsoids + law.irregular ? RockShape::irregular : RockShape::cylinder;
@@ -71,15 +71,15 @@ RockShape draw_shape(const RockLaw& law, Random& random) {
 
 }  // namespace
 
-double rocks_per_area(const RockLaw& law, double diameter) {
-  RockLaw above = law;
+double rocks_per_area(const RockPopulation& law, double diameter) {
+  RockPopulation above = law;
   above.min_diameter = diameter;
   return diameter < law.max_diameter ? cumulative_numbers(above, 400).front() : 0;
 }
 
-RockField strew_rocks(const MadeGround& ground, const Terrain& terrain, const Grid<float>& dunes,
-                      const std::vector<CraterPlan>& craters, std::uint64_t seed) {
-  const RockLaw& law = ground.rocks;
+RockField scatter_rocks(const SiteModel& ground, const Terrain& terrain, const Grid<float>& dunes,
+                        const std::vector<CraterPlan>& craters, std::uint64_t seed) {
+  const RockPopulation& law = ground.rocks;
   if (!(law.k > 0) || !(law.max_diameter > law.min_diameter)) return {};
   const std::vector<double> numbers = cumulative_numbers(law, 400);
   const double step = (law.max_diameter - law.min_diameter) / double(numbers.size() - 1);
@@ -108,7 +108,7 @@ RockField strew_rocks(const MadeGround& ground, const Terrain& terrain, const Gr
   std::stable_sort(seeds.begin(), seeds.end(),
                    [](const Seed& a, const Seed& b) { return a.width > b.width; });
 
-  // Squares of the widest rock's width: a rock can only meet those of the nine squares about its own.
+  // Squares as wide as the widest rock: a rock can only overlap those of the nine squares about its own.
   const double square = law.max_diameter * 1.3;
   Grid<std::vector<std::uint32_t>> taken(static_cast<std::int64_t>(ground.width / square) + 3,
                                          static_cast<std::int64_t>(ground.height / square) + 3);
@@ -118,7 +118,7 @@ RockField strew_rocks(const MadeGround& ground, const Terrain& terrain, const Gr
     if (!ground_height) continue;
     const auto column = static_cast<std::int64_t>((s.x - terrain.x0()) / terrain.step_x());
     const auto row = static_cast<std::int64_t>((terrain.y0() - s.y) / terrain.step_y());
-    if (Random(s.seed, "buried").chance(0.9 * double(dunes(column, row)))) continue;
+    if (Random(s.seed, "buried").bernoulli(0.9 * double(dunes(column, row)))) continue;
     const auto c = static_cast<std::int64_t>((s.x - ground.east + ground.width / 2) / square) + 1;
     const auto r = static_cast<std::int64_t>((ground.north + ground.height / 2 - s.y) / square) + 1;
     bool free = c + 1 < taken.columns() && r + 1 < taken.rows();

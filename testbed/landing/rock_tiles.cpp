@@ -18,7 +18,7 @@ std::optional<Spot> spot_of(const View& view, const Eigen::Vector3d& point) {
   if (!pixel) return std::nullopt;
   const Eigen::Isometry3d& pose = view.camera->grid_from_camera.transform;
   const double depth = pose.linear().col(2).dot(point - pose.translation());
-  // Distortion and the edge of a wide field stretch pixels; a fifth more is enough for both.
+  // A margin of a fifth covers distortion and the edges of a wide field of view.
   const double range = (point - pose.translation()).norm();
   return Spot{pixel->x(), pixel->y(),
               1.2 * std::max(view.camera->camera.fx, view.camera->camera.fy) * range / (depth * depth)};
@@ -46,13 +46,13 @@ void along_line(const Spot& a, const Spot& b, double radius, double side, std::i
 
 }  // namespace
 
-RockTiles sort_rocks(const Scene& scene, const View& view, const Sun& sun, double smallest) {
+RockTiles bin_rocks(const Scene& scene, const View& view, const Sun& sun, double smallest) {
   constexpr double kSide = RockTiles::kSide;
   const std::int64_t columns = (view.columns + RockTiles::kSide - 1) / RockTiles::kSide;
   const std::int64_t rows = (view.rows + RockTiles::kSide - 1) / RockTiles::kSide;
   RockTiles result{Grid<RockTiles::Tile>(columns, rows), Grid<std::uint8_t>(view.columns, view.rows, 0)};
-  const Direction<GridFrame> down_light{-towards(sun).unit};
-  const double margin = 200;  // pixels: shadows of rocks outside the picture that may fall into it
+  const Direction<GridFrame> down_light{-sun_direction(sun).unit};
+  const double margin = 200;  // pixels: rocks outside the image whose shadows may fall into it
   for (std::uint32_t k = 0; k < scene.solids.size(); ++k) {
     const RockSolid& rock = scene.solids[k];
     const auto foot = spot_of(view, rock.foot);
@@ -64,7 +64,7 @@ RockTiles sort_rocks(const Scene& scene, const View& view, const Sun& sun, doubl
     along_line(*foot, *foot, radius, kSide, columns, rows,
                [&](std::int64_t i, std::int64_t j) { result.tiles(i, j).rocks.push_back(k); });
 
-    // The tip of the shadow: down the light from the top, and a reach further.
+    // Tip of the shadow: along the light from the top, plus one reach.
     const Point<GridFrame> top{rock.foot + Eigen::Vector3d(0, 0, rock.top)};
     const RayHit hit = scene.terrain.cast({top, down_light});
     const double level = rock.top / std::max(0.02, -down_light.unit.z());

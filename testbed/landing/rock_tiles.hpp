@@ -6,7 +6,7 @@
 #include "testbed/render.hpp"
 namespace waymark {
 
-/// Which rocks, and which rocks' shadows, each square of a picture may show.
+/// Rocks and rock shadows that may be visible in each square of an image.
 struct RockTiles {
   static constexpr std::int64_t kSide = 16;  ///< pixels
 
@@ -14,10 +14,10 @@ struct RockTiles {
     std::vector<std::uint32_t> rocks, shadows;  ///< indices into Scene::solids
   };
   Grid<Tile> tiles;
-  Grid<std::uint8_t> busy;  ///< per pixel: a rock or its shadow is near, so it wants several samples
+  Grid<std::uint8_t> busy;  ///< per pixel: near a rock or its shadow, so it is supersampled
 };
 
-/// Rocks whose outline is narrower than `smallest` pixels are left out.
-RockTiles sort_rocks(const Scene& scene, const View& view, const Sun& sun, double smallest);
+/// Discards rocks whose outline is narrower than `smallest` pixels.
+RockTiles bin_rocks(const Scene& scene, const View& view, const Sun& sun, double smallest);
 
 }  // namespace waymark

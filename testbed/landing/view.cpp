@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kSteps = 48;
 
-// The ellipse of a closed line: exact for an ellipse seen under any affine map. Its area, middle and second
-// moments are those of the polygon.
+// Ellipse with the area, centre and second moments of a closed polygon: exact for any affine image of an
+// ellipse.
 PixelEllipse ellipse_of(const std::vector<Eigen::Vector2d>& line) {
   const Eigen::Vector2d about = line.front();
   double area = 0;
@@ -27,7 +27,7 @@ PixelEllipse ellipse_of(const std::vector<Eigen::Vector2d>& line) {
   const Eigen::Vector2d middle = first / area;
   const Eigen::Matrix2d spread = second / area - middle * middle.transpose();
   const double mean = spread.trace() / 2, half = std::hypot((spread(0, 0) - spread(1, 1)) / 2, spread(0, 1));
-  // The inscribed polygon is a little smaller than the ellipse: sin(a)/a of its area.
+  // The inscribed polygon has sin(a)/a of the area of the ellipse.
   const double grow = std::sqrt((2 * std::numbers::pi / kSteps) / std::sin(2 * std::numbers::pi / kSteps));
   return {.x = about.x() + middle.x(),
           .y = about.y() + middle.y(),
@@ -76,18 +76,18 @@ View camera_view(PosedCamera camera) {
   return view;
 }
 
-std::optional<PixelEllipse> outline_in(const View& view, const TrueCrater& crater) {
+std::optional<PixelEllipse> image_outline(const View& view, const TrueCrater& crater) {
   return outline(view, crater.position, crater.major, crater.minor, crater.orientation);
 }
 
-std::optional<PixelEllipse> outline_in(const View& view, const TrueRock& rock) {
+std::optional<PixelEllipse> image_outline(const View& view, const TrueRock& rock) {
   return outline(view, rock.position, rock.width, rock.width, 0);
 }
 
 double image_sun_angle(const View& view, const Sun& sun) {
-  const Eigen::Vector3d light = towards(sun).unit;
+  const Eigen::Vector3d light = sun_direction(sun).unit;
   if (!view.camera) return std::atan2(-light.y(), light.x());
-  // The sun's horizontal direction, as the picture shows it where the optical axis meets level ground.
+  // Projects the horizontal direction of the sun where the optical axis meets level ground.
   const Eigen::Isometry3d& pose = view.camera->grid_from_camera.transform;
   const Eigen::Vector3d axis = pose.linear().col(2);
   const double range = axis.z() < -0.05 ? 100 / -axis.z() : 1000;

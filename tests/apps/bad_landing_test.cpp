@@ -120,7 +120,7 @@ TEST_F(BadLanding, CameraLooksAtTheSky) {
 
 TEST_F(BadLanding, ImageOutsideTheDem) {
   image(1)["centre"][0] = 5000;
-  EXPECT_THAT(goes_on(0), AllOf(HasSubstr("looks past the DEM's extent"), HasSubstr("b.pgm")));
+  EXPECT_THAT(goes_on(0), AllOf(HasSubstr("its view misses the DEM's extent"), HasSubstr("b.pgm")));
 }
 
 TEST_F(BadLanding, BlackSaturatedAndOnePixelImages) {
@@ -129,7 +129,7 @@ TEST_F(BadLanding, BlackSaturatedAndOnePixelImages) {
   pictures_["d.pgm"] = flat_picture(1, 7);
   EXPECT_THAT(goes_on(0),
               AllOf(HasSubstr("all pixels of the image are 0"), HasSubstr("all pixels of the image are 255"),
-                    HasSubstr("the image measures 1 x 1 pixels")));
+                    HasSubstr("the image has 1 x 1 pixels: too small")));
 }
 
 TEST_F(BadLanding, OfTwoImagesOfOneNameNeitherIsPlaced) {

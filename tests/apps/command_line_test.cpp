@@ -91,6 +91,14 @@ TEST(CommandLine, ValuesAreChecked) {
               StartsWith("error: --config takes KEY=VALUE, is 'CACHE'\n"));
 }
 
+TEST(CommandLine, FormerNamesOfOptionsAreReadWithAWarning) {
+  EXPECT_THAT(waymark({"allometry", "fit", "none.csv", "-o", "t.csv", "--least-trees=3"}).err,
+              StartsWith("warning: --least-trees was renamed: use --min-trees\nerror: "));
+  EXPECT_THAT(waymark({"evaluate", "landmarks", "none.csv", "--truth", "none.csv", "--share", "2"}).err,
+              StartsWith("warning: --share was renamed: use --tolerance\nerror: "));
+  EXPECT_THAT(waymark({"allometry", "--help"}).out, HasSubstr("(formerly --least-trees)"));
+}
+
 TEST(CommandLine, GlobalOptionsStandBeforeOrAfterTheCommand) {
   EXPECT_EQ(waymark({"--threads", "2", "types"}).code, 0);
   EXPECT_EQ(waymark({"types", "--threads=2", "-q"}).code, 0);

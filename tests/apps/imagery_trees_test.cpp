@@ -60,8 +60,8 @@ std::string places() {
 
 /// Finds may be 10 pixels off.
 json score_of(const std::string& found, const std::string& truth) {
-  const Outcome told = waymark({"evaluate", "landmarks", found, "--truth", truth, "--share", "0", "--least",
-                                "10", "--format", "json"});
+  const Outcome told = waymark({"evaluate", "landmarks", found, "--truth", truth, "--tolerance", "0",
+                                "--min-tolerance", "10", "--format", "json"});
   if (told.code != 0) throw std::runtime_error(told.err);
   return json::parse(told.out)["landmarks"];
 }
@@ -170,16 +170,16 @@ TEST_F(ImageryTrees, WrongUseOfLearningIsExplained) {
     words.insert(words.end(), {"-o", folder_ / "model.txt"});
     return waymark(words);
   };
-  EXPECT_THAT(train({"trees"}).err, HasSubstr("trees are learnt from images, and none is given"));
-  EXPECT_THAT(train({"craters", "a.tif"}).err, HasSubstr("not from images"));
+  EXPECT_THAT(train({"trees"}).err, HasSubstr("trees are trained on images, and none is given"));
+  EXPECT_THAT(train({"craters", "a.tif"}).err, HasSubstr("not on images"));
   make_dem(folder_ / "park.tif", park(3));
   EXPECT_THAT(train({"trees", folder_ / "park.tif"}).err, HasSubstr("no fourth band"));
   EXPECT_THAT(train({"trees", "--colour", folder_ / "park.tif"}).err, HasSubstr("park.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "model.txt"));
 }
 
-// What the shipped networks learnt, so no figure of quality (docs/trees.md has those of images left out): it
-// tells whether the program still finds what it found.
+// What the shipped networks learnt, so no figure of quality (docs/evaluation/2026-11-21-trees-in-real-data.md
+// has those of images left out): it tells whether the program still finds what it found.
 TEST(RealImageryTrees, EurekaIsAsItWas) {
   const std::filesystem::path eureka =
       std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/forest/eureka";

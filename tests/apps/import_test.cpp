@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -43,6 +44,23 @@ TEST_F(Import, CatalogueOfTheMoonByTheNamesOfItsColumns) {
   EXPECT_EQ(waymark({"validate", map_}).code, 0);
 }
 
+TEST_F(Import, ARecursiveViewIsRefused) {
+  ASSERT_EQ(import("x,y,radius\n1,1,3\n", {"--type", "rock", "--map-crs", "local"}).code, 0);
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(map_.c_str(), &database), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(database,
+                         "CREATE VIEW endless AS WITH c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c) "
+                         "SELECT r.* FROM rock r, c",
+                         nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(database);
+  const Outcome said =
+      waymark({"import", map_, "--from", "ogr", "--type", "rock", "-o", folder_ / "again.gpkg"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, HasSubstr("the file has a recursive view, 'endless'"));
+  EXPECT_THAT(said.err, HasSubstr(map_));
+}
+
 TEST_F(Import, ExpressionsQuotedNamesAndDeviations) {
   const Outcome said = import(
       "id;\"Ost (m)\";nord;dbh cm;h\nA;100,5;200;30;20\nB;101;201;40;\n",
@@ -54,6 +72,25 @@ TEST_F(Import, ExpressionsQuotedNamesAndDeviations) {
   const json all = landmarks();
   EXPECT_NEAR(all[0]["var_x"], 0.09, 1e-12);
   for (const json& one : all) EXPECT_EQ(one["height"].is_null(), one["uid"] == "B");  // not known, not 0
+}
+
+TEST_F(Import, UnknownDeviationsAreNullAndNotZero) {
+  ASSERT_EQ(import("x,y,radius\n1,1,3\n2,9,3\n", {"--type", "rock", "--map-crs", "local"}).code, 0);
+  for (const json& one : landmarks())
+    for (const char* column : {"var_x", "var_y", "cov_xy", "var_z"})
+      EXPECT_TRUE(one[column].is_null()) << column;
+  EXPECT_EQ(waymark({"validate", map_}).code, 0);
+
+  const Outcome given =
+      import("x,y,radius,x_sd,y_sd\n1,1,3,0.2,0.1\n2,9,3,,\n", {"--type", "rock", "--map-crs", "local"});
+  ASSERT_EQ(given.code, 0) << given.err;
+  int known = 0;
+  for (const json& one : landmarks()) {
+    known += !one["var_x"].is_null();
+    EXPECT_EQ(one["var_x"].is_null(), one["cov_xy"].is_null());
+  }
+  EXPECT_EQ(known, 1);
+  EXPECT_EQ(waymark({"validate", map_}).code, 0);
 }
 
 TEST_F(Import, ImplausibleRowsAreRejectedCountedAndKeptAsEvidence) {
@@ -108,18 +145,18 @@ TEST_F(Import, ColumnsThatAreNotThereAndTargetsThatAreNone) {
               AllOf(HasSubstr("has no 'radios'"), HasSubstr("did you mean 'radius'")));
   EXPECT_THAT(with("radius=diam//2").err, AllOf(HasSubstr("'/' is not expected here"), HasSubstr("      ^")));
   EXPECT_THAT(with("radius=(diam/2").err, HasSubstr("a parenthesis is not closed"));
-  EXPECT_THAT(with("radius").err, HasSubstr("'radius' says not what it is for"));
-  EXPECT_THAT(with("radius=diam,radius=diam").err, HasSubstr("says twice what 'radius' is"));
+  EXPECT_THAT(with("radius").err, HasSubstr("'radius' has no target"));
+  EXPECT_THAT(with("radius=diam,radius=diam").err, HasSubstr("gives 'radius' twice"));
   for (const char* bad : {"radius=diem/2", "radius=diam//2", "radius"}) EXPECT_EQ(with(bad).code, 2);
 }
 
 TEST_F(Import, WhereAndWhatMustBeKnown) {
   EXPECT_THAT(import("x,y\n1,2\n", {"--type", "rock"}).err,
-              AllOf(HasSubstr("does not say where on which body"), HasSubstr("--map-crs")));
+              AllOf(HasSubstr("does not name its CRS"), HasSubstr("--map-crs")));
   EXPECT_THAT(import("x,y\n1,2\n", {"--map-crs", "local"}).err,
-              AllOf(HasSubstr("does not say what its rows are"), HasSubstr("--type")));
+              AllOf(HasSubstr("does not name the type of its rows"), HasSubstr("--type")));
   EXPECT_THAT(import("a,b\n1,2\n", {"--type", "rock", "--map-crs", "local"}).err,
-              AllOf(HasSubstr("no column of the table is known to be x"), HasSubstr("it has a, b")));
+              AllOf(HasSubstr("no column of the table is recognised as x"), HasSubstr("the table has a, b")));
   EXPECT_THAT(import("x,y\n1,2\n", {"--type", "rok", "--map-crs", "local"}).err,
               HasSubstr("did you mean 'rock'"));
 }
@@ -127,7 +164,7 @@ TEST_F(Import, WhereAndWhatMustBeKnown) {
 TEST_F(Import, DegreesAreProjectedIntoTheMap) {
   const Outcome said = import("lon,lat,height\n9,46.9,12\n", {"--type", "tree", "--map-crs", "EPSG:32632"});
   ASSERT_EQ(said.code, 0) << said.err;
-  EXPECT_THAT(said.err, HasSubstr("longitudes and latitudes are taken as EPSG:4326"));
+  EXPECT_THAT(said.err, HasSubstr("longitudes and latitudes are assumed to be in EPSG:4326"));
   EXPECT_NEAR(values("x")[0], 500000, 1e-6);  // the central meridian of zone 32
   EXPECT_THAT(import("lon,lat\n9,95\n", {"--type", "tree", "--map-crs", "EPSG:4326"}).err,
               HasSubstr("latitude beyond 90 degrees"));
@@ -179,7 +216,7 @@ TEST_F(Import, SameUidTwiceAndForeignBodies) {
               HasSubstr("two rows have the uid 'a'"));
   EXPECT_THAT(
       import("x,y\n1,1\n", {"--type", "rock", "--crs", "EPSG:4326", "--map-crs", "IAU_2015:30100"}).err,
-      HasSubstr("the table is in EPSG:4326, which does not lead to IAU_2015:30100"));
+      HasSubstr("the table is in EPSG:4326, which cannot be transformed to IAU_2015:30100"));
 }
 
 TEST_F(Import, FilesThatAreNoTables) {

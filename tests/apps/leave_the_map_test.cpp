@@ -51,7 +51,7 @@ class LeaveTheMap : public Localize {
         for (const Rock& rock : made.rocks) {
           const double dx = rock.x - at.x, dy = rock.y - at.y, range = std::hypot(dx, dy);
           const double bearing = std::remainder(std::atan2(dy, dx) - at.yaw, 2 * M_PI);
-          if (range > 12 || std::abs(bearing) > 2 || random.chance(0.2)) continue;
+          if (range > 12 || std::abs(bearing) > 2 || random.bernoulli(0.2)) continue;
           items.push_back({{"type", "rock"},
                            {"range", range + 0.08 * random.normal()},
                            {"bearing", bearing + 0.01 * random.normal()},

@@ -99,13 +99,13 @@ TEST_F(LocalizeBadInput, TimesBackwardsTwiceAndMissing) {
                             return json.dump();
                           }}));
   EXPECT_EQ(backwards.code, 0);
-  EXPECT_THAT(backwards.err, HasSubstr("times run backwards; the log is sorted by time"));
+  EXPECT_THAT(backwards.err, HasSubstr("times run backwards; the log was sorted by time"));
   const Outcome twice =
       localize(drive_log({.named = true, .change = [](int, const std::string& kind, const std::string& line) {
                             return kind == "odometry" ? line + "\n" + line : line;
                           }}));
   EXPECT_EQ(twice.code, 0);
-  EXPECT_THAT(twice.err, HasSubstr("120 odometry readings have the time of the one before"));
+  EXPECT_THAT(twice.err, HasSubstr("120 odometry readings repeat the time of the previous one"));
   EXPECT_LT(score()["ate_rmse"], 0.15);
   const Outcome gap =
       localize(drive_log({.named = true, .change = [](int step, const std::string&, const std::string& line) {
@@ -134,7 +134,7 @@ TEST_F(LocalizeBadInput, SensorsAndTypesNobodyKnows) {
         return line;
       }}));
   EXPECT_EQ(said.code, 0);
-  EXPECT_THAT(said.err, AllOf(HasSubstr("120 records of the kind 'sonar' are left out"),
+  EXPECT_THAT(said.err, AllOf(HasSubstr("120 records of the kind 'sonar' are skipped"),
                               HasSubstr("sightings of type 'cactus', which the map does not have")));
   EXPECT_LT(score()["ate_rmse"], 0.15);
 }
@@ -172,6 +172,24 @@ TEST_F(LocalizeBadInput, AllRejectedForMinutesThenLandmarksReturn) {
       EXPECT_EQ(last_row().at("lost"), 0) << method << " named " << named << " is still lost";
       EXPECT_LT(score()["ate_median"], 8.0) << method << named;
     }
+}
+
+// Eqs. 9-11 as a whole: each sighting alone, and nothing that decides by another distance.
+TEST_F(LocalizeBadInput, DistanceOfThePaperIsTheWholeChain) {
+  const std::string log = drive_log({.steps = 200});
+  const auto track_with = [&](const std::vector<std::string>& settings) {
+    std::vector<std::string> words{"--method", "ekf", "--ids", "unknown"};
+    for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
+    EXPECT_EQ(localize(log, words).code, 0);
+    return text_of(track_);
+  };
+  EXPECT_EQ(track_with({"distance=paper"}), track_with({"distance=paper", "association=nearest"}));
+  EXPECT_THAT(refusal(log, 2, {"--method", "ekf", "--set", "distance=paper", "--set", "association=jcbb"}),
+              AllOf(HasSubstr("association=jcbb decides by its own evidence"), HasSubstr("nearest")));
+  EXPECT_THAT(refusal(log, 2, {"--method", "pf", "--set", "distance=paper"}),
+              AllOf(HasSubstr("weights=likelihood"), HasSubstr("--set weights=paper")));
+  EXPECT_THAT(refusal(log, 2, {"--method", "slam", "--set", "distance=paper"}), HasSubstr("--method slam"));
+  EXPECT_EQ(localize(log, {"--method", "pf", "--set", "distance=paper", "--set", "weights=paper"}).code, 0);
 }
 
 TEST_F(LocalizeBadInput, FilesThatAreNoLogsOrMaps) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "localize_fixture.hpp"
@@ -45,6 +46,55 @@ TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
       EXPECT_LT(score(data, {"--robot", "1"})["ate_median"], 0.25) << method << ' ' << ids;
     }
   EXPECT_THAT(waymark({"localize", map, data, "-o", track_}).err, HasSubstr("add --robot 1"));
+}
+
+TEST_F(Localize, SettingsNeedNeitherMapNorLog) {
+  const Outcome said = waymark({"localize", "--settings", "--method", "pf", "--set", "particles=777"});
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("particles=777  "));
+  std::set<std::string> names;
+  std::istringstream lines(said.out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(names.insert(line.substr(0, line.find('='))).second) << "twice: " << line;
+  EXPECT_GT(names.size(), 20u);
+  EXPECT_THAT(waymark({"localize", "--method", "pf"}).err, HasSubstr("needs MAP.gpkg"));
+}
+
+TEST_F(Localize, WrongMatchesAreNotKnownWithoutIdentities) {
+  ASSERT_EQ(localize(drive_log({.named = false}), {"--method", "ekf", "--ids", "unknown"}).code, 0);
+  EXPECT_GT(score()["matches"], 0);
+  EXPECT_TRUE(score()["wrong_matches"].is_null());
+  ASSERT_EQ(localize(drive_log({.named = true}), {"--method", "ekf", "--ids", "unknown"}).code, 0);
+  EXPECT_EQ(score()["wrong_matches"], 0);
+}
+
+TEST_F(Localize, ImprobableLandmarksCanBeLeftOut) {
+  const Outcome none = localize(drive_log({}), {"--method", "ekf", "--min-confidence", "1"});
+  EXPECT_EQ(none.code, 0) << none.err;  // imported rocks have confidence 1
+  ASSERT_EQ(bash("ogrinfo -q " + map_ + " -sql 'UPDATE rock SET confidence = 0.4'").code, 0);
+  const Outcome said = localize(drive_log({}), {"--method", "ekf", "--min-confidence", "0.5"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err,
+              AllOf(HasSubstr("no landmark of confidence 0.5 or more"), HasSubstr("lower --min-confidence")));
+  EXPECT_EQ(localize(drive_log({}), {"--method", "ekf", "--min-confidence", "0.3"}).code, 0);
+}
+
+TEST_F(Localize, ATruthTooCoarseToInterpolateIsNamed) {
+  write_text(track_, "t,x,y,yaw\n0.5,1,0,0\n1.5,2,0,0\n");
+  write_text(folder_.path() / "truth.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0\n2,0,0,0\n");
+  const std::vector<std::string> words{"evaluate", "track", track_, "--truth", folder_ / "truth.csv"};
+  EXPECT_THAT(waymark(words).err,
+              AllOf(HasSubstr("the true poses are up to 1 s apart"), HasSubstr("--max-gap 1.01")));
+  write_text(track_, "t,x,y,yaw\n70.5,1,0,0\n");
+  EXPECT_THAT(waymark(words).err, HasSubstr("no time in common: 70.500 to 70.500 s and 0.000 to 2.000 s"));
+}
+
+TEST_F(Localize, ASightingNeedsABearing) {
+  std::string log = drive_log({});
+  for (std::size_t at; (at = log.find("\"bearing\"")) != std::string::npos;) log.replace(at, 9, "\"angle\"");
+  const Outcome said = localize(log, {"--method", "ekf"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("a sighting without \"bearing\""), HasSubstr("a range alone")));
 }
 
 TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {
@@ -93,10 +143,18 @@ TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
 TEST_F(Localize, SettingsOutsideTheirRangeOrWithWrongNamesAreRefused) {
   const std::string log = drive_log({.steps = 4});
   EXPECT_THAT(refusal(log, 2, {"--set", "gat=0.9"}), HasSubstr("did you mean 'gate'?"));
-  EXPECT_THAT(refusal(log, 2, {"--set", "gate=2"}), HasSubstr("must be within"));
+  EXPECT_THAT(refusal(log, 2, {"--set", "gate=2"}), HasSubstr("gate = 2 is outside ["));
   EXPECT_THAT(refusal(log, 2, {"--set", "gate=nan"}), HasSubstr("gate"));
   EXPECT_THAT(refusal(log, 2, {"--method", "kalman"}), HasSubstr("--method must be one of"));
   EXPECT_THAT(refusal(log, 2, {"--sensor", "sonarr"}), HasSubstr("sonarr"));
+}
+
+TEST_F(Localize, FormerNamesOfSettingsAreReadWithAWarning) {
+  const std::string log = drive_log({.steps = 4});
+  const Outcome renamed = localize(log, {"--set", "longest_hold=2"});
+  EXPECT_EQ(renamed.code, 0);
+  EXPECT_THAT(renamed.err, HasSubstr("longest_hold was renamed: use max_hold (--set longest_hold=2)"));
+  EXPECT_THAT(localize(log, {"--settings", "--set", "max_hold=2"}).out, HasSubstr("max_hold=2  "));
 }
 
 TEST_F(Localize, GnssAndCompassHelpWhereNothingIsSeen) {
@@ -122,7 +180,7 @@ TEST_F(Localize, GnssAndCompassHelpWhereNothingIsSeen) {
     const double without = score()["ate_rmse"];
     const Outcome said = localize(blind(true), {"--method", method, "--start", "truth"});
     ASSERT_EQ(said.code, 0);
-    EXPECT_THAT(said.err, HasSubstr("GNSS and compass readings: 240, of which 6 were not used"));
+    EXPECT_THAT(said.err, HasSubstr("GNSS and compass readings: 240, 6 of them not used"));
     EXPECT_LT(score()["ate_rmse"], 0.25) << method;
     EXPECT_LT(score()["ate_rmse"], 0.7 * without) << method;
     EXPECT_EQ(localize(blind(true), {"--method", method, "--set", "use_fixes=false"}).code, 0);

@@ -25,7 +25,7 @@ struct Rock {
 std::vector<Rock> made_rocks();
 /// x,y,uid,radius as `waymark import` reads them.
 std::string rocks_csv(double east = 0, double north = 0);
-/// The log of a drive (docs/log_format.md).
+/// The log of a drive (docs/reference/log_format.md).
 std::string drive_log(const MadeDrive& drive);
 /// The same drive as an MRCLAM dataset of one robot.
 void write_mrclam(const std::string& folder);

@@ -28,14 +28,15 @@ double peak_of(const std::vector<std::string>& words) {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-/// A mosaic of `times` x `times` copies of a canopy of 2000 x 2000 cells with few trees.
-std::string mosaic(const TempFolder& folder, int times) {
-  const std::string one = folder / "one.tif";
+/// A mosaic of `times` x `times` copies of a raster of 2000 x 2000 cells with a cone 15 m high every `apart`
+/// cells: few trees, or many summits.
+std::string mosaic(const TempFolder& folder, int times, int apart = 100) {
+  const std::string one = folder / ("one" + std::to_string(apart) + ".tif");
   constexpr int kSide = 2000;
   if (!std::filesystem::exists(one)) {
     MadeDem chm{.columns = kSide, .rows = kSide, .geotransform = {500000, 0.5, 0, 5200000, 0, -0.5}};
-    chm.height = [](int column, int row) {
-      const double x = std::fmod(column, 100.0) - 50, y = std::fmod(row, 100.0) - 50;
+    chm.height = [apart](int column, int row) {
+      const int x = column % apart - apart / 2, y = row % apart - apart / 2;
       return std::max(0.0, 15 - 2 * std::hypot(x, y));
     };
     make_dem(one, chm);
@@ -52,7 +53,7 @@ std::string mosaic(const TempFolder& folder, int times) {
                attribute("yOff", i / times * kSide) + size + "/></SimpleSource>";
   }
   const std::string side = "\"" + std::to_string(times * kSide) + "\"",
-                    file = folder / (std::to_string(times) + ".vrt");
+                    file = folder / (std::to_string(times) + "_" + std::to_string(apart) + ".vrt");
   write_text(file, "<VRTDataset rasterXSize=" + side + " rasterYSize=" + side +
                        "><SRS>EPSG:32632</SRS><GeoTransform>500000,0.5,0,5200000,0,-0.5</GeoTransform>"
                        "<VRTRasterBand dataType=\"Float32\" band=\"1\">" +
@@ -71,6 +72,30 @@ TEST(Memory, OfTreesDoesNotGrowWithTheRaster) {
   const double small = peak(2), large = peak(4);
   EXPECT_GT(small, 20) << "MB";
   EXPECT_LT(large, small + 30) << "MB; " << small << " for a quarter of the raster";
+}
+
+// 84 M cells more: their tiles' borders and saddles would take 80 MB if all were held to the end.
+TEST(Memory, OfPeaksGrowsSlowerThanItsTiles) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peak = [&](int times) {
+    return peak_of({"-q", "peaks", mosaic(folder, times), "--memory", "32", "--threads", "1", "-o",
+                    folder / "peaks.gpkg"});
+  };
+  const double small = peak(2), large = peak(5);
+  EXPECT_GT(small, 20) << "MB";
+  EXPECT_LT(large, small + 60) << "MB; " << small << " for a sixth of the raster";
+}
+
+// 250,000 summits as landmarks would take 250 MB.
+TEST(Memory, OfPeaksHoldsSummitsInPieces) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peak = [&](const char* prominence) {
+    return peak_of({"-q", "peaks", mosaic(folder, 2, 8), "--min-prominence", prominence, "--memory", "32",
+                    "--threads", "1", "-o", folder / "peaks.gpkg"});
+  };
+  EXPECT_LT(peak("5"), peak("100") + 200) << "MB";
 }
 
 }  // namespace

@@ -63,6 +63,45 @@ TEST_F(Output, ForeignFileIsNeverReplaced) {
   EXPECT_EQ(text_of(map), "a year of work");
 }
 
+TEST_F(Output, AnEmptyFileIsReplaced) {
+  const std::string map = folder_ / "map.gpkg";  // as mktemp makes it
+  write_text(map, "");
+  const Outcome said = peaks(twins(), map);
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_EQ(waymark({"validate", map}).code, 0);
+}
+
+TEST_F(Output, SourceDateEpochGivesTheSameBytes) {
+  const std::string dem = twins(), map = folder_ / "map.gpkg";
+  const auto run = [&](const std::string& command) {
+    const Outcome said =
+        bash("export SOURCE_DATE_EPOCH=1700000000; cd " + folder_.path().string() + "; " + command);
+    EXPECT_EQ(said.code, 0) << said.err;
+    return text_of(map);
+  };
+  write_text(folder_.path() / "rocks.csv", "x,y,radius\n1,1,3\n2,9,3\n");
+  for (const std::string& command :
+       {"$WAYMARK peaks " + dem + " -o map.gpkg",
+        std::string("$WAYMARK import rocks.csv --type rock --map-crs local -o map.gpkg")}) {
+    const std::string once = run(command), again = run("sleep 1.1; " + command);
+    EXPECT_GT(once.size(), 50'000u);
+    EXPECT_TRUE(once == again) << command;
+  }
+  EXPECT_THAT(bash("SOURCE_DATE_EPOCH=1.5 $WAYMARK peaks " + dem + " -o " + map).err,
+              HasSubstr("SOURCE_DATE_EPOCH"));
+}
+
+TEST_F(Output, AnInterruptedRunSaysSo) {
+  const std::string map = folder_ / "map.gpkg", dem = make_dem(folder_ / "hills.tif", hills(1500, 1500));
+  const Outcome said = bash("$WAYMARK peaks " + dem + " -o " + map +
+                            " --min-prominence 0 --threads 1 & run=$!; "
+                            "sleep 0.3; kill -INT $run; wait $run; exit $?");
+  if (said.code == 0) GTEST_SKIP() << "the run ended before the interrupt";
+  EXPECT_EQ(said.code, 130);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("error: interrupted"), HasSubstr("--work")));
+  EXPECT_FALSE(std::filesystem::exists(map));
+}
+
 TEST_F(Output, FullDiskLeavesTheOldMap) {
   if (!can_mount()) GTEST_SKIP() << "mounting is not permitted";
   const std::string map = folder_ / "map.gpkg", dem = make_dem(folder_ / "hills.tif", hills(400, 400));

@@ -106,13 +106,99 @@ TEST_F(Peaks, CheckMakesNothing) {
   EXPECT_EQ(waymark({"peaks", folder_ / "no.tif", "--check"}).code, 1);
 }
 
+TEST_F(Peaks, CheckRefusesPlanarDistancesInDegrees) {
+  MadeDem degrees = twin_peaks();
+  degrees.crs = "EPSG:4326";
+  degrees.geotransform = {8, 0.01, 0, 47, 0, -0.01};
+  const std::string dem = make_dem(folder_ / "degrees.tif", degrees);
+  for (const std::string how : {"--check", "-q"}) {
+    const Outcome said = waymark({"peaks", dem, "-o", folder_ / "map.gpkg", "--distance", "planar", how});
+    EXPECT_EQ(said.code, 2) << how;
+    EXPECT_THAT(said.err, AllOf(HasSubstr("planar isolation needs a projected DEM"),
+                                HasSubstr("gdalwarp -t_srs EPSG:32632"), Not(HasSubstr("join_mountain"))));
+  }
+}
+
+// A void on the ridge at 500 m may hide a mountain: the first summit is then 600 m prominent, the second 200
+// m.
+TEST_F(Peaks, VoidsInTheMountainsLowerConfidenceAndAreReported) {
+  MadeDem dem = twin_peaks();
+  dem.height = [](int column, int row) {
+    constexpr std::array ridge = {0, 900, 300, 700, 500, -9999, 0};
+    return row == 1 ? ridge.at(static_cast<std::size_t>(column)) : 0.0;
+  };
+  table({make_dem(folder_ / "holed.tif", dem)});
+  EXPECT_THAT(last_summary_,
+              AllOf(HasSubstr("4.8 % of the cells have no height"), HasSubstr("--nodata fill"),
+                    HasSubstr("--nodata unknown"), HasSubstr("2 of 2 summits may be less prominent")));
+  const auto tops = json::parse(
+      waymark({"query", folder_ / "map.gpkg", "--largest", "prominence", "--format", "json"}).out);
+  EXPECT_EQ(tops[1]["prominence"], 400);
+  EXPECT_EQ(tops[1]["prominence_low"], 200);
+  EXPECT_EQ(tops[1]["confidence"], 0.5);
+}
+
+TEST_F(Peaks, HeightsNoBodyHasAreReportedAndTheMapIsValid) {
+  MadeDem dem = twin_peaks();
+  dem.height = [old = dem.height](int column, int row) {
+    return column == 6 && row == 2 ? 9e9 : old(column, row);
+  };
+  table({make_dem(folder_ / "spike.tif", dem)});
+  EXPECT_THAT(last_summary_,
+              AllOf(HasSubstr("1 cells hold numbers that no body's terrain reaches, e.g. 9e+09 m at "
+                              "(506500, 5197500)"),
+                    HasSubstr("map.gpkg: 2 mountain_top")));
+  EXPECT_EQ(waymark({"validate", folder_ / "map.gpkg"}).code, 0);
+}
+
+TEST_F(Peaks, FilledVoidsAreCounted) {
+  MadeDem dem = twin_peaks();
+  dem.height = [old = dem.height](int column, int row) {
+    return column == 3 && row == 1 ? -9999 : old(column, row);
+  };
+  table({make_dem(folder_ / "holed.tif", dem), "--nodata", "fill", "--fill-distance", "5"});
+  EXPECT_THAT(last_summary_, HasSubstr("1 cells without height (4.8 %) were interpolated; 0 (0 %)"));
+}
+
+TEST_F(Peaks, AreaOfInterestKeepsSummitsMeasuredOnTheWholeDem) {
+  write_text(folder_ / "area.geojson",
+             R"({"type": "FeatureCollection",
+                 "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32632"}},
+                 "features": [{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates":
+                 [[[504900, 5198000], [506000, 5198000], [506000, 5199000], [504900, 5198000]]]}}]})");
+  const std::string rows = table({twins(), "--distance", "planar", "--aoi", folder_ / "area.geojson"});
+  EXPECT_THAT(rows, AllOf(HasSubstr(",700,"), HasSubstr(",4000,"), Not(HasSubstr(",900,"))));
+  EXPECT_THAT(last_summary_, HasSubstr("outside the area of interest"));
+}
+
+TEST_F(Peaks, HeightsHaveTheUnitAndBandOfTheUser) {
+  MadeDem dem = twin_peaks();
+  dem.bands = 2;
+  const std::string file = make_dem(folder_ / "bands.tif", dem);
+  EXPECT_EQ(waymark({"peaks", file, "-o", folder_ / "map.gpkg"}).code, 1);
+  EXPECT_THAT(table({file, "--band", "2", "--height-unit", "ft"}), HasSubstr(",274.32,"));
+  EXPECT_THAT(table({file, "--band", "1", "--height-scale", "2"}), HasSubstr(",1800,"));
+}
+
+TEST_F(Peaks, DemComesByStandardInput) {
+  const std::string file = twins(), map = folder_ / "piped.gpkg";
+  const std::string direct = table({file});
+  for (const std::string name : {"-", "/vsistdin/"}) {
+    const Outcome piped = bash("cat '" + file + "' | $WAYMARK peaks " + name + " -o '" + map + "'");
+    EXPECT_EQ(piped.code, 0) << piped.err;
+    EXPECT_EQ(csv("piped.gpkg"), direct);
+  }
+  EXPECT_THAT(bash("$WAYMARK peaks - -o '" + map + "' < /dev/null").err,
+              HasSubstr("standard input is empty"));
+}
+
 TEST_F(Peaks, WorkFolderIsUsedAgain) {
   const std::string dem = rolling();
   const std::string first = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
   const std::string second = table({dem, "--work", folder_ / "work", "--tile-cells", "100"});
   EXPECT_EQ(first, second);
   EXPECT_THAT(waymark({"peaks", dem, "--work", folder_ / "work", "--tile-cells", "100", "--check"}).err,
-              HasSubstr("10 units of work, 10 of them done"));
+              HasSubstr("15 units of work, 15 of them done"));
 }
 
 TEST_F(Peaks, SharesMeetInTheWorkFolder) {
@@ -129,7 +215,7 @@ TEST_F(Peaks, PlanNamesEveryUnit) {
   const auto plan = [&](const std::string& form) {
     return waymark({"plan", folder_ / "job.json", "--as", form, "--work", folder_ / "work"}).out;
   };
-  EXPECT_EQ(std::ranges::count(plan("jsonl"), '\n'), 10);
+  EXPECT_EQ(std::ranges::count(plan("jsonl"), '\n'), 15);
   EXPECT_THAT(plan("snakemake"), HasSubstr("rule "));
   EXPECT_THAT(plan("slurm"), HasSubstr("sbatch"));
 }

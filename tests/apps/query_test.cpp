@@ -75,6 +75,43 @@ TEST_F(Query, ByFeature) {
   EXPECT_THAT(query({"--min", "prominence"}).err, HasSubstr("--min takes FEATURE=VALUE, is 'prominence'"));
 }
 
+TEST_F(Query, ByConfidenceQualityAndCounts) {
+  // 900 m has certain prominence (confidence 1), 700 m is certain of all of its 300 m.
+  EXPECT_THAT(elevations({"--min", "seen=1", "--largest", "confidence"}).size(), 2);
+  EXPECT_THAT(elevations({"--min", "seen=2"}), IsEmpty());
+  EXPECT_THAT(elevations({"--min", "quality=0"}), IsEmpty());  // one DEM is no assessment
+  EXPECT_THAT(elevations({"--min-confidence", "0.01"}).size(), 2);
+  EXPECT_THAT(elevations({"--min", "confidence=1.01"}), IsEmpty());
+  EXPECT_THAT(elevations({"--min", "prominence_low=500"}), ElementsAre(900));
+  EXPECT_THAT(query({"--min-confidence", "50"}).err, HasSubstr("--min-confidence must be 0 to 1, is 50"));
+  EXPECT_THAT(query({"--min", "confidense=1"}).err, HasSubstr("did you mean 'confidence'?"));
+}
+
+TEST_F(Query, WhatIsNotAssessedHasNoQualityAndTheTableShowsConfidence) {
+  const Outcome table = query({});
+  EXPECT_THAT(table.out, AllOf(HasSubstr("quality"), HasSubstr("confidence"), HasSubstr("  -  ")));
+  for (const json& top : json::parse(query({"--format", "json"}).out)) {
+    EXPECT_TRUE(top["quality"].is_null());
+    EXPECT_TRUE(top["var_z"].is_null());  // the DEM states no accuracy
+  }
+}
+
+TEST_F(Query, MetresAreNotTakenForDegrees) {
+  const TempFolder folder;
+  MadeDem degrees = twin_peaks();
+  degrees.crs = "EPSG:4326";
+  degrees.geotransform = {8, 0.01, 0, 47, 0, -0.01};
+  const std::string map = folder / "degrees.gpkg";
+  ASSERT_EQ(waymark({"peaks", make_dem(folder / "d.tif", degrees), "-o", map}).code, 0);
+  const Outcome near = waymark({"query", map, "--near", "500", "900", "10"});
+  EXPECT_EQ(near.code, 2);
+  EXPECT_THAT(near.err, AllOf(HasSubstr("--near has the position 500 900"), HasSubstr("degrees (EPSG:4326)"),
+                              HasSubstr("--crs")));
+  EXPECT_THAT(waymark({"query", map, "--bbox", "0", "0", "5000", "5000"}).err,
+              HasSubstr("--bbox has the position"));
+  EXPECT_EQ(waymark({"query", map, "--near", "368", "47", "9000"}).code, 0);  // 8 degrees east, once around
+}
+
 TEST_F(Query, LargestFirstAndLimit) {
   EXPECT_THAT(elevations({"--largest", "prominence"}), ElementsAre(900, 700));
   EXPECT_THAT(elevations({"--largest", "prominence", "--limit", "1"}), ElementsAre(900));

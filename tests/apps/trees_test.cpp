@@ -60,6 +60,8 @@ TEST_F(Trees, ConesEndToEnd) {
     EXPECT_GT(tree["height"], 7.5);  // those at the edge are cut
     EXPECT_GT(tree["crown_diameter"], 2.0);
     EXPECT_GT(tree["diameter"], 0.02);
+    EXPECT_GT(tree["diameter_sd"], 0.1 * tree["diameter"].get<double>());  // that of the allometry
+    EXPECT_TRUE(tree["diameter_q"].is_null());                             // one observation has no spread
   }
   EXPECT_EQ(waymark({"validate", folder_ / "trees.gpkg"}).code, 0);
 }

@@ -22,7 +22,7 @@ TEST(Error, OnlyWrongUsageExitsWithTwo) {
   EXPECT_EQ(exit_code(ErrorCode::environment), 1);
 }
 
-TEST(NearestName, FindsTheSlipAndNothingElse) {
+TEST(NearestName, FindsATypingErrorAndNothingElse) {
   const std::vector<std::string> names{"min_height", "max_height", "threads"};
   EXPECT_EQ(nearest_name("min_heigth", names), "min_height");
   EXPECT_EQ(nearest_name("thread", names), "threads");

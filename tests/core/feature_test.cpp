@@ -31,7 +31,7 @@ TEST(MergeFeature, ThePapersMeanWouldTurnThatAxisByARightAngle) {
   EXPECT_NEAR(merge(seen, Scale::ratio).value, 90 * kDegree, 1e-12);
 }
 
-TEST(MergeFeature, CrossedAxesHaveNoMeanAndKeepTheFirst) {
+TEST(MergeFeature, CrossedAxesHaveNoMeanAndGiveTheFirst) {
   const WeightedValue seen[] = {{30 * kDegree, 1}, {120 * kDegree, 1}};
   EXPECT_EQ(merge(seen, Scale::axis).value, 30 * kDegree);
 }

@@ -25,13 +25,13 @@ TEST(PrincipalAxes, AgreeWithTheGeneralSolver) {
     EXPECT_NEAR(axes.minor, twin.eigenvalues()[0], 1e-14 * size);
     EXPECT_GT(axes.angle, -std::numbers::pi / 2);
     EXPECT_LE(axes.angle, std::numbers::pi / 2);
-    const Eigen::Matrix2d again = axes.major * axes.along() * axes.along().transpose() +
-                                  axes.minor * axes.across() * axes.across().transpose();
+    const Eigen::Matrix2d again = axes.major * axes.major_direction() * axes.major_direction().transpose() +
+                                  axes.minor * axes.minor_direction() * axes.minor_direction().transpose();
     EXPECT_LT((again - m).norm(), 1e-14 * size);
   }
 }
 
-TEST(PrincipalAxes, OfTheDegenerateOnes) {
+TEST(PrincipalAxes, HandleDegenerateMatrices) {
   EXPECT_EQ(principal_axes(Eigen::Matrix2d::Zero()).major, 0);
   EXPECT_EQ(principal_axes(Eigen::Matrix2d::Identity()).angle, 0);
   Eigen::Matrix2d tall;

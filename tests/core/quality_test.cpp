@@ -14,7 +14,7 @@ constexpr FeatureValue kRadius{2.0, 0.25, 4};          // s = 0.5
 constexpr FeatureValue kMarsSummit{-2000.0, 25.0, 4};  // s = 5
 constexpr FeatureValue kSeenOnce{2.0, 0, 1};
 
-TEST(Multiplicity, IsTheShareOfImagesThatSawIt) {
+TEST(Multiplicity, IsTheFractionOfImagesThatDetectIt) {
   EXPECT_EQ(multiplicity_confidence(3, 4), 0.75);
   EXPECT_EQ(multiplicity_confidence(5, 4), 1.0);  // seen in a coarser image too
   EXPECT_EQ(multiplicity_confidence(0, 0), std::nullopt);
@@ -25,8 +25,8 @@ TEST(SpreadConfidence, OfARatioIsOneLessTheCoefficientOfVariation) {
   EXPECT_NEAR(*spread_confidence(kRadius, Scale::ratio, 0, SpreadRule::paper), 0.75, 1e-12);
 }
 
-// Eq. 6 divides by the mean: 5 m of spread at -2000 m would give more than full confidence, clamped to 1;
-// near datum zero it would give none.
+// Eq. 6 divides by the mean: a spread of 5 m at -2000 m gives a confidence above 1, clamped to 1; near height
+// 0 it gives none.
 TEST(SpreadConfidence, OfAnElevationUsesTheReferenceAndNotTheDatum) {
   EXPECT_NEAR(*spread_confidence(kMarsSummit, Scale::interval, 100), 0.95, 1e-12);
   FeatureValue at_datum = kMarsSummit;
@@ -40,6 +40,9 @@ TEST(SpreadConfidence, OfOneObservationIsAbsent) {
   EXPECT_EQ(spread_confidence(kSeenOnce, Scale::ratio, 0), std::nullopt);
   EXPECT_EQ(*spread_confidence(kSeenOnce, Scale::ratio, 0, SpreadRule::paper), 1.0);
   EXPECT_EQ(spread_confidence(FeatureValue{}, Scale::ratio, 0, SpreadRule::paper), std::nullopt);
+  const FeatureValue stated{2.0, 0.25, 1};  // the detector's own deviation is no spread of observations
+  EXPECT_EQ(spread_confidence(stated, Scale::ratio, 0), std::nullopt);
+  EXPECT_EQ(*spread_confidence(stated, Scale::ratio, 0, SpreadRule::paper), 1.0);
 }
 
 TEST(SpreadConfidence, WithoutAReferenceIsAbsentAndNotInfinite) {
@@ -53,7 +56,7 @@ TEST(LandmarkQuality, IsMultiplicityTimesTheWeightedMean) {
   EXPECT_NEAR(*landmark_quality(0.8, q, std::array{1.0, 3.0}), 0.8 * 0.875, 1e-12);
 }
 
-TEST(LandmarkQuality, AFeatureSeenOnceNeitherHelpsNorHurts) {
+TEST(LandmarkQuality, AFeatureObservedOnceIsLeftOut) {
   const std::array<std::optional<double>, 2> q{0.5, std::nullopt};
   EXPECT_NEAR(*landmark_quality(1.0, q, std::array{0.5, 0.5}), 0.5, 1e-12);
   const std::array<std::optional<double>, 1> none{std::nullopt};

@@ -8,12 +8,12 @@ namespace {
 
 TEST(Random, GivesTheNumbersOfThePublishedGenerator) {
   // splitmix64 of 0: the first output of the authors' C code.
-  EXPECT_EQ(mixed(0), 0xe220a8397b1dcdafu);
+  EXPECT_EQ(mix_bits(0), 0xe220a8397b1dcdafu);
   Random random(0), again(0);
   for (int i = 0; i < 100; ++i) EXPECT_EQ(random.bits(), again.bits());
 }
 
-TEST(Random, NamesGiveStreamsOfTheirOwn) {
+TEST(Random, NamesGiveIndependentStreams) {
   EXPECT_NE(Random(1, "rocks").bits(), Random(1, "craters").bits());
   EXPECT_NE(Random(1, "rocks").bits(), Random(2, "rocks").bits());
   EXPECT_EQ(Random(1, "rocks").bits(), Random(1, "rocks").bits());
@@ -29,7 +29,7 @@ TEST(Random, DistributionsHaveTheirMoments) {
     uniform += random.uniform();
     few += double(random.poisson(2.5));
     many += double(random.poisson(80));
-    ASSERT_LT(random.below(7), 7u);
+    ASSERT_LT(random.uniform_index(7), 7u);
   }
   // Three standard errors of each mean.
   EXPECT_NEAR(sum / kDraws, 0, 0.01);

@@ -9,12 +9,12 @@
 namespace waymark {
 namespace {
 
-// Against the distribution function itself; the bound is that of Kolmogorov and Smirnov, missed once in 1000
-// seeds.
+// Compares with the normal distribution function. The bound is that of Kolmogorov and Smirnov, exceeded by
+// one of 1000 seeds.
 TEST(Ziggurat, IsNormal) {
   constexpr std::size_t kDraws = 1000000;
   Random random(1, "ziggurat");
-  const Ziggurat& normal = Ziggurat::shared();
+  const Ziggurat& normal = Ziggurat::instance();
   std::vector<double> drawn(kDraws);
   for (double& x : drawn) x = normal(random);
   std::ranges::sort(drawn);
@@ -26,11 +26,11 @@ TEST(Ziggurat, IsNormal) {
   EXPECT_LT(farthest, 1.95 / std::sqrt(kDraws));
 }
 
-// Beyond the lowest layer it is drawn in another way: 577 of a million are expected there, 27 beyond 4.2
-// standard deviations, half of them on each side; within four standard errors.
+// The tail beyond the lowest layer is sampled separately. Expects 577 of a million there and 27 beyond 4.2
+// standard deviations, half on each side, within four standard errors.
 TEST(Ziggurat, HasItsTails) {
   Random random(2, "ziggurat");
-  const Ziggurat& normal = Ziggurat::shared();
+  const Ziggurat& normal = Ziggurat::instance();
   int right = 0, left = 0, far = 0;
   for (int i = 0; i < 4000000; ++i) {
     const double x = normal(random);

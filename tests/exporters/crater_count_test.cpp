@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/crater_count.hpp"
+#include "exporters/vector/crater_count.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "exporters/count_area.hpp"
+#include "exporters/report/counting_area.hpp"
 #include "exporters/report/size_frequency.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
@@ -93,13 +93,13 @@ TEST_F(CraterCount, OverlappingFootprintsCountOnce) {
   contents.images[1].name = "ctx2.tif";
   for (auto& corner : contents.images[1].footprint[0]) corner.x() += 10000;
   write_map(map, contents);
-  const auto area = count_area(MapStore::open(map));
+  const auto area = counting_area(MapStore::open(map));
   ASSERT_TRUE(area);
   EXPECT_NEAR(area->square_metres / 1e6, 300, 3e-3);
-  EXPECT_EQ(area->from, "the footprints of 2 images together");
+  EXPECT_EQ(area->source, "the footprints of 2 images together");
 }
 
-TEST_F(CraterCount, AreaMustBeKnownOrTold) {
+TEST_F(CraterCount, AreaMustBeKnownOrGiven) {
   MapContents contents = mars_craters();
   contents.images.clear();
   write_map(map, contents);
@@ -109,7 +109,7 @@ TEST_F(CraterCount, AreaMustBeKnownOrTold) {
   EXPECT_THAT(exported("mars.diam", {.area_km2 = 123.5}), HasSubstr("area=123.5"));
   EXPECT_THAT(error_of([&] { exported("mars.diam", {.area_km2 = 123.5}); }), HasSubstr("exists already"));
   EXPECT_THAT(error_of([&] { exported("other.diam", {.area_km2 = -1}); }),
-              HasSubstr("an area is larger than 0"));
+              HasSubstr("it must be larger than 0"));
 }
 
 TEST_F(CraterCount, OtherMapsAreRefused) {
@@ -122,7 +122,7 @@ TEST_F(CraterCount, OtherMapsAreRefused) {
   EXPECT_THAT(exported("x.diam"), HasSubstr("area=200.000000000\n"));
 }
 
-TEST(CountArea, KnownCellsOfADemInDegrees) {
+TEST(CountingArea, KnownCellsOfADemInDegrees) {
   Relief relief;
   relief.extent = {0, -90, 360, 90};
   relief.heights = Grid<float>(36, 18, 0);

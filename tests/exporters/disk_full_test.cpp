@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <sys/mount.h>
 
-#include "exporters/export_map.hpp"
-#include "exporters/report_html.hpp"
+#include "exporters/report/report_html.hpp"
+#include "exporters/vector/export_map.hpp"
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 

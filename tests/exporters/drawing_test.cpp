@@ -43,9 +43,9 @@ TEST(MapView, KeepsTheProportionsOfTheGround) {
   EXPECT_NEAR(view.metres_per_unit(), 222.39, 0.01);
 }
 
-TEST(MapView, LongitudesComeRound) {
+TEST(MapView, LongitudesAreUnwrapped) {
   const MapView view = view_of(Crs::from_text("EPSG:4326"), {179, -1, 181, 1});
-  EXPECT_EQ(view.unwrapped(-179.5), 180.5);
+  EXPECT_EQ(view.unwrap(-179.5), 180.5);
 }
 
 TEST(PositionText, SpeaksTheLanguageOfTheCrs) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/export_map.hpp"
+#include "exporters/vector/export_map.hpp"
 
 #include <gmock/gmock.h>
 #include <ogrsf_frmts.h>

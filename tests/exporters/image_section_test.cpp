@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "exporters/detections.hpp"
-#include "exporters/report_html.hpp"
+#include "exporters/report/report_html.hpp"
+#include "exporters/vector/detections.hpp"
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
@@ -28,7 +28,7 @@ class ReportOfImages : public ::testing::Test {
                           .columns = 600,
                           .rows = 400,
                           .detections = {},
-                          .place = {},
+                          .georeference = {},
                           .gsd = Meters{2},
                           .sun_elevation = {},
                           .sun_azimuth = {}};
@@ -39,7 +39,7 @@ class ReportOfImages : public ::testing::Test {
       one.confidence = 0.9;
       found.detections.push_back(one);
     }
-    contents = detections_as_map(found, types);
+    contents = detections_to_map(found, types);
     contents.run.version = "0.1.0";
     contents.observations[3].rejected = "rim <shadow>";
     contents.observations[3].landmark_uid.clear();
@@ -66,10 +66,9 @@ TEST_F(ReportOfImages, ShowsTheImageWithWhatWasUsedAndRejected) {
   EXPECT_THAT(report({.images = 0}), Not(HasSubstr("data:image/jpeg")));
 }
 
-TEST_F(ReportOfImages, MissingImageIsTold) {
+TEST_F(ReportOfImages, MissingImageIsReported) {
   std::filesystem::remove(folder / "tile.pgm");
-  EXPECT_THAT(report(),
-              AllOf(HasSubstr("The image file is not there any more"), Not(HasSubstr("data:image/jpeg"))));
+  EXPECT_THAT(report(), AllOf(HasSubstr("The image file is missing"), Not(HasSubstr("data:image/jpeg"))));
 }
 
 TEST_F(ReportOfImages, CountsCratersPerAreaOfTheImages) {
@@ -80,10 +79,10 @@ TEST_F(ReportOfImages, CountsCratersPerAreaOfTheImages) {
   contents.images.clear();
   std::erase_if(contents.observations, [](const Observation&) { return true; });
   EXPECT_THAT(report(), AllOf(HasSubstr("Cumulative size-frequency"), Not(HasSubstr("R-plot")),
-                              HasSubstr("The area they were counted on is not known")));
+                              HasSubstr("The counting area is unknown")));
 }
 
-TEST_F(ReportOfImages, TellsQualityAndCalibration) {
+TEST_F(ReportOfImages, ReportsQualityAndCalibration) {
   const std::string html = report({.checks = {{.type = "crater",
                                                .claim = "confidence",
                                                .bins = {{0.2, 10, 2}, {0.9, 100, 91}},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/raster_file.hpp"
+#include "exporters/raster/raster_file.hpp"
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
-#include "exporters/image_file.hpp"
+#include "exporters/raster/image_file.hpp"
 
 namespace waymark {
 namespace {

@@ -68,14 +68,14 @@ int lightness(const Colour& colour) {
 
 TEST(Shade, LightComesFromTheNorthWest) {
   const Relief relief = ridge();
-  const Grid<Colour> picture = shade(relief, tint_for(relief, mars()));
+  const Grid<Colour> picture = shade(relief, hypsometric_tint(relief, mars()));
   EXPECT_GT(lightness(picture(2, 4)), lightness(picture(6, 4)) + 60);
 }
 
 TEST(Shade, VoidsAreTransparent) {
   Relief relief = ridge();
   relief.heights(0, 0) = NAN;
-  const Grid<Colour> picture = shade(relief, tint_for(relief, moon()));
+  const Grid<Colour> picture = shade(relief, hypsometric_tint(relief, moon()));
   EXPECT_EQ(picture(0, 0).alpha, 0);
   EXPECT_EQ(picture(1, 0).alpha, 255);
 }
@@ -83,18 +83,18 @@ TEST(Shade, VoidsAreTransparent) {
 TEST(Tint, OnlyEarthHasWater) {
   Relief relief = ridge();
   relief.heights(0, 0) = -50;
-  const Colour sea = tint_for(relief, earth())(-10), mare = tint_for(relief, moon())(-10);
+  const Colour sea = hypsometric_tint(relief, earth())(-10), mare = hypsometric_tint(relief, moon())(-10);
   EXPECT_GT(sea.blue, sea.red + 20);
   EXPECT_NEAR(mare.blue, mare.red, 10);
 }
 
 TEST(Tint, FlatGroundHasAColour) {
   Relief relief{{0, 0, 2, 2}, Grid<float>(2, 2, 7), 1, 1};
-  EXPECT_EQ(shade(relief, tint_for(relief, mars()))(0, 0).alpha, 255);
+  EXPECT_EQ(shade(relief, hypsometric_tint(relief, mars()))(0, 0).alpha, 255);
 }
 
 TEST(Png, StartsAsPngAndLeavesNothingInMemory) {
-  const std::string png = png_of(Grid<Colour>(3, 2, {1, 2, 3, 255}));
+  const std::string png = encode_png(Grid<Colour>(3, 2, {1, 2, 3, 255}));
   EXPECT_EQ(png.substr(1, 3), "PNG");
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/report_html.hpp"
+#include "exporters/report/report_html.hpp"
 
 #include <gmock/gmock.h>
 
@@ -34,7 +34,8 @@ MapContents andes() {
 TEST_F(ReportHtml, NeedsNothingButItself) {
   const std::string report = report_of(andes());
   EXPECT_THAT(report, Not(HasSubstr("<script")));
-  EXPECT_THAT(report, Not(HasSubstr("http")));
+  EXPECT_THAT(report, Not(HasSubstr("://")));
+  EXPECT_THAT(report, HasSubstr("<meta http-equiv='Content-Security-Policy' content=\"default-src 'none';"));
   EXPECT_THAT(report, Not(HasSubstr("url(")));
   for (const std::string attribute : {"src=", "href="})
     for (auto at = report.find(attribute); at != std::string::npos; at = report.find(attribute, at + 1))
@@ -68,7 +69,7 @@ TEST_F(ReportHtml, DrawsTheReliefOfTheInputFiles) {
   contents.run.inputs = {
       {"elsewhere/dem.tif", std::filesystem::file_size(folder / "dem.tif"), ""}};  // beside the map
   EXPECT_THAT(report_of(contents), HasSubstr("href='data:image/png;base64,iVBORw0KGgo"));
-  contents.run.inputs[0].bytes -= 1;  // no longer the file the run has read
+  contents.run.inputs[0].bytes -= 1;  // no longer the input file of the run
   EXPECT_THAT(report_of(contents), Not(HasSubstr("data:image/png")));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/reproject.hpp"
+#include "exporters/vector/reproject.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(Reproject, ToTheSameCrsChangesNothing) {
   EXPECT_EQ(there.landmarks[0].position, map.landmarks[0].position);
 }
 
-TEST(Reproject, CountsWhatHasNoPlaceInTheOtherCrs) {
+TEST(Reproject, CountsPositionsOutsideTheOtherCrs) {
   MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   map.landmarks[1].position.xyz.y() = 120;  // no such latitude
   const Reprojected there = reproject(map.landmarks, map.types[map.landmarks[0].type], kDegrees, kUtm19S);

@@ -21,22 +21,22 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// Three summits about (x, y), `spacing` CRS units apart, the first the foremost; and one run.
-/// uids: mt-one, mt-two, mt-three; elevations 3000, 2000, 1000; prominences 3000, 500, 20.
+/// Returns three summits about (x, y), `spacing` CRS units apart, the first the foremost; and one run. uids:
+/// mt-one, mt-two, mt-three; elevations 3000, 2000, 1000; prominences 3000, 500, 20.
 MapContents three_summits(const std::string& crs, double x, double y, double spacing);
 
-/// Written to `path`; EPSG:4326 about 70 W 32.5 S unless said otherwise.
+/// Writes the three summits to `path`, in EPSG:4326 about 70 W 32.5 S.
 void write_small_map(const std::filesystem::path& path);
 void write_mars_map(const std::filesystem::path& path);
-/// Three summits and two craters.
+/// Writes three summits and two craters.
 void write_two_type_map(const std::filesystem::path& path);
 
 std::string content_of(const std::filesystem::path& file);
 
-/// What is in a folder, sorted, as names.
+/// Lists the names in a folder, sorted.
 std::vector<std::string> names_in(const std::filesystem::path& folder);
 
-/// The whole message of the Error that `action` throws; empty where it throws none.
+/// Returns the whole message of the Error that `action` throws; empty if it throws none.
 template <class Action>
 std::string error_of(Action action);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exporters/vector_format.hpp"
+#include "exporters/vector/vector_format.hpp"
 
 #include <gmock/gmock.h>
 
@@ -52,7 +52,7 @@ TEST(VectorFormat, UnknownExtensionSaysWhatToDo) {
 
 TEST(VectorFormat, NameWithoutExtensionSaysWhatToDo) {
   EXPECT_THAT(error_of([] { vector_format("out/b", ""); }),
-              HasSubstr("cannot tell the format of b: its name has no extension"));
+              HasSubstr("cannot recognise the format of b: its name has no extension"));
 }
 
 TEST(OutputCrs, IsTheMapsUnlessTheFormatMeansAnother) {
@@ -70,12 +70,12 @@ TEST(OutputCrs, KmlOnMarsSaysWhatKeepsTheCrs) {
   EXPECT_THAT(message, HasSubstr("write .gpkg, .fgb or .shp"));
 }
 
-TEST(OutputCrs, LocalMetresAreNoPlaceOnEarth) {
+TEST(OutputCrs, LocalMetresAreNotOnEarth) {
   EXPECT_THAT(error_of([] { output_crs(vector_format("b.geojson", ""), Crs::local(), "", "map.gpkg"); }),
               HasSubstr("this map is in local metres"));
 }
 
-TEST(OutputCrs, AnotherBodyIsRefusedWithThePlacesNamed) {
+TEST(OutputCrs, AnotherBodyIsRefusedByName) {
   const std::string message = error_of([] {
     output_crs(vector_format("b.fgb", ""), Crs::from_text("IAU_2015:49900"), "EPSG:4326", "mars.gpkg");
   });
@@ -92,10 +92,10 @@ TEST(OutputCrs, KmlInMetresIsRefused) {
 
 TEST(FittingNames, KeepShortEndingsAndStayUnique) {
   const VectorFormat shapefile = vector_format("b.shp", "");
-  EXPECT_THAT(fitting_names(shapefile, {"uid", "prominence", "prominence_sd", "prominence_low",
+  EXPECT_THAT(shorten_names(shapefile, {"uid", "prominence", "prominence_sd", "prominence_low",
                                         "saddle_elevation", "saddle_elevations"}),
               ElementsAre("uid", "prominence", "promine_sd", "promin_low", "saddle_ele", "saddle_el2"));
-  EXPECT_THAT(fitting_names(vector_format("b.csv", ""), {"saddle_elevation"}),
+  EXPECT_THAT(shorten_names(vector_format("b.csv", ""), {"saddle_elevation"}),
               ElementsAre("saddle_elevation"));
 }
 

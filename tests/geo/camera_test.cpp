@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "geo/lens_field.hpp"
+#include "geo/distortion_limit.hpp"
 #include "geo/sun.hpp"
 
 namespace waymark {
@@ -37,7 +37,7 @@ class Uniform {
   std::mt19937 bits_;
 };
 
-// OpenCV's documentation, term by term: the slow twin.
+// The slow twin: the formulas of OpenCV's documentation, term by term.
 Eigen::Vector2d opencv_formula(const Camera& c, const Eigen::Vector3d& p) {
   const auto& k = c.distortion;
   const double x = p.x() / p.z(), y = p.y() / p.z(), r2 = x * x + y * y;
@@ -64,7 +64,7 @@ TEST(Camera, LooksAlongZWithXRightAndYDown) {
   EXPECT_GT(project(pinhole, {Eigen::Vector3d(0, 1, 5)})->y(), 395);
 }
 
-TEST(Camera, SeesNothingBehindOrBesideIt) {
+TEST(Camera, ProjectsNothingBehindOrBesideIt) {
   for (const auto lens : {Camera::Lens::brown, Camera::Lens::fisheye})
     for (const double z : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
       EXPECT_FALSE(project(camera({0.1}, lens), {Eigen::Vector3d(0.1, 0.2, z)}));
@@ -111,7 +111,7 @@ TEST(Camera, GoesThereAndBackThroughWildLenses) {
   EXPECT_GT(inverted, 10000);
 }
 
-TEST(Camera, FindsTheRayOfEveryPointItSees) {
+TEST(Camera, FindsTheRayOfEveryProjectedPoint) {
   Uniform uniform(3);
   for (int lens = 0; lens < 300; ++lens) {
     std::array<double, 8> k{};
@@ -119,7 +119,7 @@ TEST(Camera, FindsTheRayOfEveryPointItSees) {
     for (std::size_t n = 0; n < (fish ? 4U : 8U); ++n)
       k[n] = uniform(-0.3, 0.3) * (n == 2 || n == 3 ? 0.005 : 1);
     const Camera c = camera(k, fish ? Camera::Lens::fisheye : Camera::Lens::brown);
-    const double field = std::min(field_of(c), fish ? 1.4 : 3.0);
+    const double field = std::min(distortion_limit(c), fish ? 1.4 : 3.0);
     for (int i = 0; i < 40; ++i) {
       const double r = 0.9 * uniform(0, 1) * field, turn = uniform(0, 6.28);
       const double slope = fish ? std::tan(r) : r;
@@ -134,12 +134,12 @@ TEST(Camera, FindsTheRayOfEveryPointItSees) {
   }
 }
 
-// With k1 < 0 the image radius r (1 + k1 r^2) has its largest value at r = 1 / sqrt(-3 k1); what is further
-// out would fold back into the image.
+// With k1 < 0 the image radius r (1 + k1 r^2) has its largest value at r = 1 / sqrt(-3 k1); points
+// beyond it would fold back into the image.
 TEST(Camera, FarPointsDoNotFoldBackIntoTheImage) {
   const Camera barrel = camera({-0.3});
   const double field = 1 / std::sqrt(0.9);
-  EXPECT_NEAR(field_of(barrel), field, 1e-12);
+  EXPECT_NEAR(distortion_limit(barrel), field, 1e-12);
   EXPECT_TRUE(project(barrel, {Eigen::Vector3d(0.99 * field, 0, 1)}));
   EXPECT_FALSE(project(barrel, {Eigen::Vector3d(1.01 * field, 0, 1)}));
   EXPECT_FALSE(
@@ -147,7 +147,7 @@ TEST(Camera, FarPointsDoNotFoldBackIntoTheImage) {
   EXPECT_FALSE(ray(barrel, {510 + 900 * field, 395}));  // more than the largest image radius
 }
 
-TEST(Camera, FieldIsTheFirstTurningPointByScanning) {
+TEST(Camera, LimitIsTheFirstTurningPointByScanning) {
   Uniform uniform(4);
   for (int lens = 0; lens < 200; ++lens) {
     std::array<double, 8> k{};
@@ -156,7 +156,7 @@ TEST(Camera, FieldIsTheFirstTurningPointByScanning) {
       const double s = r * r;
       return r * (1 + s * (k[0] + s * (k[1] + s * k[4]))) / (1 + s * (k[5] + s * (k[6] + s * k[7])));
     };
-    const double field = field_of(camera(k));
+    const double field = distortion_limit(camera(k));
     const double step = 1e-4, end = std::min(field, 3.0);
     for (double r = step; r < end - step; r += step)
       ASSERT_GT(radius(r), radius(r - step)) << "lens " << lens << " at " << r << " of " << field;
@@ -167,7 +167,7 @@ TEST(Camera, FieldIsTheFirstTurningPointByScanning) {
   }
 }
 
-TEST(LensField, FindsTheFirstOfManyRoots) {
+TEST(DistortionLimit, FindsTheFirstOfManyRoots) {
   // (s - 1)(s - 2)(s - 3)
   EXPECT_NEAR(first_positive_root({-6, 11, -6, 1}), 1, 1e-12);
   EXPECT_EQ(first_positive_root({1, 0, 1}), std::numeric_limits<double>::infinity());
@@ -179,25 +179,27 @@ TEST(Camera, RefusesPixelsThatAreNoNumbers) {
   EXPECT_FALSE(ray(camera({0.1}, Camera::Lens::fisheye), {0, std::numeric_limits<double>::infinity()}));
 }
 
-TEST(PosedCamera, KeepsMillimetresAtLargeNorthings) {
+TEST(PosedCamera, PreservesMillimetresAtLargeNorthings) {
   PosedCamera view;
   view.camera = camera({-0.1, 0.02, 1e-3, -1e-3});
   view.grid_from_camera.transform.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // straight down, north at the top
   view.grid_from_camera.transform.translation() << 500000, 7000000, 150;
   const auto along = ray(view, {100, 700});
   ASSERT_TRUE(along);
-  const Point<GridFrame> ground{along->origin.xyz + along->along.unit * (150 / -along->along.unit.z())};
+  const Point<GridFrame> ground{along->origin.xyz +
+                                along->direction.unit * (150 / -along->direction.unit.z())};
   EXPECT_LT(ground.xyz.x(), 500000);   // left of the middle is west
   EXPECT_LT(ground.xyz.y(), 7000000);  // below it is south
   EXPECT_LT((*project(view, ground) - Eigen::Vector2d(100, 700)).norm(), 1e-6);
 }
 
 TEST(Sun, ShinesFromItsAzimuthAndElevation) {
-  EXPECT_LT((towards({Degrees{90}, Degrees{0}}).unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((sun_direction({Degrees{90}, Degrees{0}}).unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
   EXPECT_LT(
-      (towards({Degrees{0}, Degrees{45}}).unit - Eigen::Vector3d(0, std::sqrt(0.5), std::sqrt(0.5))).norm(),
+      (sun_direction({Degrees{0}, Degrees{45}}).unit - Eigen::Vector3d(0, std::sqrt(0.5), std::sqrt(0.5)))
+          .norm(),
       1e-15);
-  EXPECT_NEAR(towards({Degrees{200}, Degrees{30}}).unit.norm(), 1, 1e-15);
+  EXPECT_NEAR(sun_direction({Degrees{200}, Degrees{30}}).unit.norm(), 1, 1e-15);
 }
 
 }  // namespace

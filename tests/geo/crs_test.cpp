@@ -57,14 +57,14 @@ TEST(Crs, RecoversThePlanetaryCodeThatGeoTiffDrops) {
   EXPECT_EQ(Crs::from_text(wkt).id(), "IAU_2015:49910");
 }
 
-TEST(Crs, KeepsAnUnknownDefinitionUnderItsName) {
+TEST(Crs, PreservesAnUnknownDefinitionUnderItsName) {
   const Crs crs = Crs::from_text("+proj=eqc +R=1000000 +units=m +no_defs +type=crs");
   EXPECT_EQ(crs.authority(), "");
   EXPECT_EQ(crs.id(), crs.name());
   EXPECT_EQ(crs.body().equatorial_radius, 1e6);
 }
 
-TEST(Crs, KeepsFeet) {
+TEST(Crs, PreservesFeet) {
   EXPECT_NEAR(Crs::from_text("EPSG:2263").metres_per_unit(), 1200.0 / 3937, 1e-15);
 }
 
@@ -77,7 +77,7 @@ TEST(Crs, LocalIsOnNoBody) {
   EXPECT_EQ(Crs::local().kind(), CrsKind::local);
   EXPECT_EQ(Crs::local().body().name, "");
   EXPECT_EQ(Crs::from_text(Crs::local().wkt2()).kind(), CrsKind::local);
-  EXPECT_THAT(message_of([] { geographic_of(Crs::local()); }), HasSubstr("no longitude and latitude"));
+  EXPECT_THAT(message_of([] { geographic_crs(Crs::local()); }), HasSubstr("no longitude and latitude"));
 }
 
 TEST(Crs, SaysWhyItCannotUnderstand) {
@@ -104,7 +104,7 @@ TEST(CrsTransform, PutsLongitudeAndEastingFirst) {
 
 TEST(CrsTransform, ComesBack) {
   const Crs utm = Crs::from_text("EPSG:32611");
-  const CrsTransform there(geographic_of(utm), utm), back(utm, geographic_of(utm));
+  const CrsTransform there(geographic_crs(utm), utm), back(utm, geographic_crs(utm));
   std::vector<double> x{-118.2, -117.9, -117.1}, y{34.3, 34.1, 36.9};
   const auto lon = x, lat = y;
   there.apply(x, y);
@@ -140,10 +140,10 @@ TEST(CrsTransform, WorksInManyThreads) {
   for (const double easting : eastings) EXPECT_NEAR(easting, 500000, 1e-6);
 }
 
-TEST(GeographicOf, KeepsTheDatum) {
-  EXPECT_EQ(geographic_of(Crs::from_text("EPSG:32611")).id(), "EPSG:4326");
-  EXPECT_EQ(geographic_of(Crs::from_text("EPSG:2263")).id(), "EPSG:4269");
-  EXPECT_EQ(geographic_of(Crs::from_text("IAU_2015:49910")).id(), "IAU_2015:49900");
+TEST(GeographicCrs, HasTheSameDatum) {
+  EXPECT_EQ(geographic_crs(Crs::from_text("EPSG:32611")).id(), "EPSG:4326");
+  EXPECT_EQ(geographic_crs(Crs::from_text("EPSG:2263")).id(), "EPSG:4269");
+  EXPECT_EQ(geographic_crs(Crs::from_text("IAU_2015:49910")).id(), "IAU_2015:49900");
 }
 
 }  // namespace

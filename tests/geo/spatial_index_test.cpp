@@ -30,7 +30,7 @@ std::vector<std::size_t> nearest_by_sorting(const Points& points, const Eigen::V
   return order;
 }
 
-// Even seeds: whole numbers only, so that ties and shared places abound.
+// Even seeds: whole numbers only, so that ties and coincident points are frequent.
 Points random_points(unsigned seed, std::size_t count) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> place(0, 10);
@@ -42,7 +42,7 @@ Points random_points(unsigned seed, std::size_t count) {
   return points;
 }
 
-TEST(SpatialIndex, FindsWhatLookingAtEveryPointFinds) {
+TEST(SpatialIndex, AgreesWithTestingEveryPoint) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     const Points points = random_points(seed, 1 + seed * 7);
     const SpatialIndex index(points);
@@ -60,7 +60,7 @@ TEST(SpatialIndex, FindsWhatLookingAtEveryPointFinds) {
   }
 }
 
-TEST(SpatialIndex, CountsBordersIn) {
+TEST(SpatialIndex, IncludesBorders) {
   const Points points = {{0, 0, 0}, {3, 4, 0}, {6, 0, 0}};
   const SpatialIndex index(points);
   EXPECT_THAT(index.within({0, 0, 0}, 5), ElementsAre(0, 1));
@@ -74,7 +74,7 @@ TEST(SpatialIndex, IsEmptyWithoutPoints) {
   EXPECT_THAT(index.within({0, 0, 0}, 3), IsEmpty());
 }
 
-TEST(SpatialIndex, SenselessQuestionsFindNothing) {
+TEST(SpatialIndex, InvalidQueriesFindNothing) {
   const SpatialIndex index(Points{{0, 0, 0}});
   EXPECT_THAT(index.within({0, 0, 0}, -1), IsEmpty());
   EXPECT_THAT(index.in_box({}), IsEmpty());

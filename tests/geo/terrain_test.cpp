@@ -33,7 +33,7 @@ Terrain flat(float height, std::int64_t size = 5) {
 // The slow twin: small steps until the ray is below the ground, then bisection.
 std::optional<double> march(const Terrain& terrain, const Ray<GridFrame>& ray, double longest) {
   const auto above = [&](double t) -> std::optional<double> {
-    const Eigen::Vector3d p = ray.origin.xyz + t * ray.along.unit;
+    const Eigen::Vector3d p = ray.origin.xyz + t * ray.direction.unit;
     const auto h = terrain.height(p.x(), p.y());
     if (!h) return std::nullopt;
     return p.z() - *h;
@@ -49,12 +49,12 @@ std::optional<double> march(const Terrain& terrain, const Ray<GridFrame>& ray, d
   return std::nullopt;
 }
 
-TEST(Terrain, MeetsTheGroundWhereMarchingDoes) {
+TEST(Terrain, RaysIntersectWhereMarchingDoes) {
   int met = 0;
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed, "rays");
     const Terrain terrain =
-        rough(seed, 3 + std::int64_t(random.below(12)), 2 + std::int64_t(random.below(12)),
+        rough(seed, 3 + std::int64_t(random.uniform_index(12)), 2 + std::int64_t(random.uniform_index(12)),
               random.uniform(0.5, 2), random.uniform(0.5, 2));
     const double width = terrain.step_x() * double(terrain.heights().columns() - 1);
     const double height = terrain.step_y() * double(terrain.heights().rows() - 1);
@@ -68,7 +68,7 @@ TEST(Terrain, MeetsTheGroundWhereMarchingDoes) {
     ASSERT_EQ(hit.end == RayEnd::ground, expected.has_value()) << "seed " << seed;
     if (!expected) continue;
     ++met;
-    // A step of 2 mm may jump over a grazed crest: then the twin's hit is further.
+    // A step of 2 mm may skip a grazed crest; the twin's hit is then farther.
     EXPECT_LE(hit.range, *expected + 1e-6) << "seed " << seed;
     EXPECT_LT(*expected - hit.range, std::abs(hit.range - *expected) > 1e-5 ? 3 : 1e-4) << "seed " << seed;
     EXPECT_NEAR(*terrain.height(hit.point.xyz.x(), hit.point.xyz.y()), hit.point.xyz.z(), 1e-5)
@@ -77,7 +77,7 @@ TEST(Terrain, MeetsTheGroundWhereMarchingDoes) {
   EXPECT_GT(met, 200);
 }
 
-TEST(Terrain, KeepsItsPrecisionFarFromTheOrigin) {
+TEST(Terrain, IsPreciseFarFromTheOrigin) {
   Random random(3);
   Grid<float> heights(64, 64);
   for (float& h : heights.cells()) h = static_cast<float>(-2500 + random.uniform(0, 30));
@@ -99,11 +99,11 @@ TEST(Terrain, HeightIsBilinearAndEndsAtTheEdge) {
   EXPECT_DOUBLE_EQ(*terrain.height(11, 18), 5);  // the mean of the four
   EXPECT_FALSE(terrain.height(12.001, 18));
   EXPECT_FALSE(terrain.height(std::nan(""), 18));
-  EXPECT_DOUBLE_EQ(terrain.lowest(), 1);
-  EXPECT_DOUBLE_EQ(terrain.highest(), 11);
+  EXPECT_DOUBLE_EQ(terrain.min_height(), 1);
+  EXPECT_DOUBLE_EQ(terrain.max_height(), 11);
 }
 
-TEST(Terrain, NormalLeansAwayFromTheRise) {
+TEST(Terrain, NormalTiltsDownhill) {
   Grid<float> heights(3, 3);
   for (std::int64_t r = 0; r < 3; ++r)
     for (std::int64_t c = 0; c < 3; ++c) heights(c, r) = static_cast<float>(c - 2 * r);  // up east, up north
@@ -112,32 +112,32 @@ TEST(Terrain, NormalLeansAwayFromTheRise) {
   EXPECT_NEAR((*terrain.normal(0.5, -0.5) - expected).norm(), 0, 1e-12);
 }
 
-TEST(Terrain, TellsHowARayEnds) {
+TEST(Terrain, ReportsHowARayEnds) {
   const Terrain terrain = flat(10);
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 50}, {2, 2, 0})).end, RayEnd::ground);
   EXPECT_NEAR(terrain.cast(ray_to({2, 2, 50}, {2, 2, 0})).range, 40, 1e-12);
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 50}, {2, 2, 60})).end, RayEnd::sky);
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 50}, {20, 2, 45})).end, RayEnd::sky);
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 5}, {2, 2, 60})).end, RayEnd::underground);
-  EXPECT_EQ(terrain.cast(ray_to({-5, 2, 5}, {9, 2, 5})).end, RayEnd::underground);  // in through the side
+  EXPECT_EQ(terrain.cast(ray_to({-5, 2, 5}, {9, 2, 5})).end, RayEnd::underground);  // enters through the side
   EXPECT_EQ(terrain.cast(ray_to({-5, 2, 50}, {-5, 2, 0})).end, RayEnd::sky);        // beside the terrain
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 10}, {3, 2, 12})).end, RayEnd::sky);         // off the ground
   EXPECT_EQ(terrain.cast(ray_to({2, 2, 10}, {3, 2, 8})).end, RayEnd::ground);       // into it at once
 }
 
-TEST(Terrain, UnknownGroundStopsRaysThatItCouldStop) {
+TEST(Terrain, UnknownTerrainStopsRaysThatItCouldStop) {
   Grid<float> heights(9, 9, 0.0F);
   heights(4, 4) = kUnknown;
-  heights(0, 0) = 5;  // the highest: unknown ground may be as high
+  heights(0, 0) = 5;  // the maximum: unknown terrain may be as high
   const Terrain terrain(heights, 0, 8, 1, 1);
   EXPECT_FALSE(terrain.height(4.5, 4.5));
   EXPECT_EQ(terrain.cast(ray_to({4.2, 4.2, 50}, {4.2, 4.2, 0})).end, RayEnd::no_data);
   EXPECT_EQ(terrain.cast(ray_to({0.5, 4.2, 6}, {7.5, 4.2, 1})).end, RayEnd::no_data);
   EXPECT_EQ(terrain.cast(ray_to({0.5, 4.2, 60}, {7.5, 4.2, -10})).end, RayEnd::ground);  // passes far above
-  // Unknown ground casts no shadow.
+  // Unknown terrain casts no shadow.
   EXPECT_FALSE(terrain.in_shadow({{2, 4.2, 0}}, {Eigen::Vector3d(1, 0, 0.2).normalized()}));
   const Terrain nothing(Grid<float>(4, 4, kUnknown), 0, 0, 1, 1);
-  EXPECT_TRUE(std::isnan(nothing.lowest()));
+  EXPECT_TRUE(std::isnan(nothing.min_height()));
   EXPECT_EQ(nothing.cast(ray_to({1, -1, 50}, {1, -1, 0})).end, RayEnd::no_data);
 }
 
@@ -163,7 +163,7 @@ TEST(Terrain, ARayAlongACellBorderIsNotLost) {
   }
 }
 
-TEST(Terrain, RefusesGridsThatAreNoTerrain) {
+TEST(Terrain, RejectsInvalidGrids) {
   try {
     Terrain(Grid<float>(1, 5), 0, 0, 1, 1);
     FAIL();

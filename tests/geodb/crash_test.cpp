@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes that are killed, share a map, or run out of disk.
+// Killed processes, concurrent access, and full disks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -33,7 +33,7 @@ pid_t in_child(const auto& work) {
   ::_exit(0);
 }
 
-/// Kills the child at some moment within 60 ms, spread evenly over the calls.
+/// Kills the child after a delay of up to 60 ms, distributed evenly over the calls.
 void kill_after(pid_t child, int step) {
   std::this_thread::sleep_for(std::chrono::microseconds(1 + step * 7919 % 60'000));
   ::kill(child, SIGKILL);
@@ -59,7 +59,7 @@ TEST(Killed, AWriterLeavesTheOldMapOrTheNewOne) {
     if (bytes == new_bytes) write_map(folder / "map.gpkg", before);
   }
   write_map(folder / "map.gpkg", before);
-  EXPECT_EQ(files_in(folder), 1) << "the next writer clears away what the killed ones left";
+  EXPECT_EQ(files_in(folder), 1) << "the next writer removes the files of killed writers";
 }
 
 TEST(Killed, AnEditorLeavesTheMapAsItWas) {
@@ -69,7 +69,7 @@ TEST(Killed, AnEditorLeavesTheMapAsItWas) {
     kill_after(in_child([&] {
                  MapEditor editor = MapEditor::open(folder / "map.gpkg");
                  for (;;)
-                   editor.together([&] {  // one goes, one comes: always a thousand
+                   editor.transact([&] {  // removes one, inserts one: always a thousand
                      Landmark landmark = editor.map().query({.limit = 1}).at(0);
                      editor.remove(landmark.uid);
                      landmark.uid += "'";
@@ -82,7 +82,7 @@ TEST(Killed, AnEditorLeavesTheMapAsItWas) {
   }
 }
 
-TEST(Sharing, ReadersWorkBesideAWriter) {
+TEST(Sharing, ReadersWorkDuringWrites) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({}));
   const auto read = [&] {
@@ -105,7 +105,7 @@ TEST(Sharing, ReadersWorkBesideAWriter) {
   EXPECT_GT(edits, 0);
 }
 
-TEST(Sharing, AnOpenReaderKeepsItsMapWhenAnotherReplacesIt) {
+TEST(Sharing, AnOpenReaderRetainsItsMapWhenAnotherReplacesIt) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({.landmarks = 10}));
   const MapStore old = MapStore::open(folder / "map.gpkg");
@@ -114,7 +114,7 @@ TEST(Sharing, AnOpenReaderKeepsItsMapWhenAnotherReplacesIt) {
   EXPECT_EQ(MapStore::open(folder / "map.gpkg").query({}).size(), 20u);
 }
 
-TEST(DiskFull, KeepsTheOldMapAndSaysSo) {
+TEST(DiskFull, LeavesTheOldMapAndReportsIt) {
   const TemporaryFolder folder;
   const std::filesystem::path disk = folder / "disk";
   std::filesystem::create_directory(disk);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pieces a map file is made of: geometries, the Hilbert curve, the packed RTree, TIFF tiles, styles.
+// Components of a map file: geometries, the Hilbert curve, the packed RTree, TIFF tiles, styles.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "geodb/geometry_blob.hpp"
-#include "geodb/hilbert.hpp"
-#include "geodb/layer_style.hpp"
-#include "geodb/packed_rtree.hpp"
-#include "geodb/provenance.hpp"
-#include "geodb/sqlite.hpp"
+#include "geodb/geopackage/geometry_blob.hpp"
+#include "geodb/geopackage/provenance.hpp"
+#include "geodb/layers/layer_style.hpp"
+#include "geodb/rtree/hilbert.hpp"
+#include "geodb/rtree/packed_rtree.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
 namespace waymark {
@@ -43,8 +43,7 @@ TEST(Geometry, NoPartOfABlobIsAGeometry) {
 }
 
 TEST(HilbertCurve, StepsFromNeighbourToNeighbour) {
-  std::map<std::uint32_t, std::pair<int, int>>
-      at;  // the first 64 x 64 cells are the first stretch of the curve
+  std::map<std::uint32_t, std::pair<int, int>> at;  // the first 64 x 64 cells are the start of the curve
   for (int x = 0; x < 64; ++x)
     for (int y = 0; y < 64; ++y)
       at[hilbert_index(static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y))] = {x, y};

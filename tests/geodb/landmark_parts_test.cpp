@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A map written of parts: which, and how many landmarks are in memory at once, make no difference.
+// A map of landmarks in parts does not depend on the parts, nor on the number of landmarks in memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "geodb/curve_ranges.hpp"
+#include "geodb/hilbert_ranges.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
@@ -17,7 +17,7 @@
 namespace waymark {
 namespace {
 
-/// Landmarks cut into parts, `columns` x `columns` squares, and how many are in memory at most.
+/// Landmarks divided into `columns` x `columns` squares; records how many are in memory at most.
 class Parts {
  public:
   Parts(const MapContents& whole, int columns) : columns_(columns) {
@@ -71,32 +71,33 @@ MapContents without_landmarks(MapContents contents) {
   return contents;
 }
 
-TEST(LandmarkParts, GiveTheSameBytesHoweverTheyAreCut) {
+TEST(LandmarkParts, GiveTheSameBytesForEveryDivision) {
   const TemporaryFolder folder;
   const MapContents whole = held(3000);
   MapContents contents = without_landmarks(whole);
   std::string first;
   for (const int columns : {1, 2, 9})
-    for (const std::size_t at_once : {10u, 500u, 100'000u}) {
+    for (const std::size_t max_in_memory : {10u, 500u, 100'000u}) {
       Parts parts(whole, columns);
       contents.parts = parts.parts();
-      EXPECT_EQ(write_map(folder / "map.gpkg", contents, {.landmarks_at_once = at_once}).at("lamp_post"),
+      EXPECT_EQ(write_map(folder / "map.gpkg", contents, {.max_landmarks_in_memory = max_in_memory})
+                    .at("lamp_post"),
                 3000);
       const std::string bytes = file_bytes(folder / "map.gpkg");
       if (first.empty()) first = bytes;
-      EXPECT_TRUE(bytes == first) << columns << " x " << columns << ", " << at_once << " at once";
+      EXPECT_TRUE(bytes == first) << columns << " x " << columns << ", " << max_in_memory << " at once";
     }
   EXPECT_THAT(validate_map(folder / "map.gpkg"), testing::IsEmpty());
 }
 
-TEST(LandmarkParts, AreRowsLikeThoseThatAreHeld) {
+TEST(LandmarkParts, GiveTheSameRowsAsLandmarksInMemory) {
   const TemporaryFolder folder;
   const MapContents whole = held(2000);
   Parts parts(whole, 6);
   MapContents contents = without_landmarks(whole);
   contents.parts = parts.parts();
   write_map(folder / "held.gpkg", whole);
-  write_map(folder / "parts.gpkg", contents, {.landmarks_at_once = 100});
+  write_map(folder / "parts.gpkg", contents, {.max_landmarks_in_memory = 100});
   for (const char* sql :
        {"SELECT group_concat(id || hex(geom) || uid || height || observations) FROM lamp_post",
         "SELECT group_concat(hex(data)) FROM rtree_lamp_post_geom_node",
@@ -105,7 +106,7 @@ TEST(LandmarkParts, AreRowsLikeThoseThatAreHeld) {
     EXPECT_EQ(query_text(folder / "parts.gpkg", sql), query_text(folder / "held.gpkg", sql)) << sql;
 }
 
-TEST(LandmarkParts, StandBesideThoseThatAreHeld) {
+TEST(LandmarkParts, CombineWithLandmarksInMemory) {
   const TemporaryFolder folder;
   const MapContents whole = held(1000);
   MapContents some = whole;
@@ -116,7 +117,7 @@ TEST(LandmarkParts, StandBesideThoseThatAreHeld) {
   Parts parts(rest, 4);
   some.parts = parts.parts();
   write_map(folder / "whole.gpkg", whole);
-  write_map(folder / "both.gpkg", some, {.landmarks_at_once = 50});
+  write_map(folder / "both.gpkg", some, {.max_landmarks_in_memory = 50});
   const char* sql = "SELECT group_concat(id || uid || height) FROM lamp_post";
   EXPECT_EQ(query_text(folder / "both.gpkg", sql), query_text(folder / "whole.gpkg", sql));
   const MapStore map = MapStore::open(folder / "both.gpkg");
@@ -134,11 +135,11 @@ TEST(LandmarkParts, FewAreInMemoryAtOnce) {
   MapContents contents = without_landmarks(whole);
   Parts parts(whole, 40);
   contents.parts = parts.parts();
-  write_map(folder / "map.gpkg", contents, {.landmarks_at_once = 400});
+  write_map(folder / "map.gpkg", contents, {.max_landmarks_in_memory = 400});
   EXPECT_LE(parts.most(), 100u) << "one part's landmarks or evidence, of 40,000";
 }
 
-TEST(LandmarkParts, RefuseWhatIsNoMap) {
+TEST(LandmarkParts, RejectInvalidContents) {
   const TemporaryFolder folder;
   const MapContents whole = held(100);
   MapContents contents = without_landmarks(whole);
@@ -162,7 +163,7 @@ TEST(LandmarkParts, RefuseWhatIsNoMap) {
   EXPECT_FALSE(std::filesystem::exists(folder / "map.gpkg"));
 }
 
-TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
+TEST(DivideHilbertCurve, RangesAreConsecutiveAndOfLimitedSize) {
   const MapContents whole = held(5000);
   Envelope extent;
   for (const Landmark& l : whole.landmarks) extent.add(l.position.xyz.x(), l.position.xyz.y());
@@ -170,7 +171,7 @@ TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
     for (std::size_t i = part; i < whole.landmarks.size(); i += 3)
       take(whole.landmarks[i].position.xyz.head<2>());
   };
-  const std::vector<CurveRange> ranges = divide_curve(3, places, extent, 250);
+  const std::vector<HilbertRange> ranges = divide_hilbert_curve(3, places, extent, 250);
   EXPECT_GE(ranges.size(), 20u);
   EXPECT_LE(ranges.size(), 30u);
   std::size_t all = 0;
@@ -179,7 +180,7 @@ TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
     std::set<std::uint32_t> parts;
     std::size_t held_by = 0;
     for (std::size_t l = 0; l < whole.landmarks.size(); ++l) {
-      if (!ranges[i].holds(along_curve(whole.landmarks[l].position.xyz.head<2>(), extent))) continue;
+      if (!ranges[i].contains(hilbert_position(whole.landmarks[l].position.xyz.head<2>(), extent))) continue;
       parts.insert(static_cast<std::uint32_t>(l % 3));
       ++held_by;
     }
@@ -190,8 +191,8 @@ TEST(DivideCurve, PiecesFollowEachOtherAndHoldWhatTheyMay) {
   EXPECT_EQ(all, 5000u);
 }
 
-// SQLite's own memory, most of it the cache: 64 MB, of a larger map.
-TEST(LandmarkParts, TheCacheKeepsToItsSize) {
+// Memory of SQLite for a map that exceeds its cache of 64 MB.
+TEST(LandmarkParts, TheCacheDoesNotGrow) {
   MapContents contents = scattered({.landmarks = 500'000, .with_evidence = 0});
   const TemporaryFolder folder;
   sqlite3_memory_highwater(1);

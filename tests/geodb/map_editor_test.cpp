@@ -65,11 +65,11 @@ TEST(MapEditor, AddsEvidenceImagesAndRuns) {
   EXPECT_THAT(validate_map(map.path), IsEmpty());
 }
 
-TEST(MapEditor, TogetherIsAllOrNothing) {
+TEST(MapEditor, ATransactionIsAllOrNothing) {
   const Edited map({});
   const std::string before = file_bytes(map.path);
   MapEditor editor = MapEditor::open(map.path);
-  EXPECT_THROW(editor.together([&] {
+  EXPECT_THROW(editor.transact([&] {
     editor.remove("lp-1");
     editor.remove("lp-2");
     editor.remove("not there");
@@ -79,11 +79,11 @@ TEST(MapEditor, TogetherIsAllOrNothing) {
   EXPECT_TRUE(file_bytes(map.path) == before);
 }
 
-TEST(MapEditor, ManyRandomEditsKeepThePackedIndexSound) {
+TEST(MapEditor, ManyRandomEditsLeaveThePackedIndexValid) {
   const Edited map({.landmarks = 2000});
   MapEditor editor = MapEditor::open(map.path);
   std::mt19937 random(5);
-  editor.together([&] {
+  editor.transact([&] {
     for (int i = 0; i < 1500; ++i) {
       const std::string uid = "lp-" + std::to_string(random() % 2000);
       auto landmark = editor.map().find(uid);
@@ -111,7 +111,7 @@ std::string message(const std::function<void()>& action) {
   return "no error";
 }
 
-TEST(MapEditor, SaysWhatItCannotDo) {
+TEST(MapEditor, ReportsWhatItCannotDo) {
   const Edited map({});
   MapEditor editor = MapEditor::open(map.path);
   Landmark landmark = *editor.map().find("lp-1");

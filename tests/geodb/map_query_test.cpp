@@ -9,7 +9,8 @@
 
 #include "core/error.hpp"
 #include "geodb/map_store.hpp"
-#include "geodb/search_windows.hpp"
+#include "geodb/rtree/search_windows.hpp"
+#include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "landmarks/sensor_profile.hpp"
 #include "tests/geodb/map_scenes.hpp"
@@ -29,9 +30,9 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
-/// A map on the disk and its landmarks in memory, for slow and obvious answers.
+/// Map file, and its landmarks in memory for the slow twins of queries.
 struct Twin {
-  explicit Twin(const Scene& scene) : contents(scattered(scene)), ruler(contents.crs) {
+  explicit Twin(const Scene& scene) : contents(scattered(scene)), map_distance(contents.crs) {
     write_map(folder / "map.gpkg", contents);
     map = std::make_unique<MapStore>(MapStore::open(folder / "map.gpkg"));
   }
@@ -42,12 +43,12 @@ struct Twin {
     return sorted(names);
   }
   double distance(const Landmark& l, double x, double y) const {
-    return ruler(x, y, l.position.xyz.x(), l.position.xyz.y());
+    return map_distance(x, y, l.position.xyz.x(), l.position.xyz.y());
   }
 
   TemporaryFolder folder;
   MapContents contents;
-  GroundRuler ruler;
+  MapDistance map_distance;
   std::unique_ptr<MapStore> map;
 };
 
@@ -58,8 +59,8 @@ Scene whole_body(const std::string& crs, double west) {
 struct Place {
   double x, y, radius;
 };
-// Ordinary places, both sides of the antimeridian, the poles and their neighbourhood, circles round a pole,
-// all.
+// Mid-latitudes, both sides of the antimeridian, the poles and their neighbourhood, circles about a pole, the
+// whole body.
 const Place kPlaces[] = {{10, 45, 1e6}, {179.9, 0, 8e5}, {-179.9, 60, 1e6}, {540, 10, 1e6},
                          {0, 90, 1e6},  {77, -90, 5e5},  {123, 88, 1e6},    {-20, -85, 2e6},
                          {0, 0, 1.2e7}, {200, 30, 3e5},  {5, 5, 3e7},       {5, 5, 0}};
@@ -109,7 +110,7 @@ TEST(MapQuery, BoxesAndRadiiInThePlaneAgreeWithTheDefinition) {
   const Twin twin({.landmarks = 2000});
   const MapQuery::Box box{420'000, 5'020'000, 440'000, 5'060'000};
   const auto in_box = [&](const Landmark& l) {
-    return inside({box}, l.position.xyz.x(), l.position.xyz.y());
+    return contains({box}, l.position.xyz.x(), l.position.xyz.y());
   };
   EXPECT_EQ(sorted(uids(twin.map->query({.box = box}))), twin.by_definition(in_box));
   const auto both = twin.map->query({.box = box, .near = MapQuery::Near{430'000, 5'030'000, Meters{9'000}}});
@@ -133,8 +134,9 @@ TEST(MapQuery, EdgesOfABoxBelongToItThoughTheIndexIsFloat32) {
 
 TEST(MapQuery, FeatureRangesLeaveOutTheUnknown) {
   const Twin twin({});
-  const auto found = twin.map->query({.features = {{.feature = "diameter", .lowest = 0.2, .highest = 0.3},
-                                                   {.feature = "height", .lowest = 5}}});
+  const auto found =
+      twin.map->query({.features = {{.feature = "diameter", .min_value = 0.2, .max_value = 0.3},
+                                    {.feature = "height", .min_value = 5}}});
   EXPECT_GT(found.size(), 20u);
   EXPECT_EQ(sorted(uids(found)), twin.by_definition([](const Landmark& l) {
     return l.features[1].known() && l.features[1].value >= 0.2 && l.features[1].value <= 0.3 &&
@@ -142,7 +144,7 @@ TEST(MapQuery, FeatureRangesLeaveOutTheUnknown) {
   }));
 }
 
-TEST(MapQuery, LargestFirstGivesTheForemost) {
+TEST(MapQuery, LargestFirstGivesTheLargest) {
   const Twin twin({.landmarks = 5000});
   std::vector<Landmark> all = twin.contents.landmarks;
   std::ranges::sort(all, std::greater{}, [](const Landmark& l) { return l.features[0].value; });
@@ -150,6 +152,49 @@ TEST(MapQuery, LargestFirstGivesTheForemost) {
   EXPECT_EQ(uids(twin.map->query({.largest_first = "height", .limit = 25})), uids(all));
   EXPECT_EQ(twin.map->query({.limit = 10}).size(), 10u);
   EXPECT_TRUE(twin.map->query({.limit = 0}).empty());
+}
+
+// Maps of 50,000 landmarks and more have an index of the largest values. Rounded heights make many ties.
+TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
+  MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
+  for (Landmark& l : contents.landmarks) {
+    l.features[0].value = std::round(100 * l.features[0].value) / 100;
+    l.confidence = std::round(10 * l.features[1].value) / 10;
+    if (std::isnan(l.confidence)) l.confidence = 0;
+  }
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", contents);
+  EXPECT_EQ(query_text(folder / "map.gpkg", "SELECT count(*) FROM sqlite_schema WHERE name LIKE '%_largest'"),
+            "2");
+  write_map(folder / "scan.gpkg", contents);
+  execute_sql(folder / "scan.gpkg",
+              "DROP INDEX lamp_post_height_largest; DROP INDEX lamp_post_diameter_largest");
+  const MapStore indexed = MapStore::open(folder / "map.gpkg"),
+                 scanned = MapStore::open(folder / "scan.gpkg");
+  for (const std::string feature : {"height", "diameter"})
+    for (const std::int64_t limit : {0, 1, 7, 300, 9'000, 20'000})
+      for (const double confidence : {0.0, 0.4}) {
+        const MapQuery query{.min_confidence = confidence, .largest_first = feature, .limit = limit};
+        EXPECT_EQ(uids(indexed.query(query)), uids(scanned.query(query))) << feature << ' ' << limit;
+      }
+  const MapQuery tall{
+      .features = {{.feature = "height", .max_value = 5}}, .largest_first = "height", .limit = 3};
+  EXPECT_EQ(uids(indexed.query(tall)), uids(scanned.query(tall)));  // none of the largest: a scan after all
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), ::testing::IsEmpty());
+}
+
+TEST(MapQuery, EveryNumberCanBeQueried) {
+  const Twin twin({});  // seen 3 of 4, confidence 0.8, quality 0.675, fixtures 0 to 3
+  EXPECT_EQ(twin.map->query({.features = {{.feature = "quality", .min_value = 0.67}}}).size(), 1000u);
+  EXPECT_TRUE(twin.map->query({.features = {{.feature = "quality", .min_value = 0.68}}}).empty());
+  EXPECT_EQ(twin.map->query({.features = {{.feature = "seen", .min_value = 3, .max_value = 3}}}).size(),
+            1000u);
+  EXPECT_TRUE(twin.map->query({.features = {{.feature = "confidence", .max_value = 0.79}}}).empty());
+  EXPECT_EQ(twin.map->query({.features = {{.feature = "fixtures", .min_value = 2}}}).size(), 500u);
+  EXPECT_EQ(twin.map->query({.min_confidence = 0.8}).size(), 1000u);
+  EXPECT_TRUE(twin.map->query({.min_confidence = 0.81}).empty());
+  EXPECT_EQ(twin.map->query({.largest_first = "fixtures", .limit = 1})[0].attributes[1],
+            AttributeValue{std::int64_t{3}});
 }
 
 TEST(MapQuery, QualityDependsOnTheSensor) {
@@ -170,7 +215,7 @@ std::string message(const MapStore& map, const MapQuery& query) {
   return "no error";
 }
 
-TEST(MapQuery, SlipsOfThePenAreErrors) {
+TEST(MapQuery, TypingErrorsAreErrors) {
   const Twin twin({});
   EXPECT_THAT(message(*twin.map, {.types = {"lamp_pots"}}), HasSubstr("did you mean 'lamp_post'?"));
   EXPECT_THAT(message(*twin.map, {.types = {"x"}}), HasSubstr("it has: lamp_post"));

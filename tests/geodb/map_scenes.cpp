@@ -9,7 +9,7 @@
 #include <random>
 #include <sstream>
 
-#include "geodb/sqlite.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 #include "tests/support/dem_art.hpp"
 
 namespace waymark {
@@ -67,7 +67,7 @@ MapContents scattered(const Scene& scene) {
     l.covariance(0, 1) = l.covariance(1, 0) = 0.1;
     l.features = {{uniform(3, 15), 0.04, 4}, {}};
     if (i % 2 == 0) l.features[1] = {uniform(0.1, 0.5), 0, 1};
-    l.quality = {.seen = 3, .visible = 4, .of_feature = {0.9, std::nullopt}};
+    l.quality = {.seen = 3, .visible = 4, .feature_confidences = {0.9, std::nullopt}};
     l.confidence = 0.8;
     l.observations = 4;
     l.attributes = {i % 3 ? AttributeValue{"sodium"} : AttributeValue{}, std::int64_t{i % 4}, 2.5};

@@ -5,7 +5,7 @@
 #include "geodb/map_contents.hpp"
 namespace waymark {
 
-/// A folder for one test that vanishes with it.
+/// Temporary folder of a test, removed by the destructor.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -17,17 +17,17 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// What our program prints to standard output and error.
+/// Exit code of a program, and its standard output and error.
 struct ProgramResult {
   int exit_code = 0;
   std::string output;
 };
 ProgramResult run_program(const std::string& command_line);
 
-/// A type with two features and an attribute of each kind.
+/// Returns a type with two features and an attribute of each kind.
 LandmarkType lamp_post();
 
-/// Lamp posts at random places of a box, with evidence for the first ones; the same for the same seed.
+/// Lamp posts at random positions in a box, with observations of the first ones; deterministic for a seed.
 struct Scene {
   std::string crs = "EPSG:32632";
   double min_x = 400'000, min_y = 5'000'000, max_x = 500'000, max_y = 5'100'000;
@@ -38,12 +38,12 @@ MapContents scattered(const Scene& scene);
 
 RunRecord example_run();
 
-/// A DEM held in memory: height = column + 1000 row, with a hole at the top left.
+/// Returns a DEM in memory: height = column + 1000 row, with a hole at the top left.
 DemHandle ramp_dem(const Crs& crs, std::int64_t columns, std::int64_t rows);
 
 std::string file_bytes(const std::filesystem::path& path);
 
-/// Runs SQL that breaks or inspects a map, with the geometry functions its triggers need.
+/// Runs SQL on a map, with the geometry functions that its triggers need.
 void execute_sql(const std::filesystem::path& map, const std::string& script);
 std::string query_text(const std::filesystem::path& map, const std::string& sql);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opening: what is refused, what is migrated, and that reading leaves no trace.
+// Opening of maps: rejected files, migration, and reading without changes.
 #include "geodb/map_store.hpp"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 #include "core/error.hpp"
 #include "geodb/map_editor.hpp"
-#include "geodb/sqlite.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
@@ -59,7 +59,7 @@ TEST(OpenMap, RefusesNewerMaps) {
   write_map(folder / "map.gpkg", scattered({}));
   execute_sql(folder / "map.gpkg", "INSERT INTO waymark_schema VALUES (99, 'from the future')");
   EXPECT_THAT(message_of_opening(folder / "map.gpkg"),
-              HasSubstr("schema version 99, this program knows up to 2"));
+              HasSubstr("schema version 99, this program supports up to 3"));
 }
 
 TEST(OpenMap, RefusesATruncatedMap) {
@@ -69,7 +69,7 @@ TEST(OpenMap, RefusesATruncatedMap) {
   EXPECT_THAT(message_of_opening(folder / "map.gpkg"), HasSubstr("this map is damaged"));
 }
 
-/// The old map of tests/geodb/version_1.sql (see make_version_1.sh).
+/// Creates the old map of tests/geodb/version_1.sql (see make_version_1.sh).
 void make_version_1(const std::filesystem::path& path) {
   sqlite::Database(path, sqlite::OpenMode::create)
       .execute(file_bytes(WAYMARK_SOURCE_DIR "/tests/geodb/version_1.sql"));
@@ -94,7 +94,7 @@ TEST(Migration, AnEditorMigratesInPlace) {
   make_version_1(folder / "old.gpkg");
   MapEditor::open(folder / "old.gpkg").remove("lp-1");
   const MapStore map = MapStore::open(folder / "old.gpkg");
-  EXPECT_EQ(map.schema_version(), 2);
+  EXPECT_EQ(map.schema_version(), 3);
   EXPECT_EQ(map.count(), 2);
   EXPECT_EQ(run_program("/usr/bin/python3 -m osgeo_utils.samples.validate_gpkg -k --extra " +
                         (folder / "old.gpkg").string())
@@ -102,7 +102,25 @@ TEST(Migration, AnEditorMigratesInPlace) {
             "");
 }
 
-TEST(Reading, OneByOneGivesWhatAllAtOnceGive) {
+TEST(Migration, WhatNobodyAssessedHasNoQualityAndMovesAreSeen) {
+  const TemporaryFolder folder;
+  const std::filesystem::path old = folder / "old.gpkg";
+  make_version_1(old);
+  execute_sql(old,
+              "UPDATE lamp_post SET seen = 1, visible = 1, q_multiplicity = 1, quality = 1, height_q = NULL,"
+              " height_sd = NULL, observations = 1 WHERE uid = 'lp-0'");  // as versions 1 and 2 stored it
+  EXPECT_THAT(validate_map(old), IsEmpty());
+  EXPECT_EQ(MapStore::open(old).query({.min_quality = 0.1}).size(), 2u);
+  MapEditor::open(old).remove("lp-1");  // migrates in place
+  EXPECT_EQ(
+      query_text(
+          old, "SELECT group_concat(coalesce(quality, 'none')) FROM (SELECT * FROM lamp_post ORDER BY uid)"),
+      "none,0.675");
+  execute_sql(old, "UPDATE lamp_post SET geom = (SELECT geom FROM lamp_post WHERE uid = 'lp-2')");
+  EXPECT_EQ(query_text(old, "SELECT count(*) FROM waymark_moved"), "1");  // lp-2 did not move
+}
+
+TEST(Reading, VisitingGivesTheSameAsReadingAll) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({}));
   const MapStore map = MapStore::open(folder / "map.gpkg");
@@ -139,7 +157,7 @@ TEST(Reading, LeavesNoTrace) {
   }
 }
 
-TEST(Reading, SeesWhatAWriteAheadLogHolds) {
+TEST(Reading, IncludesTheWriteAheadLog) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({}));
   const sqlite::Database other(folder / "map.gpkg", sqlite::OpenMode::update);
@@ -153,7 +171,7 @@ TEST(MapStore, VisitsABoxInTheOrderOfRows) {
   write_map(folder / "map.gpkg", contents);
   const MapStore map = MapStore::open(folder / "map.gpkg");
   const std::string type = contents.types[0].name;
-  const Eigen::Vector3d& corner = contents.landmarks[7].position.xyz;  // a landmark on the very edge
+  const Eigen::Vector3d& corner = contents.landmarks[7].position.xyz;  // a landmark on the edge
   for (const MapQuery::Box& box :
        {MapQuery::Box{corner.x(), corner.y(), corner.x() + 30'000, corner.y() + 20'000},
         MapQuery::Box{0, 0, 1e7, 1e7}, MapQuery::Box{0, 0, 1, 1}}) {

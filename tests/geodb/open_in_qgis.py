@@ -2,7 +2,8 @@
 """Prints what QGIS makes of a layer of a map: python3 open_in_qgis.py MAP.gpkg LAYER"""
 import sys
 
-from qgis.core import QgsApplication, QgsProperty, QgsSymbolLayer, QgsVectorLayer
+from qgis.core import (QgsApplication, QgsExpression, QgsExpressionContext, QgsExpressionContextUtils, QgsSymbolLayer,
+                       QgsVectorLayer, QgsVectorLayerUtils)
 
 application = QgsApplication([], False)
 application.initQgis()
@@ -15,5 +16,20 @@ print("size:", marker.dataDefinedProperties().property(QgsSymbolLayer.PropertySi
 print("labels:", layer.labelsEnabled())
 if layer.labelsEnabled():
     print("label:", layer.labeling().settings().fieldName)
+print("alias of height:", layer.attributeAlias(layer.fields().indexOf("height")))
+context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(layer))
+feature = next(layer.getFeatures())
+context.setFeature(feature)
+print("display name:", QgsExpression(layer.displayExpression()).evaluate(context))
+print("map tip:", layer.mapTipTemplate())
+# A person draws a point and leaves the form as it is.
+layer.startEditing()
+drawn = QgsVectorLayerUtils.createFeature(layer, feature.geometry())
+before = layer.featureCount()
+added = layer.addFeature(drawn) and layer.commitChanges()
+if not added:
+    print(layer.commitErrors())
+named = all(f["uid"] for f in QgsVectorLayer(layer.source(), "again", "ogr").getFeatures())
+print(f"added: {added and layer.featureCount() == before + 1}, named: {named}")
 sys.stdout.flush()
 application.exitQgis()

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What other programs make of our maps: GDAL's GeoPackage validator must be content; SpatiaLite, QGIS and the
-// npm GeoPackage reader are asked where they are installed.
+// Maps in other programs: GDAL's GeoPackage validator must report no errors; SpatiaLite, QGIS and the npm
+// GeoPackage reader must read them if they are installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -133,6 +133,10 @@ TEST(OtherReaders, QgisDrawsTheLayerInOurStyle) {
   EXPECT_THAT(result.output, HasSubstr("crs: IAU_2015:49910"));
   EXPECT_THAT(result.output, HasSubstr("colour: #d0a020"));
   EXPECT_THAT(result.output, HasSubstr("labels: True"));
+  EXPECT_THAT(result.output, HasSubstr("alias of height: Height (m)"));
+  EXPECT_THAT(result.output, HasSubstr("display name: Lamp post 1"));
+  EXPECT_THAT(result.output, HasSubstr("map tip: <b>[% coalesce('Lamp post ' ||"));
+  EXPECT_THAT(result.output, HasSubstr("added: True, named: True"));
   EXPECT_THAT(result.output, HasSubstr("label: round(\"height\""));
   EXPECT_THAT(result.output, HasSubstr("size: 1.6 + coalesce(log10(1 + max(0, \"height\")), 0)"));
 }

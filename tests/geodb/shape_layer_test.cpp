@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
+#include "geodb/geopackage/shape_blob.hpp"
 #include "geodb/map_store.hpp"
-#include "geodb/shape_blob.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
@@ -127,7 +127,7 @@ TEST(ShapeLayer, FaultsAreFoundByValidate) {
   }
 }
 
-TEST(ShapeLayer, RefusesWhatAMapCannotHold) {
+TEST(ShapeLayer, RejectsInvalidLayers) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({}));
   const std::string before = file_bytes(folder / "map.gpkg");
@@ -143,7 +143,7 @@ TEST(ShapeLayer, RefusesWhatAMapCannotHold) {
   layer.name = "lamp_post";
   EXPECT_THAT(refused(layer), HasSubstr("that name is taken"));
   layer.name = "Crown 1";
-  EXPECT_THAT(refused(layer), HasSubstr("no name for a layer"));
+  EXPECT_THAT(refused(layer), HasSubstr("not a valid layer name"));
   layer = squares(2);
   layer.columns[0].name = "geom";
   EXPECT_THAT(refused(layer), HasSubstr("cannot have a column 'geom'"));
@@ -158,11 +158,11 @@ TEST(ShapeLayer, RefusesWhatAMapCannotHold) {
   EXPECT_EQ(file_bytes(folder / "map.gpkg"), before) << "nothing half-written";
 }
 
-TEST(ShapeLayer, RowsMadeOnWritingAreRowsLikeOthers) {
+TEST(ShapeLayer, GeneratedRowsEqualRowsInMemory) {
   const ShapeLayer held = squares(500);
   ShapeLayer made = held;
   made.rows.resize(20);
-  made.more = [&](const auto& take) { std::for_each(held.rows.begin() + 20, held.rows.end(), take); };
+  made.generator = [&](const auto& take) { std::for_each(held.rows.begin() + 20, held.rows.end(), take); };
   const TemporaryFolder folder;
   MapContents contents = scattered({});
   contents.layers = {made};
@@ -171,12 +171,12 @@ TEST(ShapeLayer, RowsMadeOnWritingAreRowsLikeOthers) {
   EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
 }
 
-// Against boxes that are looked at one by one.
+// Compares with a test of every box.
 TEST(ShapeLayer, RowsOfAWindowAreThoseWhoseBoxesMeetIt) {
   TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({.landmarks = 10}));
   const ShapeLayer all = squares(2000);
-  write_layers(folder / "map.gpkg", std::span(&all, 1), MapFile::own);
+  write_layers(folder / "map.gpkg", std::span(&all, 1), MapAccess::exclusive);
   EXPECT_EQ(count_shapes(folder / "map.gpkg", "crown"), 2000);
   EXPECT_EQ(count_shapes(folder / "map.gpkg", "track"), 0);
   for (const double side : {0.0, 5.0, 100.0, 1000.0, 1e7})

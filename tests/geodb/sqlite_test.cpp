@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geodb/sqlite.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@ concept Bindable = requires(Statement& statement, Text&& text) {
 };
 
 // SQLite reads the bytes when the statement runs, not when they are bound.
-TEST(Sqlite, OnlyTextThatSomebodyKeepsIsBound) {
+TEST(Sqlite, ATemporaryTextCannotBeBound) {
   EXPECT_TRUE(Bindable<std::string&>);
   EXPECT_TRUE(Bindable<const std::string&>);
   EXPECT_TRUE(Bindable<std::string_view>);
   EXPECT_TRUE(Bindable<const char*>);
-  EXPECT_FALSE(Bindable<std::string>) << "it would be gone before the statement runs";
+  EXPECT_FALSE(Bindable<std::string>) << "a temporary does not outlive the statement's execution";
 }
 
 }  // namespace

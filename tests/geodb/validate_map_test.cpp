@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geodb/map_editor.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
@@ -48,6 +49,7 @@ const Fault kFaults[] = {
      "UPDATE lamp_post SET geom = x'47500001' || x'00000000' || substr(geom, 9) WHERE id = 7"},
     {"uid.empty", "UPDATE lamp_post SET uid = '' WHERE id = 7"},
     {"uid.twice", "DROP INDEX lamp_post_uid; UPDATE lamp_post SET uid = 'lp-1' WHERE id = 7"},
+    {"position.moved", "UPDATE lamp_post SET geom = (SELECT geom FROM lamp_post WHERE id = 8) WHERE id = 7"},
     {"feature.range", "UPDATE lamp_post SET height = 300 WHERE id = 7"},
     {"feature.spread", "UPDATE lamp_post SET height_sd = -1 WHERE id = 7"},
     {"feature.spread", "UPDATE lamp_post SET height = NULL WHERE id = 7"},
@@ -91,6 +93,46 @@ TEST_P(PlantedFault, IsFound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, PlantedFault, ::testing::ValuesIn(kFaults));
+
+TEST(ValidateMap, AnEditByWaymarkIsNoStaleMove) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  MapEditor editor = MapEditor::open(folder / "map.gpkg");
+  Landmark post = *editor.map().find("lp-500");
+  post.position.xyz.x() += 5;
+  editor.update(post);
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), ::testing::IsEmpty());
+}
+
+TEST(ValidateMap, ALandmarkThatAPersonAddsIsNamedAndSound) {
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", scattered({}));
+  execute_sql(folder / "map.gpkg",
+              "INSERT INTO lamp_post (geom, height) SELECT geom, 9 FROM lamp_post WHERE id = 7;"
+              "INSERT INTO lamp_post (geom, height, uid) SELECT geom, 9, '' FROM lamp_post WHERE id = 8");
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), ::testing::IsEmpty());
+  EXPECT_EQ(
+      query_text(folder / "map.gpkg",
+                 "SELECT count(DISTINCT uid) FROM lamp_post WHERE id > 1000 AND uid LIKE 'lamp_post-%'"),
+      "2");
+}
+
+TEST(WriteMap, ALayerOfImagesNeedsImages) {
+  const TemporaryFolder folder;
+  const auto layers = [&](const Scene& scene) {
+    write_map(folder / "map.gpkg", scattered(scene));
+    return query_text(folder / "map.gpkg", "SELECT count(*) FROM gpkg_contents WHERE table_name = 'image'");
+  };
+  EXPECT_EQ(layers({.with_evidence = 3}), "1");
+  EXPECT_EQ(layers({.with_evidence = 0}), "0");
+  EXPECT_THAT(validate_map(folder / "map.gpkg"), ::testing::IsEmpty());
+  ImageRecord image;
+  image.name = "first";
+  image.footprint = {{{0, 0}, {1, 0}, {1, 1}}};
+  MapEditor::open(folder / "map.gpkg").add_image(image);
+  EXPECT_EQ(query_text(folder / "map.gpkg", "SELECT count(*) FROM rtree_image_geom"), "1");
+  EXPECT_EQ(MapStore::open(folder / "map.gpkg").images().size(), 1u);
+}
 
 TEST(ValidateMap, CountsWhatItDoesNotList) {
   const TemporaryFolder folder;

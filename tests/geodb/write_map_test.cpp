@@ -34,7 +34,7 @@ void expect_equal(const Landmark& a, const Landmark& b) {
   EXPECT_EQ(a.confidence, b.confidence);
   EXPECT_EQ(a.quality.seen, b.quality.seen);
   EXPECT_EQ(a.quality.visible, b.quality.visible);
-  EXPECT_EQ(a.quality.of_feature, b.quality.of_feature);
+  EXPECT_EQ(a.quality.feature_confidences, b.quality.feature_confidences);
   ASSERT_EQ(a.features.size(), b.features.size());
   for (std::size_t i = 0; i < a.features.size(); ++i) {
     EXPECT_EQ(a.features[i].known(), b.features[i].known());
@@ -60,7 +60,7 @@ TEST(WriteMap, ReadsBackAsWritten) {
   }
 }
 
-TEST(WriteMap, KeepsEvidenceImagesAndRun) {
+TEST(WriteMap, StoresEvidenceImagesAndRun) {
   const TemporaryFolder folder;
   const MapContents contents = scattered({});
   write_map(folder / "map.gpkg", contents);
@@ -88,7 +88,7 @@ TEST(WriteMap, ReadsTypesItWasNotBuiltWith) {
   EXPECT_EQ(read.label_feature, wanted.label_feature);
   ASSERT_EQ(read.features.size(), 2u);
   EXPECT_EQ(read.features[1].name, "diameter");
-  EXPECT_EQ(read.features[1].highest, 0.6);
+  EXPECT_EQ(read.features[1].max_value, 0.6);
   ASSERT_EQ(read.attributes.size(), 3u);
   EXPECT_EQ(read.attributes[1].kind, AttributeSpec::Kind::integer);
 }
@@ -147,7 +147,7 @@ TEST(WriteMap, RefusesWhatIsNoMap) {
   EXPECT_THAT(message_of_writing(contents), HasSubstr("position is not finite\n  landmark lp-3"));
   contents = scattered({});
   contents.observations[2].landmark_uid = "lost";
-  EXPECT_THAT(message_of_writing(contents), HasSubstr("evidence of a landmark that is not there"));
+  EXPECT_THAT(message_of_writing(contents), HasSubstr("refers to a missing landmark"));
   contents = {};
   contents.types.add(plain_type("run", "length"));
   EXPECT_THAT(message_of_writing(contents), HasSubstr("cannot have a landmark type named 'run'"));

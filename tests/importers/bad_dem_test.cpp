@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way a file can be no DEM, and what the message says about it.
+// Files that are no DEM, and their messages.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -86,7 +86,7 @@ TEST(BadDem, ComplexNumbers) {
 
 TEST(BadDem, NoCrs) {
   EXPECT_THAT(complaint_about({.cells = kHills, .crs = ""}),
-              AllOf(HasSubstr("it has no coordinate reference system"), HasSubstr("--crs EPSG:32611"),
+              AllOf(HasSubstr("the file has no coordinate reference system"), HasSubstr("--crs EPSG:32611"),
                     HasSubstr("--crs local"), Not(HasSubstr("look like degrees"))));
 }
 
@@ -113,7 +113,7 @@ TEST(BadDem, UnknownCrs) {
 }
 
 TEST(BadDem, NoPlace) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = {}}), HasSubstr("it has no geotransform"));
+  EXPECT_THAT(complaint_about({.cells = kHills, .transform = {}}), HasSubstr("the file has no geotransform"));
 }
 
 TEST(BadDem, Rotated) {
@@ -158,7 +158,7 @@ TEST(BadDem, SeveralDataSetsInOneFile) {
                   .driver = "GPKG",
                   .options = {table, again ? "APPEND_SUBDATASET=YES" : "APPEND_SUBDATASET=NO"}});
   }
-  EXPECT_THAT(complaint_about(path), AllOf(HasSubstr("the file holds no raster of its own"),
+  EXPECT_THAT(complaint_about(path), AllOf(HasSubstr("the file itself contains no raster"),
                                            HasSubstr("name one of its data sets, e.g. GPKG:")));
 }
 

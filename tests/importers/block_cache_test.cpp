@@ -6,7 +6,7 @@
 namespace waymark {
 namespace {
 
-// A block of 100 bytes that knows its number; counts how often it is decoded.
+// Returns a block of 100 bytes that holds its number; counts how often it is decoded.
 class BlockCacheTest : public testing::Test {
  protected:
   double decode(BlockCache& cache, std::uint64_t block, std::uint32_t file = 0) {
@@ -26,7 +26,7 @@ TEST_F(BlockCacheTest, DecodesOnce) {
   EXPECT_EQ(decoded, 1);
 }
 
-TEST_F(BlockCacheTest, TellsFilesApart) {
+TEST_F(BlockCacheTest, DistinguishesFiles) {
   BlockCache cache(1000);
   decode(cache, 7, 0);
   decode(cache, 7, 1);

@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <string>
 
-#include "importers/images/camera_set.hpp"
+#include "importers/cameras/camera_set.hpp"
 #include "importers/tables/text_table.hpp"
 namespace waymark::testing {
 
-/// Real camera files; they stay outside the repository.
+/// Returns the path of a real camera file outside the repository.
 inline std::string camera_data(const std::string& name) {
   return WAYMARK_SOURCE_DIR "/../shared/data/cameras/" + name;
 }
@@ -19,20 +19,20 @@ inline std::string camera_data(const std::string& name) {
   GTEST_SKIP() << "the camera files are not on this machine"
 
 inline const PosedCamera& view_of(const CameraSet& set, const std::string& image) {
-  const ImageCamera* found = camera_of(set, image);
+  const ImageCamera* found = find_camera(set, image);
   if (!found || !found->view) throw std::runtime_error("no pose for " + image);
   return *found->view;
 }
 
-/// Where the middle of the image looks, in the grid.
+/// Returns the viewing direction of the middle of the image, in the grid.
 inline Eigen::Vector3d looks_along(const PosedCamera& view) {
   const auto& c = view.camera;
   return ray(view, {static_cast<double>(c.columns - 1) / 2, static_cast<double>(c.rows - 1) / 2})
       .value()
-      .along.unit;
+      .direction.unit;
 }
 
-/// The angle between two orientations, degrees.
+/// Returns the angle between two orientations, degrees.
 inline double turn_between(const PosedCamera& a, const PosedCamera& b) {
   return Eigen::AngleAxisd(a.grid_from_camera.transform.linear().transpose() *
                            b.grid_from_camera.transform.linear())

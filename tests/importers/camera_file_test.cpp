@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Our own camera file, frames, and what is refused.
+// Waymark's own camera file, frames, and refused files.
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "importers/images/camera_set.hpp"
-#include "importers/images/control_points.hpp"
+#include "importers/cameras/camera_set.hpp"
+#include "importers/cameras/control_points.hpp"
+#include "importers/cameras/similarity.hpp"
 #include "importers/images/image.hpp"
-#include "importers/images/similarity.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"
 
@@ -44,7 +44,7 @@ std::string refusal(const std::function<void(json&)>& change) {
   return message_of([&] { read(file); });
 }
 
-TEST(CameraFile, IsReadAsItsPageSays) {
+TEST(CameraFile, IsReadAsDocumented) {
   const CameraSet set = read(sample());
   EXPECT_EQ(set.format, "waymark");
   EXPECT_EQ(set.crs.id(), "EPSG:32651");
@@ -98,13 +98,13 @@ TEST(CameraFile, SaysWhatIsWrongWithAValue) {
   EXPECT_THAT(refusal([](json& f) { f["frame"]["axes"] = "ned"; }), HasSubstr("kinds: grid, enu"));
   EXPECT_THAT(refusal([](json& f) { f["waymark_cameras"] = 2; }), HasSubstr("layout 2"));
   EXPECT_THAT(refusal([](json& f) { f["images"] = json::array(); }), HasSubstr("names no images"));
-  EXPECT_THAT(refusal([](json& f) { f["frame"]["crs"] = "EPSG:4326"; }), HasSubstr("in degrees"));
+  EXPECT_THAT(refusal([](json& f) { f["frame"]["crs"] = "EPSG:4326"; }), HasSubstr("not degrees"));
   EXPECT_THAT(refusal([](json& f) { f["cameras"]["descent"]["distortion"] = {-5}; }),
               HasSubstr("does not invert in"));
   EXPECT_THAT(message_of([] { import_cameras(write_text("c.json", "{\"waymark_cameras\": 1,"), "", {}); }),
               HasSubstr("not valid JSON"));
   EXPECT_THAT(message_of([] { import_cameras(write_text("c.txt", "hello"), "", {}); }),
-              HasSubstr("no camera file we know"));
+              HasSubstr("of no known format"));
   EXPECT_THAT(message_of([] { import_cameras(write_text("c.txt", "hello"), "colmop", {}); }),
               HasSubstr("did you mean 'colmap'?"));
 }
@@ -121,12 +121,12 @@ TEST(CameraFile, OfTwoImagesOfOneNameNeitherHasAPose) {
 TEST(CameraSet, FindsAnImageByFoldersNameOrStem) {
   CameraSet set;
   for (const char* name : {"left/1.jpg", "right/1.jpg", "2", "3.png"}) set.images.emplace_back().image = name;
-  EXPECT_EQ(camera_of(set, "/data/left/1.jpg")->image, "left/1.jpg");
-  EXPECT_EQ(camera_of(set, "/data/right/1.jpg")->image, "right/1.jpg");
-  EXPECT_EQ(camera_of(set, "/data/1.jpg"), nullptr);  // which of them?
-  EXPECT_EQ(camera_of(set, "2.tif")->image, "2");
-  EXPECT_EQ(camera_of(set, "x/3.tif")->image, "3.png");
-  EXPECT_EQ(camera_of(set, "4.tif"), nullptr);
+  EXPECT_EQ(find_camera(set, "/data/left/1.jpg")->image, "left/1.jpg");
+  EXPECT_EQ(find_camera(set, "/data/right/1.jpg")->image, "right/1.jpg");
+  EXPECT_EQ(find_camera(set, "/data/1.jpg"), nullptr);  // ambiguous
+  EXPECT_EQ(find_camera(set, "2.tif")->image, "2");
+  EXPECT_EQ(find_camera(set, "x/3.tif")->image, "3.png");
+  EXPECT_EQ(find_camera(set, "4.tif"), nullptr);
 }
 
 TEST(CameraFrames, EnuIsTurnedByTheConvergenceAndBodyFixedAgrees) {
@@ -182,14 +182,14 @@ TEST(CameraFrames, WarnsWhereTheProjectionStretches) {
   file["frame"] = {{"axes", "body_fixed"}};
   file["images"][0]["centre"] = {700000, 3146000, 1073000};
   EXPECT_THAT(read(file, {.crs = "+proj=eqc +a=3396190 +b=3396190 +units=m"}).warnings,
-              Contains(AllOf(HasSubstr("stretches the ground"), HasSubstr("+proj=tmerc"))));
+              Contains(AllOf(HasSubstr("distorts shapes"), HasSubstr("+proj=tmerc"))));
 }
 
 TEST(CameraFrames, ArbitraryNeedsASimilarity) {
   json file = sample();
   file["frame"] = {{"axes", "arbitrary"}};
   EXPECT_THAT(message_of([&] { read(file, {.crs = "EPSG:32651"}); }), HasSubstr("control points"));
-  EXPECT_THAT(message_of([&] { read(file); }), HasSubstr("in which CRS the map"));
+  EXPECT_THAT(message_of([&] { read(file); }), HasSubstr("does not name the CRS of the map"));
   const Similarity turn = similarity_from_text("2,0.7071067811865476,0,0,0.7071067811865476,100,200,300");
   file["images"][0]["centre"] = {1, 2, 3};
   const PosedCamera view = *read(file, {.crs = "EPSG:32651", .map_from_frame = turn}).images[0].view;
@@ -199,7 +199,7 @@ TEST(CameraFrames, ArbitraryNeedsASimilarity) {
   EXPECT_NEAR(view.covariance(3, 3), 4 * 0.09, 1e-9);
 }
 
-TEST(CameraFrames, ControlPointsMayBeThePlacesOfCameras) {
+TEST(CameraFrames, ControlPointsMayBeCameraPositions) {
   json file = sample();
   file["frame"] = {{"axes", "arbitrary"}};
   file["images"].erase(1);
@@ -242,7 +242,7 @@ TEST(Similarity, IsFoundFromPoints) {
   }
 }
 
-TEST(Similarity, RefusesWhatLeavesItOpen) {
+TEST(Similarity, RefusesDegeneratePoints) {
   const std::vector<Eigen::Vector3d> line{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
   EXPECT_THAT(message_of([&] { estimate_similarity(line, line); }), HasSubstr("on one line"));
   EXPECT_THAT(message_of([&] {

@@ -36,6 +36,53 @@ TEST(ImportDem, ReadsOtherFormatsAlike) {
   GDALClose(tiff);
 }
 
+TEST(ImportDem, HeightsNoBodyHasAreNoHeights) {
+  // 21229 m is Olympus Mons; the others are garbage, one of them an undeclared no-data value.
+  Grid<double> cells = dem_art("1 2 3 21229 5 / 1 2 3 4 5");
+  cells(2, 0) = 9e9;
+  cells(0, 1) = -32768;
+  const auto dem =
+      import_dem({.files = {write_raster({.cells = cells, .type = GDT_Float32, .nodata = -9999})}});
+  EXPECT_EQ(all_of(*dem), dem_art("1 2 . 21229 5 / . 2 3 4 5"));
+  const CellFaults faults = dem->faults({0, 0, 5, 2});
+  EXPECT_EQ(faults.implausible, 2);
+  EXPECT_FLOAT_EQ(static_cast<float>(faults.height), 9e9F);
+  EXPECT_EQ(faults.column, 2);
+  EXPECT_EQ(faults.row, 0);
+  EXPECT_EQ(dem->faults({3, 0, 2, 2}).implausible, 0);
+  const auto integers = import_dem({.files = {write_raster({.cells = dem_art("1 2 / -32768 4")})}});
+  EXPECT_EQ(all_of(*integers), dem_art("1 2 / . 4"));
+  EXPECT_EQ(integers->faults({0, 0, 2, 2}).row, 1);
+}
+
+TEST(ImportDem, ReadsTheBandThatIsNamed) {
+  const std::string file = write_raster({.cells = kHills, .bands = 3});
+  EXPECT_EQ(all_of(*import_dem({.files = {file}, .band = 2})), kHills);
+  EXPECT_THAT(message_of([&] { import_dem({.files = {file}, .band = 4}); }),
+              HasSubstr("there is no band 4: this file has 3"));
+}
+
+TEST(ImportDem, TakesUnitAndScaleFromTheUser) {
+  const std::string feet = write_raster({.cells = dem_art("100 200"), .unit = "fathom"});
+  EXPECT_NEAR(all_of(*import_dem({.files = {feet}, .height_unit = "ft"}))(1, 0), 60.96, 1e-12);
+  EXPECT_THAT(import_dem({.files = {feet}, .height_unit = "ft"})->warnings(), IsEmpty());
+  EXPECT_EQ(all_of(*import_dem({.files = {feet}, .height_unit = "m", .height_scale = 0.1}))(0, 0), 10);
+  EXPECT_THAT(message_of([&] { import_dem({.files = {feet}, .height_unit = "cubit"}); }),
+              HasSubstr("name one of m, km, dm, cm, mm, ft, us-ft"));
+}
+
+TEST(ImportDem, AreaOfInterestIsInAnyCrs) {
+  const std::string area = write_text("area.geojson", R"({"type": "Polygon", "coordinates": [[[14.99, 36.14],
+      [15.0005, 36.14], [15.0005, 36.15], [14.99, 36.15], [14.99, 36.14]]]})");
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills})}, .area = area});  // zone 33: 15 E
+  EXPECT_TRUE(dem->in_area(500000, 4000000));
+  EXPECT_FALSE(dem->in_area(500060, 4000000));
+  EXPECT_TRUE(import_dem({.files = {write_raster({.cells = kHills})}})->in_area(500060, 4000000));
+  const std::string none = write_text("none.geojson", R"({"type": "Point", "coordinates": [15, 36]})");
+  EXPECT_THAT(message_of([&] { import_dem({.files = {write_raster({.cells = kHills})}, .area = none}); }),
+              HasSubstr("holds no polygon"));
+}
+
 TEST(ImportDem, GivesTheCentresOfCells) {
   const auto dem = import_dem({.files = {write_raster({.cells = kHills})}});
   const GridGeometry& grid = dem->geometry();
@@ -71,8 +118,7 @@ TEST(ImportDem, AppliesScaleOffsetAndUnit) {
 
 TEST(ImportDem, WarnsOfAUnitItDoesNotKnow) {
   const auto dem = import_dem({.files = {write_raster({.cells = kHills, .unit = "furlong"})}});
-  EXPECT_THAT(dem->warnings(),
-              ElementsAre(HasSubstr("in 'furlong', which is no unit we know; read as metres")));
+  EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("in 'furlong', an unknown unit; metres are assumed")));
 }
 
 // A shape map of the Moon, 1737400 m in radius. Its heights, as elevations: 10 and -20 m.
@@ -86,7 +132,7 @@ TEST(ImportDem, TakesTheRadiusOffDistancesFromTheCentre) {
   by_height.type = GDT_Float64;
   EXPECT_THAT(import_dem({.files = {write_raster(by_offset)}})->warnings(),
               ElementsAre(HasSubstr("heights are distances from the body's centre: the band's offset is "
-                                    "1737400 m, the radius of Moon is 1737400 m; 1737400 m taken off")));
+                                    "1737400 m, the radius of Moon is 1737400 m; 1737400 m are subtracted")));
   EXPECT_EQ(heights_of(by_offset), dem_art("10 -20"));
   EXPECT_THAT(import_dem({.files = {write_raster(by_height)}})->warnings(),
               ElementsAre(HasSubstr("the first ones are 1737380 to 1737410 m")));
@@ -110,11 +156,13 @@ TEST(ImportDem, FindsDistancesFromTheCentreBehindVoids) {
 
 TEST(ImportDem, LeavesElevationsFarFromTheRadiusAlone) {
   const auto heights = dem_art("1600000 1737400");  // 8 % below: no shape of the Moon
-  EXPECT_EQ(heights_of({.cells = heights,
-                        .type = GDT_Float64,
-                        .transform = GeoTransform{0, 1, 0, 10, 0, -1},
-                        .crs = "IAU_2015:30100"}),
-            heights);
+  const auto file = write_raster({.cells = heights,
+                                  .type = GDT_Float64,
+                                  .transform = GeoTransform{0, 1, 0, 10, 0, -1},
+                                  .crs = "IAU_2015:30100"});
+  const CellFaults faults = import_dem({.files = {file}, .inspect = false})->faults({0, 0, 2, 1});
+  EXPECT_EQ(faults.implausible, 2);
+  EXPECT_EQ(faults.height, 1600000);
   const auto dem = import_dem({.files = {write_raster({.cells = kHills, .offset = 10000})}});
   EXPECT_THAT(dem->warnings(), IsEmpty());
 }
@@ -123,8 +171,8 @@ TEST(ImportDem, KeepsEveryCellTypeExactly) {
   for (const GDALDataType type : {GDT_Byte, GDT_UInt16, GDT_Int16, GDT_UInt32, GDT_Int32, GDT_Int64,
                                   GDT_UInt64, GDT_Float32, GDT_Float64})
     EXPECT_EQ(heights_of({.cells = kHills, .type = type}), kHills) << GDALGetDataTypeName(type);
-  const auto large = dem_art("65535 40000");
-  EXPECT_EQ(heights_of({.cells = large, .type = GDT_UInt16}), large);
+  EXPECT_EQ(heights_of({.cells = dem_art("65535 40000"), .type = GDT_UInt16, .scale = 0.25}),
+            dem_art("16383.75 10000"));
   const auto fine = dem_art("0.1 8848.123456789");
   EXPECT_EQ(heights_of({.cells = fine, .type = GDT_Float64}), fine);
 }
@@ -224,7 +272,7 @@ TEST(ImportDem, KeepsFeetOfTheGroundInTheCrs) {
   EXPECT_EQ(dem->geometry().where.dx, 30);
 }
 
-TEST(ImportDem, RemembersWhatItWasTold) {
+TEST(ImportDem, KeepsItsImportOptions) {
   const auto dem = import_dem(
       {.files = {write_raster({.cells = kHills})}, .nodata = NodataPolicy::unknown, .height_sd = 2.5});
   EXPECT_EQ(dem->nodata_policy(), NodataPolicy::unknown);

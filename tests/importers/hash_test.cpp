@@ -39,7 +39,7 @@ TEST(HashFile, OfAVirtualRasterSeesItsSources) {
   GDALDatasetH opened = GDALOpen(source.c_str(), GA_ReadOnly);
   GDALClose(GDALCreateCopy(GDALGetDriverByName("VRT"), vrt.c_str(), opened, 0, nullptr, nullptr, nullptr));
   GDALClose(opened);
-  EXPECT_THAT(files_behind(vrt), ElementsAre(vrt, source));
+  EXPECT_THAT(raster_file_list(vrt), ElementsAre(vrt, source));
   const std::string before = hash_file(vrt).sha256;
   write_raster({.path = source, .cells = dem_art("1 3")});
   EXPECT_NE(hash_file(vrt).sha256, before);

@@ -15,7 +15,7 @@ TEST(HeightUnit, KnowsTheUsualNames) {
   EXPECT_EQ(height_unit("cm").metres, 0.01);
 }
 
-TEST(HeightUnit, AdmitsWhatItDoesNotKnow) {
+TEST(HeightUnit, ReportsUnknownUnits) {
   EXPECT_TRUE(height_unit("m").known);
   EXPECT_FALSE(height_unit("fathom").known);
 }

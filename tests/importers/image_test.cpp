@@ -64,7 +64,7 @@ TEST(Image, ReadsEightSixteenAndFloat) {
   }
 }
 
-TEST(Image, OutsideThereIsNothing) {
+TEST(Image, HasNoDataOutside) {
   const auto image = import_image(grey("i.tif", GDT_Byte, counted(2, 2)));
   const Pixels window = image->read({-1, -1, 4, 4});
   EXPECT_TRUE(std::isnan(window(0, 0)));
@@ -113,8 +113,8 @@ TEST(Orthophoto, PixelZeroLiesAtItsCentre) {
   EXPECT_FALSE(import_image(path, {.georeference = false})->info().ortho);
 }
 
-// A world file tells the centre of the first pixel, a GeoTIFF its corner.
-TEST(Orthophoto, WorldFilesTellTheCentre) {
+// A world file gives the centre of the first pixel, a GeoTIFF its corner.
+TEST(Orthophoto, WorldFilesGiveTheCentre) {
   const auto folder = std::filesystem::path(write_text("i.pgm", "P5 2 2 255\nabcd")).parent_path();
   std::ofstream(folder / "i.wld") << "0.5\n0\n0\n-0.5\n1000\n2000\n";
   const auto image = import_image((folder / "i.pgm").string(), {.crs = "EPSG:32633"});
@@ -126,7 +126,7 @@ TEST(Orthophoto, WorldFilesTellTheCentre) {
   EXPECT_THAT(nowhere->warnings(), ElementsAre(HasSubstr("names no CRS")));
 }
 
-TEST(Orthophoto, DegreesAreRefusedWithTheCommandThatMendsThem) {
+TEST(Orthophoto, DegreesAreRefusedWithACommandThatReprojects) {
   const auto path = write_raster({.path = "/vsimem/d.tif",
                                   .cells = counted(4, 4),
                                   .type = GDT_Byte,
@@ -161,7 +161,7 @@ TEST(Image, CameraIsScaledToAnImageOfTheSameShapeOnly) {
       HasSubstr("not the same picture"));
 }
 
-TEST(Image, SaysWhatIsWrong) {
+TEST(Image, ReportsTheFault) {
   EXPECT_THAT(message_of([] { import_image("/vsimem/none.png"); }), HasSubstr("no such file"));
   EXPECT_THAT(message_of([] { import_image(write_text("t.png", "no image")); }), HasSubstr("not a raster"));
   EXPECT_THAT(message_of([] { import_image(grey("i.tif", GDT_Byte, counted(2, 2)), {.band = 2}); }),
@@ -223,7 +223,7 @@ TEST(LocalProjection, IsTrueToScaleAtItsPlace) {
   for (const char* crs : {"EPSG:4326", "IAU_2015:49900", "IAU_2015:30100"}) {
     const Crs degrees = Crs::from_text(crs);
     const Crs local = Crs::from_text(local_projection(degrees, 137.44, -4.59));
-    const auto [x, y] = CrsTransform(geographic_of(local), local)(137.44, -4.59);
+    const auto [x, y] = CrsTransform(geographic_crs(local), local)(137.44, -4.59);
     EXPECT_NEAR(x, 0, 1e-3) << crs;
     EXPECT_NEAR(y, 0, 1e-3) << crs;
     EXPECT_EQ(local.body().name, degrees.body().name);

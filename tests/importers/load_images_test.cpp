@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "importers/cameras/control_points.hpp"
 #include "importers/hash.hpp"
-#include "importers/images/control_points.hpp"
 #include "importers/images/image_set.hpp"
 #include "importers/images/list_images.hpp"
 #include "importers/stages.hpp"
@@ -79,7 +79,21 @@ TEST(ListImages, ASingleImageOfACameraFileIsNoGap) {
   EXPECT_EQ(listed.images.size(), 1u);
 }
 
-TEST(ListImages, SaysWhichImagesHaveNoPlace) {
+TEST(ListImages, APatternSelectsWhatItMatchesAndNothingElse) {
+  const fs::path folder = folder_of("some", {"a1.pgm", "a2.pgm", "b1.pgm"});
+  const std::string cameras = cameras_in(folder, {"a1.pgm", "a2.pgm", "b1.pgm"});
+  const ListedImages some = list_images({.files = {(folder / "a[12].pgm").string()}, .cameras = cameras});
+  ASSERT_EQ(some.images.size(), 2u);
+  EXPECT_TRUE(some.images[0].view && some.images[1].view);
+  for (const char* none : {"typo_*.pgm", "[1-4].pgm"})
+    EXPECT_THAT(message_of([&] {
+                  list_images({.files = {(folder / "b1.pgm").string(), (folder / none).string()},
+                               .cameras = cameras});
+                }),
+                AllOf(HasSubstr("no image matches the pattern"), HasSubstr(none)));
+}
+
+TEST(ListImages, ReportsImagesWithoutGeoreference) {
   const fs::path folder = folder_of("placeless", {"a.pgm", "z.pgm"});
   const ListedImages listed =
       list_images({.files = {(folder / "*.pgm").string()}, .cameras = cameras_in(folder, {"a.pgm"})});
@@ -88,7 +102,7 @@ TEST(ListImages, SaysWhichImagesHaveNoPlace) {
               ElementsAre(HasSubstr("1 of 2 images have neither a pose nor a usable georeference: z.pgm")));
 }
 
-TEST(ListImages, FoldersTellImagesOfOneNameApart) {
+TEST(ListImages, FoldersDistinguishImagesOfOneName) {
   const fs::path folder = folder_of("twins", {"left/1.pgm", "right/1.pgm"});
   const ListedImages listed =
       list_images({.files = {(folder / "left").string(), (folder / "right").string()}});
@@ -121,19 +135,19 @@ TEST(ListImages, BundlerLooksAlongMinusZAndNeedsASimilarity) {
   EXPECT_EQ(a.camera.distortion[0], 0.1);
   EXPECT_EQ(a.camera.distortion[1], 0.02);
   const auto down = ray(a, {1.5, 1.5}), right = ray(a, {2.5, 1.5}), up = ray(a, {1.5, 0.5});
-  EXPECT_LT((down->along.unit - Eigen::Vector3d(0, 0, -1)).norm(), 1e-9);
-  EXPECT_GT(right->along.unit.x(), 0.1);
-  EXPECT_GT(up->along.unit.y(), 0.1);
+  EXPECT_LT((down->direction.unit - Eigen::Vector3d(0, 0, -1)).norm(), 1e-9);
+  EXPECT_GT(right->direction.unit.x(), 0.1);
+  EXPECT_GT(up->direction.unit.y(), 0.1);
   const PosedCamera& b = listed.images[1].view.value();
-  EXPECT_LT((ray(b, {1.5, 1.5})->along.unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-9);
-  EXPECT_GT(ray(b, {1.5, 0.5})->along.unit.z(), 0.1);
-  EXPECT_LT(ray(b, {2.5, 1.5})->along.unit.y(), -0.1);
+  EXPECT_LT((ray(b, {1.5, 1.5})->direction.unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-9);
+  EXPECT_GT(ray(b, {1.5, 0.5})->direction.unit.z(), 0.1);
+  EXPECT_LT(ray(b, {2.5, 1.5})->direction.unit.y(), -0.1);
   EXPECT_FALSE(listed.images[2].view);
   std::ofstream(folder / "list.txt") << "a.pgm\n";
   EXPECT_THAT(message_of([&] { list_images(listing); }), HasSubstr("there are 3 cameras, but 1 image names"));
 }
 
-TEST(ListImages, TheSunGivenHoldsForAll) {
+TEST(ListImages, TheGivenSunAppliesToAllImages) {
   const fs::path folder = folder_of("sunny", {"a.pgm"});
   const std::string cameras = cameras_in(folder, {"a.pgm"}, R"("sun": {"azimuth": 100, "elevation": 30},)");
   EXPECT_EQ(list_images({.cameras = cameras}).images[0].sun->azimuth.value, 100);
@@ -142,7 +156,7 @@ TEST(ListImages, TheSunGivenHoldsForAll) {
   EXPECT_FALSE(list_images({.cameras = cameras, .sun_from = ImageListing::SunFrom::nothing}).images[0].sun);
 }
 
-TEST(ListImages, NothingIsAnError) {
+TEST(ListImages, EmptyInputIsAnError) {
   EXPECT_THAT(message_of([] { list_images({}); }), HasSubstr("no images are given"));
   EXPECT_THAT(message_of([] { list_images({.files = {folder_of("empty", {}).string()}}); }),
               HasSubstr("there are no images"));
@@ -156,7 +170,7 @@ RunResult load(const std::string& options) {
   return run(pipeline, {.hash_file = hash_file});
 }
 
-TEST(LoadImages, ListsImagesByWhatMakesThemWhatTheyAre) {
+TEST(LoadImages, ListsImagesWithTheirFingerprints) {
   const fs::path folder = folder_of("stage", {"a.pgm", "b.pgm"});
   const std::string options = R"({"cameras": ")" + cameras_in(folder, {"a.pgm", "b.pgm"}) +
                               R"(", "sun_azimuth": 90, "sun_elevation": 40})";

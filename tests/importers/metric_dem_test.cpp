@@ -92,7 +92,7 @@ TEST(MetricDem, RefusesHalfAPlanet) {
                                          .crs = "EPSG:4326"});
   const std::string message =
       message_of([&] { import_dem({.files = {file}, .metric = true, .inspect = false}); });
-  EXPECT_THAT(message, HasSubstr("too wide to be laid on a plane"));
+  EXPECT_THAT(message, HasSubstr("too wide for a projection to metres"));
   EXPECT_THAT(message, HasSubstr("gdal_translate -projwin"));
 }
 

@@ -22,7 +22,7 @@ std::optional<double> sample(const Pixels& image, const Eigen::Vector2d& at) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-// The ground about a place as the photo shows it, north up.
+// Returns the photo resampled around a position, north up.
 std::optional<Grid<double>> laid_out(const Photo& photo, const Terrain& terrain, double x, double y,
                                      double step, int half) {
   Grid<double> patch(2 * half + 1, 2 * half + 1);

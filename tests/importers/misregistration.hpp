@@ -15,16 +15,15 @@ struct Photo {
 
 Photo photo(const ImageSource& image);
 
-/// How far the same ground lies apart in two photos that are laid on the terrain: shifts in metres, east and
-/// north, at places on a regular grid where both see textured ground. Patches are compared by normalised
-/// correlation.
+/// Measures the shift between two photos projected onto the terrain: metres, east and north, at positions on
+/// a regular grid where both show texture. Patches are compared by normalised correlation.
 std::vector<Eigen::Vector2d> shifts(const Photo& a, const Photo& b, const Terrain& terrain,
                                     double metres_per_pixel, int places_across = 24);
 
-/// The median length of the shifts, metres.
+/// Returns the median length of the shifts, metres.
 double median_length(const std::vector<Eigen::Vector2d>& shifts);
 
-/// The length of the median shift: what the two are apart as a whole.
+/// Returns the length of the median shift, metres.
 double common_shift(const std::vector<Eigen::Vector2d>& shifts);
 
 }  // namespace waymark::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several files as one DEM, and grids that go round the body.
+// Several files as one DEM, and grids that cover all longitudes.
 #include <gmock/gmock.h>
 #include <rapidcheck/gtest.h>
 
@@ -53,10 +53,10 @@ TEST(Mosaic, ReportsSeamsThatDisagree) {
   EXPECT_THAT(
       import_dem({.files = {first, second}})->warnings(),
       ElementsAre("/vsimem/first.tif and /vsimem/second.tif disagree in 1 of 2 shared cells, by up to 4 m at "
-                  "(11.000000, 49.000000); the first one counts"));
+                  "(11.000000, 49.000000); the first one has priority"));
 }
 
-TEST(Mosaic, SeamsThatAgreeAreNoNews) {
+TEST(Mosaic, SeamsThatAgreeGiveNoWarning) {
   const auto first = degrees_file("first.tif", 10, 50, dem_art("1 2 / 3 4"));
   const auto second = degrees_file("second.tif", 11, 50, dem_art("2 9 / 4 7"));
   EXPECT_THAT(import_dem({.files = {first, second}})->warnings(), IsEmpty());

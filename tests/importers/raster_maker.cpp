@@ -62,7 +62,7 @@ std::string write_raster(const RasterFile& file) {
   if (!file.unit.empty()) check(band.SetUnitType(file.unit.c_str()));
   if (file.scale != 1) check(band.SetScale(file.scale));
   if (file.offset != 0) check(band.SetOffset(file.offset));
-  fill(band, file);
+  for (int b = 1; b <= file.bands; ++b) fill(*dataset->GetRasterBand(b), file);
   if (file.mask) add_mask(*dataset, *file.mask);
   return file.path;
 }

@@ -11,9 +11,9 @@
 #include "core/grid.hpp"
 namespace waymark::testing {
 
-using GeoTransform = std::array<double, 6>;  ///< as GDAL has it: about the corner of the first cell
+using GeoTransform = std::array<double, 6>;  ///< as in GDAL: about the corner of the first cell
 
-/// A raster file for a test, in memory unless the path says otherwise.
+/// A raster file for a test, in memory by default.
 struct RasterFile {
   std::string path = "/vsimem/dem.tif";
   Grid<double> cells = {};  ///< as stored; kNoHeight is written as `nodata`
@@ -29,19 +29,19 @@ struct RasterFile {
   std::vector<std::string> options = {};  ///< of creation, "TILED=YES"
 };
 
-/// Writes the file and gives its path.
+/// Writes the file and returns its path.
 std::string write_raster(const RasterFile& file);
 
-/// Degrees of a file whose first cell has its centre at (lon, lat).
+/// Returns the transform of a file in degrees whose first cell has its centre at (lon, lat).
 GeoTransform centred_on(double lon, double lat, double cell);
 
-/// The path of a file of the shared test data, if it is here.
+/// Returns the path of a file of the shared test data; `std::nullopt` if it is not installed.
 std::optional<std::string> shared_dem(const std::string& name);
 
-/// A plain file with this content in a folder of this test.
+/// Writes a plain file with this content in a folder of this test.
 std::string write_text(const std::string& name, const std::string& content);
 
-/// What an Error says that `action` throws.
+/// Returns the message of the Error that `action` throws.
 std::string message_of(const std::function<void()>& action);
 
 }  // namespace waymark::testing

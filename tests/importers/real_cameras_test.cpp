@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Conventions of foreign camera files, on real ones: each test fails by the classic mistake named in it.
+// Conventions of camera files of other programs, on real files: each test catches a classic mistake.
 #include <gmock/gmock.h>
 
 #include <cmath>

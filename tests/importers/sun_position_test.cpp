@@ -43,7 +43,7 @@ TEST(SunOnMap, KnowsTheEarthOnly) {
 TEST(SunFromDirection, IsTheInverseOfTowards) {
   for (double azimuth = 0; azimuth < 360; azimuth += 17)
     for (double elevation = 1; elevation < 90; elevation += 11) {
-      const Sun sun = sun_from_direction(7 * towards({Degrees{azimuth}, Degrees{elevation}}).unit);
+      const Sun sun = sun_from_direction(7 * sun_direction({Degrees{azimuth}, Degrees{elevation}}).unit);
       EXPECT_NEAR(sun.azimuth.value, azimuth, 1e-9);
       EXPECT_NEAR(sun.elevation.value, elevation, 1e-9);
     }

@@ -42,7 +42,7 @@ SemanticMap map_of(const std::string& crs, const std::vector<Made>& made) {
   return {two_types(), Crs::from_text(crs), std::move(landmarks)};
 }
 
-std::vector<std::string> uids(const SemanticMap::Found& found) {
+std::vector<std::string> uids(const SemanticMap::LandmarkRefs& found) {
   std::vector<std::string> all;
   for (const Landmark& landmark : found) all.push_back(landmark.uid);
   return all;
@@ -81,13 +81,13 @@ TEST(SemanticMap, ProjectedMetresAreNotGroundMetres) {  // Web Mercator at 60 de
   EXPECT_THAT(uids(map.near(at(0, 8399737.89), 400_m)), ElementsAre("a"));
 }
 
-TEST(SemanticMap, NearTakesAPlaceInTheMapFrame) {
+TEST(SemanticMap, NearAcceptsAPositionInTheMapFrame) {
   const SemanticMap map = map_of("EPSG:32632", {{400000, 5100000}, {400100, 5100000}});
   const Point<MapFrame> place = map.frame().map_frame_from_crs(at(400100, 5100000));
   EXPECT_THAT(uids(map.near(place, 10_m)), ElementsAre("b"));
 }
 
-TEST(SemanticMap, BoxesHoldTheirBorder) {
+TEST(SemanticMap, BoxesIncludeTheirBorder) {
   const SemanticMap map = map_of("local", {{0, 0}, {5, 5}, {5.1, 5}});
   EXPECT_THAT(uids(map.in_box({0, 0, 5, 5})), ElementsAre("a", "b"));
 }
@@ -101,23 +101,23 @@ TEST(SemanticMap, BoxesCrossTheAntimeridian) {
   EXPECT_EQ(map.in_box({0, -10, 360, 10}).size(), 5u);
 }
 
-TEST(SemanticMap, KeepsTypesApart) {
+TEST(SemanticMap, FiltersByType) {
   const SemanticMap map = map_of("local", {{0, 0, 0}, {1, 0, 1}, {2, 0, 0}});
-  EXPECT_THAT(uids(map.where({.type = "rock"})), ElementsAre("a", "c"));
+  EXPECT_THAT(uids(map.select({.type = "rock"})), ElementsAre("a", "c"));
   EXPECT_THAT(uids(map.nearest(at(0, 0), 1, {.type = "tree"})), ElementsAre("b"));
-  EXPECT_THAT(map.where({.type = "crater"}), IsEmpty());
+  EXPECT_THAT(map.select({.type = "crater"}), IsEmpty());
 }
 
 TEST(SemanticMap, QualityDependsOnTheSensor) {
-  const Quality flat{.seen = 1, .visible = 1, .of_feature = {0.2, 0.9}};
+  const Quality flat{.seen = 1, .visible = 1, .feature_confidences = {0.2, 0.9}};
   const SemanticMap map = map_of("local", {{0, 0, 0, flat}, {1, 0, 0}});
   const SensorProfile sees_height{"tall", "", {{"rock", "height", 1}}};
-  EXPECT_THAT(map.where({.min_quality = 0.6}), IsEmpty());
-  EXPECT_THAT(uids(map.where({.min_quality = 0.6, .sensor = &sees_height})), ElementsAre("a"));
-  EXPECT_EQ(map.where({}).size(), 2u) << "unknown quality is kept where none is asked for";
+  EXPECT_THAT(map.select({.min_quality = 0.6}), IsEmpty());
+  EXPECT_THAT(uids(map.select({.min_quality = 0.6, .sensor = &sees_height})), ElementsAre("a"));
+  EXPECT_EQ(map.select({}).size(), 2u) << "unknown quality passes without a bound";
 }
 
-TEST(SemanticMap, NearestIsThatOfLookingAtEveryLandmark) {
+TEST(SemanticMap, NearestAgreesWithTestingEveryLandmark) {
   for (const char* crs : {"EPSG:4326", "local"}) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> x(-180, 180), y(-90, 90);
@@ -136,7 +136,7 @@ TEST(SemanticMap, NearestIsThatOfLookingAtEveryLandmark) {
   }
 }
 
-TEST(SemanticMap, HasItsOriginInTheMiddle) {
+TEST(SemanticMap, HasItsOriginAtTheCentroid) {
   EXPECT_EQ(map_of("local", {{0, 0}, {10, 20}}).frame().origin().xyz, Eigen::Vector3d(5, 10, 0));
   EXPECT_NEAR(map_of("EPSG:4326", {{179, 0}, {-179, 0}}).frame().origin().xyz.x(), 180, 1e-9);
 }

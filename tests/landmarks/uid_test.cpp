@@ -23,11 +23,11 @@ TEST(Uid, BeginsWithTheTypesInitials) {
   EXPECT_EQ(make_uid(kRock, crs, {{8, 46, 0}}).size(), 16u);
 }
 
-TEST(Uid, NeverChanges) {  // maps on disk hold these names
+TEST(Uid, NeverChanges) {  // existing maps contain these uids
   EXPECT_EQ(make_uid(kTop, Crs::from_text("EPSG:4326"), {{-70.011, -32.653, 6929}}), "mt-6p5ge7fc9s4mc");
 }
 
-TEST(Uid, DependsOnTypeCrsAndPlaceAlone) {
+TEST(Uid, DependsOnTypeCrsAndPositionAlone) {
   const Crs earth_crs = Crs::from_text("EPSG:4326"), mars_crs = Crs::from_text("IAU_2015:49900");
   const std::string uid = make_uid(kRock, earth_crs, {{8, 46, 0}});
   EXPECT_EQ(make_uid(kRock, earth_crs, {{8, 46, 99}}), uid) << "heights are refined";
@@ -37,7 +37,7 @@ TEST(Uid, DependsOnTypeCrsAndPlaceAlone) {
   EXPECT_NE(make_uid(kTop, earth_crs, {{8, 46, 0}}).substr(3), uid.substr(3));
 }
 
-TEST(Uid, AWholeTurnMakesNoDifference) {
+TEST(Uid, LongitudesAreEqualModuloATurn) {
   const Crs crs = Crs::from_text("IAU_2015:49900");
   EXPECT_EQ(make_uid(kTop, crs, {{350, 10, 0}}), make_uid(kTop, crs, {{-10, 10, 0}}));
   EXPECT_EQ(make_uid(kTop, crs, {{180, 10, 0}}), make_uid(kTop, crs, {{-180, 10, 0}}));
@@ -49,7 +49,7 @@ TEST(Uid, RoundsToACentimetreOnAPlane) {
   EXPECT_NE(make_uid(kTop, utm, {{400000.02, 5e6, 0}}), make_uid(kTop, utm, {{400000, 5e6, 0}}));
 }
 
-TEST(Uid, NeighbouringCellsNeverShareOne) {
+TEST(Uid, NeighbouringCellsHaveDifferentUids) {
   const Crs crs = Crs::from_text("EPSG:4326");
   std::set<std::string> uids;
   for (int row = 0; row < 200; ++row)
@@ -58,7 +58,7 @@ TEST(Uid, NeighbouringCellsNeverShareOne) {
   EXPECT_EQ(uids.size(), 40000u);
 }
 
-TEST(AssignUids, NumbersThoseAtOnePlace) {
+TEST(AssignUids, NumbersThoseAtOnePosition) {
   TypeRegistry types;
   types.add(kRock);
   std::vector<Landmark> rocks(4);

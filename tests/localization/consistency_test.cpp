@@ -7,14 +7,16 @@
 
 #include "core/random.hpp"
 #include "localization/filters/kalman.hpp"
-#include "localization/play_log.hpp"
+#include "localization/replay_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
 namespace waymark::testing {
 namespace {
 
-/// Squared errors of a consistent filter four times a second, whose errors are Gauss-Markov with a memory.
+/// Squared errors of a consistent filter, four per second, with Gauss-Markov errors of this correlation
+/// time.
 std::vector<double> squares_with(double memory, Random& random, std::vector<double>& t) {
   const double dt = 0.25, alike = memory > 0 ? std::exp(-dt / memory) : 0;
   Eigen::Vector3d e(random.normal(), random.normal(), random.normal());
@@ -96,17 +98,18 @@ class DrawnAgain {
       const Eigen::Vector3d noise = motion.covariance.diagonal().cwiseSqrt().cwiseProduct(normal3());
       if (before) motion.step = pose_of((inverse(*before) * *truth).vector() - noise);
       before = truth, now = event.t;
-      filter.move(motion);
-      repeated.move(motion);
+      filter.predict(motion);
+      repeated.predict(motion);
       if (const auto* twist = std::get_if<TwistReading>(&event.what)) held = *twist;
       if (const auto* seen = std::get_if<SightingSet>(&event.what)) {
         SightingSet drawn = *seen;
         for (SeenLandmark& s : drawn.sightings) draw(s, *truth, event.t);
         repeated.widen(drawn, event.t);
-        filter.see(drawn);
+        filter.update(drawn);
       }
       const PoseEstimate at = filter.estimate();
-      const Eigen::Vector3d e(at.pose.x - truth->x, at.pose.y - truth->y, wrapped(at.pose.yaw - truth->yaw));
+      const Eigen::Vector3d e(at.pose.x - truth->x, at.pose.y - truth->y,
+                              wrap_angle(at.pose.yaw - truth->yaw));
       sum += e.dot(at.covariance.ldlt().solve(e)) / 3;
       ++count;
     }
@@ -135,7 +138,7 @@ class DrawnAgain {
                later(error.bearing, t - error.t, log_.error_memory.bearing)};
     const Eigen::Vector2d to = landmark->at - truth.at();
     s.range = std::max(0.05, to.norm() + s.range_sd * error.range);
-    s.bearing = wrapped(std::atan2(to.y(), to.x()) - truth.yaw + s.bearing_sd * error.bearing);
+    s.bearing = wrap_angle(std::atan2(to.y(), to.x()) - truth.yaw + s.bearing_sd * error.bearing);
   }
 
   const RobotLog& log_;
@@ -144,7 +147,7 @@ class DrawnAgain {
   std::map<LandmarkKey, Error> errors_;
 };
 
-/// 2.5 and 97.5 % of values, between the neighbours.
+/// Interpolated quantiles, 2.5 and 97.5 %.
 std::pair<double, double> band(std::vector<double> values) {
   std::ranges::sort(values);
   const auto at = [&](double part) {
@@ -169,7 +172,7 @@ TEST(MrclamConsistency, ExtendedKalmanIsWithinTheBandOfItsOwnModel) {
     const RobotLog& log = robots.logs[robot];
     const PoseEstimate& start = robots.start[robot];
     ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(robots.map)}, FeatureScales(robots.types));
-    const TrackScore s = score(play(log, filter, {}), log.truth, TrackAlignment::none, true);
+    const TrackScore s = score(replay(log, filter, {}), log.truth, TrackAlignment::none, true);
     const auto n = static_cast<double>(s.poses);
     std::vector<double> drawn;
     for (std::size_t run = 0; run < kRuns; ++run) {

@@ -17,30 +17,30 @@ namespace {
 
 struct Stars {
   std::vector<MapLandmark> map;
-  std::vector<PlacedLandmark> places;
+  std::vector<LandmarkPosition> positions;
 };
 
 Stars on_plane(std::vector<MapLandmark> map) {
   Stars all{std::move(map), {}};
   for (const MapLandmark& l : all.map)
-    all.places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
+    all.positions.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
   return all;
 }
 
 Stars strewn_rocks(std::size_t count, double side, std::uint64_t seed) {
-  auto map = strewn(count, side, seed, 0.05);
+  auto map = scatter_landmarks(count, side, seed, 0.05);
   Random random(seed, "radius");
   for (MapLandmark& l : map) l.features.value[0] = random.log_uniform(0.2, 1);
   return on_plane(std::move(map));
 }
 
-/// Looks from `tries` places near landmarks of the map, each once as seen and once with bearings drawn anew.
-Tally tally(const Stars& stars, const ConstellationIndex& index, const Look& how, int tries,
+/// Simulates sightings at `tries` positions near landmarks, each once as seen and once with random bearings.
+Tally tally(const Stars& stars, const ConstellationIndex& index, const SensorModel& how, int tries,
             std::uint64_t seed, std::size_t least = 6) {
   Tally t;
   Random random(seed, "places");
   while (t.tries < tries) {
-    const PlacedLandmark& near = stars.places[random.below(stars.places.size())];
+    const LandmarkPosition& near = stars.positions[random.uniform_index(stars.positions.size())];
     TangentPlane plane{.origin = near.at};
     if (near.up.z() < 0.9999999) {
       plane.east = Eigen::Vector3d::UnitZ().cross(near.up).normalized();
@@ -48,7 +48,7 @@ Tally tally(const Stars& stars, const ConstellationIndex& index, const Look& how
     }
     const Pose2 robot{random.normal() * how.reach / 5, random.normal() * how.reach / 5,
                       random.uniform(-3.1, 3.1)};
-    const LookedAt seen = look(stars.map, stars.places, plane, robot, how, random);
+    const SimulatedSightings seen = look(stars.map, stars.positions, plane, robot, how, random);
     if (seen.truth.size() < least) continue;
     ++t.tries;
     const auto begun = std::chrono::steady_clock::now();
@@ -59,17 +59,17 @@ Tally tally(const Stars& stars, const ConstellationIndex& index, const Look& how
     if (!answer.fix) {
       ++t.unknown;
     } else {
-      const Eigen::Vector3d at = answer.fix->plane.place(answer.fix->on_plane.pose.at());
-      const Eigen::Vector3d off = at - plane.place(robot.at());
+      const Eigen::Vector3d at = answer.fix->plane.point(answer.fix->plane_pose.pose.at());
+      const Eigen::Vector3d off = at - plane.point(robot.at());
       const double sideways = std::hypot(plane.east.dot(off), plane.north.dot(off));
       ++(sideways < 0.1 * how.reach + 5 * how.range_sd ? t.right : t.wrong);
     }
-    t.invented += index.find(scrambled(seen.set, random)).fix.has_value();
+    t.invented += index.find(scramble_bearings(seen.set, random)).fix.has_value();
   }
   return t;
 }
 
-void tell(const char* what, const Stars& stars, const ConstellationIndex& index, const Tally& t) {
+void report(const char* what, const Stars& stars, const ConstellationIndex& index, const Tally& t) {
   std::cout << what << ": " << stars.map.size() << " landmarks, " << index.triangles() << " triangles, "
             << static_cast<double>(index.bytes()) / 1e6 << " MB; of " << t.tries << " looks " << t.right
             << " right, " << t.wrong << " wrong, " << t.unknown
@@ -100,17 +100,17 @@ TEST(Constellation, FindsRocksAnywhereInAMap) {
   const Stars stars = strewn_rocks(5000, 500, 3);
   const ConstellationIndex index(stars.map, {});
   const Tally t = tally(stars, index, {.reach = 15}, 100, 1);
-  tell("rocks", stars, index, t);
+  report("rocks", stars, index, t);
   EXPECT_GE(t.right, 90);
   EXPECT_EQ(t.wrong, 0);
   EXPECT_EQ(t.invented, 0);
 }
 
 TEST(Constellation, WithoutFeaturesMoreSightingsAreNeededButNoneIsWrong) {
-  const Stars stars = on_plane(strewn(5000, 500, 5, 0.05));
+  const Stars stars = on_plane(scatter_landmarks(5000, 500, 5, 0.05));
   const ConstellationIndex index(stars.map, {});
   const Tally t = tally(stars, index, {.reach = 20}, 60, 2, 10);
-  tell("bare points", stars, index, t);
+  report("bare points", stars, index, t);
   EXPECT_GE(t.right, 48);
   EXPECT_EQ(t.wrong, 0);
   EXPECT_EQ(t.invented, 0);
@@ -126,8 +126,9 @@ TEST(Constellation, PoseAndCovarianceAreThoseOfTheRobot) {
     const Pose2 robot{random.uniform(-120, 120), random.uniform(-120, 120), random.uniform(-3, 3)};
     // The map's errors are part of the covariance: the robot sees the landmarks where they really are.
     auto real = stars;
-    for (auto& p : real.places) p.at += Eigen::Vector3d(0.05 * random.normal(), 0.05 * random.normal(), 0);
-    const LookedAt seen = look(real.map, real.places, {}, robot, {.reach = 15, .clutter = 0}, random);
+    for (auto& p : real.positions) p.at += Eigen::Vector3d(0.05 * random.normal(), 0.05 * random.normal(), 0);
+    const SimulatedSightings seen =
+        look(real.map, real.positions, {}, robot, {.reach = 15, .clutter = 0}, random);
     const auto answer = index.find(seen.set);
     if (!answer.fix) continue;
     sum += nees(answer.fix->pose(), robot);
@@ -141,15 +142,15 @@ TEST(Constellation, PoseAndCovarianceAreThoseOfTheRobot) {
   EXPECT_NEAR(sum / (3 * count), 1, 0.25);  // 360 degrees of freedom: sd 0.075; linearised at 15 m
 }
 
-TEST(Constellation, TheOtherHandIsNotTaken) {
+TEST(Constellation, MirrorImagesAreRejected) {
   // A map and a look at its mirror image: all lengths are right, but it turns the other way.
   Stars stars = strewn_rocks(40, 40, 11);
   const ConstellationIndex index(stars.map, {});
   Random random(1);
   Stars mirrored = stars;
-  for (auto& p : mirrored.places) p.at.x() = -p.at.x();
+  for (auto& p : mirrored.positions) p.at.x() = -p.at.x();
   const auto seen =
-      look(mirrored.map, mirrored.places, {}, {}, {.reach = 12, .detected = 1, .clutter = 0}, random);
+      look(mirrored.map, mirrored.positions, {}, {}, {.reach = 12, .detected = 1, .clutter = 0}, random);
   ASSERT_GT(seen.truth.size(), 6u);
   EXPECT_FALSE(index.find(seen.set).fix);
 }
@@ -165,10 +166,11 @@ TEST(Constellation, TwoEqualPlacesAreUnknown) {
   stars = on_plane(stars.map);
   const ConstellationIndex index(stars.map, {});
   Random random(2);
-  const auto seen = look(stars.map, stars.places, {}, {}, {.reach = 14, .detected = 1, .clutter = 0}, random);
+  const auto seen =
+      look(stars.map, stars.positions, {}, {}, {.reach = 14, .detected = 1, .clutter = 0}, random);
   const auto answer = index.find(seen.set);
   EXPECT_FALSE(answer.fix);
-  EXPECT_EQ(answer.reason, "two places fit alike");
+  EXPECT_EQ(answer.reason, "two poses fit alike");
   ASSERT_GE(answer.candidates.size(), 2u);
   EXPECT_NEAR(std::abs(answer.candidates[0].pose().pose.x - answer.candidates[1].pose().pose.x), 100, 1);
 }
@@ -177,7 +179,7 @@ TEST(Constellation, TwoNamesAreEnough) {
   const Stars stars = strewn_rocks(500, 100, 17);
   const ConstellationIndex index(stars.map, {});
   Random random(3);
-  auto seen = look(stars.map, stars.places, {}, {3, 4, 0.5}, {.reach = 12, .clutter = 0}, random);
+  auto seen = look(stars.map, stars.positions, {}, {3, 4, 0.5}, {.reach = 12, .clutter = 0}, random);
   ASSERT_GE(seen.truth.size(), 2u);
   seen.set.sightings.resize(2);
   for (std::size_t i = 0; i < 2; ++i)
@@ -191,7 +193,7 @@ TEST(Constellation, NothingToGoByHasAReason) {
   const Stars stars = strewn_rocks(500, 100, 19);
   const ConstellationIndex index(stars.map, {}), none(std::vector<MapLandmark>{}, {});
   EXPECT_EQ(none.find({}).reason, "the map is empty");
-  EXPECT_EQ(index.find({}).reason, "too few sightings with a range");
+  EXPECT_EQ(index.find({}).reason, "too few sightings with range");
   SightingSet bad;
   for (int i = 0; i < 6; ++i) {
     SeenLandmark s;
@@ -200,7 +202,7 @@ TEST(Constellation, NothingToGoByHasAReason) {
     s.range = {};  // a bearing alone
     bad.sightings.push_back(s);
   }
-  EXPECT_EQ(index.find(bad).reason, "too few sightings with a range");
+  EXPECT_EQ(index.find(bad).reason, "too few sightings with range");
 }
 
 const std::filesystem::path kShared = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data";
@@ -229,17 +231,17 @@ TEST(Constellation, CratersOfTheWholeMoon) {
     const double a = lon * std::numbers::pi / 180, b = lat * std::numbers::pi / 180;
     const Eigen::Vector3d up(std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b));
     stars.map.push_back(l);
-    stars.places.push_back({kRadius * up, up});
+    stars.positions.push_back({kRadius * up, up});
   };
   for (const auto& row : rows_of(folder / "HeadCraters.csv"))
     if (row.size() == 3 && row[0] != "Lon") add(std::stod(row[0]), std::stod(row[1]), std::stod(row[2]));
   for (const auto& row : rows_of(folder / "LROCCraters.csv"))
     if (row.size() == 6 && !row[0].empty()) add(std::stod(row[3]), std::stod(row[4]), std::stod(row[2]));
   ASSERT_GT(stars.map.size(), 20000u);
-  const ConstellationIndex index(stars.map, stars.places, {});
-  const Look how{.reach = 120e3, .range_sd = 300, .range_sd_per_metre = 0.005, .bearing_sd = 0.005};
+  const ConstellationIndex index(stars.map, stars.positions, {});
+  const SensorModel how{.reach = 120e3, .range_sd = 300, .range_sd_per_metre = 0.005, .bearing_sd = 0.005};
   const Tally t = tally(stars, index, how, 60, 1);
-  tell("craters of the Moon", stars, index, t);
+  report("craters of the Moon", stars, index, t);
   EXPECT_GE(t.right, 54);
   EXPECT_EQ(t.wrong, 0);
   EXPECT_EQ(t.invented, 0);
@@ -271,7 +273,7 @@ TEST(Constellation, TreesOfMountRainier) {
   const Stars stars = on_plane(std::move(map));
   const ConstellationIndex index(stars.map, {});
   const Tally t = tally(stars, index, {.reach = 12, .range_sd = 0.05, .bearing_sd = 0.01}, 80, 1);
-  tell("trees of Mount Rainier", stars, index, t);
+  report("trees of Mount Rainier", stars, index, t);
   EXPECT_GE(t.right, 64);
   EXPECT_EQ(t.wrong, 0);
   EXPECT_EQ(t.invented, 0);

@@ -5,15 +5,15 @@
 #include <functional>
 
 #include "localization/chi_square.hpp"
-#include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
 namespace {
 
-IdentificationOptions believing(bool identities) {
+IdentificationOptions identification_options(bool identities) {
   IdentificationOptions options;
   options.use_identities = identities;
   options.quality_floor = 1;
@@ -25,22 +25,23 @@ using Make = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const
 Make kalman(bool unscented) {
   return [unscented](const PoseEstimate& start, const MadeDrive& drive) -> std::unique_ptr<Localizer> {
     LandmarkWindow map{LandmarkGrid(drive.map())};
-    if (unscented) return std::make_unique<UnscentedKalman>(start, map, FeatureScales{}, believing(true));
-    return std::make_unique<ExtendedKalman>(start, map, FeatureScales{}, believing(true));
+    if (unscented)
+      return std::make_unique<UnscentedKalman>(start, map, FeatureScales{}, identification_options(true));
+    return std::make_unique<ExtendedKalman>(start, map, FeatureScales{}, identification_options(true));
   };
 }
 
-/// Mean NEES over the last moments of many drives, with the bounds a consistent filter keeps in 99.9 % of all
-/// cases. Landmark errors are drawn once per drive while filters take them as new each time, so moments of
-/// one drive are not independent: one per drive is counted.
+/// Tests the mean NEES at the end of many drives against the bounds of a consistent filter in 99.9 % of all
+/// cases. One pose per drive counts: landmark errors are drawn once per drive, so poses of one drive are
+/// correlated.
 void expect_consistent(const Make& make, int runs, double slack) {
   double sum = 0;
   for (int run = 0; run < runs; ++run) {
     MadeDrive drive(static_cast<std::uint64_t>(run) + 1);
     const auto filter = make(drive.start(), drive);
     for (int i = 0; i < 20; ++i) {
-      filter->move(drive.drive());
-      filter->see(drive.look());
+      filter->predict(drive.drive());
+      filter->update(drive.look());
     }
     sum += nees(filter->estimate(), drive.truth());
   }
@@ -62,8 +63,8 @@ TEST(ExtendedKalman, JosephAndInformationFormsAgree) {
   ASSERT_FALSE(seen.sightings.empty());
   const PoseEstimate start = drive.start();
   const MapLandmark& landmark = drive.map()[*seen.sightings[0].identity - 1];
-  const PoseEstimate a = kalman_updated(start, seen.sightings[0], {}, landmark);
-  const PoseEstimate b = updated(
+  const PoseEstimate a = ekf_update(start, seen.sightings[0], {}, landmark);
+  const PoseEstimate b = update_pose(
       start, evidence_of(seen.sightings[0], expect(start.pose, {}, landmark.at), landmark.covariance));
   EXPECT_LT((a.pose.vector() - b.pose.vector()).norm(), 1e-10);
   EXPECT_LT((a.covariance - b.covariance).norm(), 1e-10);
@@ -78,7 +79,7 @@ TEST(ExtendedKalman, CovarianceStaysPositiveForAMillionUpdates) {
   s.range_sd = 1e-3;
   s.bearing = 0.2;
   s.bearing_sd = 1e-4;
-  for (int i = 0; i < 1000000; ++i) e = kalman_updated(e, s, {}, landmark);
+  for (int i = 0; i < 1000000; ++i) e = ekf_update(e, s, {}, landmark);
   EXPECT_TRUE(e.covariance.allFinite());
   EXPECT_EQ(e.covariance, e.covariance.transpose());
   EXPECT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(e.covariance).eigenvalues().minCoeff(), 0);
@@ -92,8 +93,8 @@ TEST(ExtendedKalman, LowQualityWeighsLess) {
   s.range = 5.5;
   s.bearing = 0;
   const PoseEstimate start{{}, Eigen::Matrix3d::Identity() * 0.1};
-  const double by_good = kalman_updated(start, s, {}, good, good.quality).pose.x;
-  const double by_poor = kalman_updated(start, s, {}, poor, poor.quality).pose.x;
+  const double by_good = ekf_update(start, s, {}, good, good.quality).pose.x;
+  const double by_poor = ekf_update(start, s, {}, poor, poor.quality).pose.x;
   EXPECT_LT(by_good, by_poor);
   EXPECT_LT(by_poor, 0);
 }
@@ -102,28 +103,29 @@ TEST(ExtendedKalman, FindsBackAfterItWasMoved) {
   MadeDrive drive(7);
   PoseEstimate start = drive.start();
   start.pose.x += 6;  // 60 standard deviations off
-  ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(true));
+  ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(true));
   bool was_lost = false;
   for (int i = 0; i < 60; ++i) {
-    filter.move(drive.drive());
-    filter.see(drive.look());
-    was_lost = was_lost || filter.trust() == Trust::lost;
+    filter.predict(drive.drive());
+    filter.update(drive.look());
+    was_lost = was_lost || filter.status() == LocalizationStatus::lost;
     ASSERT_TRUE(filter.estimate().pose.finite());
   }
   EXPECT_TRUE(was_lost);
-  EXPECT_EQ(filter.trust(), Trust::sure);
+  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.5);
 }
 
-TEST(HypothesesFilter, FollowsLandmarksWithoutNames) {
+TEST(MultiHypothesisFilter, FollowsLandmarksWithoutNames) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     MadeDrive drive(seed, 60, true);
-    HypothesesFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(false));
+    MultiHypothesisFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                                 identification_options(false));
     int matched = 0, wrong = 0;
     for (int i = 0; i < 60; ++i) {
-      filter.move(drive.drive());
+      filter.predict(drive.drive());
       const SightingSet seen = drive.look();
-      const auto matches = filter.see(seen);
+      const auto matches = filter.update(seen);
       for (std::size_t k = 0; k < matches.size(); ++k) {
         if (matches[k].verdict != Verdict::matched) continue;
         ++matched;
@@ -136,7 +138,7 @@ TEST(HypothesesFilter, FollowsLandmarksWithoutNames) {
   }
 }
 
-// A few hundred particles that die of each set of sightings but a handful would be far too sure.
+// A few hundred particles, all but a handful lost at each update, would be overconfident.
 TEST(ParticleFilter, AFewHundredAreConsistent) {
   double sum = 0;
   constexpr int kRuns = 60;
@@ -145,11 +147,11 @@ TEST(ParticleFilter, AFewHundredAreConsistent) {
     ParticleOptions options;
     options.particles = 300;
     options.weight.temper = 1;  // made errors are independent
-    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(true),
-                          options);
+    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                          identification_options(true), options);
     for (int i = 0; i < 20; ++i) {
-      filter.move(drive.drive());
-      filter.see(drive.look());
+      filter.predict(drive.drive());
+      filter.update(drive.look());
     }
     sum += nees(filter.estimate(), drive.truth());
   }
@@ -165,11 +167,11 @@ TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {
     ParticleOptions options;
     options.particles = 5000;
     options.threads = threads;
-    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(false),
-                          options);
+    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                          identification_options(false), options);
     for (int i = 0; i < 10; ++i) {
-      filter.move(drive.drive());
-      filter.see(drive.look());
+      filter.predict(drive.drive());
+      filter.update(drive.look());
     }
     ends.push_back(filter.estimate().pose);
   }
@@ -177,28 +179,28 @@ TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(ends[0], ends[2]);
 }
 
-TEST(ParticleFilter, FindsItsPlaceFromNothing) {
+TEST(ParticleFilter, FindsItsPoseWithoutAStart) {
   MadeDrive drive(11, 80, false);
-  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(false));
-  EXPECT_EQ(filter.trust(), Trust::unset);
+  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(false));
+  EXPECT_EQ(filter.status(), LocalizationStatus::uninitialized);
   for (int i = 0; i < 80; ++i) {
-    filter.move(drive.drive());
-    filter.see(drive.look());
+    filter.predict(drive.drive());
+    filter.update(drive.look());
     ASSERT_TRUE(filter.estimate().pose.finite());
   }
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.5);
-  EXPECT_EQ(filter.trust(), Trust::sure);
+  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
 }
 
 TEST(ParticleFilter, PaperWeightsFollowToo) {
   MadeDrive drive(13);
   ParticleOptions options;
   options.weight.weights = "paper";
-  ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, believing(true),
-                        options);
+  ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                        identification_options(true), options);
   for (int i = 0; i < 60; ++i) {
-    filter.move(drive.drive());
-    filter.see(drive.look());
+    filter.predict(drive.drive());
+    filter.update(drive.look());
   }
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.6);
 }
@@ -207,10 +209,10 @@ TEST(ParticleFilter, EmptyMapAndEmptySetsLeaveTheEstimateFinite) {
   MadeDrive drive(1);
   for (const bool with_start : {false, true}) {
     ParticleFilter filter(with_start ? std::optional(drive.start()) : std::nullopt,
-                          LandmarkWindow{LandmarkGrid{}}, {}, believing(false));
-    filter.move(drive.drive());
-    filter.see({});
-    filter.see(drive.look());
+                          LandmarkWindow{LandmarkGrid{}}, {}, identification_options(false));
+    filter.predict(drive.drive());
+    filter.update({});
+    filter.update(drive.look());
     EXPECT_TRUE(filter.estimate().pose.finite());
     EXPECT_TRUE(filter.estimate().covariance.allFinite());
   }
@@ -232,10 +234,10 @@ TEST(AllFilters, NumbersThatAreNoneAreRejectedWithAReason) {
   std::vector<std::unique_ptr<Localizer>> all;
   all.push_back(std::make_unique<ExtendedKalman>(drive.start(), map, FeatureScales{}));
   all.push_back(std::make_unique<UnscentedKalman>(drive.start(), map, FeatureScales{}));
-  all.push_back(std::make_unique<HypothesesFilter>(drive.start(), map, FeatureScales{}));
+  all.push_back(std::make_unique<MultiHypothesisFilter>(drive.start(), map, FeatureScales{}));
   all.push_back(std::make_unique<ParticleFilter>(drive.start(), map, FeatureScales{}));
   for (const auto& filter : all) {
-    const auto matches = filter->see(bad);
+    const auto matches = filter->update(bad);
     ASSERT_EQ(matches.size(), 3u);
     for (const Match& match : matches) EXPECT_EQ(match.verdict, Verdict::unsound);
     EXPECT_TRUE(filter->estimate().pose.finite());

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
-#include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
 #include "localization/global/constellation.hpp"
 #include "localization/global/sighting_memory.hpp"
@@ -17,7 +17,7 @@ std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, c
   std::vector<std::unique_ptr<Localizer>> all;
   all.push_back(std::make_unique<ExtendedKalman>(start, map, FeatureScales{}));
   all.push_back(std::make_unique<UnscentedKalman>(start, map, FeatureScales{}));
-  all.push_back(std::make_unique<HypothesesFilter>(start, map, FeatureScales{}));
+  all.push_back(std::make_unique<MultiHypothesisFilter>(start, map, FeatureScales{}));
   ParticleOptions options;
   options.particles = 2000;
   all.push_back(
@@ -46,7 +46,7 @@ TEST(Fixes, HeadingsWrap) {
   }
 }
 
-TEST(Fixes, OneWildFixIsLeftOutAndManyInTurnAreBelieved) {
+TEST(Fixes, OneOutlierIsRejectedAndManyInARowAreAccepted) {
   const PoseEstimate start{{0, 0, 0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
   for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
     EXPECT_FALSE(filter->fix(GnssFix{{500, 0}, 1}));
@@ -57,37 +57,38 @@ TEST(Fixes, OneWildFixIsLeftOutAndManyInTurnAreBelieved) {
   }
 }
 
-// One fix that errs by 4.4 standard deviations makes the right place 1 : 20 000. It waits for what tells.
-TEST(Fixes, AnImprobablePlaceIsKeptUntilMoreIsSeen) {
-  std::vector<MapLandmark> landmarks = strewn(3, 10, 1, 0.001);
+// One fix that errs by 4.4 standard deviations makes the right hypothesis 1 : 20 000. It must survive until
+// further sightings decide.
+TEST(Fixes, AnImprobableHypothesisSurvivesUntilMoreIsSeen) {
+  std::vector<MapLandmark> landmarks = scatter_landmarks(3, 10, 1, 0.001);
   landmarks[0].at = {5, 0};
   landmarks[1].at = {6.2, 0};
   landmarks[2].at = {0, 4};
-  HypothesesFilter filter({{0.6, 0, 0}, Eigen::Vector3d(0.25, 1e-4, 1e-6).asDiagonal()},
-                          LandmarkWindow{LandmarkGrid(landmarks)}, {});
+  MultiHypothesisFilter filter({{0.6, 0, 0}, Eigen::Vector3d(0.25, 1e-4, 1e-6).asDiagonal()},
+                               LandmarkWindow{LandmarkGrid(landmarks)}, {});
   SeenLandmark ahead;
   ahead.range = 5;
   ahead.range_sd = 0.01;
-  filter.see({{}, {ahead}});  // from 0 or from 1.2, or it was none of them
+  filter.update({{}, {ahead}});  // from 0 or from 1.2, or it was none of them
   filter.fix(GnssFix{{1.2, 0}, 0.27});
   SeenLandmark aside = ahead;
   aside.range = 4;
   aside.bearing = std::numbers::pi / 2;
   aside.bearing_sd = 0.005;
-  for (int i = 0; i < 3; ++i) filter.see({{}, {aside}});  // from 0
+  for (int i = 0; i < 3; ++i) filter.update({{}, {aside}});  // from 0
   EXPECT_NEAR(filter.estimate().pose.x, 0, 0.05);
 }
 
-// Under trees fixes err for long. They once threw away all particles, whatever these saw, for particles of
-// any heading about a place 12 m off.
-TEST(Fixes, FixesThatErrForLongDoNotOverruleWhatIsSeen) {
+// Under trees GNSS errors last. Such fixes must not replace particles that match their sightings by
+// particles of any heading 12 m away.
+TEST(Fixes, CorrelatedFixesDoNotOverruleSightings) {
   MadeDrive drive(5, 60, false);
   IdentificationOptions identification;
   identification.use_identities = false;
   ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification);
   for (int i = 0; i < 60; ++i) {
-    filter.move(drive.drive());
-    filter.see(drive.look());
+    filter.predict(drive.drive());
+    filter.update(drive.look());
     const double off = i < 10 ? 0 : 12;
     filter.fix(GnssFix{drive.truth().at() + Eigen::Vector2d(off, 0), 2});
     filter.fix(GnssFix{drive.truth().at() + Eigen::Vector2d(off, 0.1), 2});
@@ -95,11 +96,11 @@ TEST(Fixes, FixesThatErrForLongDoNotOverruleWhatIsSeen) {
     const double sd = std::sqrt(std::max(e.covariance(0, 0), e.covariance(1, 1)));
     EXPECT_LT((e.pose.at() - drive.truth().at()).norm(), 0.3 + 3 * sd) << i;
   }
-  filter.see(drive.look());
+  filter.update(drive.look());
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.5);
 }
 
-// Where what is seen fits no better at the old place, the fixes are right.
+// The fixes win where the sightings fit no better at the old position.
 TEST(Fixes, ManyFixesFindParticlesThatWereMoved) {
   MadeDrive drive(7, 80, false);
   IdentificationOptions identification;
@@ -110,14 +111,14 @@ TEST(Fixes, ManyFixesFindParticlesThatWereMoved) {
                         options);
   for (int i = 0; i < 70; ++i) {
     const BodyMotion motion = drive.drive();
-    if (i < 10 || i >= 20) filter.move(motion);  // carried for 5 m
-    filter.see(drive.look());
+    if (i < 10 || i >= 20) filter.predict(motion);  // carried for 5 m
+    filter.update(drive.look());
     filter.fix(GnssFix{drive.truth().at(), 0.5});
   }
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.5);
 }
 
-TEST(ParticleFilter, BearingsAloneHoldTheRobot) {
+TEST(ParticleFilter, BearingsAloneBoundTheError) {
   for (const bool particles : {false, true}) {
     MadeDrive drive(21);
     const LandmarkWindow map{LandmarkGrid(drive.map())};
@@ -130,11 +131,11 @@ TEST(ParticleFilter, BearingsAloneHoldTheRobot) {
     DeadReckoning blind(drive.start());
     for (int i = 0; i < 80; ++i) {
       const BodyMotion motion = drive.drive();
-      filter->move(motion);
-      blind.move(motion);
+      filter->predict(motion);
+      blind.predict(motion);
       SightingSet seen = drive.look();
       for (SeenLandmark& s : seen.sightings) s.range.reset();
-      filter->see(seen);
+      filter->update(seen);
       drift = std::max(drift, (blind.estimate().pose.at() - drive.truth().at()).norm());
     }
     EXPECT_LT((filter->estimate().pose.at() - drive.truth().at()).norm(), 0.35) << particles;
@@ -142,9 +143,9 @@ TEST(ParticleFilter, BearingsAloneHoldTheRobot) {
   }
 }
 
-// The slow twin: log of the probability of what was not seen, landmark by landmark.
-TEST(SightingScore, UnseenLandmarksSpeakAgainstAPose) {
-  auto landmarks = strewn(200, 60, 3);
+// The slow twin: log of the probability of the missed detections, landmark by landmark.
+TEST(SightingScore, UnseenLandmarksCountAgainstAPose) {
+  auto landmarks = scatter_landmarks(200, 60, 3);
   Random random(1);
   for (MapLandmark& l : landmarks) l.quality = random.uniform(0.2, 1);
   const LandmarkGrid map(landmarks);
@@ -163,16 +164,16 @@ TEST(SightingScore, UnseenLandmarksSpeakAgainstAPose) {
     for (int i = 0; i < 50; ++i) {
       const Pose2 pose{random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(-3, 3)};
       options.expect_unseen = false;
-      const double plain = SightingScore(seen, map, scales, options, false)(pose);
+      const double plain = SightingScore(seen, map, scales, options, {})(pose);
       options.expect_unseen = true;
-      const double full = SightingScore(seen, map, scales, options, false)(pose);
+      const double full = SightingScore(seen, map, scales, options, {})(pose);
       double unseen = 0, matched = 0;
       const Eigen::Vector2d at = (pose * Pose2{5 * std::cos(0.3), 5 * std::sin(0.3), 0}).at();
       double nearest = 1e300;
       for (const MapLandmark& l : landmarks) {
         const Eigen::Vector2d d = l.at - pose.at();
         const bool in_view =
-            d.norm() <= 12 && std::abs(wrapped(std::atan2(d.y(), d.x()) - pose.yaw)) <= angle / 2;
+            d.norm() <= 12 && std::abs(wrap_angle(std::atan2(d.y(), d.x()) - pose.yaw)) <= angle / 2;
         if (in_view) unseen += std::log(1 - options.detection * l.quality);
         if ((l.at - at).norm() < nearest)
           nearest = (l.at - at).norm(), matched = std::log(1 - options.detection * l.quality);
@@ -191,13 +192,13 @@ TEST(SightingMemory, CarriesWhatWasSeenAlong) {
   drive.noise = {1e-9, 1e-9, 1e-9, 1e-9, 1e-12, 1e-12};
   SightingMemory memory;
   for (int i = 0; i < 30; ++i) {
-    memory.move(drive.drive());
+    memory.predict(drive.drive());
     memory.add(drive.look());
   }
   const SightingSet all = memory.recall(200);
   EXPECT_GT(all.sightings.size(), drive.look().sightings.size());
   for (const SeenLandmark& s : all.sightings) {
-    ASSERT_TRUE(s.sound());
+    ASSERT_TRUE(s.is_valid());
     const Pose2 at = drive.truth() * Pose2{*s.range * std::cos(s.bearing), *s.range * std::sin(s.bearing), 0};
     EXPECT_LT((at.at() - drive.map()[*s.identity - 1].at).norm(), 0.6);
   }
@@ -205,7 +206,7 @@ TEST(SightingMemory, CarriesWhatWasSeenAlong) {
 
 TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
   // 4000 particles drawn at 20,000 landmarks would miss it.
-  auto landmarks = strewn(20000, 1000, 41);
+  auto landmarks = scatter_landmarks(20000, 1000, 41);
   Random random(2, "drive in a large map");
   for (MapLandmark& l : landmarks) l.features.value[0] = random.log_uniform(0.2, 1);
   const auto index = std::make_shared<ConstellationIndex>(landmarks, FeatureScales{});
@@ -215,17 +216,17 @@ TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
   id.use_identities = false;
   ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(landmarks)}, {}, id, options,
                         [&](const SightingSet& seen) {
-                          FoundPoses found;
+                          PoseSearchResult found;
                           const auto answer = index->find(seen);
-                          if (answer.fix) found.sure = answer.fix->pose();
-                          for (const auto& fix : answer.candidates) found.possible.push_back(fix.pose());
+                          if (answer.fix) found.accepted = answer.fix->pose();
+                          for (const auto& fix : answer.candidates) found.candidates.push_back(fix.pose());
                           return found;
                         });
   Pose2 truth{211, -130, 1};
   for (int i = 0; i < 12; ++i) {
     const BodyMotion motion = twist_motion(1, 0, 0.1, 0.5, {});
     truth = truth * motion.step;
-    filter.move(motion);
+    filter.predict(motion);
     SightingSet seen;
     for (const MapLandmark& l : landmarks) {
       const Eigen::Vector2d d = l.at - truth.at();
@@ -234,16 +235,16 @@ TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
       s.type = TypeId{0};
       s.range = d.norm() + 0.05 * random.normal();
       s.range_sd = 0.05;
-      s.bearing = wrapped(std::atan2(d.y(), d.x()) - truth.yaw + 0.01 * random.normal());
+      s.bearing = wrap_angle(std::atan2(d.y(), d.x()) - truth.yaw + 0.01 * random.normal());
       s.bearing_sd = 0.01;
       s.features.value[0] = l.features.value[0] * (1 + 0.05 * random.normal());
       seen.sightings.push_back(s);
     }
-    filter.see(seen);
+    filter.update(seen);
     ASSERT_TRUE(filter.estimate().pose.finite());
   }
   EXPECT_LT((filter.estimate().pose.at() - truth.at()).norm(), 0.3);
-  EXPECT_EQ(filter.trust(), Trust::sure);
+  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
 }
 
 }  // namespace

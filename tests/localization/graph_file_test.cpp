@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "importers/logs/graph_file.hpp"
 #include "importers/logs/import_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/slam/graph_solver.hpp"
 #include "made_graph.hpp"
 
@@ -63,7 +64,7 @@ TEST_F(GraphFile, TheSameGraphInThreeDialectsIsTheSame) {
   EXPECT_EQ(a.graph.landmarks[0].id, 3);
 }
 
-TEST_F(GraphFile, EdgesAloneAreToldApartByTheirZeros) {
+TEST_F(GraphFile, EdgesAloneAreDistinguishedByTheirZeros) {
   EXPECT_EQ(read("EDGE2 0 1 1 0 0 50 0 0 50 0 100\n").format, "isam");
   EXPECT_EQ(read("EDGE2 0 1 1 0 0 50 0 50 100 0 0\n").format, "toro");
   std::ofstream(file_) << R"({"kind":"odometry","t":0,"v":1,"omega":0})" << '\n';
@@ -98,20 +99,20 @@ TEST_F(GraphFile, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_THAT(refusal(good + "LANDMARK 7 9 1 0 10 0 10\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("pose 7, which the graph does not have")));
   EXPECT_THAT(refusal(good + "ODOMETRY 5 6 1 0 0 10 0 0 10 0 10\n"),
-              AllOf(HasSubstr("falls apart"), HasSubstr("pose 5")));
+              AllOf(HasSubstr("not connected"), HasSubstr("pose 5")));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 0 0 0 0\n"),
               AllOf(HasSubstr("line 2"), HasSubstr("twice")));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 2 1 0 0 1 0 0 1 0 1\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("pose 2")));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nEDGE_SE2 0 1 1 0 0 1 2 0 1 0 1\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("not positive definite")));
-  EXPECT_THAT(refusal("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"), HasSubstr("in space, not in the plane"));
+  EXPECT_THAT(refusal("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\n"), HasSubstr("three-dimensional"));
   EXPECT_THAT(refusal("EDGE3 0 1 0.3 0 0 0 0 0.2 10 0 0 0 0 0 10 0 0 0 0 10 0 0 0 10 0 0 10 0 10\n"),
-              HasSubstr("in space, not in the plane"));
+              HasSubstr("three-dimensional"));
   EXPECT_THAT(refusal("VERTEX_SE2 0 0 0 0\n"), HasSubstr("no edges"));
   EXPECT_THAT(
       refusal("VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 0 0 0\nVERTEX_XY 9 1 1\nEDGE_SE2 0 1 1 0 0 1 0 0 1 0 1\n"),
-      HasSubstr("landmark 9 of the graph was seen from no pose"));
+      HasSubstr("landmark 9 of the graph has no sighting"));
 }
 
 TEST_F(GraphFile, ABearingAloneDoesNotPlaceALandmark) {

@@ -42,16 +42,16 @@ struct Dense {
     for (const StepEdge& e : g.steps) {
       const Pose2 between = inverse(g.poses[e.from].at) * g.poses[e.to].at;
       add(Eigen::Vector3d(e.root * Eigen::Vector3d(between.x - e.step.x, between.y - e.step.y,
-                                                   wrapped(between.yaw - e.step.yaw))));
+                                                   wrap_angle(between.yaw - e.step.yaw))));
     }
     for (const SightingEdge& e : g.sightings) {
       const Eigen::Vector2d l = g.landmarks[e.landmark].at;
       const Eigen::Vector2d there =
           (inverse(g.poses[e.pose].at * e.robot_from_sensor) * Pose2{l.x(), l.y(), 0}).at();
-      if (e.kind == SightingKind::place) {
+      if (e.kind == SightingKind::position) {
         add(Eigen::Vector2d(e.root * (there - e.value)));
       } else {
-        const double off = wrapped(std::atan2(there.y(), there.x()) - e.value[1]);
+        const double off = wrap_angle(std::atan2(there.y(), there.x()) - e.value[1]);
         if (e.kind == SightingKind::bearing)
           all.push_back(e.root(1, 1) * off);
         else
@@ -61,7 +61,7 @@ struct Dense {
     for (const PosePrior& p : g.pose_priors) {
       const Pose2& at = g.poses[p.pose].at;
       add(Eigen::Vector3d(p.root *
-                          Eigen::Vector3d(at.x - p.at.x, at.y - p.at.y, wrapped(at.yaw - p.at.yaw))));
+                          Eigen::Vector3d(at.x - p.at.x, at.y - p.at.y, wrap_angle(at.yaw - p.at.yaw))));
     }
     for (const LandmarkPrior& p : g.landmark_priors)
       add(Eigen::Vector2d(p.root * (g.landmarks[p.landmark].at - p.at)));
@@ -77,7 +77,7 @@ struct Dense {
     }
     return j;
   }
-  /// `held`: unknowns at the front that stay.
+  /// `held`: unknowns at the front that are constant.
   static PoseGraph solved(PoseGraph g, Eigen::Index held) {
     double lambda = 1e-3;
     for (int i = 0; i < 60; ++i) {
@@ -133,7 +133,7 @@ TEST(GraphError, DerivativesMatchNumericOnes) {
 }
 
 TEST(Graph, SolutionIsThatOfTheDenseTwin) {
-  for (const SightingKind kind : {SightingKind::place, SightingKind::range_bearing, SightingKind::bearing})
+  for (const SightingKind kind : {SightingKind::position, SightingKind::range_bearing, SightingKind::bearing})
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const MadeGraph made = made_graph(seed, 24, kind);
       const GraphSolution fast = optimise(made.graph, {.block = 8});
@@ -165,7 +165,7 @@ TEST(Graph, ErrorsAreAsLargeAsTheCovariancesSay) {
     const GraphSolution s = optimise(made.graph);
     const Pose2 off = s.graph.poses.back().at;
     const Eigen::Vector3d e(off.x - made.truth.back().x, off.y - made.truth.back().y,
-                            wrapped(off.yaw - made.truth.back().yaw));
+                            wrap_angle(off.yaw - made.truth.back().yaw));
     sum += e.dot(s.pose_covariances.back().ldlt().solve(e));
     chi += s.chi2 / double(s.residuals - s.unknowns);
   }
@@ -205,7 +205,7 @@ TEST(Graph, AKernelKeepsAWrongLoopFromBendingTheTrack) {
 }
 
 TEST(Graph, PartsTiedByTwoLandmarksOnlyAreJoined) {
-  MadeGraph made = made_graph(7, 40, SightingKind::place, 0.1);
+  MadeGraph made = made_graph(7, 40, SightingKind::position, 0.1);
   std::erase_if(made.graph.steps, [](const StepEdge& e) { return e.to == 20; });
   const GraphSolution s = optimise(made.graph);
   for (std::size_t i = 0; i < made.truth.size(); ++i)

@@ -5,14 +5,14 @@
 #include <numbers>
 
 #include "core/random.hpp"
-#include "localization/global/horizon_place.hpp"
+#include "localization/global/horizon_viewpoint.hpp"
 #include "localization/global/skyline_index.hpp"
 namespace waymark::testing {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// Cones and a long ridge on a plain; a hole in the middle of nowhere.
+/// Cones and a long ridge on a plain, with a hole of unknown terrain.
 struct Hills {
   std::vector<SkylineSummit> summits;
   explicit Hills(std::uint64_t seed) {
@@ -39,11 +39,11 @@ Eigen::AlignedBox2d box(const Hills& hills) {
 
 SkylineOptions moon() {
   SkylineOptions o{.body_radius = 1737400};
-  o.place_sd = o.height_sd = 5;
+  o.position_sd = o.height_sd = 5;
   return o;
 }
 
-/// The twin: every tenth of a cell, heights of the ground itself.
+/// The slow twin: every tenth of a cell, heights of the terrain itself.
 double rise_by_marching(const Hills& hills, const Eigen::Vector2d& at, double eye, double azimuth,
                         const SkylineOptions& o, double from) {
   double best = -1e9;
@@ -63,7 +63,7 @@ TEST(TerrainGrid, HoldsAllKnownGroundAndItsHighest) {
   for (int i = 0; i < 300; ++i) {
     const Eigen::Vector2d p(random.uniform(1500, 14500), random.uniform(1500, 14500));
     EXPECT_NEAR(grid.height(p.x(), p.y()), *hills(p), 0.4 * grid.cell());
-    const int level = static_cast<int>(random.below(static_cast<std::uint64_t>(grid.levels())));
+    const int level = static_cast<int>(random.uniform_index(static_cast<std::uint64_t>(grid.levels())));
     // The block of a level is no lower than the ground at the place itself.
     EXPECT_GE(double(grid.highest(p.x(), p.y(), level)), *hills(p) - 0.8 * grid.cell());
     EXPECT_LE(double(grid.highest(p.x(), p.y(), level)), grid.summit());
@@ -119,7 +119,7 @@ std::vector<HorizonTop> tops_at(const TerrainGrid& grid, const Pose2& robot, con
     bool top = true;
     for (int j = 1; j <= 12; ++j) top = top && at(k) > at(k + j) && at(k) > at(k - j);
     if (top)
-      tops.push_back({.bearing = wrapped(k * kTurn / 1800 - robot.yaw), .elevation = std::atan(at(k))});
+      tops.push_back({.bearing = wrap_angle(k * kTurn / 1800 - robot.yaw), .elevation = std::atan(at(k))});
   }
   return tops;
 }
@@ -131,13 +131,13 @@ TEST(Skyline, IsFoundWhateverTheHeadingAndNumberOfThreads) {
   const SkylineIndex index(hills.summits, hills, o);
   const Pose2 robot{7300, 9100, 0.4};
   for (const double turn : {0.0, -2.9}) {
-    const Pose2 turned{robot.x, robot.y, wrapped(robot.yaw + turn)};
+    const Pose2 turned{robot.x, robot.y, wrap_angle(robot.yaw + turn)};
     const auto tops = tops_at(grid, turned, o);
     ASSERT_GE(tops.size(), 6u);
     const SkylineAnswer one = index.find(tops);
     ASSERT_TRUE(one.fix) << one.reason;
     EXPECT_LT((one.fix->at.pose.at() - robot.at()).norm(), 30);
-    EXPECT_NEAR(wrapped(one.fix->at.pose.yaw - turned.yaw), 0, 0.01);
+    EXPECT_NEAR(wrap_angle(one.fix->at.pose.yaw - turned.yaw), 0, 0.01);
     // Cones are summits of the map: most tops have their name.
     const auto named = std::ranges::count_if(one.fix->summits, [](const auto& s) { return s.has_value(); });
     EXPECT_GT(2 * named, one.fix->matched);
@@ -148,7 +148,7 @@ TEST(Skyline, IsFoundWhateverTheHeadingAndNumberOfThreads) {
     EXPECT_EQ(one.fix->at.pose, alone.fix->at.pose);
     EXPECT_EQ(one.fix->log_false_alarms, alone.fix->log_false_alarms);
     // With a compass, the same place; with one that points elsewhere, no other.
-    const auto right = index.find(tops, turned.yaw), wrong = index.find(tops, wrapped(turned.yaw + 1.5));
+    const auto right = index.find(tops, turned.yaw), wrong = index.find(tops, wrap_angle(turned.yaw + 1.5));
     ASSERT_TRUE(right.fix);
     EXPECT_LT((right.fix->at.pose.at() - robot.at()).norm(), 30);
     EXPECT_FALSE(wrong.fix);
@@ -174,9 +174,9 @@ TEST(Skyline, WhatIsNoHorizonIsNotFound) {
   for (HorizonTop& t : tops) t = {.bearing = 1, .elevation = {}};
   EXPECT_EQ(index.find(tops).reason, "too few tops on the horizon");
   // Ground that is nowhere known.
-  const GroundHeight none = [](const Eigen::Vector2d&) { return std::nullopt; };
+  const TerrainHeight none = [](const Eigen::Vector2d&) { return std::nullopt; };
   const std::vector<HorizonTop> some(5, {.bearing = 1, .elevation = 0.1});
-  EXPECT_EQ(find_by_skyline(some, hills.summits, none, o).reason, "no place has such a horizon");
+  EXPECT_EQ(find_by_skyline(some, hills.summits, none, o).reason, "no position has such a horizon");
 }
 
 }  // namespace

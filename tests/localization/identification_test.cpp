@@ -24,10 +24,10 @@ TEST(ChiSquare, TablesAgree) {
   EXPECT_NEAR(chi_square_quantile(0.975, 100), 129.5612, 1e-4);
 }
 
-TEST(LandmarkGrid, FindsWhatASearchOfAllFinds) {
+TEST(LandmarkGrid, FindsWhatAnExhaustiveSearchFinds) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Random random(seed, "queries");
-    const auto all = strewn(seed % 5 ? 300 : 1, seed % 3 ? 40 : 0.001, seed);
+    const auto all = scatter_landmarks(seed % 5 ? 300 : 1, seed % 3 ? 40 : 0.001, seed);
     const LandmarkGrid grid(all, seed % 7 ? 0 : 3);
     for (int q = 0; q < 40; ++q) {
       const Eigen::Vector2d at(random.uniform(-30, 30), random.uniform(-30, 30));
@@ -42,7 +42,7 @@ TEST(LandmarkGrid, FindsWhatASearchOfAllFinds) {
 }
 
 TEST(LandmarkWindow, AnswersAsTheWholeMapDoes) {
-  const auto all = strewn(2000, 400, 1);
+  const auto all = scatter_landmarks(2000, 400, 1);
   const LandmarkGrid whole(all);
   int reads = 0;
   LandmarkWindow window(
@@ -57,7 +57,7 @@ TEST(LandmarkWindow, AnswersAsTheWholeMapDoes) {
   for (int i = 0; i < 200; ++i) {
     const Eigen::Vector2d at(-150 + 1.5 * i, 20);
     std::set<LandmarkKey> a, b;
-    const LandmarkGrid& near = window.around(at, 20);
+    const LandmarkGrid& near = window.landmarks_near(at, 20);
     near.near(at, 20, [&](std::uint32_t k) { a.insert(near[k].key); });
     whole.near(at, 20, [&](std::uint32_t k) { b.insert(whole[k].key); });
     ASSERT_EQ(a, b);
@@ -81,10 +81,10 @@ double cheapest(const std::vector<std::vector<Choice>>& rows, double none, std::
 TEST(AssignCheapest, IsTheBestOfAll) {
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Random random(seed);
-    std::vector<std::vector<Choice>> rows(1 + random.below(5));
+    std::vector<std::vector<Choice>> rows(1 + random.uniform_index(5));
     for (auto& row : rows)
       for (int c = 0; c < 5; ++c)
-        if (random.chance(0.5)) row.push_back({c, random.uniform(-3, 9)});
+        if (random.bernoulli(0.5)) row.push_back({c, random.uniform(-3, 9)});
     const auto chosen = assign_cheapest(rows, 6);
     double total = 0;
     std::set<int> taken;
@@ -124,7 +124,7 @@ TEST(Identify, JointAssociationsUseTheSharedHeading) {
 TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Random random(seed, "joint");
-    const auto all = strewn(30, 8, seed, 0.1);
+    const auto all = scatter_landmarks(30, 8, seed, 0.1);
     const LandmarkGrid map(all);
     const PoseEstimate robot{{random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-3, 3)},
                              Eigen::Vector3d(0.2, 0.2, 0.03).asDiagonal()};
@@ -176,6 +176,25 @@ TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
   }
 }
 
+TEST(Identify, QualityFloorOfOneSwitchesQualityOff) {
+  IdentificationOptions options;
+  options.quality_floor = 1;
+  const auto log_weights = [&](double quality) {
+    MapLandmark near = landmark_at(10, 0.1, 1), far = landmark_at(10, -0.2, 2);
+    near.quality = quality;
+    const LandmarkGrid map({near, far});
+    const SightingSet seen{{}, {seen_at(10, 0)}};
+    const std::vector<Candidates> sets{candidates(seen.sightings[0], {}, {}, map, {}, options)};
+    const auto hypotheses = joint_hypotheses(sets, seen, map, Eigen::Matrix3d::Zero(), options);
+    std::vector<double> all;
+    for (const JointHypothesis& h : hypotheses.value()) all.push_back(h.log_weight);
+    return all;
+  };
+  EXPECT_EQ(log_weights(0.05), log_weights(1));
+  options.quality_floor = 0.1;
+  EXPECT_NE(log_weights(0.05), log_weights(1));
+}
+
 TEST(Identify, MutualExclusion) {
   const LandmarkGrid map({landmark_at(10, 0, 1)});
   const SightingSet twice{{}, {seen_at(10, 0), seen_at(10.1, 0.01)}};
@@ -216,7 +235,7 @@ TEST(Identify, SaysWhyNot) {
   EXPECT_EQ(verdict(s), Verdict::unknown_type);
 }
 
-TEST(Identify, TwinsAreAmbiguousUntilFeaturesTellThemApart) {
+TEST(Identify, TwinsAreAmbiguousUntilFeaturesDiffer) {
   MapLandmark small = landmark_at(10, 0.1, 1), large = landmark_at(10, -0.1, 2);
   small.features.value[0] = 0.3;
   large.features.value[0] = 0.6;
@@ -232,7 +251,7 @@ TEST(Identify, TwinsAreAmbiguousUntilFeaturesTellThemApart) {
   EXPECT_EQ(map[matches[0].pairing.landmark].key, 2u);
 }
 
-// A landmark of which less is known must not win by that.
+// A landmark with fewer known features must not win by that.
 TEST(Identify, MissingFeaturesNeitherHelpNorHurt) {
   MapLandmark known = landmark_at(10, 0.05, 1), bare = landmark_at(10, -0.05, 2);
   known.features.value[0] = 0.5;
@@ -249,7 +268,7 @@ TEST(Identify, MissingFeaturesNeitherHelpNorHurt) {
 TEST(Identify, WedgeOfABearingFindsWhatASearchOfAllFinds) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed, "wedge");
-    const auto all = strewn(200, 150, seed);
+    const auto all = scatter_landmarks(200, 150, seed);
     const LandmarkGrid map(all);
     PoseEstimate robot{{random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-3, 3)}, {}};
     robot.covariance =
@@ -269,6 +288,76 @@ TEST(Identify, WedgeOfABearingFindsWhatASearchOfAllFinds) {
       if (joint_distance(e, robot.covariance).squares <= chi_square_quantile(0.99, 1)) expected.insert(l.key);
     }
     EXPECT_TRUE(std::ranges::includes(found, expected)) << "seed " << seed;
+  }
+}
+
+// The gate divides the noise by quality, so that a doubtful landmark may lie farther away; the search must
+// look as far.
+TEST(Identify, SearchReachesWhatTheGateOfADoubtfulLandmarkAdmits) {
+  MapLandmark doubtful = landmark_at(10, 0, 1);
+  doubtful.quality = 0.1;
+  const LandmarkGrid map({doubtful});
+  IdentificationOptions options;
+  options.gate = 0.9999;  // 4.29 standard deviations, of 0.1 m / sqrt(0.1): 1.36 m
+  SeenLandmark s = seen_at(11.2, 0);
+  s.bearing_sd = 0.001;
+  const auto found = candidates(s, {}, {}, map, {}, options);
+  ASSERT_EQ(found.pairings.size(), 1u);
+  const double variance = (0.1 * 0.1 + map[0].covariance(0, 0)) / 0.1;
+  EXPECT_NEAR(found.pairings[0].squares, 1.2 * 1.2 / variance, 1e-9);
+}
+
+TypeRegistry ellipses() {
+  TypeRegistry types;
+  types.add(
+      {.name = "ellipse",
+       .summary = "Something long",
+       .features = {{"orientation", "rad", Scale::axis, -4, 4, "Long axis, clockwise from north", 0.8}}});
+  return types;
+}
+
+// A map states an axis clockwise from north, a sensor from its own x axis to the left.
+TEST(Identify, AxesAreSeenInTheFrameOfTheSensor) {
+  const FeatureScales scales(ellipses());
+  MapLandmark ellipse = landmark_at(0, 10, 1);
+  ellipse.features.value[0] = 0.3;  // 0.3 rad east of north
+  ellipse.features.variance[0] = 0.01;
+  const LandmarkGrid map({ellipse});
+  for (const double yaw : {0.0, 1.0, -2.5}) {
+    const Pose2 robot{0, 0, yaw}, mount{0, 0, 0.4};
+    SeenLandmark s = seen_at(10, std::numbers::pi / 2 - yaw - mount.yaw);
+    s.type = TypeId{0};
+    s.features.value[0] = std::numbers::pi / 2 - 0.3 - yaw - mount.yaw;
+    s.features.variance[0] = 0.01;
+    const auto features_at = [&](double seen) {
+      s.features.value[0] = seen;
+      return candidates(s, mount, {robot, Eigen::Matrix3d::Zero()}, map, scales, {});
+    };
+    const double right = s.features.value[0];
+    ASSERT_EQ(features_at(right).pairings.size(), 1u) << yaw;
+    EXPECT_NEAR(features_at(right).pairings[0].features, 0, 1e-9);
+    EXPECT_EQ(features_at(right + 1.2).verdict, Verdict::features_differ) << yaw;
+    SightingScore score({mount, {s}}, map, scales, {}, {.use_identities = false});  // 1.2 rad off
+    const double wrong = score(robot);
+    s.features.value[0] = right + std::numbers::pi;  // an axis has no head
+    SightingScore same({mount, {s}}, map, scales, {}, {.use_identities = false});
+    EXPECT_GT(same(robot), wrong + 3) << yaw;
+    const double alone = same(robot);
+    same.prefetch(std::vector<Pose2>{robot, robot});
+    EXPECT_EQ(same(robot), alone);
+  }
+}
+
+TEST(Paper, DistanceExcludesAssociationsWithEvidenceOfTheirOwn) {
+  const LandmarkGrid map({landmark_at(10, 0, 1)});
+  const SightingSet twice{{}, {seen_at(10, 0), seen_at(10.1, 0.01)}};
+  IdentificationOptions options;
+  options.distance = "paper";
+  const auto matches = identify(twice, {}, map, {}, options).matches;
+  EXPECT_EQ(std::ranges::count(matches, Verdict::matched, &Match::verdict), 2) << "eq. 10: each alone";
+  for (const char* association : {"joint", "jcbb"}) {
+    options.association = association;
+    EXPECT_THROW(identify(twice, {}, map, {}, options), std::invalid_argument) << association;
   }
 }
 

@@ -6,10 +6,11 @@
 
 #include "core/random.hpp"
 #include "landmarks/landmark_type.hpp"
-#include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/measurement.hpp"
-#include "localization/play_log.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
+#include "localization/replay_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/track_score.hpp"
 #include "tests/localization/made_world.hpp"
 
@@ -56,9 +57,9 @@ RobotLog look(std::uint64_t seed) {
 }
 
 TrackRow row_of(Localizer& filter, const RobotLog& log, double noise = 1) {
-  PlayOptions options;
+  ReplayOptions options;
   options.sensor_noise = noise;
-  return play(log, filter, options).rows.at(0);
+  return replay(log, filter, options).rows.at(0);
 }
 
 ExtendedKalman ekf() {
@@ -114,12 +115,12 @@ TEST(Innovations, AreChiSquareWhereTheFilterIsRight) {
   EXPECT_GT(score(sure, {}, TrackAlignment::none, true).innovations->anees, good.innovations->high);
 }
 
-TEST(Innovations, AreToldByAFilterOfManyGaussiansToo) {
+TEST(Innovations, AreReportedByAMultiHypothesisFilter) {
   const RobotLog log = look(3);
   IdentificationOptions options;
   options.quality_floor = 1;
-  HypothesesFilter filter({{}, kPrior}, LandmarkWindow{LandmarkGrid(beacons())},
-                          FeatureScales(TypeRegistry{}), options);
+  MultiHypothesisFilter filter({{}, kPrior}, LandmarkWindow{LandmarkGrid(beacons())},
+                               FeatureScales(TypeRegistry{}), options);
   EXPECT_NEAR(row_of(filter, log).nis, by_hand(log), 1e-9);
 }
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "localization/filters/hypotheses.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "made_world.hpp"
 
@@ -18,23 +18,23 @@ std::optional<double> wall(const Eigen::Vector2d& p) {
   return std::abs(p.x() - 5) < 1 && p.y() > 0 ? 3 : 0;
 }
 
-TEST(LineOfSight, HillsHideAndUnknownGroundDoesNot) {
-  const LineOfSight sees = sight_over(wall, {});
+TEST(LineOfSight, HillsHideAndUnknownTerrainDoesNot) {
+  const LineOfSight sees = terrain_line_of_sight(wall, {});
   EXPECT_TRUE(sees({0, 3, 0}, {3, 3}));
   EXPECT_FALSE(sees({0, 3, 0}, {10, 3}));
   EXPECT_FALSE(sees({10, 3, 0}, {0, 3}));
-  EXPECT_TRUE(sees({0, 3, 0}, {5, 3})) << "what stands on the wall is seen";
+  EXPECT_TRUE(sees({0, 3, 0}, {5, 3})) << "a landmark on the wall is visible";
   EXPECT_TRUE(sees({0, -3, 0}, {10, -3}));
   EXPECT_TRUE(sees({0, 3, 0}, {2000, 3}));
   EXPECT_TRUE(sees({0, 3, 0}, {0, 3}));
-  EXPECT_TRUE(sight_over(wall, {.sensor_height = 10, .landmark_height = 10})({0, 3, 0}, {10, 3}));
-  EXPECT_FALSE(sight_over({}, {}));
+  EXPECT_TRUE(terrain_line_of_sight(wall, {.sensor_height = 10, .landmark_height = 10})({0, 3, 0}, {10, 3}));
+  EXPECT_FALSE(terrain_line_of_sight({}, {}));
 }
 
 TEST(LineOfSight, HiddenLandmarksAreThoseOfASearchOfAll) {
-  const auto all = strewn(200, 40, 5);
+  const auto all = scatter_landmarks(200, 40, 5);
   const LandmarkGrid map(all);
-  const LineOfSight sees = sight_over(wall, {});
+  const LineOfSight sees = terrain_line_of_sight(wall, {});
   const Pose2 sensor{-2, 4, 0.3};
   const auto hidden = hidden_landmarks(sensor, map, 15, sees);
   EXPECT_GT(hidden.size(), 3u);
@@ -54,28 +54,28 @@ double x_of_estimate(const LineOfSight& visible) {
   view.expect_unseen = true;
   view.detection = 0.95;
   view.view_range = 11;
-  HypothesesFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()},
-                          LandmarkWindow{LandmarkGrid(all)}, FeatureScales{});
+  MultiHypothesisFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()},
+                               LandmarkWindow{LandmarkGrid(all)}, FeatureScales{});
   filter.expect_landmarks(view, visible);
-  filter.see({{}, {seen_at(3, 0)}});
+  filter.update({{}, {seen_at(3, 0)}});
   return filter.estimate().pose.x;
 }
 
-TEST(LineOfSight, WhatIsHiddenIsNotExpectedByTheSumOfGaussians) {
-  EXPECT_NEAR(x_of_estimate({}), 0, 0.2) << "the unseen landmark speaks against x = 2";
-  EXPECT_GT(x_of_estimate(sight_over(wall, {})), 0.5) << "both are possible, or all but so";
+TEST(LineOfSight, HiddenLandmarksAreNotExpectedByTheMixture) {
+  EXPECT_NEAR(x_of_estimate({}), 0, 0.2) << "the unseen landmark counts against x = 2";
+  EXPECT_GT(x_of_estimate(terrain_line_of_sight(wall, {})), 0.5) << "both are possible, or all but so";
 }
 
-TEST(LineOfSight, WhatIsHiddenIsNotExpectedByParticles) {
+TEST(LineOfSight, HiddenLandmarksAreNotExpectedByParticles) {
   std::vector<MapLandmark> all{landmark_at(3, 4, 1), landmark_at(9, 5, 2)};
   const LandmarkGrid map(all);
   WeightOptions view;
   view.expect_unseen = true;
   const SightingSet seen{{}, {seen_at(3, 0)}};
   const FeatureScales scales;
-  SightingScore score(seen, map, scales, view, false);
+  SightingScore score(seen, map, scales, view, {});
   const double expects = score({0, 4, 0});
-  score.hide(hidden_landmarks({0, 4, 0}, map, 20, sight_over(wall, {})));
+  score.hide(hidden_landmarks({0, 4, 0}, map, 20, terrain_line_of_sight(wall, {})));
   EXPECT_NEAR(score({0, 4, 0}) - expects, -view.temper * std::log1p(-view.detection), 1e-9);
 }
 

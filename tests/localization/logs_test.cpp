@@ -9,10 +9,11 @@
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/laser_stems.hpp"
-#include "localization/filters/hypotheses.hpp"
 #include "localization/filters/kalman.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
-#include "localization/play_log.hpp"
+#include "localization/replay_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
@@ -96,15 +97,39 @@ TEST_F(WaymarkLog, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(refusal(R"({"kind":"header","frame":"utm"})"), HasSubstr("must be \"map\" or \"crs\""));
 }
 
+TEST_F(WaymarkLog, AWildTimeStampIsRefusedWithItsNumber) {
+  const auto odometry = [](const char* t) {
+    return std::string(R"({"kind":"odometry","v":1,"omega":0,"t":)") + t + "}\n";
+  };
+  EXPECT_THAT(refusal(odometry("0") + odometry("1.5") + odometry("1e18")),
+              AllOf(HasSubstr("after 1.5 s, the next reading is at 1e+18 s"), HasSubstr(".jsonl")));
+  EXPECT_THAT(refusal(odometry("-1e300") + odometry("2")), HasSubstr("after -1e+300 s"));
+  EXPECT_THAT(refusal(odometry("1") + odometry("2") +
+                      R"({"kind":"truth","t":1,"x":0,"y":0})"
+                      "\n" +
+                      R"({"kind":"truth","t":1e9,"x":0,"y":0})"
+                      "\n"),
+              HasSubstr("the next true pose is at 1000000000 s"));
+  EXPECT_EQ(read(odometry("0") + odometry("900000")).events.size(), 2U) << "ten days of pause are a pause";
+}
+
+TEST_F(WaymarkLog, ADepthImageHasAWholeNumberOfPixels) {
+  for (const char* columns : {"1e300", "2.5", "1e6"})
+    EXPECT_THAT(refusal(std::string(R"({"kind":"depth","t":0,"rows":1,"focal":9,"depths":[1],"columns":)") +
+                        columns + "}"),
+                HasSubstr("\"columns\" must be a whole number up to 100000"));
+}
+
 TEST_F(WaymarkLog, TimeThatRunsBackwardsIsSortedAndReported) {
   const RobotLog log = read(R"({"kind":"odometry","t":5,"v":1,"omega":0}
 {"kind":"odometry","t":1,"v":2,"omega":0}
 {"kind":"odometry","t":1,"v":3,"omega":0}
 )");
   EXPECT_EQ(log.events.front().t, 1);
-  EXPECT_THAT(log.remarks,
-              ElementsAre(HasSubstr("1 times run backwards"), HasSubstr("1 odometry readings have the time"),
-                          HasSubstr("1 gaps of more than 1 s in the odometry, the longest 4.0 s")));
+  EXPECT_THAT(
+      log.remarks,
+      ElementsAre(HasSubstr("1 times run backwards"), HasSubstr("1 odometry readings repeat the time"),
+                  HasSubstr("1 gaps of more than 1 s in the odometry, the longest 4.0 s")));
 }
 
 TEST_F(WaymarkLog, TypesTheMapLacksAreRejectedNotMatched) {
@@ -114,18 +139,18 @@ TEST_F(WaymarkLog, TypesTheMapLacksAreRejectedNotMatched) {
   MapLandmark landmark;
   landmark.at = {3, 0};
   ExtendedKalman filter({}, LandmarkWindow{LandmarkGrid({landmark})}, FeatureScales(all_types()));
-  const Track track = play(log, filter, {});
+  const Track track = replay(log, filter, {});
   EXPECT_EQ(track.verdicts[static_cast<std::size_t>(Verdict::unknown_type)], 1);
 }
 
-TEST(PlayLog, ASpeedHoldsNoLongerThanItMay) {
+TEST(ReplayLog, ASpeedHoldsNoLongerThanItMay) {
   RobotLog log;
   log.events.push_back({0, TwistReading{1, 0, 0}});
   log.events.push_back({10, TwistReading{0, 0, 0}});
   DeadReckoning robot({});
-  PlayOptions options;
-  options.longest_hold = 2;
-  const Track track = play(log, robot, options);
+  ReplayOptions options;
+  options.max_hold = 2;
+  const Track track = replay(log, robot, options);
   EXPECT_DOUBLE_EQ(track.rows.back().at.pose.x, 2);
 }
 
@@ -152,7 +177,7 @@ TEST(LaserStems, FindsAPostBeforeTheBackground) {
                  .first_angle = -1.5,
                  .angle_step = 0.01,
                  .ranges = std::vector<float>(301, 81.0F),
-                 .most_range = 80};
+                 .max_range = 80};
   for (const std::size_t i : {150, 151, 152, 153, 154}) scan.ranges[i] = 10;  // seen under 0.05 rad
   for (std::size_t i = 200; i < 240; ++i) scan.ranges[i] = 12;                // a wall of 4.8 m
   const auto stems = find_stems(scan, {});
@@ -183,7 +208,7 @@ class Mrclam : public ::testing::Test {
       const RobotLog& log = robots.logs[robot];
       const auto localizer = make(robots.start[robot], LandmarkWindow{LandmarkGrid(robots.map)},
                                   FeatureScales(robots.types), options);
-      const Track track = play(log, *localizer, {});
+      const Track track = replay(log, *localizer, {});
       const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
       const auto n = static_cast<double>(s.poses);
       all.rmse += n * s.ate_rmse * s.ate_rmse;
@@ -215,7 +240,7 @@ TEST_F(Mrclam, UnscentedKalmanWithIdentities) {
 
 TEST_F(Mrclam, HypothesesWithoutIdentities) {
   const Pooled all =
-      follow(false, [](auto&&... given) { return std::make_unique<HypothesesFilter>(given...); });
+      follow(false, [](auto&&... given) { return std::make_unique<MultiHypothesisFilter>(given...); });
   EXPECT_LE(all.rmse, 0.35);
   EXPECT_GT(all.named, 5000);
   EXPECT_LT(static_cast<double>(all.wrong), 0.05 * static_cast<double>(all.named));

@@ -6,14 +6,14 @@
 #include "localization/slam/graph.hpp"
 namespace waymark::testing {
 
-/// A drive of two rounds with landmarks on both sides, every measurement with its error.
+/// A drive of two rounds with landmarks on both sides, all measurements with errors.
 struct MadeGraph {
   PoseGraph graph;
   std::vector<Pose2> truth;
   std::vector<Eigen::Vector2d> landmarks;
 };
 
-inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = SightingKind::place,
+inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = SightingKind::position,
                             double noise = 1) {
   Random random(seed, "graph");
   MadeGraph made;
@@ -43,7 +43,7 @@ inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = S
       e.pose = std::size_t(i);
       e.landmark = l;
       e.kind = kind;
-      if (kind == SightingKind::place) {
+      if (kind == SightingKind::position) {
         e.value = there.at() + noise * 0.1 * Eigen::Vector2d(random.normal(), random.normal());
         e.root = Eigen::Matrix2d::Identity() * 10;
       } else {
@@ -64,7 +64,7 @@ inline double distance(const PoseGraph& a, const PoseGraph& b) {
   double most = 0;
   for (std::size_t i = 0; i < a.poses.size(); ++i)
     most = std::max({most, (a.poses[i].at.at() - b.poses[i].at.at()).norm(),
-                     std::abs(wrapped(a.poses[i].at.yaw - b.poses[i].at.yaw))});
+                     std::abs(wrap_angle(a.poses[i].at.yaw - b.poses[i].at.yaw))});
   for (std::size_t i = 0; i < a.landmarks.size(); ++i)
     most = std::max(most, (a.landmarks[i].at - b.landmarks[i].at).norm());
   return most;

@@ -9,8 +9,9 @@
 #include "localization/sighting.hpp"
 namespace waymark::testing {
 
-/// Landmarks strewn over a square of `side` metres about the origin, with a known covariance.
-inline std::vector<MapLandmark> strewn(std::size_t count, double side, std::uint64_t seed, double sd = 0.02) {
+/// Draws landmarks over a square of `side` metres about the origin, with a known covariance.
+inline std::vector<MapLandmark> scatter_landmarks(std::size_t count, double side, std::uint64_t seed,
+                                                  double sd = 0.02) {
   Random random(seed, "landmarks");
   std::vector<MapLandmark> all(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -21,12 +22,12 @@ inline std::vector<MapLandmark> strewn(std::size_t count, double side, std::uint
   return all;
 }
 
-/// A robot on a circle that sees the landmarks within 12 m ahead of it. Errors are drawn from the very
-/// distributions the filters assume, landmarks included, so a sound filter is consistent.
+/// A robot on a circle that sees the landmarks within 12 m ahead. Errors, those of landmarks included, are
+/// drawn from the distributions that the filters assume, so a correct filter is consistent.
 class MadeDrive {
  public:
   MadeDrive(std::uint64_t seed, std::size_t landmarks = 60, bool named = true)
-      : random_(seed, "drive"), named_(named), map_(strewn(landmarks, 50, seed)), real_(map_) {
+      : random_(seed, "drive"), named_(named), map_(scatter_landmarks(landmarks, 50, seed)), real_(map_) {
     for (MapLandmark& l : real_) l.at += 0.02 * Eigen::Vector2d(random_.normal(), random_.normal());
   }
 
@@ -46,20 +47,20 @@ class MadeDrive {
     return e;
   }
 
-  /// Moves the robot; returns what odometry says of it.
+  /// Moves the robot; returns the odometry.
   BodyMotion drive(double seconds = 0.5) {
-    const BodyMotion told = twist_motion(1, 0, 0.1, seconds, noise);
-    const Eigen::Vector3d error =
-        square_root(told.covariance) * Eigen::Vector3d(random_.normal(), random_.normal(), random_.normal());
-    truth_ = truth_ * pose_of(told.step.vector() + error);
-    return told;
+    const BodyMotion odometry = twist_motion(1, 0, 0.1, seconds, noise);
+    const Eigen::Vector3d error = square_root(odometry.covariance) *
+                                  Eigen::Vector3d(random_.normal(), random_.normal(), random_.normal());
+    truth_ = truth_ * pose_of(odometry.step.vector() + error);
+    return odometry;
   }
 
   SightingSet look() {
     SightingSet set;
     for (const MapLandmark& l : real_) {
       const Eigen::Vector2d to = l.at - truth_.at();
-      const double range = to.norm(), bearing = wrapped(std::atan2(to.y(), to.x()) - truth_.yaw);
+      const double range = to.norm(), bearing = wrap_angle(std::atan2(to.y(), to.x()) - truth_.yaw);
       if (range > 12 || range < 0.5 || std::abs(bearing) > 1.5) continue;
       SeenLandmark s;
       s.type = TypeId{0};
@@ -86,7 +87,7 @@ class MadeDrive {
 /// e' P^-1 e.
 inline double nees(const PoseEstimate& estimate, const Pose2& truth) {
   const Eigen::Vector3d e(estimate.pose.x - truth.x, estimate.pose.y - truth.y,
-                          wrapped(estimate.pose.yaw - truth.yaw));
+                          wrap_angle(estimate.pose.yaw - truth.yaw));
   return e.dot(estimate.covariance.ldlt().solve(e));
 }
 

@@ -18,7 +18,7 @@ Pose2 any_pose(Random& random) {
 }
 
 Eigen::Vector3d off(const Pose2& a, const Pose2& b) {
-  return {a.x - b.x, a.y - b.y, wrapped(a.yaw - b.yaw)};
+  return {a.x - b.x, a.y - b.y, wrap_angle(a.yaw - b.yaw)};
 }
 
 TEST(Pose2, InverseUndoes) {
@@ -57,7 +57,7 @@ TEST(Measurement, JacobiansAreThoseOfDifferences) {
     const ExpectedSighting e = expect(pose, mount, landmark);
     if (e.value[0] < 0.5) continue;
     const auto difference = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-      return Eigen::Vector2d(a[0] - b[0], wrapped(a[1] - b[1]));
+      return Eigen::Vector2d(a[0] - b[0], wrap_angle(a[1] - b[1]));
     };
     for (int k = 0; k < 3; ++k) {
       Eigen::Vector3d d = Eigen::Vector3d::Zero();
@@ -78,7 +78,7 @@ TEST(Motion, ManySmallStepsAreOneArc) {
   const OdometryNoise noise;
   const BodyMotion once = twist_motion(1, 0.2, 0.5, 2, noise);
   BodyMotion often;
-  for (int i = 0; i < 1000; ++i) often = then(often, twist_motion(1, 0.2, 0.5, 0.002, noise));
+  for (int i = 0; i < 1000; ++i) often = compose(often, twist_motion(1, 0.2, 0.5, 0.002, noise));
   EXPECT_LT(off(once.step, often.step).norm(), 1e-9);
   EXPECT_NEAR(once.covariance(2, 2), often.covariance(2, 2), 1e-9) << "noise must not depend on the rate";
 }
@@ -90,7 +90,7 @@ TEST(Motion, CovarianceIsThatOfSamples) {
   PoseEstimate e{{1, 2, 0.5}, Eigen::Vector3d(0.01, 0.02, 0.001).asDiagonal()};
   const Eigen::Matrix3d a = square_root(e.covariance), b = square_root(step.covariance);
   const auto draw = [&] { return Eigen::Vector3d(random.normal(), random.normal(), random.normal()); };
-  const PoseEstimate predicted = moved(e, step);
+  const PoseEstimate predicted = predict_pose(e, step);
   Eigen::Matrix3d sampled = Eigen::Matrix3d::Zero();
   constexpr int kDraws = 20000;
   for (int i = 0; i < kDraws; ++i) {

@@ -8,7 +8,7 @@
 #include "localization/robot_log.hpp"
 namespace waymark::testing {
 
-/// Real robots with motion-capture truth; the data stay outside the repository.
+/// Real robots with motion-capture truth; the data are not in the repository.
 inline std::filesystem::path mrclam_folder() {
   return std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/localization/mrclam/MRCLAM_Dataset6";
 }
@@ -29,10 +29,10 @@ inline MrclamRobots read_mrclam() {
   const TypeId beacon = all.types.id("beacon");
   const SemanticMap map(all.types, Crs::local(),
                         import_mrclam_landmarks(mrclam_folder(), beacon, all.types[beacon]), {});
-  all.map = landmarks_of(map);
+  all.map = to_map_landmarks(map);
   for (int robot = 1; robot <= 5; ++robot) {
     RobotLog& log = all.logs.emplace_back(import_mrclam_log(mrclam_folder(), robot, all.types));
-    place_in(log, map.frame());
+    convert_to_map_frame(log, map.frame());
     PoseEstimate& start = all.start.emplace_back();
     start.pose = *pose_at(log.truth, log.events.front().t, 5);
     start.covariance = Eigen::Vector3d(0.01, 0.01, 0.0025).asDiagonal();

@@ -6,7 +6,8 @@
 #include <numbers>
 
 #include "localization/filters/kalman.hpp"
-#include "localization/play_log.hpp"
+#include "localization/replay_log.hpp"
+#include "localization/robot_log.hpp"
 #include "localization/track_score.hpp"
 #include "made_world.hpp"
 
@@ -39,7 +40,7 @@ TEST(RepeatedSightings, FollowTheRobotsMotion) {
   RepeatedSightings repeated({.range = 3, .bearing = 1});
   SightingSet first = one(5, 0);
   repeated.widen(first, 0);
-  repeated.move({{1, 0, 0.5}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()});
+  repeated.predict({{1, 0, 0.5}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()});
   SightingSet there = one(4, -0.5), elsewhere = one(5, 0);
   repeated.widen(there, 1);
   EXPECT_GT(there.sightings[0].range_sd, 0.15);
@@ -53,7 +54,7 @@ TEST(RepeatedSightings, FollowTheRobotsMotion) {
   EXPECT_EQ(bearing.sightings[0].bearing_sd, 0.02);
 }
 
-/// A robot among beacons it sees four times a second, with errors that stay alike for `memory` seconds.
+/// A robot that sees beacons four times a second, with errors of correlation time `memory`, s.
 RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>& beacons) {
   Random random(seed, "alike");
   RobotLog log;
@@ -72,7 +73,7 @@ RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>
       error[l] =
           alike * error[l] + std::sqrt(1 - alike * alike) * Eigen::Vector2d(random.normal(), random.normal());
       const Eigen::Vector2d d = beacons[l].at - at.at();
-      const double bearing = wrapped(std::atan2(d.y(), d.x()) - at.yaw);
+      const double bearing = wrap_angle(std::atan2(d.y(), d.x()) - at.yaw);
       if (std::abs(bearing) > 0.6) continue;
       SeenLandmark s = seen_at(d.norm() + 0.1 * error[l].x(), bearing + 0.02 * error[l].y());
       s.identity = beacons[l].key;
@@ -100,9 +101,9 @@ double anees(bool knows) {
     const RobotLog log = drive(seed, 3, beacons);
     ExtendedKalman filter({log.truth[0].pose, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal()},
                           LandmarkWindow{LandmarkGrid(beacons)}, FeatureScales(TypeRegistry{}));
-    PlayOptions options;
+    ReplayOptions options;
     options.error_memory = knows ? 1 : 0;
-    sum += score(play(log, filter, options), log.truth, TrackAlignment::none, true).consistency->anees / 60;
+    sum += score(replay(log, filter, options), log.truth, TrackAlignment::none, true).consistency->anees / 60;
   }
   return sum;
 }

@@ -61,7 +61,7 @@ std::vector<HorizonTop> horizon(const Ground& ground, const Pose2& robot, const 
     }
     if (!stands) continue;
     HorizonTop top{.bearing = 0, .bearing_sd = 0.002, .elevation = {}, .elevation_sd = 0.001};
-    top.bearing = wrapped(2 * std::numbers::pi * i / kRays - robot.yaw + top.bearing_sd * random.normal());
+    top.bearing = wrap_angle(2 * std::numbers::pi * i / kRays - robot.yaw + top.bearing_sd * random.normal());
     top.elevation = std::atan(at(i)) + top.elevation_sd * random.normal();
     tops.push_back(top);
   }
@@ -77,7 +77,7 @@ struct Country {
   std::vector<SkylineSummit> summits;
 };
 
-Country country(const std::string& dem_file, const std::string& summit_file, double least_prominence,
+Country country(const std::string& dem_file, const std::string& summit_file, double min_prominence,
                 double west, double south) {
   const auto dem = import_dem({.files = {(dems() / dem_file).string()}, .nodata = NodataPolicy::unknown});
   const GridGeometry& g = dem->geometry();
@@ -93,7 +93,7 @@ Country country(const std::string& dem_file, const std::string& summit_file, dou
     std::ranges::replace(line, ',', ' ');
     std::istringstream words(line);
     double lat = 0, lon = 0, height = 0, a = 0, b = 0, prominence = 0;
-    if (!(words >> lat >> lon >> height >> a >> b >> prominence) || prominence < least_prominence) continue;
+    if (!(words >> lat >> lon >> height >> a >> b >> prominence) || prominence < min_prominence) continue;
     const Eigen::Vector2d at((lon - west) / g.where.dx * c.ground.dx,
                              (lat - south) / std::abs(g.where.dy) * c.ground.dy);
     c.summits.push_back({at, height, prominence, 0});
@@ -101,7 +101,7 @@ Country country(const std::string& dem_file, const std::string& summit_file, dou
   return c;
 }
 
-/// Robots on places drawn at random, their horizons by rays; how many are found within 200 m.
+/// Counts the robots at random positions that are found within 200 m; their horizons are computed by rays.
 void survey(const char* name, const Country& c, const SkylineIndex& index, const SkylineOptions& o, int tries,
             bool compass, double expected) {
   Random random(5, name);
@@ -116,7 +116,7 @@ void survey(const char* name, const Country& c, const SkylineIndex& index, const
     ++i;
     tops += static_cast<double>(seen.size());
     std::optional<double> heading;
-    if (compass) heading = wrapped(robot.yaw + o.heading_sd * random.normal());
+    if (compass) heading = wrap_angle(robot.yaw + o.heading_sd * random.normal());
     const auto begun = std::chrono::steady_clock::now();
     const auto answer = index.find(seen, heading);
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -145,7 +145,7 @@ TEST(Skyline, PlacesInThePyrenees) {
   SkylineOptions o{.body_radius = 6371000, .refraction = 0.13, .eye = 2};
   o.step = 1000;
   const SkylineIndex index(c.summits, std::ref(c.ground), o);
-  std::cout << index.places() << " places of the grid\n";
+  std::cout << index.viewpoints() << " places of the grid\n";
   survey("Pyrenees", c, index, o, 8, false, 0.75);
   survey("Pyrenees", c, index, o, 4, true, 0.5);
 }
@@ -173,15 +173,15 @@ Cones cones() {
 std::vector<HorizonTop> tops_of(const Cones& c, const Pose2& robot, const SkylineOptions& o, bool elevations,
                                 std::size_t most) {
   std::vector<HorizonTop> tops;
-  const GroundHeight ground = c;
+  const TerrainHeight ground = c;
   const Eigen::Vector3d eye(robot.x, robot.y, *c(robot.at()) + o.eye);
   for (const SkylineSummit& s : c.summits) {
     const Eigen::Vector2d d = s.at - robot.at();
     const double drop = curvature_drop(d.norm(), o.body_radius, o.refraction);
     if (tops.size() == most || d.norm() > o.reach ||
-        !clears_ground(eye, {s.at.x(), s.at.y(), s.height}, ground, o, 50, 50))
+        !clears_terrain(eye, {s.at.x(), s.at.y(), s.height}, ground, o, 50, 50))
       continue;
-    tops.push_back({.bearing = wrapped(std::atan2(d.y(), d.x()) - robot.yaw), .elevation = {}});
+    tops.push_back({.bearing = wrap_angle(std::atan2(d.y(), d.x()) - robot.yaw), .elevation = {}});
     if (elevations) tops.back().elevation = std::atan2(s.height - drop - eye.z(), d.norm());
   }
   return tops;
@@ -191,14 +191,15 @@ TEST(Skyline, ThreeBearingsAreAResection) {
   const Cones c = cones();
   const Pose2 robot{14000, 16000, 0.7};
   SkylineOptions o{.body_radius = 1737400};
-  o.place_sd = o.height_sd = 1;
+  o.position_sd = o.height_sd = 1;
   const auto tops = tops_of(c, robot, o, false, 3);
   ASSERT_EQ(tops.size(), 3u);
   std::vector<std::optional<std::uint32_t>> matches;
   for (const HorizonTop& t : tops)
     for (std::uint32_t j = 0; j < c.summits.size(); ++j) {
       const Eigen::Vector2d d = c.summits[j].at - robot.at();
-      if (std::abs(wrapped(t.bearing + robot.yaw - std::atan2(d.y(), d.x()))) < 1e-9) matches.emplace_back(j);
+      if (std::abs(wrap_angle(t.bearing + robot.yaw - std::atan2(d.y(), d.x()))) < 1e-9)
+        matches.emplace_back(j);
     }
   ASSERT_EQ(matches.size(), 3u);
   const PoseEstimate near{{robot.x + 700, robot.y - 500, robot.yaw + 0.1}, Eigen::Matrix3d::Identity()};
@@ -217,7 +218,7 @@ TEST(Skyline, ThreeBearingsAreAResection) {
 TEST(Skyline, FindsThePlaceByBearingsAndElevations) {
   const Cones c = cones();
   SkylineOptions o{.body_radius = 1737400};
-  o.place_sd = o.height_sd = 5;
+  o.position_sd = o.height_sd = 5;
   Random random(9);
   for (int i = 0; i < 4; ++i) {
     const Pose2 robot{random.uniform(8000, 22000), random.uniform(8000, 22000), random.uniform(-3, 3)};
@@ -239,24 +240,24 @@ TEST(Skyline, ForeignHorizonsAreUnknown) {
     EXPECT_FALSE(find_by_skyline(tops, c.summits, c, o).fix);
   }
   EXPECT_EQ(find_by_skyline({}, c.summits, c, o).reason, "too few tops on the horizon");
-  EXPECT_EQ(find_by_skyline(std::vector<HorizonTop>(4), {}, c, o).reason, "the map has too few summits");
+  EXPECT_EQ(find_by_skyline(std::vector<HorizonTop>(4), {}, c, o).reason, "too few summits in the map");
 }
 
 TEST(Ground, StandsAsTheSurfaceLies) {
-  const GroundHeight plane = [](const Eigen::Vector2d& p) { return 5 + 0.1 * p.x() + 0.2 * p.y(); };
-  const auto east = stand(plane, {3, 4, 0});
+  const TerrainHeight plane = [](const Eigen::Vector2d& p) { return 5 + 0.1 * p.x() + 0.2 * p.y(); };
+  const auto east = pose_on_terrain(plane, {3, 4, 0});
   ASSERT_TRUE(east);
   EXPECT_NEAR(east->z, 6.1, 1e-12);
   EXPECT_NEAR(east->pitch, -std::atan(0.1), 1e-12);  // uphill: nose up
   EXPECT_NEAR(east->roll, std::atan(0.2), 1e-12);    // the left side is higher
-  const auto north = stand(plane, {3, 4, std::numbers::pi / 2});
+  const auto north = pose_on_terrain(plane, {3, 4, std::numbers::pi / 2});
   EXPECT_NEAR(north->pitch, -std::atan(0.2), 1e-12);
   EXPECT_NEAR(north->roll, -std::atan(0.1), 1e-12);
-  EXPECT_NEAR(on_map({2, 0, 0.3}, *north).x, 2 / std::hypot(1, 0.2), 1e-12);
-  const GroundHeight hole = [](const Eigen::Vector2d& p) {
+  EXPECT_NEAR(project_to_map({2, 0, 0.3}, *north).x, 2 / std::hypot(1, 0.2), 1e-12);
+  const TerrainHeight hole = [](const Eigen::Vector2d& p) {
     return p.x() > 0 ? std::optional<double>(1) : std::nullopt;
   };
-  EXPECT_FALSE(stand(hole, {0, 0, 0}));
+  EXPECT_FALSE(pose_on_terrain(hole, {0, 0, 0}));
   EXPECT_NEAR(curvature_drop(10000, 6371000, 0), 7.85, 0.01);
   EXPECT_EQ(curvature_drop(10000, 0, 0), 0);
 }

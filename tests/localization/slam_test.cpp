@@ -5,36 +5,36 @@
 
 #include "localization/filters/measurement.hpp"
 #include "localization/slam/ekf_slam.hpp"
-#include "localization/slam/existence.hpp"
+#include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
 #include "made_world.hpp"
 
 namespace waymark::testing {
 namespace {
 
-SlamOptions for_made_drive() {
+SlamOptions made_drive_options() {
   SlamOptions options;
-  options.most_range = 12;
+  options.max_range = 12;
   options.nearest = 0.5;
   return options;
 }
 
-PoseEstimate surely(const Pose2& pose) {
+PoseEstimate known_pose(const Pose2& pose) {
   return {pose, Eigen::Matrix3d::Identity() * 1e-9};
 }
 
-// Two rounds of a circle without a map: what was seen in the first round holds the second.
-TEST(EkfSlam, ASecondRoundIsHeldByTheFirst) {
+// Two rounds of a circle without a map: the landmarks of the first round bound the errors of the second.
+TEST(EkfSlam, ASecondRoundIsBoundedByTheFirst) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     MadeDrive drive(seed, 60, false);
     PoseEstimate start{drive.truth(), Eigen::Matrix3d::Identity() * 1e-6};
-    EkfSlam slam(start, for_made_drive());
+    EkfSlam slam(start, made_drive_options());
     DeadReckoning odometry(start);
     for (int i = 0; i < 250; ++i) {
       const BodyMotion step = drive.drive();
-      slam.move(step);
-      odometry.move(step);
-      slam.see(drive.look());
+      slam.predict(step);
+      odometry.predict(step);
+      slam.update(drive.look());
       ASSERT_TRUE(slam.estimate().pose.finite());
       ASSERT_TRUE(slam.estimate().covariance.allFinite());
     }
@@ -49,15 +49,15 @@ TEST(EkfSlam, ASecondRoundIsHeldByTheFirst) {
 TEST(SlamState, CompressedAndFullFilterAgree) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     MadeDrive a(seed, 60), b(seed, 60);
-    SlamOptions near = for_made_drive(), whole = for_made_drive();
+    SlamOptions near = made_drive_options(), whole = made_drive_options();
     near.margin = 2;
     whole.margin = 1e6;
-    EkfSlam fast(surely(a.truth()), near), slow(surely(b.truth()), whole);
+    EkfSlam fast(known_pose(a.truth()), near), slow(known_pose(b.truth()), whole);
     for (int i = 0; i < 200; ++i) {
-      fast.move(a.drive());
-      slow.move(b.drive());
-      fast.see(a.look());
-      slow.see(b.look());
+      fast.predict(a.drive());
+      slow.predict(b.drive());
+      fast.update(a.look());
+      slow.update(b.look());
       ASSERT_LT((fast.estimate().pose.vector() - slow.estimate().pose.vector()).norm(), 1e-7) << i;
       ASSERT_TRUE(fast.estimate().covariance.isApprox(slow.estimate().covariance, 1e-6)) << i;
     }
@@ -70,8 +70,8 @@ TEST(SlamState, CompressedAndFullFilterAgree) {
   }
 }
 
-// A landmark placed by a sighting: its covariance against numeric derivatives.
-TEST(SlamState, ANewLandmarkHasTheCovarianceOfItsPlacing) {
+// Covariance of a new landmark against numeric derivatives.
+TEST(SlamState, ANewLandmarkHasItsMeasuredCovariance) {
   PoseEstimate robot{{1, 2, 0.7}, Eigen::Matrix3d::Identity()};
   robot.covariance << 0.04, 0.01, 0.002, 0.01, 0.09, -0.001, 0.002, -0.001, 0.001;
   const Pose2 mount{0.5, 0.1, -0.2};
@@ -91,10 +91,10 @@ TEST(SlamState, ANewLandmarkHasTheCovarianceOfItsPlacing) {
   Eigen::Matrix<double, 5, 5> noise = Eigen::Matrix<double, 5, 5>::Zero();
   noise.topLeftCorner<3, 3>() = robot.covariance;
   noise(3, 3) = 0.01, noise(4, 4) = 0.0004;
-  EkfSlam slam(robot, for_made_drive());
+  EkfSlam slam(robot, made_drive_options());
   SeenLandmark seen;
   seen.range = 8, seen.range_sd = 0.1, seen.bearing = 0.3, seen.bearing_sd = 0.02;
-  slam.see({mount, {seen}});
+  slam.update({mount, {seen}});
   const auto all = slam.landmarks();
   ASSERT_EQ(all.size(), 1u);
   EXPECT_TRUE(all[0].covariance.isApprox(j * noise * j.transpose(), 1e-5));
@@ -108,10 +108,10 @@ TEST(EkfSlam, ItsCovarianceIsThatOfItsErrors) {
   double sum = 0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
     MadeDrive drive(seed, 60);
-    EkfSlam slam(surely(drive.truth()), for_made_drive());
+    EkfSlam slam(known_pose(drive.truth()), made_drive_options());
     for (int i = 0; i < 60; ++i) {
-      slam.move(drive.drive());
-      slam.see(drive.look());
+      slam.predict(drive.drive());
+      slam.update(drive.look());
     }
     sum += nees(slam.estimate(), drive.truth()) / (3 * kRuns);
   }
@@ -122,10 +122,10 @@ TEST(EkfSlam, ItsCovarianceIsThatOfItsErrors) {
 
 TEST(SlamState, StaysSymmetricAndPositiveDefiniteForLong) {
   MadeDrive drive(9, 60);
-  SlamState state(surely(drive.truth()));
+  SlamState state(known_pose(drive.truth()));
   std::vector<SlamState::Slot> slot_of(100, SlamState::Slot(-1));
   for (int i = 0; i < 4000; ++i) {
-    state.move(drive.drive());
+    state.predict(drive.drive());
     if (i % 20 == 0) state.focus(25);  // 12 m are seen, 10 m driven until the next
     std::vector<SlamState::Correction> corrections;
     for (const SeenLandmark& s : drive.look().sightings) {
@@ -142,7 +142,7 @@ TEST(SlamState, StaysSymmetricAndPositiveDefiniteForLong) {
     state.update(corrections);
   }
   std::vector<SlamState::Slot> order;
-  const Eigen::MatrixXd all = state.whole(order);
+  const Eigen::MatrixXd all = state.full_covariance(order);
   EXPECT_GT(order.size(), 20u);
   EXPECT_LT((all - all.transpose()).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ(Eigen::LLT<Eigen::MatrixXd>(all).info(), Eigen::Success);
@@ -153,22 +153,22 @@ LandmarkGrid grid_of(std::vector<MapLandmark> map, double quality = 0.9) {
   return LandmarkGrid(std::move(map));
 }
 
-TEST(EkfSlam, AMapHoldsItFromTheStart) {
+TEST(EkfSlam, AMapBoundsErrorsFromTheStart) {
   double with = 0, without = 0;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     MadeDrive drive(seed, 60, false);
     const PoseEstimate start = drive.start();
-    EkfSlam mapped(start, grid_of(drive.map()), {}, for_made_drive()), alone(start, for_made_drive());
+    EkfSlam mapped(start, grid_of(drive.map()), {}, made_drive_options()), alone(start, made_drive_options());
     for (int i = 0; i < 120; ++i) {
       const BodyMotion step = drive.drive();
       const SightingSet seen = drive.look();
-      mapped.move(step), alone.move(step);
-      mapped.see(seen), alone.see(seen);
+      mapped.predict(step), alone.predict(step);
+      mapped.update(seen), alone.update(seen);
     }
     with += (mapped.estimate().pose.at() - drive.truth().at()).norm() / 5;
     without += (alone.estimate().pose.at() - drive.truth().at()).norm() / 5;
     for (const SlamLandmark& l : mapped.landmarks()) {
-      if (l.matches <= 5 || !l.of_map) continue;
+      if (l.matches <= 5 || !l.was_mapped) continue;
       EXPECT_LT(l.covariance(0, 0), 0.02 * 0.02) << "better than the map's";
     }
   }
@@ -188,11 +188,11 @@ TEST(EkfSlam, WhatIsNotThereLosesItsExistenceAndALowQualityDiesFirst) {
   for (MapLandmark& l : map) l.quality = 0.9;
   std::erase_if(map, [&](const MapLandmark& l) { return (l.at - ahead.at()).norm() < 2; });
   map.push_back(good), map.push_back(poor);
-  EkfSlam slam(surely(drive.truth()), LandmarkGrid(map), {}, for_made_drive());
+  EkfSlam slam(known_pose(drive.truth()), LandmarkGrid(map), {}, made_drive_options());
   double good_odds = 0, poor_odds = 0;
   for (int i = 0; i < 8; ++i) {
-    slam.move(drive.drive(0.2));
-    slam.see(drive.look());
+    slam.predict(drive.drive(0.2));
+    slam.update(drive.look());
     if (i != 5) continue;
     for (const SlamLandmark& l : slam.landmarks()) {
       if (l.key == 1001u) good_odds = l.log_odds;
@@ -203,7 +203,7 @@ TEST(EkfSlam, WhatIsNotThereLosesItsExistenceAndALowQualityDiesFirst) {
   EXPECT_LT(poor_odds, good_odds);
 }
 
-TEST(EkfSlam, WhatTheGroundHidesIsNotExpected) {
+TEST(EkfSlam, LandmarksHiddenByTerrainAreNotExpected) {
   MadeDrive a(4, 60, false), b(4, 60, false);
   std::vector<MapLandmark> map = a.map();
   MapLandmark hidden;
@@ -211,12 +211,12 @@ TEST(EkfSlam, WhatTheGroundHidesIsNotExpected) {
   hidden.covariance = Eigen::Matrix2d::Identity() * 1e-4;
   hidden.at = (a.truth() * Pose2{5, 0.5, 0}).at();
   map.push_back(hidden);
-  EkfSlam open(surely(a.truth()), grid_of(map), {}, for_made_drive());
-  EkfSlam hilly(surely(b.truth()), grid_of(map), {}, for_made_drive(),
+  EkfSlam open(known_pose(a.truth()), grid_of(map), {}, made_drive_options());
+  EkfSlam hilly(known_pose(b.truth()), grid_of(map), {}, made_drive_options(),
                 [&](const Pose2&, const Eigen::Vector2d& at) { return (at - hidden.at).norm() > 0.1; });
   for (int i = 0; i < 6; ++i) {
-    open.move(a.drive(0.2)), hilly.move(b.drive(0.2));
-    open.see(a.look()), hilly.see(b.look());
+    open.predict(a.drive(0.2)), hilly.predict(b.drive(0.2));
+    open.update(a.look()), hilly.update(b.look());
   }
   const auto odds = [](EkfSlam& slam) {
     for (const SlamLandmark& l : slam.landmarks())
@@ -239,14 +239,14 @@ TEST(EkfSlam, SignaturesKeepNeighboursApart) {
   map[0].key = 1, map[0].at = {5, 0.3}, map[0].features.value[0] = 0.3;
   map[1].key = 2, map[1].at = {5, -0.3}, map[1].features.value[0] = 1.2;
   EkfSlam slam({{}, Eigen::Vector3d(0.09, 0.09, 1e-3).asDiagonal()}, LandmarkGrid(map), FeatureScales(types),
-               for_made_drive());
+               made_drive_options());
   SeenLandmark seen;
   seen.type = types.id("rock");
   seen.range = 5, seen.bearing = 0;  // between the two
   seen.features.value[0] = 1.15, seen.features.variance[0] = 1e-3;
-  EXPECT_EQ(slam.see({{}, {seen}}).at(0).key, 2u);
+  EXPECT_EQ(slam.update({{}, {seen}}).at(0).key, 2u);
   seen.type = types.id("tree");
-  EXPECT_NE(slam.see({{}, {seen}}).at(0).verdict, Verdict::matched) << "a tree is no rock";
+  EXPECT_NE(slam.update({{}, {seen}}).at(0).verdict, Verdict::matched) << "a tree is no rock";
 }
 
 TEST(Signature, MergingWeighsByVariance) {
@@ -257,24 +257,24 @@ TEST(Signature, MergingWeighsByVariance) {
   seen.value[0] = 2, seen.variance[0] = 0.04;
   merge_signature({}, 0, known, seen, 0.1);
   EXPECT_NEAR(known.value[0], 1 + 0.01 / (0.01 + 0.04), 1e-12);
-  EXPECT_FALSE(known.known(1)) << "what was not seen stays unknown";
+  EXPECT_FALSE(known.known(1)) << "an unseen feature stays unknown";
 }
 
 TEST(Existence, CountersTurnIntoProbabilities) {
-  EXPECT_NEAR(probability_of(log_odds(0.8)), 0.8, 1e-12);
+  EXPECT_NEAR(probability_from_log_odds(log_odds(0.8)), 0.8, 1e-12);
   EXPECT_DOUBLE_EQ(log_odds(1), kSurestLogOdds);
   EXPECT_DOUBLE_EQ(unseen_evidence(0.9, -0.5), -0.5);
   EXPECT_NEAR(unseen_evidence(0.1, -0.5), std::log(0.9), 1e-12) << "a sensor that misses much says little";
 }
 
 TEST(EkfSlam, NonsenseIsRefusedAndLeavesItAlone) {
-  EkfSlam slam(surely({}), for_made_drive());
+  EkfSlam slam(known_pose({}), made_drive_options());
   SeenLandmark bad;
   bad.range = std::nan(""), bad.bearing = 0;
   SeenLandmark infinite = bad, far = bad;
   infinite.range = 3, infinite.bearing = INFINITY;
   far.range = 500;
-  const auto m = slam.see({{}, {bad, infinite, far}});
+  const auto m = slam.update({{}, {bad, infinite, far}});
   EXPECT_EQ(m[0].verdict, Verdict::unsound);
   EXPECT_EQ(m[1].verdict, Verdict::unsound);
   EXPECT_EQ(m[2].verdict, Verdict::too_far);

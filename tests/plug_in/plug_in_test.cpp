@@ -20,7 +20,7 @@ Registry all_stages() {
   return stages;
 }
 
-TEST(PlugIn, TypeFromOutsideStandsBesideOurs) {
+TEST(PlugIn, TypeFromOutsideIsRegisteredWithTheBuiltInTypes) {
   TypeRegistry types;
   register_landmark_types(types);
   register_test_types(types);

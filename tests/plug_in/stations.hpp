@@ -5,12 +5,12 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark {
 
-/// An artifact the engine has never heard of: the summits that carry a station.
+/// Artifact unknown to the engine: the summits with a station.
 struct Stations {
   std::vector<std::string> uids;
 };
 
-/// One uid per line.
+/// Encodes one uid per line.
 template <>
 struct Codec<Stations> {
   static std::string encode(const Stations& stations) {

@@ -9,7 +9,7 @@
 
 #include "importers/rasters/dem.hpp"
 #include "pipeline/terrain/isolation.hpp"
-#include "tests/pipeline/survey.hpp"
+#include "tests/pipeline/terrain/survey.hpp"
 namespace waymark::testing {
 
 /// Real elevation models with known answers; they stay outside the repository.

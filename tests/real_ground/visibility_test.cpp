@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The expected visibility against what is really seen: viewsheds ray-cast on real tiles.
+// Expected visibility against viewsheds ray-cast on real tiles.
 #include "pipeline/terrain/visibility.hpp"
 
 #include <gtest/gtest.h>

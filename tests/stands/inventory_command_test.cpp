@@ -122,7 +122,7 @@ TEST_F(InventoryCommand, CountsTheWholeMapAndCells) {
   ASSERT_EQ(waymark("import more.csv -o more.gpkg --type tree --map-crs EPSG:32632").code, 0);
   const Told all = waymark("inventory more.gpkg -o all.csv --report all.html");
   ASSERT_EQ(all.code, 0) << all.text;
-  EXPECT_THAT(all.text, HasSubstr("does not tell what ground was surveyed"));
+  EXPECT_THAT(all.text, HasSubstr("does not say which area was surveyed"));
   EXPECT_EQ(cell("all.csv", 0, "trees"), "6");
   EXPECT_THAT(read("all.html"), HasSubstr("</html>"));
   EXPECT_THAT(read("all.html"), HasSubstr("all stems / ha")) << "with the trees that nobody found";
@@ -195,6 +195,9 @@ TEST_F(InventoryCommand, RefusesWhatCannotBeCounted) {
   write("deg.csv", "uid,x,y,height\na,8,48,20\n");
   ASSERT_EQ(waymark("import deg.csv -o deg.gpkg --type tree --map-crs EPSG:4326").code, 0);
   refused("trees.gpkg --trees-at-once 0 -o out.csv", 2, "--trees-at-once = 0 is below 1");
+  refused("trees.gpkg --trees-at-once 5 --grid -1 -o out.csv", 2,
+          "--trees-at-once was replaced: use --memory");
+  refused("trees.gpkg --memory 15 -o out.csv", 2, "--memory = 15 is outside [16, 10000000]");
   refused("deg.gpkg --stands stands.geojson -o out.csv", 1, "the map is in degrees");
   EXPECT_FALSE(fs::exists(folder / "out.csv")) << "nothing half-written";
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plots whose trees and figures somebody measured; the data stay outside the repository (docs/inventory.md).
+// Plots whose trees and figures somebody measured; the data stay outside the repository
+// (docs/evaluation/2026-11-21-inventory-checks.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,13 +63,13 @@ TEST(RealStands, StemsAndBasalAreaAreThePublishedOnes) {
     // A few stems were measured just outside the frame and belong to it: drawn in, they stand on its edge.
     const double x = std::clamp(std::stod(row.at("xk")) / 10, 0.0, plot.width - 0.01),
                  y = std::clamp(std::stod(row.at("yk")) / 10, 0.0, plot.height - 0.01);
-    plot.trees.push_back({.place = {x, y}, .height = 15, .diameter = std::stod(row.at("d")) / 100});
+    plot.trees.push_back({.position = {x, y}, .height = 15, .diameter = std::stod(row.at("d")) / 100});
   }
   ASSERT_EQ(plots.size(), 66u);
   int complete = 0;
   for (const auto& [name, plot] : plots) {
     const StandPolygon stand{{{{0, 0}, {plot.width, 0}, {plot.width, plot.height}, {0, plot.height}}}};
-    const StandFigures f = inventory(plot.trees, stand);
+    const StandAttributes f = inventory(plot.trees, stand);
     EXPECT_EQ(static_cast<std::size_t>(f.trees), plot.trees.size()) << name;
     // Some lists lack trees the published figures have.
     if (std::abs(static_cast<double>(plot.trees.size()) - plot.stems * f.hectares) > 0.5) continue;

@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "pipeline/forest/air_recall.hpp"
+#include "pipeline/forest/airborne_recall.hpp"
 #include "pipeline/forest/stand_cover.hpp"
 
 namespace waymark {
@@ -24,18 +24,23 @@ StandPolygon square(double x, double y, double side) {
 
 TEST(StandCover, CirclesAndOutlinesShadeTheGround) {
   const StandPolygon stand = square(0, 0, 100);
-  const StandCrown circle{.place = {50, 50}, .diameter = 20};
-  EXPECT_NEAR(cover(std::span(&circle, 1), stand).value, kPi * 100 / 1e4, 2e-4);
-  EXPECT_EQ(cover({}, stand).value, 0);
-  const StandCrown halves[] = {{.place = {0, 50}, .diameter = 20}, {.place = {0, 50}, .diameter = 20}};
-  EXPECT_NEAR(cover(halves, stand).value, kPi * 50 / 1e4, 5e-4) << "half outside; twice is once";
+  const StandCrown circle{.position = {50, 50}, .diameter = 20};
+  EXPECT_NEAR(canopy_cover(std::span(&circle, 1), stand).value, kPi * 100 / 1e4, 2e-4);
+  EXPECT_EQ(canopy_cover({}, stand).value, 0);
+  const StandCrown halves[] = {{.position = {0, 50}, .diameter = 20}, {.position = {0, 50}, .diameter = 20}};
+  EXPECT_NEAR(canopy_cover(halves, stand).value, kPi * 50 / 1e4, 5e-4) << "half outside; twice is once";
   const StandCrown outline{
-      .place = {50, 50}, .diameter = 5, .ring = {{40, 40}, {60, 40}, {60, 60}, {40, 60}}};
-  EXPECT_NEAR(cover(std::span(&outline, 1), stand).value, 0.04, 1e-9);
+      .position = {50, 50}, .diameter = 5, .ring = {{40, 40}, {60, 40}, {60, 60}, {40, 60}}};
+  EXPECT_NEAR(canopy_cover(std::span(&outline, 1), stand).value, 0.04, 1e-9);
   StandCrown doubtful = outline;
   doubtful.confidence = 0.5;
-  EXPECT_NEAR(cover(std::span(&doubtful, 1), stand).se, 0.02, 1e-9);
-  EXPECT_TRUE(std::isnan(cover({}, {}).value));
+  EXPECT_NEAR(canopy_cover(std::span(&doubtful, 1), stand).se, 0.02, 1e-9);
+  EXPECT_TRUE(std::isnan(canopy_cover({}, {}).value));
+}
+
+TEST(StandCover, ALongNarrowStandTakesNoMoreMemory) {
+  const StandPolygon strip{{{{0, 0}, {4e12, 0}, {4e12, 0.5}, {0, 0.5}}}};  // 8e9 places by area alone: 32 GB
+  EXPECT_NO_THROW(canopy_cover({}, strip));
 }
 
 TEST(StandCover, MatchesCountingPlaces) {
@@ -48,18 +53,18 @@ TEST(StandCover, MatchesCountingPlaces) {
     }
     std::vector<StandCrown> crowns;
     for (int i = 0; i < 15; ++i)
-      crowns.push_back(
-          {.place = {random.uniform(-35, 35), random.uniform(-35, 35)}, .diameter = random.uniform(1, 15)});
+      crowns.push_back({.position = {random.uniform(-35, 35), random.uniform(-35, 35)},
+                        .diameter = random.uniform(1, 15)});
     int all = 0, covered = 0;
     for (int i = -70; i < 70; ++i)
       for (int j = -70; j < 70; ++j) {
         const Eigen::Vector2d at(0.5 * i, 0.5 * j);
         if (!inside(stand, at)) continue;
         ++all;
-        covered += std::ranges::any_of(crowns,
-                                       [&](const auto& c) { return (c.place - at).norm() < c.diameter / 2; });
+        covered += std::ranges::any_of(
+            crowns, [&](const auto& c) { return (c.position - at).norm() < c.diameter / 2; });
       }
-    EXPECT_NEAR(cover(crowns, stand).value, static_cast<double>(covered) / all, 1e-12);
+    EXPECT_NEAR(canopy_cover(crowns, stand).value, static_cast<double>(covered) / all, 1e-12);
   }
 }
 
@@ -89,8 +94,8 @@ TEST(StandTables, SayWhatIsWrong) {
 
 TEST(AirRecall, RisesWithTheHeightOfATree) {
   for (const double crowns : {0.1, 0.194, 0.22, 0.246, 0.27, 0.295, 0.5}) {
-    EXPECT_TRUE(air_recall(std::nan(""), crowns).empty());
-    const std::vector<RecallRow> rows = air_recall(30, crowns);
+    EXPECT_TRUE(airborne_recall(std::nan(""), crowns).empty());
+    const std::vector<RecallRow> rows = airborne_recall(30, crowns);
     ASSERT_GT(rows.size(), 3u);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_GT(rows[i].recall, 0);
@@ -101,7 +106,7 @@ TEST(AirRecall, RisesWithTheHeightOfATree) {
         EXPECT_GE(rows[i].recall, rows[i - 1].recall);
       }
     }
-    EXPECT_NEAR(air_recall(15, crowns)[2].height_from, rows[2].height_from / 2, 1e-9);
+    EXPECT_NEAR(airborne_recall(15, crowns)[2].height_from, rows[2].height_from / 2, 1e-9);
   }
 }
 

@@ -22,7 +22,7 @@ StandPolygon square(double x, double y, double side) {
 }
 
 StandTree tree(double x, double y, double height, double dbh) {
-  StandTree t{.place = {x, y}, .height = height, .diameter = dbh};
+  StandTree t{.position = {x, y}, .height = height, .diameter = dbh};
   t.volume = stem_volume(built_in_volume()[0], dbh, height);
   return t;
 }
@@ -38,7 +38,7 @@ StandPolygon half_hectare() {
 TEST(StandInventory, IsWhatAHandComputes) {
   const StandPolygon stand = half_hectare();
   ASSERT_DOUBLE_EQ(area(stand), 6000);
-  const StandFigures f = inventory(three_trees(), stand, {});
+  const StandAttributes f = inventory(three_trees(), stand, {});
   EXPECT_EQ(f.trees, 3);
   EXPECT_NEAR(f.hectares, 0.6, 1e-12);
   EXPECT_NEAR(f.stems.value, 5.0, 1e-12);  // 3 / 0.6
@@ -70,7 +70,7 @@ TEST(StandInventory, DominantHeightTakesAFractionOfTheLastTree) {
 TEST(StandInventory, ErrorsOfTreesBecomeErrorsOfFigures) {
   std::vector<StandTree> trees = three_trees();
   for (StandTree& t : trees) t.diameter_sd = 0.03, t.height_sd = 1;
-  const StandFigures f = inventory(trees, half_hectare(), {.form_factor_error = 0.1});
+  const StandAttributes f = inventory(trees, half_hectare(), {.form_factor_error = 0.1});
   // d(sum g) = pi / 2 d dd
   EXPECT_NEAR(f.basal_area.se, kPi / 2 * 0.03 * std::sqrt(0.29) / 0.6, 1e-9);
   EXPECT_NEAR(f.mean_height.se, 1 / std::sqrt(3), 1e-12);
@@ -85,22 +85,22 @@ TEST(StandInventory, ErrorsOfTreesBecomeErrorsOfFigures) {
 TEST(StandInventory, DoubtfulTreesAndEdgesWidenTheErrors) {
   std::vector<StandTree> trees = three_trees();
   for (StandTree& t : trees) t.confidence = 0.8;
-  const StandFigures f = inventory(trees, half_hectare());
+  const StandAttributes f = inventory(trees, half_hectare());
   EXPECT_NEAR(f.stems.value, 5, 1e-12) << "what is counted is what was found";
   EXPECT_NEAR(f.stems.se, std::sqrt(3 * 0.16) / 0.6, 1e-12);
   // A tree on the edge itself is inside with probability one half, wherever it is counted.
   std::vector<StandTree> edge{tree(0, 25, 20, 0.3)};
-  edge[0].place_sd = 0.5;
+  edge[0].position_sd = 0.5;
   EXPECT_NEAR(inventory(edge, half_hectare()).stems.se, 0.5 / 0.6, 1e-9);
-  edge[0].place.x() = -0.5;  // one deviation outside: 0.1587 inside
-  const StandFigures out = inventory(edge, half_hectare());
+  edge[0].position.x() = -0.5;  // one deviation outside: 0.1587 inside
+  const StandAttributes out = inventory(edge, half_hectare());
   EXPECT_EQ(out.trees, 0);
   EXPECT_NEAR(out.stems.se, std::sqrt(0.158655 * 0.841345) / 0.6, 1e-6);
 }
 
 TEST(StandInventory, RecallCountsTheTreesNobodyFound) {
   const std::vector<RecallRow> recall{{0, 0.5, 0.1}, {20, 0.8, 0}};
-  const StandFigures f = inventory(three_trees(), half_hectare(), {.recall = recall});
+  const StandAttributes f = inventory(three_trees(), half_hectare(), {.recall = recall});
   EXPECT_NEAR(f.stems.value, (1 / 0.5 + 2 / 0.8) / 0.6, 1e-12);
   EXPECT_NEAR(f.mean_height.value, (15 * 2 + 25 * 1.25 + 30 * 1.25) / 4.5, 1e-12);
   const double binomial = 0.5 / 0.25 + 2 * 0.2 / 0.64, shared = std::pow(2 * 0.1 / 0.5, 2);
@@ -108,19 +108,19 @@ TEST(StandInventory, RecallCountsTheTreesNobodyFound) {
 }
 
 TEST(StandInventory, AnEmptyStandHasNoTreesAndNoHeights) {
-  const StandFigures f = inventory({}, half_hectare());
+  const StandAttributes f = inventory({}, half_hectare());
   EXPECT_EQ(f.stems.value, 0);
   EXPECT_EQ(f.basal_area.value, 0);
   EXPECT_TRUE(std::isnan(f.lorey_height.value));
   EXPECT_TRUE(std::isnan(f.dominant_height.value));
-  const StandFigures nothing = inventory(three_trees(), {});
+  const StandAttributes nothing = inventory(three_trees(), {});
   EXPECT_TRUE(std::isnan(nothing.stems.value)) << "no area, no density";
 }
 
 TEST(StandInventory, TreesWithoutDiameterCountAsStemsOnly) {
   std::vector<StandTree> trees = three_trees();
   trees[2].diameter = trees[2].volume = StandTree::kUnknown;
-  const StandFigures f = inventory(trees, half_hectare());
+  const StandAttributes f = inventory(trees, half_hectare());
   EXPECT_EQ(f.without_diameter, 1);
   EXPECT_NEAR(f.stems.value, 5, 1e-12);
   EXPECT_NEAR(f.basal_area.value, kPi / 4 * 0.13 / 0.6, 1e-12);
@@ -133,7 +133,7 @@ TEST(StandPolygon, HolesTakeAwayAndIslandsInThemAdd) {
   StandPolygon stand = square(0, 0, 100);
   stand.rings.push_back(square(20, 20, 40).rings[0]);
   stand.rings.push_back(square(30, 30, 10).rings[0]);
-  std::ranges::reverse(stand.rings[1]);  // the sense says nothing
+  std::ranges::reverse(stand.rings[1]);  // the orientation does not matter
   EXPECT_DOUBLE_EQ(area(stand), 10000 - 1600 + 100);
   EXPECT_TRUE(inside(stand, {10, 10}));
   EXPECT_FALSE(inside(stand, {25, 25}));
@@ -163,10 +163,10 @@ TEST(StandPolygon, CellsCutOffAtTheEdgeMakeUpTheWhole) {
   double sum = 0;
   for (int i = 0; i < 7; ++i)
     for (int j = 0; j < 7; ++j)
-      sum += area(clipped(
+      sum += area(clip_polygon(
           stand, {Eigen::Vector2d(15.0 * i, 15.0 * j), Eigen::Vector2d(15.0 * i + 15, 15.0 * j + 15)}));
   EXPECT_NEAR(sum, area(stand), 1e-9);
-  EXPECT_TRUE(clipped(stand, {Eigen::Vector2d(200, 200), Eigen::Vector2d(300, 300)}).rings.empty());
+  EXPECT_TRUE(clip_polygon(stand, {Eigen::Vector2d(200, 200), Eigen::Vector2d(300, 300)}).rings.empty());
 }
 
 TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
@@ -175,21 +175,21 @@ TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
     Random random(seed);
     std::vector<Eigen::Vector2d> trees;
     for (int i = 0; i < 200; ++i) trees.emplace_back(random.uniform(0, 100), random.uniform(0, 100));
-    sum += area(ground_of(trees)) / 40;
+    sum += area(estimate_sampled_area(trees)) / 40;
   }
   EXPECT_NEAR(sum, 10000, 250) << "Ripley and Rasson's estimate is nearly unbiased";
-  EXPECT_TRUE(ground_of({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).rings.empty());
-  EXPECT_TRUE(ground_of({{0, 0}, {1, 0}, {0, 1}}).rings.empty());
+  EXPECT_TRUE(estimate_sampled_area({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).rings.empty());
+  EXPECT_TRUE(estimate_sampled_area({{0, 0}, {1, 0}, {0, 1}}).rings.empty());
 }
 
-// The slow, obvious twin: every tree against every stand, sums written out.
-StandFigures by_definition(const std::vector<StandTree>& trees, const StandPolygon& stand) {
-  StandFigures f;
+// Slow twin: every tree against every stand, sums written out.
+StandAttributes by_definition(const std::vector<StandTree>& trees, const StandPolygon& stand) {
+  StandAttributes f;
   f.hectares = area(stand) / 1e4;
   double n = 0, g = 0, gh = 0, v = 0;
   std::vector<std::pair<double, double>> thick;
   for (const StandTree& t : trees) {
-    if (!inside(stand, t.place)) continue;
+    if (!inside(stand, t.position)) continue;
     ++f.trees, n += 1;
     g += kPi / 4 * t.diameter * t.diameter;
     gh += kPi / 4 * t.diameter * t.diameter * t.height;
@@ -216,12 +216,12 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
   for (int i = 0; i < 400; ++i) {
     trees.push_back(tree(random.uniform(-20, 120), random.uniform(-20, 120), random.uniform(8, 35),
                          random.uniform(0.1, 0.5)));
-    trees.back().height_sd = 0.8, trees.back().diameter_sd = 0.04, trees.back().place_sd = 0.7;
+    trees.back().height_sd = 0.8, trees.back().diameter_sd = 0.04, trees.back().position_sd = 0.7;
     trees.back().confidence = 0.9;
   }
   StandPolygon stand = square(0, 0, 100);
   stand.rings.push_back(square(30, 30, 20).rings[0]);
-  const StandFigures told = inventory(trees, stand), twin = by_definition(trees, stand);
+  const StandAttributes told = inventory(trees, stand), twin = by_definition(trees, stand);
   EXPECT_EQ(told.trees, twin.trees);
   EXPECT_NEAR(told.stems.value, twin.stems.value, 1e-9);
   EXPECT_NEAR(told.basal_area.value, twin.basal_area.value, 1e-9);
@@ -229,28 +229,28 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
   EXPECT_NEAR(told.lorey_height.value, twin.lorey_height.value, 1e-9);
   EXPECT_NEAR(told.dominant_height.value, twin.dominant_height.value, 1e-9);
 
-  // Draw the trees again and again within their errors: the spread is what the standard errors say.
+  // Monte Carlo: the spread over trees drawn within their errors equals the standard errors.
   const int kDraws = 600;
   double sum[4] = {}, squares[4] = {};
   for (int k = 0; k < kDraws; ++k) {
     std::vector<StandTree> drawn;
     for (StandTree t : trees) {
-      if (!random.chance(t.confidence)) continue;
-      t.place += Eigen::Vector2d(random.normal(0, t.place_sd), random.normal(0, t.place_sd));
+      if (!random.bernoulli(t.confidence)) continue;
+      t.position += Eigen::Vector2d(random.normal(0, t.position_sd), random.normal(0, t.position_sd));
       const double height = random.normal(t.height, t.height_sd),
                    diameter = random.normal(t.diameter, t.diameter_sd);
       t.volume *= height / t.height * std::pow(diameter / t.diameter, 2);
       t.height = height, t.diameter = diameter;
       drawn.push_back(t);
     }
-    const StandFigures f = by_definition(drawn, stand);
+    const StandAttributes f = by_definition(drawn, stand);
     const double values[] = {f.stems.value, f.basal_area.value, f.volume.value, f.lorey_height.value};
     for (int i = 0; i < 4; ++i) sum[i] += values[i] / kDraws, squares[i] += values[i] * values[i] / kDraws;
   }
   const Estimate estimates[] = {told.stems, told.basal_area, told.volume, told.lorey_height};
   for (int i = 0; i < 4; ++i) {
     const double spread = std::sqrt(squares[i] - sum[i] * sum[i]);
-    EXPECT_NEAR(estimates[i].se / spread, 1, 0.12) << i;  // 600 draws tell a spread to 3 %
+    EXPECT_NEAR(estimates[i].se / spread, 1, 0.12) << i;  // 600 draws estimate a spread to 3 %
   }
 }
 

@@ -39,7 +39,7 @@ class Viewshed {
       const double t = static_cast<double>(i) / steps;
       const double ground =
           height(column + t * (to_column - column), row + t * (to_row - row)) - drop(t * distance);
-      if (!(ground <= eye + t * (target - eye))) return false;  // nobody sees across a void
+      if (!(ground <= eye + t * (target - eye))) return false;  // voids block the view
     }
     return true;
   }

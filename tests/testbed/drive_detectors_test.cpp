@@ -8,7 +8,7 @@
 
 #include "localization/detectors/laser_rocks.hpp"
 #include "localization/detectors/laser_stems.hpp"
-#include "localization/harvested.hpp"
+#include "localization/harvested_trees.hpp"
 #include "testbed/drive/laser_scanner.hpp"
 
 namespace waymark {
@@ -43,7 +43,7 @@ struct StemScore {
   int stems = 0, found = 0, visible = 0, is_false = 0;
 };
 
-// Stems that nothing hides: all rays across the stem's middle nine tenths meet it.
+// Unoccluded stems: all rays across the central nine tenths of the stem hit it.
 bool plainly_visible(const RayFan& fan, const StemSolid& stem, std::uint32_t index, double step) {
   const Eigen::Vector2d to = stem.foot.head<2>() - fan.origin().head<2>();
   const double middle = std::atan2(to.y(), to.x()), half = std::asin(0.45 * stem.dbh / to.norm());
@@ -59,7 +59,7 @@ bool plainly_visible(const RayFan& fan, const StemSolid& stem, std::uint32_t ind
 StemScore score_stems(double from, double to, const ForestClutter& clutter, std::uint64_t seed) {
   StemScore score;
   LaserModel laser{.field = Degrees{360}, .step = Degrees{0.25}};
-  const LaserStems options = forest_stems();
+  const LaserStemOptions options = forest_stem_options();
   for (std::uint64_t k = 0; k < 12; ++k) {
     const auto trees = stand(70, 500, seed + k);
     const Terrain ground = flat();
@@ -118,9 +118,9 @@ TEST(LaserStems, AScanOfMissesHasNone) {
                  .first_angle = -1,
                  .angle_step = 0.01,
                  .ranges = std::vector<float>(200, 0.0F)};
-  EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
+  EXPECT_TRUE(find_stems(scan, forest_stem_options()).empty());
   scan.ranges.clear();
-  EXPECT_TRUE(find_stems(scan, forest_stems()).empty());
+  EXPECT_TRUE(find_stems(scan, forest_stem_options()).empty());
   EXPECT_TRUE(find_rocks(scan, {}).empty());
   scan.ranges.assign(200, std::nanf(""));
   EXPECT_TRUE(find_rocks(scan, {}).empty());

@@ -28,8 +28,8 @@ Terrain slope(double forward, double left, double side = 60) {
   return {std::move(heights), -side / 2, side / 2, 1, 1};
 }
 
-MadeGround small_site() {
-  MadeGround ground;
+SiteModel small_site() {
+  SiteModel ground;
   ground.width = ground.height = 90;
   ground.cell = 0.5;
   ground.relief.rms = 0.5;
@@ -56,13 +56,13 @@ std::vector<StandingTree> rows_of_trees(const Terrain& terrain) {
 
 TEST(RoverBody, StandsOnASlopeAsTheSlopeIs) {
   const Terrain terrain = slope(0.2, -0.1);
-  const auto at = stand_on(terrain, {3, 4, 0}, {});
+  const auto at = vehicle_pose_on(terrain, {3, 4, 0}, {});
   ASSERT_TRUE(at);
   EXPECT_NEAR(at->z, 0.2 * 3 - 0.1 * 4, 1e-6);
   EXPECT_NEAR(at->pitch, -std::atan(0.2), 1e-6) << "uphill: the nose is up, pitch is negative";
   const Eigen::Vector3d up = at->grid_from_robot().transform.linear().col(2);
   EXPECT_NEAR((up - Eigen::Vector3d(-0.2, 0.1, 1).normalized()).norm(), 0, 1e-6);
-  EXPECT_FALSE(stand_on(terrain, {29.9, 0, 0}, {})) << "a wheel is beyond the ground";
+  EXPECT_FALSE(vehicle_pose_on(terrain, {29.9, 0, 0}, {})) << "a wheel is beyond the ground";
 }
 
 TEST(RayFan, MeetsWhatAskingEveryTargetMeets) {
@@ -79,7 +79,7 @@ TEST(RayFan, MeetsWhatAskingEveryTargetMeets) {
     for (int k = 0; k < 200; ++k) {
       const double a = random.uniform(-4, 4), e = random.uniform(-0.1, 0.05);
       const Eigen::Vector3d along(std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e));
-      const auto hit = fan.cast(along), slow = fan.cast_slowly(along);
+      const auto hit = fan.cast(along), slow = fan.cast_exhaustively(along);
       ASSERT_EQ(hit.has_value(), slow.has_value()) << "place " << place << ", ray " << k;
       if (!hit) continue;
       EXPECT_EQ(hit->range, slow->range);
@@ -93,7 +93,7 @@ TEST(RayFan, MeetsWhatAskingEveryTargetMeets) {
 
 TEST(RayFan, AFelledTreeIsGone) {
   StemSolid stem{.foot = {10, 0, 0}, .dbh = 0.4, .height = 20};
-  stem.until = 7;
+  stem.felled_at = 7;
   const LaserTargets targets(slope(0, 0), {}, {stem});
   const Eigen::Vector3d eye(0, 0, 1.3), ahead(1, 0, 0);
   ASSERT_TRUE(RayFan(targets, eye, 30, 6).cast(ahead));
@@ -114,8 +114,8 @@ TEST(LaserScanner, AWideBeamSeesStemsWiderAndTheDetectorKnows) {
   laser.step = Degrees{0.05};
   Random random(1);
   LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
-  LaserStems options;
-  options.least_beams = 3;
+  LaserStemOptions options;
+  options.min_beams = 3;
   const auto uncorrected = find_stems(scan, options);
   scan.beam_width = to_radians(laser.divergence).value * (1 - 2 * laser.sensitivity);
   const auto corrected = find_stems(scan, options);
@@ -129,27 +129,27 @@ TEST(LaserScanner, AWideBeamSeesStemsWiderAndTheDetectorKnows) {
 TEST(Route, GoesRoundObstaclesOrSaysThereIsNoWay) {
   const Terrain flat = slope(0, 0);
   const std::vector<Obstacle> wall{{{0, 0}, 6}};
-  const FreeGround ground(flat, wall, 1.5, 2, 0.4);
-  const auto way = ground.way({-15, 0}, {15, 0});
-  ASSERT_GE(way.size(), 3u);
-  for (const Eigen::Vector2d& at : smooth_way(way, 0.5)) EXPECT_GT(at.norm(), 6.5);
-  const FreeGround closed(flat, std::vector<Obstacle>{{{0, 0}, 6}, {{15, 0}, 4}}, 40, 2, 0.4);
-  EXPECT_TRUE(closed.way({-15, 0}, {15, 0}).empty());
+  const TraversableMap ground(flat, wall, 1.5, 2, 0.4);
+  const auto path = ground.shortest_path({-15, 0}, {15, 0});
+  ASSERT_GE(path.size(), 3u);
+  for (const Eigen::Vector2d& at : smooth_path(path, 0.5)) EXPECT_GT(at.norm(), 6.5);
+  const TraversableMap closed(flat, std::vector<Obstacle>{{{0, 0}, 6}, {{15, 0}, 4}}, 40, 2, 0.4);
+  EXPECT_TRUE(closed.shortest_path({-15, 0}, {15, 0}).empty());
 }
 
 TEST(Drive, OdometryWithoutErrorsIsTheTruth) {
   const Terrain flat = slope(0, 0);
   DriveSettings settings;
   settings.odometry.perfect = true;
-  const std::vector<Eigen::Vector2d> way = smooth_way({{-20, -20}, {10, -15}, {20, 20}, {-5, 5}}, 0.5);
-  const auto steps = drive_along(flat, way, settings, 1);
-  Pose2 told = steps.front().at.plane;
+  const std::vector<Eigen::Vector2d> path = smooth_path({{-20, -20}, {10, -15}, {20, 20}, {-5, 5}}, 0.5);
+  const auto steps = drive_along(flat, path, settings, 1);
+  Pose2 odometry = steps.front().at.plane;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double dt = steps[i + 1].t - steps[i].t;
-    told = told * twist_motion(steps[i].speed, 0, steps[i].turn, dt, {}).step;
+    odometry = odometry * twist_motion(steps[i].speed, 0, steps[i].turn, dt, {}).step;
   }
-  EXPECT_NEAR((told.at() - steps.back().at.plane.at()).norm(), 0, 0.02);
-  EXPECT_NEAR((steps.back().at.plane.at() - way.back()).norm(), 0, 2);
+  EXPECT_NEAR((odometry.at() - steps.back().at.plane.at()).norm(), 0, 0.02);
+  EXPECT_NEAR((steps.back().at.plane.at() - path.back()).norm(), 0, 2);
 }
 
 std::string log_on(int threads) {
@@ -172,7 +172,7 @@ TEST(Drive, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Drive, AHarvesterFellsWhatStandsInItsWay) {
-  MadeGround ground = small_site();
+  SiteModel ground = small_site();
   ground.rocks.k = 0;
   ground.craters.density = 0;
   const Scene scene = make_scene(ground, 4);
@@ -186,7 +186,7 @@ TEST(Drive, AHarvesterFellsWhatStandsInItsWay) {
   for (const DriveStep& step : world.steps)
     for (std::size_t i = 0; i < world.trees.size(); ++i) {
       if ((world.trees[i].foot.head<2>() - step.at.plane.at()).norm() > 1.5) continue;
-      EXPECT_LE(world.targets.stems()[i].until, step.t) << "it drove through tree " << i;
+      EXPECT_LE(world.targets.stems()[i].felled_at, step.t) << "it drove through tree " << i;
     }
   const std::string log = drive_log(world, {});
   EXPECT_THAT(log, HasSubstr("\"kind\":\"felled\""));

@@ -8,15 +8,15 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "testbed/landing/lit_ground.hpp"
+#include "testbed/landing/lit_terrain.hpp"
 #include "testbed/landing/rock_field.hpp"
 #include "testbed/sensor.hpp"
 
 namespace waymark {
 namespace {
 
-MadeGround bare_ground() {
-  MadeGround ground;
+SiteModel bare_ground() {
+  SiteModel ground;
   ground.width = ground.height = 40;
   ground.relief.rms = 0;
   ground.craters.density = 0;
@@ -89,18 +89,18 @@ TEST(Render, ARockCastsAShadowOfItsLength) {
 }
 
 TEST(Render, ShadowsOfTheGroundAreThoseOfRays) {
-  MadeGround ground = bare_ground();
+  SiteModel ground = bare_ground();
   ground.relief = {.rms = 4, .longest = 40, .hurst = 0.8, .roughness = 0.3};
   const Scene scene = make_scene(ground, 3);
   for (const double azimuth : {10.0, 100.0, 190.0, 305.0}) {
     const Sun sun{{azimuth}, {20}};
-    const LitGround lit(scene, sun);
+    const LitTerrain lit(scene, sun);
     Random random(1);
     int same = 0, dark = 0;
     constexpr int kPoints = 4000;
     for (int i = 0; i < kPoints; ++i) {
       const double x = random.uniform(-18, 18), y = random.uniform(-18, 18), z = *scene.terrain.height(x, y);
-      const bool shadow = scene.terrain.in_shadow({{x, y, z}}, towards(sun));
+      const bool shadow = scene.terrain.in_shadow({{x, y, z}}, sun_direction(sun));
       same += shadow == (z < lit.shadow_height(x, y)), dark += shadow;
     }
     EXPECT_GT(dark, kPoints / 20) << azimuth;
@@ -129,7 +129,7 @@ TEST(Render, PastTheGroundIsNoData) {
 }
 
 TEST(Render, IsTheSameBitForBitOnOneThread) {
-  MadeGround ground;
+  SiteModel ground;
   ground.width = ground.height = 60;
   ground.craters.max_diameter = 20;
   const Scene scene = make_scene(ground, 2);
@@ -154,7 +154,7 @@ TEST(Sensor, NoiseAndExposureAreAsAsked) {
   Pixels light(300, 300, 0.1F);
   Exposure exposure;
   exposure.read_noise = 0.01, exposure.shot_noise = 0.02, exposure.level = 0.4;
-  const Pixels image = exposed(light, exposure, 0.1, 4);
+  const Pixels image = apply_sensor(light, exposure, 0.1, 4);
   double sum = 0, squares = 0;
   for (const float p : image.cells()) sum += double(p), squares += double(p) * double(p);
   const double mean = sum / 9e4, sd = std::sqrt(squares / 9e4 - mean * mean);
@@ -165,7 +165,7 @@ TEST(Sensor, NoiseAndExposureAreAsAsked) {
 TEST(Sensor, BlurKeepsTheLightAndHasItsWidth) {
   Pixels point(41, 41, 0.0F);
   point(20, 20) = 1;
-  const Pixels image = blurred(point, 1.5);
+  const Pixels image = gaussian_blur(point, 1.5);
   double sum = 0, second = 0;
   for (std::int64_t j = 0; j < 41; ++j)
     for (std::int64_t i = 0; i < 41; ++i)
@@ -179,16 +179,16 @@ TEST(Outline, OfACraterIsItsEllipse) {
   const View map = map_view(scene, 0.1, 400, 400);
   const TrueCrater crater{
       .position = {3, -2, 0}, .major = 8, .minor = 6, .orientation = 30 * kRadiansPerDegree};
-  const auto shape = outline_in(map, crater);
+  const auto shape = image_outline(map, crater);
   ASSERT_TRUE(shape);
   EXPECT_NEAR(shape->x, 199.5 + 30, 1e-6);
   EXPECT_NEAR(shape->y, 199.5 + 20, 1e-6);
   EXPECT_NEAR(shape->major, 80, 0.01);
   EXPECT_NEAR(shape->minor, 60, 0.01);
   EXPECT_NEAR(shape->angle, -60 * kRadiansPerDegree, 1e-6);  // 30 deg east of north points up and right
-  EXPECT_FALSE(outline_in(map, TrueCrater{.position = {19, 0, 0}, .major = 8, .minor = 8}));
+  EXPECT_FALSE(image_outline(map, TrueCrater{.position = {19, 0, 0}, .major = 8, .minor = 8}));
 
-  const auto seen = outline_in(camera_view(looking_down(100)), crater);  // 0.25 m pixels
+  const auto seen = image_outline(camera_view(looking_down(100)), crater);  // 0.25 m pixels
   ASSERT_TRUE(seen);
   EXPECT_NEAR(seen->x, 99.5 + 12, 1e-6);
   EXPECT_NEAR(seen->major, 32, 0.01);

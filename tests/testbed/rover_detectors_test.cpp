@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recall and precision of a rover's detectors against what the testbed knows to be there.
+// Recall and precision of rover detectors against the truth of the testbed.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace waymark {
 namespace {
 
 Scene rocky(std::uint64_t seed) {
-  MadeGround ground;
+  SiteModel ground;
   ground.width = ground.height = 100;
   ground.cell = 0.4;
   ground.relief = {.rms = 0.4, .longest = 60, .roughness = 0.5};
@@ -175,21 +175,21 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
         for (const Eigen::Vector3d& o : cones) {
           const Eigen::Vector2d other = o.head<2>() - at;
           const double aside =
-              std::abs(wrapped(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
+              std::abs(wrap_angle(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
           const double wide = std::atan2(o.z() / 0.5, other.norm());
           free = free && (&o == &c || aside > wide + 0.1 ||
                           std::atan2(o.z() - eye.z(), other.norm()) < elevation - 0.1);
         }
-        const bool hit = std::ranges::any_of(summits, [&](const SeenSummit& s) {
-          return std::abs(wrapped(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
+        const bool hit = std::ranges::any_of(summits, [&](const DetectedSummit& s) {
+          return std::abs(wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
         });
         in_view += free;
         recovered += free && hit;
       }
-      for (const SeenSummit& s : summits)
+      for (const DetectedSummit& s : summits)
         right += std::ranges::any_of(cones, [&](const Eigen::Vector3d& c) {
           const Eigen::Vector2d to = c.head<2>() - at;
-          return std::abs(wrapped(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
+          return std::abs(wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
         });
     }
   }

@@ -34,7 +34,7 @@ std::string file_text(const std::string& path) {
 TEST(Scenario, DefaultsStandForWhatIsNotGiven) {
   const Scenario scenario = read_scenario(R"({"waymark_scenario": 1, "rocks": {"k": 0.2}})", "site.json");
   EXPECT_EQ(scenario.ground.rocks.k, 0.2);
-  EXPECT_EQ(scenario.ground.rocks.max_diameter, RockLaw{}.max_diameter);
+  EXPECT_EQ(scenario.ground.rocks.max_diameter, RockPopulation{}.max_diameter);
   EXPECT_EQ(scenario.flights.size(), 1u);
 }
 
@@ -51,20 +51,20 @@ TEST(Scenario, IsReadBackAsWritten) {
 }
 
 TEST(Scenario, SaysWhereItIsWrong) {
-  EXPECT_THAT(refusal("{"), StartsWith("not JSON"));
+  EXPECT_THAT(refusal("{"), StartsWith("not valid JSON: expected a name in double quotes\n  site.json:1:2"));
   EXPECT_THAT(refusal("{}"), StartsWith("not a scenario: \"waymark_scenario\" is missing\n  site.json"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 2})"),
               StartsWith("waymark_scenario is 2, this program reads 1"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "rocks": {"kk": 1}})"),
-              StartsWith("rocks.kk: no such field; did you mean 'k'?"));
+              StartsWith("rocks has no option 'kk'; did you mean 'k'?"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "rock": {}})"),
-              StartsWith("rock: no such field; did you mean 'rocks'?"));
+              StartsWith("the scenario has no option 'rock'; did you mean 'rocks'?"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "sun": {"elevation": -3}})"),
               StartsWith("sun.elevation = -3 is outside [0.5, 90]"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "sun": {"elevation": "high"}})"),
-              StartsWith("sun.elevation must be a number, is \"high\""));
+              StartsWith("sun.elevation must be a number, is a string (\"high\")"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "camera": {"rows": 1.5}})"),
-              StartsWith("camera.rows must be a whole number, is 1.5"));
+              StartsWith("camera.rows must be a whole number, is a number (1.5)"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "picture": {"bits": 12}})"),
               StartsWith("picture.bits must be 8 or 16, is 12"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "flights": []})"), StartsWith("flights must be a list"));
@@ -72,6 +72,20 @@ TEST(Scenario, SaysWhereItIsWrong) {
               StartsWith("flights[0].images = 0 is outside"));
   EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "flights": [{}, {}]})"),
               StartsWith("flights[1] and an earlier flight are both called 'descent'"));
+}
+
+TEST(Scenario, FormerNamesAreReadWithAWarning) {
+  std::vector<std::string> warnings;
+  const Scenario scenario = read_scenario(
+      R"({"waymark_scenario": 1, "relief": {"longest": 70}, "drive": {"steepest": 0.5, "laser": {"most_range": 9}}})",
+      "site.json", [&](const std::string& warning) { warnings.push_back(warning); });
+  EXPECT_EQ(scenario.ground.relief.longest, 70);
+  EXPECT_EQ(scenario.drive.max_slope, 0.5);
+  EXPECT_EQ(scenario.drive.laser.max_range, 9);
+  EXPECT_THAT(warnings,
+              testing::UnorderedElementsAre("relief.longest was renamed: use max_wavelength (site.json)",
+                                            "drive.steepest was renamed: use max_slope (site.json)",
+                                            "drive.laser.most_range was renamed: use max_range (site.json)"));
 }
 
 TEST(Scenario, TheCommittedSchemaIsUpToDate) {
@@ -118,7 +132,7 @@ TEST(Flight, TiltsForwards) {
   const auto line = ray(shot.view, {49.5, 39.5});
   ASSERT_TRUE(line);
   const Eigen::Vector3d ahead = Eigen::Vector3d(1, 1, 0).normalized();  // from south-west to north-east
-  EXPECT_NEAR(line->along.unit.dot(ahead), std::sin(20 * kRadiansPerDegree), 1e-9);
+  EXPECT_NEAR(line->direction.unit.dot(ahead), std::sin(20 * kRadiansPerDegree), 1e-9);
 }
 
 TEST(Flight, ToldPosesHaveTheErrorsAsked) {
@@ -126,7 +140,7 @@ TEST(Flight, ToldPosesHaveTheErrorsAsked) {
   scenario.flights.front().images = 3000;
   double position = 0, angle = 0;
   for (const Shot& shot : plan_shots(scenario)) {
-    const Eigen::Isometry3d off = shot.view.grid_from_camera.transform.inverse() * shot.told.transform;
+    const Eigen::Isometry3d off = shot.view.grid_from_camera.transform.inverse() * shot.reported.transform;
     position += off.translation().squaredNorm() / 3;
     angle += std::pow(Eigen::AngleAxisd(off.linear()).angle(), 2) / 3;
   }
@@ -137,14 +151,14 @@ TEST(Flight, ToldPosesHaveTheErrorsAsked) {
 TEST(Flight, GroundReachesBeyondEveryFootprint) {
   Scenario scenario = small_scenario();
   const std::vector<Shot> shots = plan_shots(scenario);
-  scenario.ground = sized_for(scenario, shots);
+  scenario.ground = size_site(scenario, shots);
   EXPECT_NO_THROW(check_footprints(make_scene(scenario.ground, 1), shots));
   scenario.ground.width = 60;
   try {
     check_footprints(make_scene(scenario.ground, 1), shots);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.problem(), "image descent_0001.png looks past the ground");
+    EXPECT_EQ(error.problem(), "image descent_0001.png extends beyond the terrain");
   }
 }
 
@@ -152,17 +166,17 @@ TEST(Flight, RefusesToLookAtTheSky) {
   Scenario scenario = small_scenario();
   scenario.flights.front().tilt = {75};
   try {
-    sized_for(scenario, plan_shots(scenario));
+    size_site(scenario, plan_shots(scenario));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.problem(), "image descent_0001.png sees the sky: its footprint has no end");
+    EXPECT_EQ(error.problem(), "image descent_0001.png sees the sky: its footprint is unbounded");
   }
 }
 
 TEST(SceneFiles, TheTruthOfAnImageLiesWhereTheCameraSeesIt) {
   Scenario scenario = small_scenario();
   const std::vector<Shot> shots = plan_shots(scenario);
-  scenario.ground = sized_for(scenario, shots);
+  scenario.ground = size_site(scenario, shots);
   const Scene scene = make_scene(scenario.ground, 1);
   const TruthTables truth = truth_tables(scenario, scene, shots);
   EXPECT_THAT(truth.landmarks, StartsWith("type,x,y,z,radius,height,depth,major_axis,minor_axis,orientation,"
@@ -177,7 +191,7 @@ TEST(SceneFiles, TheDemIsTheGroundWithItsError) {
   scenario.dem = {.cell = 2, .height_sd = 0.3, .correlation = 6};
   scenario.ground.width = scenario.ground.height = 301;
   const Scene scene = make_scene(scenario.ground, 1);
-  const GivenDem dem = given_dem(scenario, scene);
+  const SimulatedDem dem = simulate_dem(scenario, scene);
   double squares = 0;
   std::int64_t count = 0;
   for (std::int64_t j = 2; j < dem.heights.rows() - 2; ++j)
@@ -191,11 +205,12 @@ TEST(SceneFiles, TheDemIsTheGroundWithItsError) {
 TEST(SceneFiles, CamerasAreWrittenWithSunAndErrors) {
   const Scenario scenario = small_scenario();
   const std::vector<Shot> shots = plan_shots(scenario);
-  const std::string told = camera_file(scenario, shots, false), exact = camera_file(scenario, shots, true);
-  EXPECT_THAT(told, HasSubstr("\"rotation_sd\": 0.1"));
-  EXPECT_THAT(told, HasSubstr("\"azimuth\": 135.0"));
+  const std::string reported = camera_file(scenario, shots, false),
+                    exact = camera_file(scenario, shots, true);
+  EXPECT_THAT(reported, HasSubstr("\"rotation_sd\": 0.1"));
+  EXPECT_THAT(reported, HasSubstr("\"azimuth\": 135.0"));
   EXPECT_THAT(exact, ::testing::Not(HasSubstr("rotation_sd")));
-  EXPECT_NE(told, exact);
+  EXPECT_NE(reported, exact);
 }
 
 }  // namespace

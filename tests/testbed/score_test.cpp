@@ -11,28 +11,28 @@
 namespace waymark::testing {
 namespace {
 
-ScoredThing thing(double x, double y, double diameter) {
-  ScoredThing t;
+EvaluatedObject thing(double x, double y, double diameter) {
+  EvaluatedObject t;
   t.at = {x, y};
   t.diameter = diameter;
   return t;
 }
 
-// A small false crater on the floor of a large one is no second find of the large one.
+// A small false crater on the floor of a large one is no duplicate of the large one.
 TEST(Score, OnlyThingsOfLikeSizeAreFoundTwice) {
-  const std::vector<ScoredThing> truth{thing(0, 0, 80)};
-  const std::vector<ScoredThing> found{thing(1, 0, 78), thing(20, 5, 3), thing(10, 0, 60)};
-  EXPECT_EQ(score(found, truth, {}).doubled, 1);
+  const std::vector<EvaluatedObject> truth{thing(0, 0, 80)};
+  const std::vector<EvaluatedObject> found{thing(1, 0, 78), thing(20, 5, 3), thing(10, 0, 60)};
+  EXPECT_EQ(score(found, truth, {}).duplicates, 1);
 }
 
 TEST(Score, CountsByHand) {
-  const std::vector<ScoredThing> truth{thing(0, 0, 4), thing(10, 0, 4), thing(20, 0, 2)};
-  const std::vector<ScoredThing> found{thing(1, 0, 4.4), thing(0.5, 0.5, 4), thing(30, 0, 4)};
+  const std::vector<EvaluatedObject> truth{thing(0, 0, 4), thing(10, 0, 4), thing(20, 0, 2)};
+  const std::vector<EvaluatedObject> found{thing(1, 0, 4.4), thing(0.5, 0.5, 4), thing(30, 0, 4)};
   const Score s = score(found, truth, {}, std::vector<double>{0, 3});
   EXPECT_EQ(s.match, (std::vector<int>{-1, 0, -1}));  // the nearest is the match, the other its double
   EXPECT_EQ(s.all.truth, 3);
   EXPECT_EQ(s.all.matched, 1);
-  EXPECT_EQ(s.doubled, 1);
+  EXPECT_EQ(s.duplicates, 1);
   EXPECT_DOUBLE_EQ(s.all.precision(), 1.0 / 3);
   EXPECT_DOUBLE_EQ(s.all.recall(), 1.0 / 3);
   EXPECT_EQ(s.by_size[0].truth, 1);
@@ -41,9 +41,9 @@ TEST(Score, CountsByHand) {
 }
 
 TEST(Score, IgnoredTruthCountsNeitherWay) {
-  std::vector<ScoredThing> truth{thing(0, 0, 4), thing(10, 0, 4)};
+  std::vector<EvaluatedObject> truth{thing(0, 0, 4), thing(10, 0, 4)};
   truth[0].ignored = true;
-  const std::vector<ScoredThing> found{thing(0, 0, 4), thing(10, 0, 4)};
+  const std::vector<EvaluatedObject> found{thing(0, 0, 4), thing(10, 0, 4)};
   const Score s = score(found, truth, {});
   EXPECT_EQ(s.match, (std::vector<int>{-2, 1}));
   EXPECT_EQ(s.all.f1(), 1);
@@ -71,7 +71,7 @@ TEST(Score, OverlapOfCircles) {
 }
 
 TEST(Score, ByOverlapTheMostConfidentComesFirst) {
-  std::vector<ScoredThing> found{thing(0.2, 0, 10), thing(0.5, 0, 10)};
+  std::vector<EvaluatedObject> found{thing(0.2, 0, 10), thing(0.5, 0, 10)};
   found[0].confidence = 0.5, found[1].confidence = 0.9;
   const Score s = score(found, std::vector{thing(0, 0, 10)}, {.by = MatchRules::By::overlap});
   EXPECT_EQ(s.match, (std::vector<int>{-1, 0}));
@@ -79,7 +79,7 @@ TEST(Score, ByOverlapTheMostConfidentComesFirst) {
 }
 
 TEST(Score, EllipsesAndCalibration) {
-  std::vector<ScoredThing> found, truth;
+  std::vector<EvaluatedObject> found, truth;
   for (int i = 0; i < 10; ++i) {
     found.push_back(thing(100.0 * i + (i < 9 ? 1 : 3), 0, 20));
     found.back().covariance = Eigen::Matrix2d::Identity();
@@ -94,7 +94,7 @@ TEST(Score, EllipsesAndCalibration) {
 }
 
 TEST(Score, FeaturesAreComparedByName) {
-  std::vector<ScoredThing> found{thing(0, 0, 4)}, truth{thing(0, 0, 5)};
+  std::vector<EvaluatedObject> found{thing(0, 0, 4)}, truth{thing(0, 0, 5)};
   found[0].features = {{"height", 1.1}, {"other", 3}};
   truth[0].features = {{"height", 1.0}};
   const Score s = score(found, truth, {});
@@ -104,7 +104,7 @@ TEST(Score, FeaturesAreComparedByName) {
 }
 
 TEST(Score, AnAxisErrsByAQuarterTurnAtMostAndAnElevationHasNoPercentage) {
-  std::vector<ScoredThing> found{thing(0, 0, 4)}, truth{thing(0, 0, 4)};
+  std::vector<EvaluatedObject> found{thing(0, 0, 4)}, truth{thing(0, 0, 4)};
   found[0].features = {{"orientation", 3.1}, {"elevation", 12}};
   truth[0].features = {{"orientation", 0.1}, {"elevation", 10}};
   const MatchRules rules{.scales = {{"orientation", Scale::axis}, {"elevation", Scale::interval}}};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses the installed package as a stranger would: prints the summits of a DEM and the landmark types it
-// knows.
+// Uses the installed package: prints the numbers of summits of a DEM and of boulder fields.
 #include <iostream>
-#include <waymark/waymark.hpp>
+#include <waymark/map.hpp>
+#include <waymark/mapping.hpp>
 
 namespace waymark {
 void register_consumer_types(TypeRegistry& types);

@@ -5,7 +5,7 @@
 namespace waymark {
 namespace {
 
-/// Puts a station on each summit that is high enough.
+/// Places a station on each summit above the minimum elevation.
 struct PlaceWeatherStations {
   struct Options {
     Meters min_elevation{500};

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/console.hpp"
+
+#include <iostream>
+
+#include "apps/log.hpp"
+#include "apps/progress.hpp"
+
+namespace waymark {
+namespace {
+
+void write_message(const Message& message) {
+  switch (message.kind) {
+    case MessageKind::detail:
+      return log_detail(message.text);
+    case MessageKind::summary:
+      return log_summary(message.text);
+    case MessageKind::warning:
+      return log_warning(message.text);
+    case MessageKind::failure:  // a quiet log has no summary that lists it
+      if (quiet_log()) log_error(message.text);
+      return;
+    case MessageKind::result:
+      std::cout << message.text;
+  }
+}
+
+}  // namespace
+
+Callbacks console_callbacks(const Session& session) {
+  return {.progress = progress_renderer(session), .message = write_message};
+}
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+#include "apps/command.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "landmarks/sensor_profile.hpp"
+#include "pipeline/engine/registry.hpp"
+namespace waymark {
+
+/// A stage, landmark type or sensor profile in the four forms of `--as`.
+struct ReferenceEntry {
+  std::string name, summary;
+  std::string text, json, schema, markdown;
+};
+
+std::vector<ReferenceEntry> registry_reference(const Registry& stages);
+std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types);
+std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types);
+
+/// Arguments of `waymark stages`, `types` and `sensors`.
+struct ReferenceRequest {
+  std::string name;  ///< empty: all
+  std::string as = "text";
+};
+std::vector<Argument> reference_arguments(ReferenceRequest& what, std::vector<std::string> names);
+
+/// Prints one entry, or all: a list as text, an object by name as json and schema. Throws Error{usage} with
+/// the nearest name if there is no such `kind`.
+void print_reference(std::span<const ReferenceEntry> all, const std::string& kind,
+                     const ReferenceRequest& what);
+
+}  // namespace waymark

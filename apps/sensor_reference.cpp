@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/registry_reference.hpp"
+
+namespace waymark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string as_text(const SensorProfile& sensor) {
+  std::string text = fmt::format(
+      "{}: {}\n\nWeight of a feature in the quality of a landmark (types not listed: all alike):\n",
+      sensor.name, sensor.summary);
+  for (const FeatureWeight& feature : sensor.weights)
+    text += fmt::format("  {:<14} {:<18} {:g}\n", feature.type, feature.feature, feature.weight);
+  return text;
+}
+
+std::string as_markdown(const SensorProfile& sensor) {
+  std::string text =
+      fmt::format("# {}\n\n{}.\n\n| type | feature | weight |\n|---|---|---|\n", sensor.name, sensor.summary);
+  for (const FeatureWeight& feature : sensor.weights)
+    text += fmt::format("| {} | `{}` | {:g} |\n", feature.type, feature.feature, feature.weight);
+  return text;
+}
+
+std::string as_json(const SensorProfile& sensor) {
+  Json record{{"name", sensor.name}, {"summary", sensor.summary}, {"weights", Json::object()}};
+  for (const FeatureWeight& feature : sensor.weights)
+    record["weights"][feature.type][feature.feature] = feature.weight;
+  return record.dump(2);
+}
+
+/// Of the object `weights` above: every feature a sensor can weigh, with this sensor's weight as the default.
+std::string as_schema(const SensorProfile& sensor, const TypeRegistry& types) {
+  Json properties = Json::object();
+  for (const LandmarkType& type : types) {
+    Json features = Json::object();
+    const std::vector<double> weights = weights_for(sensor, type);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+      features[type.features[i].name] = {{"type", "number"}, {"minimum", 0}, {"default", weights[i]}};
+    properties[type.name] = {{"type", "object"}, {"properties", features}, {"additionalProperties", false}};
+  }
+  return Json{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"title", sensor.name},
+              {"description", sensor.summary},
+              {"type", "object"},
+              {"properties", properties}}
+      .dump(2);
+}
+
+}  // namespace
+
+std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types) {
+  std::vector<ReferenceEntry> all;
+  for (const SensorProfile& sensor : sensors)
+    all.push_back({sensor.name, sensor.summary, as_text(sensor), as_json(sensor), as_schema(sensor, types),
+                   as_markdown(sensor)});
+  return all;
+}
+
+}  // namespace waymark

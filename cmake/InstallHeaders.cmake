@@ -1,0 +1,20 @@
+# Installs the public headers: include/waymark/*.hpp and all that they include, as waymark/<path in the source tree>.
+# Runs while installing, so the list cannot be out of date. An installed header names another as
+# "waymark/core/units.hpp", so that users need one include directory and reach nothing else (docs/decisions/0019).
+file(GLOB queue RELATIVE ${source}/include/waymark ${source}/include/waymark/*.hpp)
+list(TRANSFORM queue PREPEND include/waymark/)
+set(headers ${queue})
+file(REMOVE_RECURSE ${stage})
+while(queue)
+  list(POP_FRONT queue header)
+  file(READ ${source}/${header} text)
+  string(REGEX MATCHALL "#include \"[^\"]+" includes "${text}")
+  list(TRANSFORM includes REPLACE "#include \"" "")
+  list(REMOVE_ITEM includes ${headers})
+  list(APPEND queue ${includes})
+  list(APPEND headers ${includes})
+  string(REPLACE "#include \"" "#include \"waymark/" text "${text}")
+  string(REGEX REPLACE "^include/waymark/" "" path ${header})
+  file(WRITE ${stage}/waymark/${path} "${text}")
+endwhile()
+file(INSTALL DESTINATION ${CMAKE_INSTALL_PREFIX}/${destination} TYPE DIRECTORY FILES ${stage}/waymark)

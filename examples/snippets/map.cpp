@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Excerpts of the reference of waymark/map.hpp. Each function works by itself, in their order.
+#include <array>
+#include <fstream>
+#include <iostream>
+#include <waymark/map.hpp>
+using namespace waymark;
+
+namespace {
+
+void write() {
+  //! [write]
+  MapContents map;  // in a local CRS: metres
+  register_landmark_types(map.types);
+  const TypeId rock = map.types.id("rock");
+  Landmark boulder{
+      .uid = {}, .type = rock, .position = {{12, 30, 0}}, .features = {}, .attributes = {}, .quality = {}};
+  boulder.features.resize(map.types[rock].features.size());
+  boulder.features[feature_index(map.types[rock], "radius")] = {.value = 0.8, .observations = 3};
+  map.landmarks = {boulder};
+  assign_uids(map.types, map.crs, map.landmarks);
+  write_map("rocks.gpkg", map);
+  //! [write]
+}
+
+void add_type() {
+  //! [type]
+  TypeRegistry types;
+  types.add({.name = "lamp_post",
+             .summary = "Street light",
+             .features = {{"height", "m", Scale::ratio, 2, 20, "Ground to lamp"}},
+             .drawn_as = Solid::cylinder});
+  std::cout << qml_style(types[types.id("lamp_post")]).size() << " bytes of style for QGIS\n";
+  //! [type]
+}
+
+void merge_observations() {
+  //! [merge]
+  const std::array<WeightedValue, 3> heights{{{7.9, 0.8}, {8.2, 0.9}, {8.0, 0.5}}};  // metres, weight
+  const FeatureValue height = merge(heights, Scale::ratio);
+  const std::optional<double> of_spread = spread_confidence(height, Scale::ratio, 0);
+  const std::optional<double> of_counts = multiplicity_confidence(3, 4);  // seen in 3 of 4 images
+  std::cout << height.value << " m, confidence " << of_spread.value_or(0) * of_counts.value_or(0) << '\n';
+  //! [merge]
+}
+
+void read() {
+  //! [read]
+  const MapStore store = MapStore::open("rocks.gpkg");
+  MapQuery nearby;
+  nearby.types = {"rock"};
+  nearby.near = MapQuery::Near{10, 30, 5_m};
+  for (const Landmark& rock : store.query(nearby))
+    std::cout << rock.uid << " is " << store.distance(rock, 10, 30) << " m away\n";
+  //! [read]
+}
+
+void ask() {
+  //! [query]
+  QueryRequest request;  // as `waymark query rocks.gpkg --largest radius --limit 3`
+  request.largest = "radius";
+  request.limit = 3;
+  for (const Landmark& rock : query("rocks.gpkg", request).landmarks) std::cout << rock.uid << '\n';
+  //! [query]
+}
+
+void edit() {
+  //! [edit]
+  MapEditor editor = MapEditor::open("rocks.gpkg");
+  Landmark rock = editor.map().query({}).front();
+  rock.confidence = 0.5;
+  editor.transact([&] { editor.update(rock); });  // all changes of the function, or none
+  //! [edit]
+}
+
+void keep_in_memory() {
+  //! [memory]
+  const MapStore store = MapStore::open("rocks.gpkg");
+  const SemanticMap map(store.types(), store.crs(), store.query({}));
+  for (const Landmark& rock : map.near(Point<MapCrs>{{12, 31, 0}}, 2_m)) std::cout << rock.uid << '\n';
+  //! [memory]
+}
+
+void weigh() {
+  //! [sensor]
+  const MapStore store = MapStore::open("rocks.gpkg");
+  const SensorProfile& laser = all_sensors().at("horizontal_laser");
+  for (const Landmark& rock : store.query({}))
+    std::cout << quality_for(laser, store.types()[rock.type], rock).value_or(0) << '\n';  // eq. 8
+  //! [sensor]
+}
+
+void import_table() {
+  std::ofstream("survey.csv") << "x,y,radius\n3,4,0.5\n8,1,1.2\n";
+  //! [import]
+  ImportRequest request{.table = "survey.csv", .map = "survey.gpkg"};
+  request.options.type = "rock";
+  request.options.map_crs = "local";
+  const ImportedTable table = import_landmarks(request);
+  std::cout << table.rows << " rows\n";
+  //! [import]
+}
+
+void deliver() {
+  //! [deliver]
+  for (const Finding& finding : validate_map("survey.gpkg"))
+    std::cout << finding.code << ": " << finding.text << '\n';
+  export_map("survey.gpkg", "survey.fgb", {.overwrite = true});
+  write_report("survey.gpkg", "survey.html", {.title = "Survey"});
+  //! [deliver]
+}
+
+void fail() {
+  //! [error]
+  try {
+    MapStore::open("nowhere.gpkg");
+  } catch (const Error& error) {
+    std::cout << error.what() << "\nexit code " << exit_code(error.code()) << '\n';  // problem, place, remedy
+  }
+  //! [error]
+}
+
+}  // namespace
+
+int main() {
+  for (const auto& step : {write, add_type, merge_observations, read, ask, edit, keep_in_memory, weigh,
+                           import_table, deliver, fail})
+    step();
+}

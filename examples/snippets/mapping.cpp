@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// Excerpts of the reference of waymark/mapping.hpp. The argument is a DEM.
+#include <array>
+#include <iostream>
+#include <waymark/map.hpp>
+#include <waymark/mapping.hpp>
+using namespace waymark;
+
+namespace {
+
+void make(const std::string& dem) {
+  //! [make]
+  Pipeline pipeline(all_stages());
+  add_mountain_top_stages(pipeline, {dem});
+  pipeline.set("find_mountain_tops.min_prominence=300");
+  const MapResult made = make_map(Job{"peaks", std::move(pipeline)}, {.map = "peaks.gpkg"});
+  std::cout << made.landmarks.at("mountain_top") << " mountain tops\n" << made.report;
+  //! [make]
+}
+
+void listen(const std::string& dem) {
+  //! [listen]
+  Pipeline pipeline(all_stages());
+  add_mountain_top_stages(pipeline, {dem});
+  const Callbacks callbacks{
+      .progress =
+          [](const Progress& now) { std::cout << now.stage << ' ' << now.done << '/' << now.total << '\n'; },
+      .message = [](const Message& message) { std::cout << message.text << '\n'; }};
+  make_map(Job{"peaks", std::move(pipeline)}, {.map = "all_peaks.gpkg"}, callbacks);
+  //! [listen]
+}
+
+void resume(const std::string& dem) {
+  //! [resume]
+  Pipeline pipeline(all_stages());
+  add_mountain_top_stages(pipeline, {dem});
+  const RunOptions options{.work = "peaks_work"};  // keeps finished units of work
+  const Plan units = plan(pipeline, options);
+  std::cout << units.units.size() << " units\n" << plan_as_jsonl(units);
+  std::cout << run(pipeline, options).report;
+  //! [resume]
+}
+
+//! [stage]
+/// A stage of your own: keeps the landmarks above a height.
+struct KeepHighLandmarks {
+  struct Options {
+    Meters min_height{500};
+    void describe(OptionVisitor& option) {
+      option("min_height", min_height, {.help = "Lowest landmark kept"});
+    }
+  };
+  static constexpr In<std::vector<Landmark>> all{"landmarks"};
+  static constexpr Out<std::vector<Landmark>> high{"high_landmarks"};
+  static StageSpec spec() {
+    return {
+        .name = "keep_high_landmarks", .summary = "Keeps high landmarks", .inputs = {all}, .outputs = {high}};
+  }
+  static void run(const Options& options, StageContext& unit) {
+    std::vector<Landmark> kept;
+    for (const Landmark& one : unit.read(all)) {
+      unit.count_in(1);
+      if (one.position.xyz.z() < options.min_height.value)
+        unit.reject("too low");
+      else
+        kept.push_back(one), unit.count_out(1);
+    }
+    unit.write(high, std::move(kept));
+  }
+};
+//! [stage]
+
+void run_own_stage(const std::string& dem) {
+  //! [registry]
+  Registry stages;
+  register_importer_stages(stages);
+  register_pipeline_stages(stages);
+  stages.add<KeepHighLandmarks>();
+  Pipeline pipeline(stages);
+  pipeline.add("load_dem", R"({"files": [")" + dem + R"("]})")
+      .add("find_mountain_tops")
+      .add("join_mountain_tops")
+      .add("measure_isolation")
+      .add("map_mountain_tops");
+  pipeline.add<KeepHighLandmarks>({.min_height = 900_m});
+  std::cout << run(pipeline).report << stage_as_text(stages.at("keep_high_landmarks"));
+  //! [registry]
+}
+
+void read_job_file(const std::string& dem) {
+  //! [job]
+  const Job job = parse_job(R"({"name": "tops", "stages": [{"stage": "load_dem", "files": [")" + dem + R"("]},
+                                {"stage": "find_mountain_tops"}, {"stage": "join_mountain_tops"}]})",
+                            all_stages());
+  job.pipeline.check();  // throws Error{usage} if stages do not fit together
+  std::cout << job_as_json(job.name, job.pipeline) << '\n';
+  //! [job]
+}
+
+void measure_prominence() {
+  //! [prominence]
+  HeightWindow heights(7, 3, kNoHeight);  // one row of cells, and one cell around it
+  for (std::int64_t column = 1; column <= 5; ++column)
+    heights(column, 1) = std::array{9., 5., 4., 6., 7.}[column - 1];
+  GridGeometry grid;
+  grid.columns = 5, grid.rows = 1;
+  const auto tree = std::make_shared<const DivideTree>(build_divide_tree(heights, {0, 0, 5, 1}, grid, {}));
+  for (const Summit& summit : join_divide_trees({{tree}}, 1, BasePolicy::sea))
+    std::cout << summit.height << " m, prominence " << summit.prominence << " m\n";  // 9 and 9, 7 and 3
+  //! [prominence]
+}
+
+void measure_isolation_of_cells() {
+  //! [isolation]
+  struct Ridge final : DemSource {  // a DEM in memory
+    GridGeometry grid{.columns = 5, .rows = 1, .where = {}};
+    const GridGeometry& geometry() const override { return grid; }
+    NodataPolicy nodata_policy() const override { return NodataPolicy::ocean; }
+    HeightWindow read(const Window& window) const override {
+      HeightWindow heights(window.columns, window.rows, kNoHeight);
+      for (std::int64_t c = 0; c < 5; ++c)
+        if (window.contains(c, 0))
+          heights(c - window.column, -window.row) = std::array{9., 5., 4., 6., 7.}[c];
+      return heights;
+    }
+    std::vector<std::string> files() const override { return {}; }
+  } ridge;
+  const Window all{0, 0, 5, 1};
+  const auto relief =
+      std::make_shared<const BlockRelief>(block_relief(ridge.read({-1, -1, 7, 3}), all, kNoHeight));
+  const std::array summits{HighPoint{.cell = 4, .height = 7}};
+  const auto isolations = measure_isolation(summits, ridge, ReliefPyramid({{relief}}, 5, 1),
+                                            {.end = IsolationEnd::cell, .distance = DistanceKind::planar});
+  std::cout << isolations[0].metres.value() << " m\n";  // 4, to the cell of height 9
+  //! [isolation]
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string dem = argc > 1 ? argv[1] : "sample_data/jacksboro/dem.tif";
+  for (const auto& step : {make, listen, resume, run_own_stage, read_job_file}) step(dem);
+  measure_prominence();
+  measure_isolation_of_cells();
+}

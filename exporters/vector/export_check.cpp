@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/vector/export_check.hpp"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/error.hpp"
+#include "exporters/gdal_messages.hpp"
+#include "exporters/staging_folder.hpp"
+
+namespace waymark {
+
+std::vector<std::string> check_export(const VectorFormat& format, const std::string& path,
+                                      const std::string& output_name, const Crs& crs,
+                                      std::int64_t landmarks) {
+  if (!format.can_be_read) return {};
+  GdalMessages messages;
+  const char* only[] = {format.driver.c_str(), nullptr};
+  const std::unique_ptr<GDALDataset> dataset(
+      GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, only, nullptr, nullptr));
+  if (!dataset) fail_output(output_name, messages.cause("it cannot be read again"));
+  std::int64_t found = 0;
+  for (OGRLayer* layer : dataset->GetLayers()) found += layer->GetFeatureCount();
+  if (found < landmarks)
+    fail_output(output_name,
+                messages.cause(fmt::format("only {} of {} landmarks arrived", found, landmarks)));
+  if (format.is_table || crs.kind() == CrsKind::local || dataset->GetLayerCount() == 0) return {};
+
+  const OGRSpatialReference* kept = dataset->GetLayer(0)->GetSpatialRef();
+  const bool same_body =
+      kept != nullptr && std::abs(kept->GetSemiMajor() / crs.body().equatorial_radius - 1) < 0.005;
+  if (!same_body && crs.body().name != earth().name)
+    throw Error(ErrorCode::output,
+                fmt::format("{} cannot hold the CRS {}: a reader would place it {}", format.driver, crs.id(),
+                            kept == nullptr ? "nowhere" : "on another body"),
+                output_name,
+                "write .gpkg, .fgb or .shp, which keep the CRS, or .csv, which has plain columns");
+  if (kept == nullptr)
+    return {fmt::format("{} does not store the CRS: readers need to know that it is {}", format.driver,
+                        crs.id())};
+  if (crs.authority().empty() || kept->GetAuthorityCode(nullptr) != nullptr) return {};
+  return {fmt::format("{} stores the definition of the CRS, not its code {}", format.driver, crs.id())};
+}
+
+}  // namespace waymark

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "exporters/vector/export_map.hpp"
+#include "geodb/map_contents.hpp"
+#include "geodb/map_store.hpp"
+namespace waymark {
+
+/// Some types of a map with their evidence, images and latest run, in a CRS of the same body.
+struct MapSubset {
+  MapContents contents;
+  std::vector<ExportedLayer> layers;
+  std::vector<std::string> warnings;  ///< parts that were left out
+};
+MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types, const Crs& crs);
+
+}  // namespace waymark

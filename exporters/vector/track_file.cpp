@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/vector/track_file.hpp"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "exporters/gdal_messages.hpp"
+#include "exporters/staging_folder.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 20> kColumns{
+    "t",     "x",         "y",         "z",       "roll",     "pitch",       "yaw",
+    "var_x", "var_y",     "cov_xy",    "var_yaw", "matched",  "rejected",    "wrong",
+    "lost",  "cov_x_yaw", "cov_y_yaw", "nis",     "nis_rows", "seconds_used"};
+using Values = std::array<double, kColumns.size()>;
+constexpr std::size_t kWrong = 13;
+
+/// Wrong matches are unknown if no matched sighting has an identity in the log.
+bool knows_wrong_matches(const Track& track) {
+  std::int64_t matched = 0;
+  for (const TrackRow& row : track.rows) matched += row.matched;
+  return matched == 0 || track.named > 0;
+}
+
+/// Unknown values are NaN.
+Values values_of(const TrackRow& row, const LocalFrame* frame, bool wrong_known) {
+  const Eigen::Matrix3d& c = row.at.covariance;
+  Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
+  if (frame) at = frame->crs_from_map_frame({at}).xyz;
+  return {row.t,
+          at.x(),
+          at.y(),
+          at.z(),
+          row.roll,
+          row.pitch,
+          row.at.pose.yaw,
+          c(0, 0),
+          c(1, 1),
+          c(0, 1),
+          c(2, 2),
+          double(row.matched),
+          double(row.rejected),
+          wrong_known ? double(row.wrong) : std::nan(""),
+          double(row.lost),
+          c(0, 2),
+          c(1, 2),
+          row.nis,
+          double(row.nis_rows),
+          row.seconds};
+}
+
+std::size_t columns_of(const TrackOutput& output) {
+  return kColumns.size() - !output.timing;  // times are the last column
+}
+
+TrackRow row_of(const Values& v) {
+  TrackRow row{.t = v[0],
+               .at = {{v[1], v[2], wrap_angle(v[6])}, Eigen::Matrix3d::Zero()},
+               .z = v[3],
+               .roll = v[4],
+               .pitch = v[5]};
+  row.at.covariance << v[7], v[9], v[15], v[9], v[8], v[16], v[15], v[16], v[10];
+  row.matched = static_cast<int>(v[11]);
+  row.rejected = static_cast<int>(v[12]);
+  row.wrong = static_cast<int>(v[13]);
+  row.lost = v[14] != 0;
+  row.nis = v[17], row.nis_rows = static_cast<int>(v[18]), row.seconds = v[19];
+  return row;
+}
+
+}  // namespace
+
+void write_track_csv(const fs::path& file, const Track& track, const TrackOutput& output) {
+  fmt::memory_buffer text;
+  const std::size_t columns = columns_of(output);
+  for (std::size_t i = 0; i < columns; ++i)
+    fmt::format_to(std::back_inserter(text), "{}{}", i ? "," : "", kColumns[i]);
+  text.push_back('\n');
+  const bool wrong_known = knows_wrong_matches(track);
+  const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
+  for (const TrackRow& row : track.rows) {
+    const Values v = values_of(row, output.frame, wrong_known);
+    const int places = degrees ? 11 : 6;
+    fmt::format_to(std::back_inserter(text), "{:.4f},{:.{}f},{:.{}f},{:.4f},{:.6f},{:.6f},{:.6f}", v[0], v[1],
+                   places, v[2], places, v[3], v[4], v[5], v[6]);
+    for (std::size_t i = 7; i < 11; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
+    for (std::size_t i = 11; i < 15; ++i)
+      fmt::format_to(std::back_inserter(text), "{}", std::isnan(v[i]) ? "," : fmt::format(",{:g}", v[i]));
+    for (std::size_t i = 15; i < columns; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
+    text.push_back('\n');
+  }
+  write_file(file, fmt::to_string(text));
+}
+
+void write_track_geopackage(const fs::path& file, const Track& track, const TrackOutput& output) {
+  const GdalMessages messages;
+  StagingFolder staging(file);
+  const fs::path staged = staging.path() / file.filename();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
+  std::unique_ptr<GDALDataset> set(driver ? driver->Create(staged.c_str(), 0, 0, 0, GDT_Unknown, nullptr)
+                                          : nullptr);
+  if (!set) fail_output(file, messages.cause("GDAL has no GeoPackage driver"));
+  OGRSpatialReference srs;
+  const bool on_body = output.crs->kind() != CrsKind::local;
+  if (on_body) {
+    srs.importFromWkt(output.crs->wkt2().c_str());
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  }
+  OGRLayer* layer = set->CreateLayer("track", on_body ? &srs : nullptr, wkbPoint25D, nullptr);
+  if (!layer) fail_output(file, messages.cause("no layer"));
+  const std::size_t columns = columns_of(output);
+  for (std::size_t i = 0; i < columns; ++i) {
+    OGRFieldDefn field(kColumns[i], OFTReal);
+    if (layer->CreateField(&field) != OGRERR_NONE) fail_output(file, messages.cause("no column"));
+  }
+  const bool wrong_known = knows_wrong_matches(track);
+  set->StartTransaction();
+  for (const TrackRow& row : track.rows) {
+    const Values v = values_of(row, output.frame, wrong_known);
+    OGRFeature feature(layer->GetLayerDefn());
+    for (std::size_t i = 0; i < columns; ++i)
+      if (!std::isnan(v[i])) feature.SetField(static_cast<int>(i), v[i]);
+    OGRPoint point(v[1], v[2], v[3]);
+    feature.SetGeometry(&point);
+    if (layer->CreateFeature(&feature) != OGRERR_NONE) fail_output(file, messages.cause("a row was refused"));
+  }
+  set->CommitTransaction();
+  set.reset();
+  if (!messages.failures().empty()) fail_output(file, messages.cause("the disk may be full"));
+  staging.publish();
+}
+
+Track read_track_csv(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  if (!in || !std::getline(in, line))
+    throw Error(ErrorCode::input, "cannot read the track", file.string(),
+                "check that it exists and is not empty");
+  std::vector<std::size_t> column;  // index in kColumns by column of the file; kColumns.size(): none
+  std::array<bool, kColumns.size()> found{};
+  std::istringstream names(line);
+  for (std::string name; std::getline(names, name, ',');) {
+    while (!name.empty() && name.back() <= ' ') name.pop_back();
+    std::size_t i = 0;
+    while (i < kColumns.size() && name != kColumns[i]) ++i;
+    column.push_back(i);
+    if (i < found.size()) found[i] = true;
+  }
+  if (!found[0] || !found[1] || !found[2])
+    throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
+                "waymark localize writes such files");
+  Track track;
+  bool wrong_known = found[kWrong];
+  for (std::size_t number = 2; std::getline(in, line); ++number) {
+    if (line.find_first_not_of(" \r\t") == std::string::npos) continue;
+    Values values{};
+    const char *at = line.data(), *end = at + line.size();
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      double value = 0;
+      const bool unknown = column[i] == kWrong && (at == end || *at == ',' || *at == '\r');
+      const auto [rest, problem] =
+          unknown ? std::from_chars_result{at, std::errc()} : std::from_chars(at, end, value);
+      wrong_known = wrong_known && !unknown;
+      const bool last = rest == end || *rest == '\r';
+      if (problem != std::errc() || !std::isfinite(value) || (!last && *rest != ','))
+        throw Error(ErrorCode::input, fmt::format("column {} of the track is no number", i + 1),
+                    fmt::format("{}, line {}", file.string(), number), "");
+      if (column[i] < values.size()) values[column[i]] = value;
+      at = last ? end : rest + 1;
+    }
+    track.rows.push_back(row_of(values));
+  }
+  if (wrong_known)
+    for (const TrackRow& row : track.rows) track.named += row.matched;
+  return track;
+}
+
+}  // namespace waymark

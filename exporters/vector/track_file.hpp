@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include "geo/local_frame.hpp"
+#include "localization/track.hpp"
+namespace waymark {
+
+struct TrackOutput {
+  const LocalFrame* frame =
+      nullptr;               ///< null: metres of the map frame; else positions are written in the map's CRS
+  const Crs* crs = nullptr;  ///< of a GeoPackage, which is always in the map's CRS
+  bool timing = false;       ///< write the duration of each update; differs from run to run
+};
+
+/// Writes a track as CSV: t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected, then wrong
+/// (matches that contradict the log; empty if the log has no identities), lost (0 or 1), cov_x_yaw,
+/// cov_y_yaw, nis and nis_rows; seconds, metres, radians; with `timing` also seconds_used. Staged and
+/// renamed. Throws Error{output}.
+void write_track_csv(const std::filesystem::path& file, const Track& track, const TrackOutput& output = {});
+
+/// Writes the same columns as points of a GeoPackage, layer `track`. Needs `output.frame` and `output.crs`.
+void write_track_geopackage(const std::filesystem::path& file, const Track& track, const TrackOutput& output);
+
+/// Reads such a CSV. Columns may be in any order; t, x, y are required, others default to 0; Track::named
+/// counts the matches where `wrong` is known. Throws Error{input} with the line.
+Track read_track_csv(const std::filesystem::path& file);
+
+}  // namespace waymark

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geodb/layers/layer_style.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "geodb/layers/landmark_layout.hpp"
+
+namespace waymark {
+namespace {
+
+struct Marker {
+  const char* qgis;
+  const char* sld;
+  bool filled;
+};
+
+// Outline of the solid from above; a cone is the triangle that maps use for summits.
+Marker marker_of(Solid solid) {
+  switch (solid) {
+    case Solid::point:
+      return {"diamond", "square", true};
+    case Solid::sphere:
+      return {"circle", "circle", true};
+    case Solid::cylinder:
+      return {"hexagon", "circle", true};
+    case Solid::cone:
+      return {"triangle", "triangle", true};
+    case Solid::bowl:
+      return {"circle", "circle", false};
+  }
+  return {"circle", "circle", true};
+}
+
+// Returns "r,g,b,alpha" of "#rrggbb"; grey if it is not a colour.
+std::string rgba(const std::string& colour, int alpha) {
+  unsigned value = 0x888888;
+  if (colour.size() == 7) std::from_chars(colour.data() + 1, colour.data() + 7, value, 16);
+  return fmt::format("{},{},{},{}", value >> 16 & 255, value >> 8 & 255, value & 255, alpha);
+}
+
+std::string property(std::string_view name, std::string_view expression) {
+  return fmt::format(
+      R"(<Option name="{}" type="Map"><Option name="active" value="true" type="bool"/>)"
+      R"(<Option name="expression" value="{}" type="QString"/><Option name="type" value="3" type="int"/></Option>)",
+      name, expression);
+}
+
+std::string properties(const std::string& inner) {
+  return R"(<Option type="Map"><Option name="name" value="" type="QString"/>)"
+         R"(<Option name="properties" type="Map">)" +
+         inner + R"(</Option><Option name="type" value="collection" type="QString"/></Option>)";
+}
+
+// Millimetres: 1.6 for a feature of 0, one more for each power of ten.
+std::string size_expression(const std::string& feature) {
+  return fmt::format("1.6 + coalesce(log10(1 + max(0, &quot;{}&quot;)), 0)", feature);
+}
+
+// Large numbers, e.g. elevations, have no decimals.
+std::string label_expression(const std::string& feature) {
+  return fmt::format("round(&quot;{0}&quot;, if(abs(&quot;{0}&quot;) &lt; 100, 1, 0))", feature);
+}
+
+std::string qml_symbol(const LandmarkType& type) {
+  const Marker marker = marker_of(type.drawn_as);
+  const std::string size =
+      type.size_feature.empty() ? "" : property("size", size_expression(type.size_feature));
+  return fmt::format(R"(  <renderer-v2 type="singleSymbol" forceraster="0" symbollevels="0" enableorderby="0">
+    <symbols>
+      <symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">
+        <layer class="SimpleMarker" enabled="1" locked="0" pass="0">
+          <Option type="Map">
+            <Option name="name" value="{}" type="QString"/>
+            <Option name="color" value="{}" type="QString"/>
+            <Option name="outline_color" value="{}" type="QString"/>
+            <Option name="outline_style" value="solid" type="QString"/>
+            <Option name="outline_width" value="{}" type="QString"/>
+            <Option name="outline_width_unit" value="MM" type="QString"/>
+            <Option name="size" value="2.4" type="QString"/>
+            <Option name="size_unit" value="MM" type="QString"/>
+            <Option name="scale_method" value="diameter" type="QString"/>
+          </Option>
+          <data_defined_properties>{}</data_defined_properties>
+        </layer>
+      </symbol>
+    </symbols>
+  </renderer-v2>
+)",
+                     marker.qgis, rgba(type.colour, marker.filled ? 255 : 0),
+                     marker.filled ? "255,255,255,255" : rgba(type.colour, 255), marker.filled ? 0.2 : 0.5,
+                     properties(size));
+}
+
+std::string qml_labels(const LandmarkType& type) {
+  if (type.label_feature.empty()) return "";
+  const std::string& rank = type.size_feature.empty() ? type.label_feature : type.size_feature;
+  const std::string priority =
+      property("Priority", fmt::format("min(10, 2.5 * coalesce(log10(1 + abs(&quot;{}&quot;)), 0))", rank));
+  return fmt::format(R"(  <labeling type="simple">
+    <settings calloutType="simple">
+      <text-style fieldName="{}" isExpression="1" fontFamily="Sans" namedStyle="Regular" fontSize="8" fontSizeUnit="Point" textColor="40,40,40,255" textOpacity="1">
+        <text-buffer bufferDraw="1" bufferSize="0.8" bufferSizeUnits="MM" bufferColor="255,255,255,255" bufferOpacity="0.85" bufferNoFill="1"/>
+      </text-style>
+      <placement placement="6" dist="1" distUnits="MM" offsetType="1" priority="5" predefinedPositionOrder="TR,TL,BR,BL,R,L,TSR,BSR"/>
+      <rendering drawLabels="1" obstacle="1" obstacleFactor="1" displayAll="0" scaleVisibility="0"/>
+      <dd_properties>{}</dd_properties>
+    </settings>
+  </labeling>
+)",
+                     label_expression(type.label_feature), properties(priority));
+}
+
+/// Escapes text for an XML attribute or element.
+std::string escape_xml(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string title_of_type(std::string name) {
+  std::ranges::replace(name, '_', ' ');
+  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return name;
+}
+
+/// Returns a QGIS expression: "Mountain top 940 m", or the uid of types without a label.
+std::string display_expression(const LandmarkType& type) {
+  const auto feature = std::ranges::find(type.features, type.label_feature, &FeatureSpec::name);
+  if (feature == type.features.end()) return "\"uid\"";
+  return fmt::format("coalesce('{0} ' || round(\"{1}\", if(abs(\"{1}\") < 100, 1, 0)) || '{2}', \"uid\")",
+                     title_of_type(type.name), feature->name,
+                     feature->unit.empty() ? "" : " " + feature->unit);
+}
+
+/// Returns the HTML that QGIS shows under the pointer: the display name, each known feature, and the
+/// confidence.
+std::string map_tip(const LandmarkType& type) {
+  std::string rows;
+  for (const FeatureSpec& f : type.features)
+    rows += fmt::format(
+        "[% if(\"{0}\" is null, '', '<br/>{1}: ' || round(\"{0}\", 2) || '{2}' || coalesce(' ± ' || "
+        "round(\"{0}_sd\", 2), '')) %]",
+        f.name, title_of_type(f.name), f.unit.empty() ? "" : " " + f.unit);
+  return fmt::format(
+      "<b>[% {} %]</b>{}<br/>Confidence: [% round(\"confidence\", 2) %], seen [% \"seen\" %] of [% "
+      "\"visible\" %] "
+      "times<br/>[% \"uid\" %]",
+      display_expression(type), rows);
+}
+
+std::string qml_form(const LandmarkType& type) {
+  std::string aliases;
+  int index = 0;
+  const LandmarkLayout layout(type, 0);
+  for (const LandmarkColumn& column : layout.columns())
+    if (column.name != "geom")
+      aliases += fmt::format("    <alias index=\"{}\" field=\"{}\" name=\"{}\"/>\n", index++, column.name,
+                             escape_xml(column.title));
+  return fmt::format(
+      "  <aliases>\n{}  </aliases>\n  <previewExpression>{}</previewExpression>\n  <mapTip>{}</mapTip>\n",
+      aliases, escape_xml(display_expression(type)), escape_xml(map_tip(type)));
+}
+
+}  // namespace
+
+std::string qml_style(const LandmarkType& type) {
+  return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
+         "<qgis version=\"3.22\" "
+         "styleCategories=\"Symbology|Labeling|Fields|Forms|MapTips|LayerConfiguration\"" +
+         std::string(type.label_feature.empty() ? "" : " labelsEnabled=\"1\"") + ">\n" + qml_symbol(type) +
+         qml_labels(type) + qml_form(type) + "  <layerGeometryType>0</layerGeometryType>\n</qgis>\n";
+}
+
+std::string sld_style(const LandmarkType& type) {
+  const Marker marker = marker_of(type.drawn_as);
+  std::string label;
+  if (!type.label_feature.empty())
+    label = fmt::format(R"(
+          <TextSymbolizer>
+            <Label><ogc:PropertyName>{}</ogc:PropertyName></Label>
+            <Font><SvgParameter name="font-size">11</SvgParameter></Font>
+            <Halo><Radius>1</Radius></Halo>
+          </TextSymbolizer>)",
+                        type.label_feature);
+  return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
+<StyledLayerDescriptor xmlns="http://www.opengis.net/sld" xmlns:ogc="http://www.opengis.net/ogc" version="1.1.0">
+  <NamedLayer>
+    <Name>{0}</Name>
+    <UserStyle>
+      <FeatureTypeStyle>
+        <Rule>
+          <PointSymbolizer>
+            <Graphic>
+              <Mark>
+                <WellKnownName>{1}</WellKnownName>
+                <Fill><SvgParameter name="fill">{2}</SvgParameter><SvgParameter name="fill-opacity">{3}</SvgParameter></Fill>
+                <Stroke><SvgParameter name="stroke">{4}</SvgParameter></Stroke>
+              </Mark>
+              <Size>9</Size>
+            </Graphic>
+          </PointSymbolizer>{5}
+        </Rule>
+      </FeatureTypeStyle>
+    </UserStyle>
+  </NamedLayer>
+</StyledLayerDescriptor>
+)",
+                     type.name, marker.sld, type.colour, marker.filled ? 1 : 0,
+                     marker.filled ? "#ffffff" : type.colour, label);
+}
+
+}  // namespace waymark

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+#include "core/frames.hpp"
+#include "geo/crs.hpp"
+#include "importers/tables/table.hpp"
+namespace waymark {
+
+/// Transforms the positions of a table to the map.
+class TablePositions {
+ public:
+  /// Chooses the two CRSs.
+  /// - The table's: `table_crs`, else its own, else degrees on the map's body if its columns are named
+  ///   longitude and latitude, else the map's.
+  /// - The map's: `map_crs`, else the table's.
+  /// Throws Error{usage} if neither is known or they are on different bodies.
+  TablePositions(const TableHeader& table, const std::string& table_crs, const std::string& map_crs,
+                 bool named_degrees);
+
+  const Crs& map_crs() const { return map_; }
+  /// Transforms the position. Returns the reason if that is impossible, else an empty text.
+  std::string transform_to_map(Point<MapCrs>& position);
+  std::vector<std::string> warnings() const;
+
+ private:
+  Crs table_ = Crs::local(), map_ = Crs::local();
+  std::optional<CrsTransform> transform_;
+  bool guessed_ = false;  // the table names no CRS: the map's is assumed
+  std::vector<std::string> notes_;
+  std::int64_t positions_ = 0, like_degrees_ = 0;
+};
+
+}  // namespace waymark

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "core/error.hpp"
+#include "landmarks/semantic_map.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/particle_filter.hpp"
+#include "localization/global/constellation.hpp"
+#include "localization/global/skyline.hpp"
+#include "localization/motion_model.hpp"
+#include "workflows/evaluation/evaluate.hpp"
+#include "workflows/localization/localize.hpp"
+
+/// \page localization_header waymark/localization.hpp
+/// The pose of a robot from a map and what its sensors see.
+///
+/// Localize a log with localize() and compare the track with the truth, as the commands do:
+/// \snippet snippets/localization.cpp localize
+/// Use a filter in a robot of your own. The map:
+/// \snippet snippets/localization.cpp map
+/// What the robot sees:
+/// \snippet snippets/localization.cpp sighting
+/// Make an ExtendedKalman, UnscentedKalman, ParticleFilter or DeadReckoning:
+/// \snippet snippets/localization.cpp filters
+/// Each is a Localizer, which predicts and updates:
+/// \snippet snippets/localization.cpp filter
+/// Find a robot anywhere in a map with ConstellationIndex:
+/// \snippet snippets/localization.cpp constellation
+/// Find it by its horizon with find_by_skyline():
+/// \snippet snippets/localization.cpp skyline
+
+/// \example snippets/localization.cpp
+/// The excerpts of \ref localization_header as a program.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/detectors/scan_segments.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace waymark {
+
+std::vector<double> bridge_outliers(const LaserScan& scan, double jump) {
+  const double far = scan.max_range * 10;
+  std::vector<double> ranges;
+  ranges.reserve(scan.ranges.size());
+  for (const float range : scan.ranges) {
+    const double r = static_cast<double>(range);
+    ranges.push_back(std::isfinite(r) && r > 0 && r < scan.max_range ? r : far);
+  }
+  double before = ranges.empty() ? far : ranges[0];  // as it was before bridging
+  for (std::size_t i = 1; i + 1 < ranges.size(); ++i) {
+    const double a = before, b = ranges[i + 1];
+    before = ranges[i];
+    const bool speck = ranges[i] < std::min(a, b) - jump || ranges[i] > std::max(a, b) + jump;
+    if (a < far && b < far && speck && std::abs(a - b) < jump) ranges[i] = (a + b) / 2;
+  }
+  return ranges;
+}
+
+std::vector<BeamSegment> split_at_jumps(std::span<const double> ranges, double jump) {
+  std::vector<BeamSegment> runs;
+  for (std::size_t first = 0; first < ranges.size();) {
+    std::size_t last = first;
+    while (last + 1 < ranges.size() && std::abs(ranges[last + 1] - ranges[last]) < jump) ++last;
+    runs.push_back({first, last});
+    first = last + 1;
+  }
+  return runs;
+}
+
+double angular_width(const LaserScan& scan, std::size_t beams) {
+  return std::max(0.3 * scan.angle_step,
+                  static_cast<double>(beams) * scan.angle_step - scan.beam_width.value_or(0));
+}
+
+double cylinder_radius(double front, double width) {
+  const double half_sine = std::sin(std::min(width, 2.0) / 2);
+  return front * half_sine / (1 - half_sine);
+}
+
+RangeBearing level_range_bearing(const LaserScan& scan, double range, double bearing) {
+  if (scan.roll == 0 && scan.pitch == 0) return {range, bearing};
+  const double yaw = scan.robot_from_sensor.yaw;
+  const Eigen::Vector3d seen = range * Eigen::Vector3d(std::cos(bearing + yaw), std::sin(bearing + yaw), 0);
+  const Eigen::Vector3d level = Eigen::AngleAxisd(scan.pitch, Eigen::Vector3d::UnitY()) *
+                                (Eigen::AngleAxisd(scan.roll, Eigen::Vector3d::UnitX()) * seen);
+  return {level.head<2>().norm(), std::atan2(level.y(), level.x()) - yaw};
+}
+
+}  // namespace waymark

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <vector>
+#include "localization/laser_scan.hpp"
+namespace waymark {
+
+/// Returns the ranges with ten times max_range where there was no return, and with single outliers
+/// bridged. A beam that differs from both neighbours by `jump`, while these agree to `jump`, takes their
+/// mean: dropouts and specks do not split an object.
+std::vector<double> bridge_outliers(const LaserScan& scan, double jump);
+
+/// Consecutive beams, `first` to `last`, that hit one object.
+struct BeamSegment {
+  std::size_t first = 0, last = 0;
+  std::size_t beams() const { return last - first + 1; }
+};
+/// Splits the ranges of a scan wherever neighbours differ by `jump` or more, in order. Every beam is in one
+/// run.
+std::vector<BeamSegment> split_at_jumps(std::span<const double> ranges, double jump);
+
+/// Returns the angle that a run spans, rad: its beams less their own width.
+double angular_width(const LaserScan& scan, std::size_t beams);
+/// Returns the radius of the cylinder that spans this angle and whose front is at this range (Ringdahl et
+/// al. 2013).
+double cylinder_radius(double front, double width);
+
+struct RangeBearing {
+  double range = 0, bearing = 0;
+};
+/// Projects a range and bearing of a tilted scanner (scan.roll, scan.pitch) to the map plane.
+RangeBearing level_range_bearing(const LaserScan& scan, double range, double bearing);
+
+}  // namespace waymark

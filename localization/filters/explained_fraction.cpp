@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/explained_fraction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace waymark {
+namespace {
+
+constexpr double kFade = 1.0 / 40;  // per set: some 10 s of a scanner
+
+}  // namespace
+
+double matched_fraction(const std::vector<Match>& matches) {
+  int fits = 0, strange = 0;
+  for (const Match& match : matches) {
+    fits += match.verdict == Verdict::matched;
+    strange += match.verdict == Verdict::nothing_near || match.verdict == Verdict::features_differ ||
+               match.verdict == Verdict::too_far;
+  }
+  return fits + strange > 0 ? static_cast<double>(fits) / (fits + strange) : -1;
+}
+
+ChanceFraction make_chance_fraction(LandmarkWindow map, FeatureScales scales, IdentificationOptions options) {
+  const auto calls = std::make_shared<int>(0);
+  return [calls, map = std::make_shared<LandmarkWindow>(std::move(map)), scales = std::move(scales),
+          options = std::move(options)](const SightingSet& seen, const PoseEstimate& at) {
+    double reach = 0;
+    for (const SeenLandmark& s : seen.sightings)
+      if (s.is_valid() && s.range) reach = std::max(reach, *s.range + 6 * s.range_sd);
+    if (!(reach > 0)) return -1.0;
+    const double golden = 2.39996 * ++*calls, part = 0.5 + 0.5 * std::fmod(0.618034 * *calls, 1.0);
+    PoseEstimate there = at;
+    there.pose.x += part * reach * std::cos(golden);
+    there.pose.y += part * reach * std::sin(golden);
+    there.pose.yaw = wrap_angle(there.pose.yaw + 1 + 4 * part);
+    const double width = std::sqrt(at.covariance(0, 0) + at.covariance(1, 1));
+    return matched_fraction(
+        identify(seen, there, map->landmarks_near(there.pose.at(), reach + 6 * width + 1), scales, options)
+            .matches);
+  };
+}
+
+void ExplainedFraction::add(double fit, double chance) {
+  if (fit < 0 || chance < 0) return;
+  ++sets_;
+  const double fade = std::max(kFade, 1.0 / sets_);
+  fit_ += fade * (fit - fit_);
+  chance_ += fade * (chance - chance_);
+}
+
+}  // namespace waymark

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/multi_hypothesis_filter.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "localization/filters/kalman.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::size_t kJointSightings = 3;  // sightings associated jointly; further ones follow in turn
+
+}  // namespace
+
+void MultiHypothesisOptions::describe(OptionVisitor& option) {
+  option("hypotheses", max_hypotheses, {.help = "Largest number of Gaussians", .min = 1, .max = 1e5});
+  option("min_weight", min_weight,
+         {.help = "Weight, relative to the best, below which a Gaussian is dropped",
+          .min = 0,
+          .max = 1,
+          .formerly = "least_weight"});
+  option("merge", merge,
+         {.help = "Squared Mahalanobis distance below which two Gaussians are merged", .min = 0});
+  option("split_yaw", split_yaw,
+         {.help = "Standard deviation of yaw, radians, above which a Gaussian is split", .min = 0.01});
+  option("error_correlation_distance", error_correlation_distance,
+         {.help = "Metres driven until the error of a landmark on the map counts as new; 0: at once",
+          .min = 0,
+          .max = 1e6,
+          .formerly = "same_error"});
+}
+
+MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, LandmarkWindow map,
+                                             FeatureScales scales, IdentificationOptions identification,
+                                             MultiHypothesisOptions options)
+    : map_(std::move(map)),
+      scales_(std::move(scales)),
+      identification_(std::move(identification)),
+      options_(options) {
+  if (!start.pose.finite() || !start.covariance.allFinite())
+    throw std::invalid_argument("the start of a filter must be finite");
+  components_.push_back({start, 1, {}});
+}
+
+void MultiHypothesisFilter::predict(const BodyMotion& motion) {
+  for (Component& component : components_)
+    component.at =
+        options_.unscented ? ukf_predict(component.at, motion) : predict_pose(component.at, motion);
+  driven_ += motion.step.at().norm();
+}
+
+void MultiHypothesisFilter::expect_landmarks(const WeightOptions& view, LineOfSight visible) {
+  if (view.expect_unseen) view_ = view;
+  visible_ = std::move(visible);
+}
+
+double MultiHypothesisFilter::recent_sightings(LandmarkKey key) const {
+  const auto used = uses_.find(key);
+  if (used == uses_.end() || !(options_.error_correlation_distance > 0)) return 0;
+  return used->second.count * std::exp((used->second.driven - driven_) / options_.error_correlation_distance);
+}
+
+// Weights the Gaussians of a set by the landmarks they expect and that were not seen.
+void MultiHypothesisFilter::weigh_unseen(const SightingSet& seen, const LandmarkGrid& map) {
+  SightingScore score(seen, map, scales_, *view_, identification_);
+  std::vector<double> logs;
+  for (const Component& component : components_) {
+    score.hide(
+        hidden_landmarks(component.at.pose * seen.robot_from_sensor, map, view_->view_range, visible_));
+    std::vector<std::uint32_t> matched;
+    for (const int l : component.choice)
+      if (l >= 0) matched.push_back(static_cast<std::uint32_t>(l));
+    logs.push_back(std::log(component.weight) + score.unseen(component.at.pose, matched));
+  }
+  const std::vector<double> weights = normalise_log_weights(logs);
+  for (std::size_t i = 0; i < components_.size(); ++i) components_[i].weight = weights[i];
+}
+
+PoseEstimate MultiHypothesisFilter::update_component(const Component& component, const SightingSet& some,
+                                                     const std::vector<Candidates>& sets,
+                                                     const JointHypothesis& how,
+                                                     const LandmarkGrid& map) const {
+  PoseEstimate at = component.at;
+  JointEvidence evidence;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (how.choice[i] < 0) continue;
+    MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
+    landmark.covariance *= 1 + recent_sightings(landmark.key) / 2;
+    const double trust = effective_quality(landmark, identification_);
+    const SeenLandmark& seen = some.sightings[i];
+    if (options_.unscented)
+      at = ukf_update(at, seen, some.robot_from_sensor, landmark, trust);
+    else
+      evidence += evidence_of(seen, expect(component.at.pose, some.robot_from_sensor, landmark.at),
+                              landmark.covariance, trust);
+  }
+  if (!options_.unscented) at = update_pose(component.at, evidence);
+  return at;
+}
+
+void MultiHypothesisFilter::update_jointly(const SightingSet& some, const LandmarkGrid& map) {
+  std::vector<Component> next;
+  std::vector<double> logs;
+  for (const Component& component : components_) {
+    std::vector<Candidates> sets;
+    for (const SeenLandmark& s : some.sightings) {
+      sets.push_back(candidates(s, some.robot_from_sensor, component.at, map, scales_, identification_));
+      std::erase_if(sets.back().pairings, [&](const CandidatePair& p) {
+        return std::ranges::find(component.choice, static_cast<int>(p.landmark)) != component.choice.end();
+      });
+    }
+    const auto found = joint_hypotheses(sets, some, map, component.at.covariance, identification_);
+    if (!found) continue;
+    for (const JointHypothesis& h : *found) {
+      Component& after = next.emplace_back(component);
+      after.at = update_component(component, some, sets, h, map);
+      for (std::size_t i = 0; i < sets.size(); ++i)
+        after.choice.push_back(
+            h.choice[i] < 0
+                ? -1
+                : static_cast<int>(sets[i].pairings[static_cast<std::size_t>(h.choice[i])].landmark));
+      logs.push_back(std::log(component.weight) + h.log_weight);
+    }
+  }
+  if (next.empty()) {
+    for (Component& component : components_)
+      component.choice.resize(component.choice.size() + some.sightings.size(), -1);
+    return;
+  }
+  const double best = std::ranges::max(logs);
+  for (std::size_t i = 0; i < next.size(); ++i) next[i].weight = std::exp(logs[i] - best);
+  components_ = std::move(next);
+  prune();
+}
+
+std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
+  const PoseEstimate before = estimate();
+  double farthest = 0;
+  for (const SeenLandmark& s : seen.sightings)
+    if (s.is_valid())
+      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : identification_.bearing_reach);
+  if (view_) farthest = std::max(farthest, view_->view_range);
+  const double width = std::sqrt(before.covariance(0, 0) + before.covariance(1, 1));
+  const LandmarkGrid& map = map_.landmarks_near(before.pose.at(), farthest + 6 * width + 1);
+
+  std::vector<Match> matches(seen.sightings.size());
+  SightingSet some{seen.robot_from_sensor, {}};
+  std::vector<std::size_t> places;  // indices of the sightings in `some`, and of those before
+  split();
+  for (Component& component : components_) component.choice.clear();
+  const auto flush = [&] {
+    if (!some.sightings.empty()) update_jointly(some, map);
+    some.sightings.clear();
+  };
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    const SeenLandmark& s = seen.sightings[i];
+    const bool named = identification_.use_identities && s.identity;
+    matches[i].verdict = !s.is_valid()                                                ? Verdict::unsound
+                         : s.type == kNoSuchType || (named && !map.find(*s.identity)) ? Verdict::unknown_type
+                                                                                      : Verdict::matched;
+    if (matches[i].verdict != Verdict::matched) continue;
+    places.push_back(i);
+    some.sightings.push_back(s);
+    if (some.sightings.size() == kJointSightings) flush();
+  }
+  flush();
+  if (view_) weigh_unseen(seen, map);
+
+  bool fits = places.empty();
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    std::map<int, double> weight;
+    for (const Component& component : components_) weight[component.choice[k]] += component.weight;
+    const auto best = std::ranges::max_element(weight, {}, [](const auto& w) { return w.second; });
+    Match& match = matches[places[k]];
+    match.probability = best->second;
+    fits = fits || best->first >= 0;
+    if (best->first < 0) {
+      match.verdict = best->second > identification_.certainty ? Verdict::too_far : Verdict::ambiguous;
+    } else if (best->second < identification_.certainty) {
+      match.verdict = Verdict::ambiguous;
+    } else {
+      match.pairing.landmark = static_cast<std::uint32_t>(best->first);
+      const MapLandmark& landmark = map[match.pairing.landmark];
+      match.key = landmark.key;
+      const SeenLandmark& s = seen.sightings[places[k]];
+      match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
+                                           landmark.covariance, effective_quality(landmark, identification_));
+      uses_[match.key] = {1 + recent_sightings(match.key), driven_};
+    }
+  }
+  // Merges hypotheses of one pose, whatever their associations.
+  for (Component& component : components_) component.choice.clear();
+  prune();
+  missed_ = fits ? 0 : missed_ + 1;
+  if (missed_ >= options_.search.lost_after && options_.search.search_growth > 1)
+    widen(options_.search.search_growth);
+  return matches;
+}
+
+template <class Fix>
+bool MultiHypothesisFilter::apply_fix(const Fix& measured, int rows) {
+  FixGate& gate = rows == 2 ? gnss_ : heading_;
+  const auto least = [&] {
+    double squares = 1e300;
+    for (const Component& component : components_)
+      squares = std::min(squares, update_pose(component.at, measured).squares);
+    return squares;
+  };
+  if (!gate.pass(least(), rows)) return false;
+  if (gate.was_forced())
+    for (int i = 0; i < 40 && least() > 4; ++i) widen(2);
+  std::vector<double> logs;
+  for (Component& component : components_) {
+    const FixUpdate update = update_pose(component.at, measured);
+    component.at = update.estimate;
+    logs.push_back(std::log(component.weight) + update.log_density);
+  }
+  const double best = std::ranges::max(logs);
+  for (std::size_t i = 0; i < components_.size(); ++i) components_[i].weight = std::exp(logs[i] - best);
+  prune();
+  return true;
+}
+template bool MultiHypothesisFilter::apply_fix(const GnssFix&, int);
+template bool MultiHypothesisFilter::apply_fix(const HeadingFix&, int);
+
+}  // namespace waymark

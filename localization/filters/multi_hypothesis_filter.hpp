@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <unordered_map>
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/sighting_score.hpp"
+#include "localization/identification/joint_search.hpp"
+#include "localization/identification/landmark_window.hpp"
+#include "localization/line_of_sight.hpp"
+#include "localization/localizer.hpp"
+namespace waymark {
+
+/// Options of the multi-hypothesis filter.
+struct MultiHypothesisOptions {
+  std::int64_t max_hypotheses = 40;  ///< largest number of Gaussians
+  /// Smallest weight of a Gaussian relative to the best. Sightings err more often than any Gaussian says,
+  /// so a hypothesis at 1 : 100 000 may yet be right. The cost is bounded by the number of Gaussians.
+  double min_weight = 1e-6;
+  double merge = 0.5;       ///< Gaussians nearer than this (squared Mahalanobis distance) are merged
+  double split_yaw = 0.25;  ///< rad: Gaussians wider than this are split before an update
+  /// m driven until a landmark's error on the map counts as new; 0: at once. Repeated sightings of a
+  /// landmark share its map error: after n of them its variance counts 1 + n/2 times, which made the filter
+  /// consistent in simulated stands.
+  double error_correlation_distance = 15;
+  KalmanOptions search;    ///< of a lost filter; described by its owner
+  bool unscented = false;  ///< predicts and updates by sigma points instead of derivatives
+
+  void describe(OptionVisitor& option);
+};
+
+/// Extended (or unscented) Kalman filter for landmarks without identities: a Gaussian mixture with one
+/// component per data association that is still probable. It is a multiple hypothesis tracker (Reid 1979;
+/// for localization Jensfelt & Kristensen 2001). An ambiguous association stays open until further
+/// sightings decide it. A sighting is matched when the whole mixture is certain enough
+/// (IdentificationOptions).
+class MultiHypothesisFilter final : public Localizer {
+ public:
+  MultiHypothesisFilter(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
+                        IdentificationOptions identification = {}, MultiHypothesisOptions options = {});
+  void predict(const BodyMotion& motion) override;
+  std::vector<Match> update(const SightingSet& seen) override;
+  bool fix(const GnssFix& gnss) override { return apply_fix(gnss, 2); }
+  bool fix(const HeadingFix& heading) override { return apply_fix(heading, 1); }
+  /// Returns mean and covariance of the Gaussians within a metre of the best one. If these have less than
+  /// half the weight, those of all Gaussians.
+  PoseEstimate estimate() const override;
+  LocalizationStatus status() const override {
+    return missed_ >= options_.search.lost_after ? LocalizationStatus::lost : LocalizationStatus::tracking;
+  }
+
+  /// Makes unseen landmarks in view count against a Gaussian (`expect_unseen` of the options), unless the
+  /// terrain hides them.
+  void expect_landmarks(const WeightOptions& view, LineOfSight visible);
+
+  std::size_t hypotheses() const { return components_.size(); }
+
+ private:
+  struct Component {
+    PoseEstimate at;
+    double weight = 1;        // they sum to 1
+    std::vector<int> choice;  // landmark of each sighting of the current set, or -1
+  };
+  template <class Fix>
+  bool apply_fix(const Fix& measured, int rows);
+  void widen(double factor);
+  void split();
+  void prune();
+  void update_jointly(const SightingSet& some, const LandmarkGrid& map);
+  /// Number of recent sightings of a landmark, discounted by the distance driven since.
+  double recent_sightings(LandmarkKey key) const;
+  void weigh_unseen(const SightingSet& seen, const LandmarkGrid& map);
+  PoseEstimate update_component(const Component& component, const SightingSet& some,
+                                const std::vector<Candidates>& sets, const JointHypothesis& how,
+                                const LandmarkGrid& map) const;
+
+  LandmarkWindow map_;
+  FeatureScales scales_;
+  IdentificationOptions identification_;
+  MultiHypothesisOptions options_;
+  std::vector<Component> components_;
+  struct LandmarkUse {
+    double count = 0, driven = 0;  // sightings, and the distance driven at the last one
+  };
+  std::unordered_map<LandmarkKey, LandmarkUse> uses_;
+  double driven_ = 0;
+  std::int64_t missed_ = 0;
+  FixGate gnss_, heading_;
+  std::optional<WeightOptions> view_;
+  LineOfSight visible_;
+};
+
+}  // namespace waymark

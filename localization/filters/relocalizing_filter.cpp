@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/relocalizing_filter.hpp"
+
+#include <algorithm>
+
+namespace waymark {
+namespace {
+
+constexpr int kWait = 5, kRestartInterval = 20;  // sets between calls of the finder, and between restarts
+constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
+constexpr double kLeastFit = 1.0 / 3, kLeastOfUsual = 0.5, kWell = 0.8, kByChance = 0.2;
+
+}  // namespace
+
+RelocalizingFilter::RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
+                                       ChanceFraction chance, FeatureScales scales)
+    : make_filter_(std::move(factory)),
+      finder_(std::move(finder)),
+      chance_(std::move(chance)),
+      inner_(make_filter_(start)),
+      memory_(std::move(scales)),
+      reliable_(start) {}
+
+void RelocalizingFilter::predict(const BodyMotion& motion) {
+  inner_->predict(motion);
+  memory_.predict(motion);
+  reliable_ = predict_pose(reliable_, motion);
+}
+
+bool RelocalizingFilter::lost() const {
+  return chance_matches_ || inner_->status() == LocalizationStatus::lost ||
+         fit_ < std::max(kLeastFit, kLeastOfUsual * usual_fit_);
+}
+
+void RelocalizingFilter::restart(const PoseEstimate& at) {
+  inner_ = make_filter_(at);
+  unresolved_sets_ = sets_since_query_ = 0;
+  explained_.clear();
+}
+
+std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
+  memory_.add(seen);
+  std::vector<Match> matches = inner_->update(seen);
+  const double fit = matched_fraction(matches);
+  if (fit >= 0) fit_ += kFade * (fit - fit_);
+  if (chance_ && fit >= 0) {
+    explained_.add(fit, chance_(seen, inner_->estimate()));
+    chance_matches_ =
+        chance_matches_ ? !is_explained() : explained_.known() && explained_.value() < kByChance;
+  }
+  if (!lost()) {
+    unresolved_sets_ = 0;
+    if (fit >= 0) usual_fit_ += kSlowFade * (fit_ - usual_fit_);
+    if (fit_ >= kWell * usual_fit_ && is_explained()) reliable_ = inner_->estimate();
+    return matches;
+  }
+  if (seen.sightings.empty()) return matches;
+  if (++sets_since_query_ >= kWait) {
+    sets_since_query_ = 0;
+    PoseSearchResult found = finder_(add_bearings(memory_.recall(), seen));
+    if (found.accepted) {
+      // The finder does not know the odometry noise in remembered sightings.
+      found.accepted->covariance *= 4;
+      restart(*found.accepted);
+      reliable_ = *found.accepted;
+      ++restarts_;
+      fit_ = 1;
+      chance_matches_ = false;
+      return inner_->update(seen);
+    }
+  }
+  if (++unresolved_sets_ < (chance_matches_ ? 2 : 1) * kRestartInterval) return matches;
+  restart(reliable_);
+  return inner_->update(seen);
+}
+
+}  // namespace waymark

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include "localization/filters/explained_fraction.hpp"
+#include "localization/global/pose_finder.hpp"
+#include "localization/global/sighting_memory.hpp"
+#include "localization/localizer.hpp"
+namespace waymark {
+
+/// A filter with recovery from localization failure: a kidnapped robot, a wrong association, or the return
+/// from unmapped terrain.
+///
+/// The filter counts as lost in three cases:
+/// - It reports so.
+/// - Less than a third of its recent sightings have a landmark, or less than half of the usual fraction. In
+///   a dense map some landmark fits by chance at any pose.
+/// - The map explains less than a fifth of the sightings beyond chance (ExplainedFraction). The estimate is
+/// then
+///   the last reliable one, or the start, predicted by odometry and updated by fixes.
+///
+/// A lost filter calls the PoseFinder on recent sightings, at most every fifth set, since that searches the
+/// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
+/// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
+/// not reliable.
+class RelocalizingFilter final : public Localizer {
+ public:
+  using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
+  RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
+                     ChanceFraction chance = {}, FeatureScales scales = {});
+
+  void predict(const BodyMotion& motion) override;
+  std::vector<Match> update(const SightingSet& seen) override;
+  bool fix(const GnssFix& gnss) override { return apply_fix(gnss); }
+  bool fix(const HeadingFix& heading) override { return apply_fix(heading); }
+  PoseEstimate estimate() const override { return chance_matches_ ? reliable_ : inner_->estimate(); }
+  LocalizationStatus status() const override { return lost() ? LocalizationStatus::lost : inner_->status(); }
+  int restarts() const { return restarts_; }
+
+ private:
+  template <class Fix>
+  bool apply_fix(const Fix& fix) {
+    const bool used = inner_->fix(fix);
+    // A tracking filter replaces dead reckoning. Errors of fixes are correlated: many are no better than one.
+    if (used && !lost() && is_explained())
+      reliable_ = inner_->estimate();
+    else if (const auto fixed = update_pose(reliable_, fix); fixed.squares < 16 && is_informative(fix))
+      reliable_ = fixed.estimate;
+    return used;
+  }
+  bool lost() const;
+  void restart(const PoseEstimate& at);
+  std::vector<Match> follow(PoseEstimate found, const SightingSet& seen);
+  bool is_informative(const GnssFix& f) const {
+    return reliable_.covariance(0, 0) + reliable_.covariance(1, 1) > 2 * f.sd * f.sd;
+  }
+  bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
+  bool is_explained() const { return !chance_ || (explained_.known() && explained_.value() > 0.3); }
+
+  Factory make_filter_;
+  PoseFinder finder_;
+  ChanceFraction chance_;
+  ExplainedFraction explained_;
+  std::unique_ptr<Localizer> inner_;
+  SightingMemory memory_;
+  PoseEstimate reliable_;        // the last reliable estimate, predicted by odometry since
+  double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
+  double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
+  bool chance_matches_ = false;  // whether the matches were found to fit by chance
+  int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
+};
+
+}  // namespace waymark

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include "localization/global/horizon_ring.hpp"
+namespace waymark {
+
+inline constexpr int kHorizonSectors = 180;
+
+/// Horizon within half a step of a position.
+struct HorizonViewpoint {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double step = 0;
+  double relief = 0;  ///< m: standard deviation of the terrain height within half a step
+  std::vector<HorizonEdge> ring;
+};
+
+/// Computes the horizons at the positions on known terrain, in their order; the same for any number of
+/// threads.
+std::vector<HorizonViewpoint> compute_horizons(const TerrainGrid& ground, std::span<const Eigen::Vector2d> at,
+                                               double step, const SkylineOptions& options);
+
+/// A pose and its log likelihood ratio, given the tops, against an unknown position.
+struct HorizonGuess {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double yaw = 0, score = 0;
+};
+
+/// Returns the `most` best headings at each position, none adjacent, in the order of `viewpoints`. The same
+/// for any number of threads.
+/// - A top fits if the horizon of its sector, or of a neighbour, is as high as it was seen.
+/// - The tolerance is its noise and what half a step changes: the eye's height by the relief, all
+///   directions by parallax, both over the distance of the horizon there.
+/// - A top that fits nowhere costs at most `kMissed`.
+std::vector<HorizonGuess> best_headings(std::span<const HorizonViewpoint> viewpoints,
+                                        std::span<const HorizonTop> tops, std::size_t most,
+                                        const SkylineOptions& options);
+
+}  // namespace waymark

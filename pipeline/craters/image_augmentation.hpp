@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include "geo/image_source.hpp"
+namespace waymark {
+
+/// Applies random radiometric changes: blur, uneven brightness, noise, stripes, flat-fielding, equalisation
+/// or stretch, JPEG compression, resampling. Positions do not change. Deterministic for a seed.
+void augment_image(Pixels& image, std::uint64_t seed);
+
+}  // namespace waymark

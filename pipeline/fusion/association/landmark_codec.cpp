@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/association/landmark_codec.hpp"
+
+#include "core/bytes.hpp"
+
+namespace waymark {
+namespace {
+
+void write(ByteWriter& out, const AttributeValue& value) {
+  out(static_cast<std::uint8_t>(value.index()));
+  if (const auto* real = std::get_if<double>(&value)) out(*real);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) out(*integer);
+  if (const auto* text = std::get_if<std::string>(&value)) out(*text);
+}
+
+AttributeValue read_attribute(ByteReader& in) {
+  switch (in.get<std::uint8_t>()) {
+    case 0:
+      return {};
+    case 1:
+      return in.get<double>();
+    case 2:
+      return in.get<std::int64_t>();
+    case 3: {
+      std::string text;
+      in(text);
+      return text;
+    }
+    default:
+      throw std::runtime_error("unknown kind of attribute in an artifact");
+  }
+}
+
+void write(ByteWriter& out, const Landmark& l) {
+  out(l.uid), out(l.type);
+  for (const double v : l.position.xyz) out(v);
+  for (const double v : l.covariance.reshaped()) out(v);
+  out(static_cast<std::uint64_t>(l.features.size()));
+  for (const FeatureValue& f : l.features) out(f.value), out(f.variance), out(f.observations);
+  out(static_cast<std::uint64_t>(l.attributes.size()));
+  for (const AttributeValue& a : l.attributes) write(out, a);
+  out(l.quality.seen), out(l.quality.visible);
+  out(static_cast<std::uint64_t>(l.quality.feature_confidences.size()));
+  for (const auto& q : l.quality.feature_confidences) out(q.has_value()), out(q.value_or(0));
+  out(l.confidence), out(l.observations);
+}
+
+Landmark read_landmark(ByteReader& in) {
+  Landmark l;
+  in(l.uid), in(l.type);
+  for (double& v : l.position.xyz) in(v);
+  for (double& v : l.covariance.reshaped()) in(v);
+  l.features.resize(in.length(20));
+  for (FeatureValue& f : l.features) in(f.value), in(f.variance), in(f.observations);
+  l.attributes.resize(in.length(1));
+  for (AttributeValue& a : l.attributes) a = read_attribute(in);
+  in(l.quality.seen), in(l.quality.visible);
+  l.quality.feature_confidences.resize(in.length(9));
+  for (auto& q : l.quality.feature_confidences) {
+    const bool known = in.get<bool>();
+    const double value = in.get<double>();
+    if (known) q = value;
+  }
+  in(l.confidence), in(l.observations);
+  return l;
+}
+
+}  // namespace
+
+std::string Codec<std::vector<Landmark>>::encode(const std::vector<Landmark>& landmarks) {
+  ByteWriter out;
+  out(static_cast<std::uint64_t>(landmarks.size()));
+  for (const Landmark& l : landmarks) write(out, l);
+  return out.take();
+}
+
+std::vector<Landmark> Codec<std::vector<Landmark>>::decode(std::string_view bytes) {
+  ByteReader in(bytes);
+  std::vector<Landmark> landmarks(in.length(100));
+  for (Landmark& l : landmarks) l = read_landmark(in);
+  in.expect_end();
+  return landmarks;
+}
+
+}  // namespace waymark

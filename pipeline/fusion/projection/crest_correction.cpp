@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/projection/crest_correction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/fusion/projection/degradation_profiles.hpp"
+#include "pipeline/fusion/projection/rim_profile.hpp"
+
+namespace waymark {
+namespace {
+
+using Profile = Eigen::Vector<double, kRimRings>;
+
+constexpr double kMinCells = 3;
+// Brightness is averaged over some width, so its edge appears slightly outside the sharpest bend (the crest
+// of a fresh rim). Mean residual on landings 7, 303, 901 and 902 (docs/methods/craters.md).
+constexpr double kEdgeOutside = 0.045;
+constexpr double kCellBlur = 0.5;    // cells: mean over a cell, then bilinear (1/12 + 1/6 of a cell squared)
+constexpr double kUnresolved = 0.1;  // prior probability that the DEM does not resolve the crater
+constexpr double kLawSd = 0.06;      // scatter of ln(crest / outline) about the law; docs/methods/craters.md
+
+// Weights by area.
+Profile ring_weights() {
+  Profile weights;
+  for (int ring = 0; ring < kRimRings; ++ring) weights[ring] = rim_ring(ring) + 0.05;
+  return weights / weights.sum();
+}
+
+Profile about_mean(const Profile& heights, const Profile& weights) {
+  return heights.array() - weights.dot(heights);
+}
+
+Profile medians(RimHeights heights) {
+  Profile median;
+  for (int ring = 0; ring < kRimRings; ++ring) {
+    Eigen::Vector<double, kRimAzimuths> row = heights.row(ring);
+    std::nth_element(row.begin(), row.begin() + kRimAzimuths / 2, row.end());
+    median[ring] = row[kRimAzimuths / 2];
+  }
+  return median;
+}
+
+// Returns the mean variance over the azimuths.
+double unevenness(const RimHeights& heights, const Profile& weights) {
+  double variance = 0;
+  for (int ring = 0; ring < kRimRings; ++ring)
+    variance += weights[ring] * (heights.row(ring).array() - heights.row(ring).mean()).square().mean();
+  return variance;
+}
+
+}  // namespace
+
+std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const GroundOutline& outline,
+                                                double outline_edge_fraction) {
+  const double cell = std::max(terrain.step_x(), terrain.step_y()), cells = outline.diameter() / cell;
+  if (!(cells >= kMinCells)) return std::nullopt;
+  const auto heights = rim_heights(terrain, outline);
+  if (!heights) return std::nullopt;
+  static const Profile weights = ring_weights();
+  const Profile seen = about_mean(medians(*heights), weights);
+  // Neighbouring azimuths and rings are correlated.
+  const double independent = std::clamp(cells * cells / 6, 2.0, 30.0);
+  const double variance = std::max(1e-6, unevenness(*heights, weights) / independent);
+
+  const DegradationProfiles& worn = DegradationProfiles::instance();
+  const auto misfit = [&](const Profile& made) {
+    return (weights.array() * (seen - about_mean(made, weights)).array().square()).sum() / variance / 2;
+  };
+  std::vector<double> misfits{misfit(Profile::Zero())}, chances{kUnresolved}, growths{0};
+  double depths = 0;  // sum of chances
+  for (std::size_t i = 0; i < worn.states().size(); ++i) {
+    const auto& state = worn.states()[i];
+    const double next = i + 1 < worn.states().size() ? worn.states()[i + 1].depth : state.depth;
+    const double chance = state.depth * std::max(state.depth - next, 0.0);
+    const double growth = outline_edge_fraction * std::max(0.0, state.crest_over_edge - kEdgeOutside);
+    const double fresh_radius = outline.diameter() / 2 * std::exp(growth) / state.crest;
+    Profile made;
+    for (int ring = 0; ring < kRimRings; ++ring)
+      made[ring] = 2 * fresh_radius *
+                   worn.height(std::hypot(state.blur, kCellBlur * cell / fresh_radius),
+                               rim_ring(ring) * outline.diameter() / 2 / fresh_radius);
+    misfits.push_back(misfit(made));
+    chances.push_back(chance);
+    growths.push_back(growth);
+    depths += chance;
+  }
+  const double best = *std::min_element(misfits.begin(), misfits.end());
+  double total = 0, mean = 0, squares = 0;
+  for (std::size_t i = 0; i < misfits.size(); ++i) {
+    const double fraction =
+        (i == 0 ? kUnresolved : (1 - kUnresolved) * chances[i] / depths) * std::exp(best - misfits[i]);
+    total += fraction, mean += fraction * growths[i], squares += fraction * growths[i] * growths[i];
+  }
+  mean /= total, squares /= total;
+  return CrestCorrection{mean, std::hypot(kLawSd, std::sqrt(std::max(squares - mean * mean, 0.0)))};
+}
+
+}  // namespace waymark

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/projection/detection_projection.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "pipeline/fusion/projection/bowl_depth.hpp"
+#include "pipeline/fusion/projection/crest_correction.hpp"
+#include "pipeline/fusion/projection/ground_outline.hpp"
+#include "pipeline/fusion/projection/local_ground_plane.hpp"
+#include "pipeline/fusion/projection/position_covariance.hpp"
+#include "pipeline/fusion/projection/rock_height.hpp"
+
+namespace waymark {
+namespace {
+
+Observation reject(Observation observation, const char* reason) {
+  observation.position.xyz.setConstant(std::nan(""));
+  observation.rejected = reason;
+  return observation;
+}
+
+const char* why_no_ground(RayEnd end) {
+  switch (end) {
+    case RayEnd::sky:
+      return "no ground in its line of sight";
+    case RayEnd::no_data:
+      return "height of the ground unknown";
+    case RayEnd::underground:
+      return "camera under the ground";
+    case RayEnd::ground:
+      break;
+  }
+  return "";
+}
+
+// Fits a plane through a crater's rim where the terrain shows it.
+std::optional<GroundPlane> rim_plane(const ImageView& image, const PixelEllipse& outline,
+                                     const Terrain& terrain) {
+  constexpr int kPoints = 24;
+  std::vector<Eigen::Vector3d> rim;
+  for (int k = 0; k < kPoints; ++k) {
+    const auto line = viewing_ray(image, outline_point(outline, 2 * std::numbers::pi * k / kPoints));
+    if (!line) continue;
+    const RayHit hit = terrain.cast(*line);
+    if (hit.end == RayEnd::ground) rim.push_back(hit.point.xyz);
+  }
+  if (rim.size() < kPoints * 2 / 3) return std::nullopt;  // half a rim does not define a plane
+  return fit_plane(rim);
+}
+
+void set(Observation& observation, const LandmarkType& type, std::string_view feature, double value,
+         double sd) {
+  for (std::size_t i = 0; i < type.features.size(); ++i)
+    if (type.features[i].name == feature && std::isfinite(value))
+      observation.features[i] = {value, std::isfinite(sd) ? sd * sd : 0, 1};
+}
+
+// Returns the standard deviation of the direction of an ellipse's axis: difference of the axes against their
+// errors.
+double orientation_sd(const GroundOutline& o, double diameter_sd) {
+  const double sd = std::atan2(diameter_sd, std::max(o.major - o.minor, 0.0));
+  return std::min(sd, std::numbers::pi / 4);
+}
+
+}  // namespace
+
+Observation project_detection(const Detection& detection, const ImageView& image, const Terrain& terrain,
+                              const LandmarkType& type, const ProjectionRules& rules) {
+  Observation observation;
+  observation.type = detection.type;
+  observation.source = image.name;
+  observation.pixel = Eigen::Vector2d(detection.outline.x, detection.outline.y);
+  observation.confidence = detection.confidence;
+  observation.features.resize(type.features.size());
+
+  const auto line = viewing_ray(image, *observation.pixel);
+  if (!line) return reject(observation, "outside the lens model");
+  const RayHit hit = terrain.cast(*line);
+  if (hit.end != RayEnd::ground) return reject(observation, why_no_ground(hit.end));
+  const double cell = std::max(terrain.step_x(), terrain.step_y());
+  auto ground = local_ground_plane(terrain, hit.point.xyz.x(), hit.point.xyz.y(), cell);
+  if (!ground) ground = GroundPlane{hit.point.xyz, Eigen::Vector2d::Zero()};
+  auto outline = project_outline(image, detection.outline, *ground);
+  if (!outline) return reject(observation, "seen too flat");
+
+  const bool bowl = type.drawn_as == Solid::bowl;
+  if (bowl && outline->diameter() >= 4 * cell)
+    if (const auto rim = rim_plane(image, detection.outline, terrain))
+      if (const auto on_rim = project_outline(image, detection.outline, *rim)) outline = on_rim, ground = rim;
+  double growth_sd = 0;
+  if (bowl && rules.heights_known && rules.outline_edge_fraction > 0)
+    if (const auto crest = crest_correction(terrain, *outline, rules.outline_edge_fraction)) {
+      outline->major *= std::exp(crest->growth), outline->minor *= std::exp(crest->growth);
+      growth_sd = crest->growth_sd;
+    }
+  double diameter = outline->diameter();
+  if (!bowl && diameter > 2 * cell)
+    if (const auto wider = local_ground_plane(terrain, outline->centre.x(), outline->centre.y(), diameter))
+      ground->gradient = wider->gradient;
+  if (detection.diameter_slope_response > 0 && image.sun)
+    diameter *= std::exp(detection.diameter_slope_response * log_shadow_shortening(*ground, *image.sun));
+
+  const auto pixel_sd = detection.diameter_sd / std::max(detection.outline.diameter(), 1e-3);
+  const auto range_sd = relative_range_sd(image, *line, hit.range);
+  const double diameter_sd = diameter * std::hypot(pixel_sd, range_sd, growth_sd);
+  for (const char* name : {"diameter", "crown_diameter"}) set(observation, type, name, diameter, diameter_sd);
+  set(observation, type, "radius", diameter / 2, diameter_sd / 2);
+  set(observation, type, "major_axis", outline->major, diameter_sd * std::sqrt(2.0));
+  set(observation, type, "minor_axis", outline->minor, diameter_sd * std::sqrt(2.0));
+  set(observation, type, "orientation", outline->orientation, orientation_sd(*outline, diameter_sd));
+  if (detection.shadow_reach && image.sun)
+    if (const auto height = height_from_shadow(*detection.shadow_reach, image, *ground, *image.sun,
+                                               rules.slope_sd, detection.reach_slope_response))
+      set(observation, type, "height", height->value, std::hypot(height->sd, height->value * range_sd));
+
+  double z = outline->centre.z();
+  if (!bowl) {
+    if (const auto h = terrain.height(outline->centre.x(), outline->centre.y())) z = *h;
+  } else if (rules.heights_known) {
+    if (const auto depth = bowl_depth(terrain, *outline)) {
+      z = depth->rim_height;
+      set(observation, type, "depth", depth->depth, std::max(depth->depth_sd, 1e-6));
+    }
+  }
+  observation.position.xyz << outline->centre.head<2>(), z;
+  observation.covariance =
+      position_covariance(detection, image, *ground,
+                          {.height_sd = terrain.height_sd() > 0 ? terrain.height_sd() : rules.height_sd,
+                           .along_sun_sd = detection.shadow_reach ? rules.shadow_shape * diameter : 0,
+                           .isotropic_sd = bowl ? rules.rim_shape * diameter : 0});
+  if (!rules.heights_known) {
+    observation.covariance.row(2).setConstant(std::nan(""));
+    observation.covariance.col(2).setConstant(std::nan(""));
+  }
+  return observation;
+}
+
+}  // namespace waymark

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "core/detection.hpp"
+#include "core/observation.hpp"
+#include "geo/terrain.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/fusion/projection/viewing_ray.hpp"
+namespace waymark {
+
+/// Parameters that images and terrain do not provide.
+struct ProjectionRules {
+  double height_sd = 0;       ///< metres, of a terrain without its own
+  bool heights_known = true;  ///< false: the terrain is an assumed plane, so positions have no height
+  double slope_sd = 0.03;     ///< of the ground under a rock relative to the terrain, metres per metre
+  /// Fraction of the way from the crest to the steepest change of brightness at which outlines of craters lie
+  /// (crest_correction.hpp): 1 for edge detectors, 0 for detectors that report crests.
+  /// The built-in detector starts at the edge and moves 0.35 of the way to its modelled crest
+  /// (bowl_verification.cpp).
+  double outline_edge_fraction = 0.65;
+  /// Standard deviation of a centre due to shape, in diameters: along the sun for objects detected by their
+  /// shadow, isotropic for rims.
+  double shadow_shape = 0.1, rim_shape = 0.035;
+};
+
+/// Projects a detection onto the terrain.
+/// - The line of sight of its centre is intersected with the terrain; its outline is projected onto the
+///   tangent plane there, for craters of at least four cells onto the plane through the rim.
+/// - Features are measured in horizontal projection, metres: radius, major_axis, minor_axis, orientation,
+///   diameter, crown_diameter; height from the shadow; depth from the terrain. Unmeasurable features are
+///   absent.
+/// - Craters get the width of their crests if the terrain shows their degradation.
+/// - Covariance = image + pose + terrain height along the line of sight + shape; feature variances are those
+///   of the measurement.
+/// Observation::position is in the grid frame (metres). If no ground is visible, `rejected` gives the reason
+/// and the position is NaN.
+Observation project_detection(const Detection& detection, const ImageView& image, const Terrain& terrain,
+                              const LandmarkType& type, const ProjectionRules& rules);
+
+}  // namespace waymark

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+#include "core/landmark.hpp"
+#include "core/quality.hpp"
+#include "geo/terrain.hpp"
+#include "landmarks/landmark_type.hpp"
+#include "pipeline/fusion/valuation/existence.hpp"
+#include "pipeline/fusion/valuation/image_coverage.hpp"
+namespace waymark {
+
+/// Meaning of "the image covers L" and "at least the resolution of i_0" in eqs. 4 and 5.
+enum class CoverRule {
+  /// L lies completely inside the image and is not occluded; its ground sample distance is at most that of
+  /// the coarsest image that detected L (i_0), with a tolerance of 10 %.
+  sound,
+  /// As in the paper: the footprint contains L's position, and area(i) <= area(i_0), the largest image that
+  /// detected L.
+  paper,
+};
+
+struct ValuationRules {
+  CoverRule cover = CoverRule::sound;
+  SpreadRule spread = SpreadRule::sound;
+  CoverageRules coverage = {};
+  std::optional<ExistenceRules> existence = {};  ///< absent: the rules of each type
+};
+
+/// Computes the quality of landmarks (Rossmann et al. 3.3): number of images that detected and that cover
+/// each (eqs. 4-5), q_f per feature (eqs. 6-7) and the probability of existence.
+/// - i_0 is chosen from the images that *detected* L, since the paper expects L "in other images showing the
+///   same region with the same or better resolution". An image that detected L covers it.
+/// - A source without an ImageView (a DEM, a table) is a survey that detected L and could have.
+/// - ImageView::common_covariance is added to the covariances.
+/// `terrain` may be null. Positions in units of a CRS of `metres_per_unit`. `evidence` names landmarks by
+/// uid.
+void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation> evidence,
+                     std::span<const ImageView> images, const Terrain* terrain, const TypeRegistry& types,
+                     double metres_per_unit, const ValuationRules& rules = {});
+
+/// Removes landmarks less probable than `min_probability` of their type and rejects their evidence. Returns
+/// their number.
+std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Observation>& evidence,
+                               const TypeRegistry& types);
+
+}  // namespace waymark

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+#include "geo/dem_handle.hpp"
+#include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/terrain/codecs.hpp"
+#include "pipeline/terrain/mountain_tops.hpp"
+namespace waymark {
+
+/// What the stages that convert summits to landmarks share: all of the map at once, or those of a tile.
+struct MountainTopsStage {
+  struct Options {
+    Meters min_isolation{0};
+    Meters visible_range{10000};
+    void describe(OptionVisitor& option) {
+      option("min_isolation", min_isolation,
+             {.help = "Smallest isolation of a summit that is kept", .min = 0, .max = 4e7});
+      option("visible_range", visible_range,
+             {.help = "Radius around a summit over which its expected visibility is averaged",
+              .min = 1,
+              .max = 1e6});
+    }
+  };
+  static constexpr In<DemHandle> dem{"dem"};
+  static constexpr In<std::vector<Summit>> summits{"summits"};
+  static constexpr In<std::vector<Isolation>> isolation{"summit_isolation"};
+  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
+
+  static StageSpec spec(std::string name, std::string summary, int version, Scope scope) {
+    return {.name = std::move(name),
+            .summary = std::move(summary),
+            .version = version,
+            .scope = scope,
+            .inputs = {dem, summits, isolation},
+            .outputs = {landmarks},
+            .finds = {"mountain_top"}};
+  }
+
+  static void write_landmarks(const Options& options, const Window& window, StageContext& unit) {
+    TypeRegistry types;
+    register_landmark_types(types);
+    MountainTops tops = mountain_tops(
+        unit.read(summits), unit.read(isolation), *unit.read(dem), types,
+        {.min_isolation = options.min_isolation, .visible_range = options.visible_range}, window);
+    auto count = static_cast<std::int64_t>(tops.landmarks.size());
+    unit.count_out(count);
+    for (const auto& [reason, rejected] : tops.rejected) {
+      unit.reject(reason, rejected);
+      count += rejected;
+    }
+    unit.count_in(count);
+    unit.write(landmarks, std::move(tops.landmarks));
+  }
+};
+
+}  // namespace waymark

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/engine/plan.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/pipeline/engine/toy_test.hpp"
+
+namespace waymark {
+namespace {
+
+using testing::HasSubstr;
+
+class PlanTest : public ToyTest {
+ protected:
+  PlanTest() { pipeline.set("list_numbers.tiles=2"); }
+  Plan the_plan() { return plan(pipeline, {.work = work}); }
+  const PlanCommand command{.job = "my job.json", .work = "work"};
+};
+
+TEST_F(PlanTest, ListsUnitsAfterWhatTheyRead) {
+  const Plan plan = the_plan();
+  std::vector<std::string> ids;
+  for (const Unit& unit : plan.units) ids.push_back(unit.id());
+  EXPECT_THAT(ids, testing::ElementsAre("list_numbers/map", "square_number/tile_000000",
+                                        "square_number/tile_000001", "sum_squares/map"));
+  EXPECT_THAT(plan.units[0].after, testing::IsEmpty());
+  EXPECT_THAT(plan.units[2].after, testing::ElementsAre(0));
+  EXPECT_THAT(plan.units[3].after, testing::ElementsAre(1, 2));
+  EXPECT_THAT(plan.begins, testing::ElementsAre(0, 1, 3, 4));
+  EXPECT_THAT(ran(), testing::ElementsAre(1, 0, 0)) << "only the list is made";
+}
+
+TEST_F(PlanTest, FingerprintsAreTheSameEverywhere) {
+  const Plan kept = the_plan(), in_memory = plan(pipeline);
+  for (std::size_t i = 0; i < kept.units.size(); ++i) {
+    EXPECT_EQ(kept.units[i].fingerprint.size(), 32U);
+    EXPECT_EQ(kept.units[i].fingerprint, in_memory.units[i].fingerprint);
+  }
+  EXPECT_NE(kept.units[1].fingerprint, kept.units[2].fingerprint);
+}
+
+TEST_F(PlanTest, JsonLines) {
+  run(pipeline, {.work = work, .unit = "square_number/tile_000001"});
+  std::istringstream lines(plan_as_jsonl(the_plan()));
+  std::vector<nlohmann::json> units;
+  for (std::string line; std::getline(lines, line);) units.push_back(nlohmann::json::parse(line));
+  ASSERT_EQ(units.size(), 4U);
+  EXPECT_EQ(units[2]["unit"], "square_number/tile_000001");
+  EXPECT_EQ(units[2]["done"], true);
+  EXPECT_EQ(units[3]["done"], false);
+  EXPECT_EQ(units[3]["after"], (nlohmann::json{"square_number/tile_000000", "square_number/tile_000001"}));
+}
+
+TEST_F(PlanTest, Snakemake) {
+  const Plan plan = the_plan();
+  const std::string file = plan_as_snakemake(plan, command);
+  const auto manifest = [&](std::size_t i) {
+    return "\"work/" + plan.units[i].id() + "/" + plan.units[i].fingerprint + "/manifest.json\"";
+  };
+  EXPECT_THAT(file,
+              HasSubstr("rule sum_squares_map:\n    input: " + manifest(1) + ",\n           " + manifest(2) +
+                        "\n    output: " + manifest(3) +
+                        "\n    shell: \"waymark run 'my job.json' --work work --unit sum_squares/map\"\n"));
+  EXPECT_THAT(plan_as_snakemake(plan, {.job = "{a}.json", .work = "w"}),
+              HasSubstr("run '{{a}}.json' --work w"));
+}
+
+// A fake sbatch prints a job number and logs its arguments.
+TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
+  std::ofstream(work / "sbatch") << "#!/bin/sh\necho \"$@\" >> '" << (work / "calls").string()
+                                 << "'\nwc -l < '" << (work / "calls").string() << "' | tr -d ' '\n";
+  std::ofstream(work / "submit.sh") << plan_as_slurm(the_plan(), command);
+  std::filesystem::permissions(work / "sbatch", std::filesystem::perms::owner_all);
+  const std::string folder = std::filesystem::path(work).string();
+  ASSERT_EQ(std::system(("PATH=" + folder + ":$PATH sh " + folder + "/submit.sh").c_str()), 0);
+  std::ifstream calls(work / "calls");
+  const std::string text{std::istreambuf_iterator<char>(calls), {}};
+  EXPECT_EQ(text,
+            "--parsable --job-name=list_numbers --wrap waymark run 'my job.json' --work work --unit "
+            "list_numbers/map\n"
+            "--parsable --job-name=square_number --dependency=afterok:1 --array=1-2 --wrap "
+            "waymark run 'my job.json' --work work --shard $SLURM_ARRAY_TASK_ID/2\n"
+            "--parsable --job-name=sum_squares --dependency=afterok:2 --wrap "
+            "waymark run 'my job.json' --work work --unit sum_squares/map\n");
+}
+
+}  // namespace
+}  // namespace waymark

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/projection/crest_correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/fusion/projection/degradation_profiles.hpp"
+#include "pipeline/fusion/projection/detection_projection.hpp"
+
+namespace waymark::testing {
+namespace {
+
+// Returns the state whose depth is next to the requested one.
+DegradationProfiles::State state_of_depth(double depth) {
+  DegradationProfiles::State best = DegradationProfiles::instance().states().front();
+  for (const auto& state : DegradationProfiles::instance().states())
+    if (std::abs(state.depth - depth) < std::abs(best.depth - depth)) best = state;
+  return best;
+}
+
+// Returns ln(crest / outline) for outlines of the built-in detector.
+double growth_of(const DegradationProfiles::State& state) {
+  return 0.65 * std::max(0.0, state.crest_over_edge - 0.045);
+}
+
+// Crater in the centre of ground rising by 0.1 to the east, heights every metre.
+Terrain ground(double crest_diameter, const DegradationProfiles::State& state, double fraction = 1) {
+  Grid<float> heights(161, 161);
+  const double fresh = crest_diameter / 2 / state.crest;
+  for (std::int64_t r = 0; r < 161; ++r)
+    for (std::int64_t c = 0; c < 161; ++c) {
+      const double x = double(c - 80), y = double(80 - r);
+      heights(c, r) = static_cast<float>(
+          0.1 * x + fraction * 2 * fresh *
+                        DegradationProfiles::instance().height(std::hypot(state.blur, 0.3 / fresh),
+                                                               std::hypot(x, y) / fresh));
+    }
+  return {std::move(heights), -80, 80, 1, 1};
+}
+
+GroundOutline circle(double diameter) {
+  return {.centre = {0, 0, 0}, .major = diameter, .minor = diameter, .orientation = 0};
+}
+
+TEST(DegradationProfiles, AreSmoothedByAGaussian) {
+  const DegradationProfiles& worn = DegradationProfiles::instance();
+  constexpr double kStep = 0.02;
+  for (const double blur : {0.15, 0.4, 0.9})
+    for (const double r : {0.0, 0.7, 1.2, 2.0}) {
+      double sum = 0, weights = 0;
+      for (double y = -5 * blur; y <= 5 * blur; y += kStep)
+        for (double x = -5 * blur; x <= 5 * blur; x += kStep) {
+          const double weight = std::exp(-(x * x + y * y) / (2 * blur * blur));
+          sum += weight * worn.height(0, std::hypot(r + x, y)), weights += weight;
+        }
+      EXPECT_NEAR(worn.height(blur, r), sum / weights, 0.001) << blur << " at " << r;
+    }
+}
+
+TEST(DegradationProfiles, WearMakesShallowAndSpreadsTheCrest) {
+  const auto& states = DegradationProfiles::instance().states();
+  EXPECT_NEAR(states.front().depth, 0.2, 1e-6);
+  EXPECT_NEAR(states.front().crest_over_edge, 0, 1e-6);
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    EXPECT_LT(states[i].depth, states[i - 1].depth);
+    EXPECT_GE(states[i].crest, states[i - 1].crest);
+  }
+  // docs/methods/craters.md: brightness makes the most degraded craters at least a quarter too narrow.
+  EXPECT_NEAR(state_of_depth(0.1).crest_over_edge, 0.3, 0.05);
+}
+
+TEST(CrestCorrection, IsFoundByTheDepthTheHeightsShow) {
+  for (const double depth : {0.19, 0.15, 0.11, 0.08})
+    for (const double diameter : {6.0, 12.0, 30.0}) {
+      const auto state = state_of_depth(depth);
+      const double growth = growth_of(state);
+      const auto crest =
+          crest_correction(ground(diameter, state), circle(diameter * std::exp(-growth)), 0.65);
+      ASSERT_TRUE(crest);
+      EXPECT_NEAR(crest->growth, growth, 0.025) << depth << ", " << diameter << " m";
+      EXPECT_GT(crest->growth_sd, 0.05);
+    }
+}
+
+TEST(CrestCorrection, SaysNothingOfWhatTheHeightsDoNotResolve) {
+  const auto state = state_of_depth(0.1);
+  const auto flat = crest_correction(ground(12, state, 0), circle(12), 0.65);
+  ASSERT_TRUE(flat);
+  EXPECT_LT(flat->growth, 0.01);
+  EXPECT_FALSE(crest_correction(ground(12, state), circle(2.9), 0.65));
+  EXPECT_FALSE(crest_correction(ground(12, state), circle(100), 0.65));  // beyond the heights
+}
+
+TEST(CrestCorrection, CratersOfImagesArePlacedByTheirCrests) {
+  TypeRegistry types;
+  register_landmark_types(types);
+  const LandmarkType& type = *types.find("crater");
+  const auto state = state_of_depth(0.1);
+  ImageView image;
+  image.columns = image.rows = 320;
+  image.ortho = OrthoGrid{-80, 80, 0.5, -0.5};
+  Detection seen;
+  seen.type = types.id("crater");
+  const double pixels = 40 * std::exp(-growth_of(state));  // of a crest of 20 m
+  seen.outline = {160, 160, pixels, pixels, 0};
+  const Terrain terrain = ground(20, state);
+  const auto diameter = [&](const ProjectionRules& rules) {
+    return 2 *
+           project_detection(seen, image, terrain, type, rules).features[feature_index(type, "radius")].value;
+  };
+  EXPECT_NEAR(diameter({}), 20, 0.5);
+  EXPECT_NEAR(diameter({.outline_edge_fraction = 0}), pixels / 2, 0.1);
+  EXPECT_NEAR(diameter({.heights_known = false}), pixels / 2, 0.1);
+}
+
+}  // namespace
+}  // namespace waymark::testing

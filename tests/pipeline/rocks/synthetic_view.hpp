@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include "core/units.hpp"
+#include "pipeline/rocks/relief_displacement.hpp"
+#include "tests/pipeline/rocks/rock_scene.hpp"
+namespace waymark::testing {
+
+/// View of synthetic terrain with its rocks in pixels.
+struct SyntheticView {
+  RockImage image;
+  double sun_angle = 0;  ///< towards the sun in the image, radians from x towards y
+  Radians elevation{0};  ///< of the sun
+  std::optional<ReliefDisplacement> displacement = {};  ///< unset: vertical view
+};
+
+/// Renders terrain with craters, dunes, slopes up to about 12 degrees and rocks by Golombek's law, 0.3 m
+/// per pixel, sun incidence 30 to 75 degrees; all parameters are random. Numbers below 1000 are for
+/// fitting, those from 1000 on for testing.
+SyntheticView synthetic_view(int number);
+
+/// The same through a camera of 8 to 50 degrees that looks up to 22 degrees off the vertical, on ground of
+/// finer pixels (0.05 to 0.4 m), half of it without rocks smaller than 1.5 to 6 px, and sun elevations from
+/// 14 degrees: large rocks, low light and rocks that displacement.
+SyntheticView leaning_view(int number);
+
+}  // namespace waymark::testing

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/detection/run_detection.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/craters/find_craters.hpp"
+#include "pipeline/rocks/find_rocks.hpp"
+#include "pipeline/vision/sun_angle.hpp"
+#include "workflows/detection/tree_detection.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr std::int64_t kSample = 1536;    // side of the pieces the light is estimated from, pixels
+constexpr std::int64_t kMinSide = 16;     // detectors see nothing in smaller images
+constexpr double kMaxSaturated = 0.05;    // fraction of saturated pixels worth a warning
+constexpr double kMaxSunDifference = 15;  // degrees between the given and the estimated sun
+
+struct Light {
+  double angle = 0, sd = 0;  ///< degrees
+  int support = 0;           ///< shadows or craters that agreed
+};
+
+std::optional<Light> estimate_light(const Pixels& pixels, const std::string& type) {
+  if (type == "crater") {
+    const auto seen = estimate_crater_sun_angle(pixels);
+    if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->craters};
+    return {};
+  }
+  const auto seen = estimate_sun_angle(pixels);
+  if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
+  return {};
+}
+
+/// Returns the estimate with the most support; a small image is read whole.
+std::optional<Light> best_light(const ImageSource& image, const std::string& type) {
+  std::optional<Light> best;
+  for (const Window& window : sample_windows(image.info(), kSample))
+    if (const auto light = estimate_light(image.read(window), type);
+        light && (!best || light->support > best->support))
+      best = light;
+  return best;
+}
+
+std::string percent(std::int64_t part, std::int64_t of) {
+  return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(of));
+}
+
+/// Returns why nothing can be seen, or an empty text. Adds warnings.
+std::string reason_for_no_detections(const ImageSource& image, std::vector<std::string>& warnings) {
+  const ImageInfo& info = image.info();
+  if (std::min(info.columns, info.rows) < kMinSide)
+    return fmt::format("the image measures {} x {} pixels: too little to see anything in", info.columns,
+                       info.rows);
+  const Brightness light = measure_brightness(image);
+  if (light.no_data == light.pixels) return "no pixel of the image holds data";
+  if (light.darkest == light.brightest)
+    return fmt::format("all pixels of the image are {:g}: there is nothing to be seen in it", light.darkest);
+  if (light.no_data > light.pixels / 2)
+    warnings.push_back(percent(light.no_data, light.pixels) + " of the image hold no data");
+  if (static_cast<double>(light.saturated) > kMaxSaturated * static_cast<double>(light.pixels))
+    warnings.push_back(fmt::format(
+        "{} of the pixels are saturated: what lies in them is not found; a shorter exposure would show it",
+        percent(light.saturated, light.pixels)));
+  return {};
+}
+
+ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Radians> sun) {
+  if (plan.type == "crater")
+    return [=, &plan](const Pixels& pixels, double min, double max) {
+      CraterSearch search;
+      search.method = plan.method == "edges" ? CraterMethod::edges : CraterMethod::bowl;
+      search.type = type;
+      search.sun_angle = sun;
+      search.min_diameter = min;
+      search.max_diameter = max;
+      search.min_confidence = plan.min_confidence;
+      const double largest = 0.6 * static_cast<double>(std::min(pixels.columns(), pixels.rows()));
+      if (std::min(pixels.columns(), pixels.rows()) < kMinSide || largest <= min)
+        return std::vector<Detection>{};
+      return find_craters(pixels, search);
+    };
+  return [=, &plan](const Pixels& pixels, double min, double max) {
+    RockSearch search;
+    search.method = plan.method == "classic" ? RockMethod::classic : RockMethod::shadow;
+    search.type = type;
+    search.sun_angle = sun;
+    if (plan.sun_elevation) search.sun_elevation = to_radians(*plan.sun_elevation);
+    search.min_diameter = min;
+    search.max_diameter = max;
+    search.min_confidence = plan.min_confidence;
+    return find_rocks(pixels, search);
+  };
+}
+
+/// Returns the direction to search with; notes an estimate or a conflict in `found`.
+std::optional<Radians> choose_light(const DetectionPlan& plan, DetectResult& found) {
+  const auto seen = best_light(*plan.image, plan.type);
+  const char* witness = plan.type == "crater" ? "craters" : "shadows";
+  if (plan.image_sun_angle) {
+    const double given = plan.image_sun_angle->value;
+    const double off = seen ? std::abs(std::remainder(seen->angle - given, 360)) : 0;
+    if (seen && off > kMaxSunDifference + 2 * seen->sd)
+      found.warnings.push_back(fmt::format(
+          "the light is said to come from {:.0f} degrees in the image, but {} {} say {:.0f} +- {:.0f}: check "
+          "that the angle counts from right towards down, and points towards the sun",
+          given, seen->support, witness, seen->angle, seen->sd));
+    return to_radians(*plan.image_sun_angle);
+  }
+  if (!seen) {
+    found.warnings.push_back(
+        fmt::format("the image does not show where its light comes from: few {} will be found; pass "
+                    "--image-sun-angle",
+                    plan.type == "crater" ? "craters" : "rocks"));
+    return {};
+  }
+  found.light = fmt::format("light from {:.1f} +- {:.1f} degrees in the image, by {} {}", seen->angle,
+                            seen->sd, seen->support, witness);
+  return to_radians(Degrees{seen->angle});
+}
+
+}  // namespace
+
+ImageDetections empty_detections(const DetectionPlan& plan, TypeId type) {
+  const ImageInfo& info = plan.image->info();
+  return {.type = type,
+          .image = info.name,
+          .columns = info.columns,
+          .rows = info.rows,
+          .detections = {},
+          .georeference = info.ortho,
+          .gsd = plan.gsd,
+          .sun_elevation = plan.sun_elevation,
+          .sun_azimuth = plan.sun_azimuth};
+}
+
+DetectResult run_detection(const DetectionPlan& plan, int threads, const ProgressMeter::Listener& progress) {
+  if (plan.type == "tree") return detect_trees(plan, threads, progress);
+  const ImageInfo& info = plan.image->info();
+  const TypeId type = all_types().id(plan.type);
+  DetectResult found;
+  found.detections = empty_detections(plan, type);
+  if (const std::string reason = reason_for_no_detections(*plan.image, found.warnings); !reason.empty()) {
+    found.warnings.push_back(reason);
+    return found;
+  }
+  const auto sun = choose_light(plan, found);
+  ImageSearch search = plan.search;
+  search.threads = threads;
+  search.progress = progress;
+  found.detections.detections = search_image(*plan.image, search, detector(plan, type, sun));
+  if (plan.type == "rock" && !plan.sun_elevation && (info.ortho || plan.gsd))
+    found.warnings.push_back("rocks have no heights: they need --sun-elevation");
+  return found;
+}
+
+}  // namespace waymark

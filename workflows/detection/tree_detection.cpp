@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/detection/tree_detection.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/error.hpp"
+#include "importers/tiling.hpp"
+#include "pipeline/forest/crown_network.hpp"
+#include "pipeline/forest/tree_observations.hpp"
+#include "workflows/detection/crown_detection.hpp"
+#include "workflows/detection/image_canopy.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr double kUsualPixel = 0.6;  // metres: of public orthophotos
+constexpr double kMinGreenness = 0.2;
+/// Finer colour images without infrared are searched by darkness: the networks are trained on pixels of 0.6
+/// m, and trees look different in pixels of 0.1 m.
+constexpr double kFinePixel = 0.25;
+constexpr double kPositionSd = 1.5;  // metres, of marked trees about detections
+constexpr double kCrownError = 0.4;  // fraction of a crown's diameter in colour images
+
+// For fine colour images without infrared (docs/methods/trees.md).
+TreeSearch imagery_search() {
+  TreeSearch search;
+  search.forest.name = "imagery";
+  search.forest.smoothing = 0.9;
+  search.forest.tops = {
+      .min_height = kMinGreenness, .isolation_base = 3, .isolation_slope = 0, .prominence = 0};
+  search.forest.crowns = {.floor = 0.6 * kMinGreenness,
+                          .min_height_fraction = 0.5,
+                          .radius_base = 6,
+                          .radius_slope = 0,
+                          .max_radius = 6};
+  return search;
+}
+
+TreeSearch height_search(const std::string& method) {
+  TreeSearch search;
+  if (method == "lmf") search.forest = local_maxima_preset(search.forest);
+  return search;
+}
+
+double pixel_metres(const DetectionPlan& plan, DetectResult& found) {
+  const ImageInfo& info = plan.image->info();
+  if (info.ortho)
+    return std::sqrt(-info.ortho->dx * info.ortho->dy) *
+           (info.ortho->crs.kind() == CrsKind::local ? 1 : info.ortho->crs.metres_per_unit());
+  if (plan.gsd) return plan.gsd->value;
+  for (const std::string& warning : plan.warnings)
+    if (warning.starts_with("its georeference is not used"))
+      throw Error(ErrorCode::input,
+                  "the size of a pixel in metres is not known, and trees are found by metres", info.path,
+                  "reproject it into metres (gdalwarp -t_srs EPSG:...), or pass --gsd");
+  found.warnings.push_back(
+      fmt::format("the size of a pixel is not known and taken as {:g} m: pass --gsd", kUsualPixel));
+  return kUsualPixel;
+}
+
+std::vector<DetectedTree> search_tiles(const CanopySource& canopy, const TreeSearch& search,
+                                       std::int64_t side, int threads,
+                                       const ProgressMeter::Listener& progress) {
+  const GridGeometry& grid = canopy.geometry();
+  const std::vector<Tile> tiles = tiles_of(grid.columns, grid.rows, side);
+  std::vector<std::vector<DetectedTree>> parts(tiles.size());
+  ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
+      parts[i] = find_trees(canopy, tiles[i].cells, search);
+      meter.add(1);
+    });
+  });
+  meter.finish();
+  std::vector<DetectedTree> all;
+  for (auto& part : parts)
+    all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
+  return all;
+}
+
+Detection detection_of(const DetectedTree& tree, TypeId type, double metres, bool imagery) {
+  Detection one;
+  one.type = type;
+  const double diameter = std::max(tree.crown_diameter / metres, 1.0);
+  one.outline = {static_cast<double>(tree.top.column), static_cast<double>(tree.top.row), diameter, diameter,
+                 0};
+  const TreeErrors errors;
+  const double sd = imagery ? kPositionSd : errors.position_base + errors.position_slope * tree.height;
+  one.covariance = Eigen::Matrix2d::Identity() * (sd * sd / (metres * metres) + 1.0 / 12);
+  one.diameter_sd = errors.crown_relative * diameter;
+  one.confidence = imagery ? 1 - 0.5 * std::exp(1 - tree.height / kMinGreenness) : tree.confidence;
+  return one;
+}
+
+struct TreeCandidate {
+  Detection detection;
+  FeatureSet features;
+};
+
+/// Finds tops of a canopy: of heights, or of greenness and darkness in a colour image.
+std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double metres,
+                                            const std::string& method, TypeId type, int threads,
+                                            const ProgressMeter::Listener& progress) {
+  const bool imagery = method == "imagery";
+  const LandmarkType& tree_type = all_types()[type];
+  const auto canopy =
+      image_canopy(plan.image->info(), imagery ? CanopySign::greenness : CanopySign::height, metres);
+  const TreeSearch search = imagery ? imagery_search() : height_search(method);
+  std::vector<TreeCandidate> kept;
+  for (const DetectedTree& tree :
+       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads, progress)) {
+    TreeCandidate one{detection_of(tree, type, metres, imagery), {}};
+    one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
+    if (imagery)
+      one.features[feature_index(tree_type, "height")] =
+          one.features[feature_index(tree_type, "diameter")] = {};
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+/// Finds crowns of a colour image with a trained network.
+std::vector<TreeCandidate> detect_by_network(const ImageInfo& info, double metres, TypeId type, int threads,
+                                             const ProgressMeter::Listener& progress) {
+  const ColourImage image(info, metres);
+  const LandmarkType& tree_type = all_types()[type];
+  const DenseNetwork& network = image.infrared() ? crown_network_infrared() : crown_network_colour();
+  std::vector<TreeCandidate> kept;
+  for (const DetectedCrown& crown : detect_crowns(image, network, threads, progress)) {
+    TreeCandidate one;
+    one.detection.type = type;
+    const double diameter = crown.diameter / metres;
+    one.detection.outline = {crown.x, crown.y, diameter, diameter, 0};
+    one.detection.covariance = Eigen::Matrix2d::Identity() * std::pow(kPositionSd / metres, 2);
+    one.detection.diameter_sd = kCrownError * diameter;
+    one.detection.confidence = crown.confidence;
+    one.features.resize(tree_type.features.size());
+    one.features[feature_index(tree_type, "crown_diameter")] = {crown.diameter,
+                                                                std::pow(kCrownError * crown.diameter, 2), 1};
+    kept.push_back(std::move(one));
+  }
+  return kept;
+}
+
+}  // namespace
+
+DetectResult detect_trees(const DetectionPlan& plan, int threads, const ProgressMeter::Listener& progress) {
+  const ImageInfo& info = plan.image->info();
+  const int bands = band_count(info.path);
+  const std::string method = !plan.method.empty() ? plan.method : bands >= 3 ? "imagery" : "peaks";
+  const bool imagery = method == "imagery";
+  if (imagery && bands < 3)
+    throw Error(ErrorCode::usage,
+                fmt::format("--method imagery needs a colour image; this one has {} band{}", bands,
+                            bands == 1 ? "" : "s"),
+                info.path, "heights above ground are searched with --method peaks or lmf");
+  if (!imagery && bands > 2)
+    throw Error(ErrorCode::usage,
+                fmt::format("--method {} needs one band of heights; this image has {}", method, bands),
+                info.path, "colour images are searched with --method imagery");
+  DetectResult found;
+  const double metres = pixel_metres(plan, found);
+  const TypeId type = all_types().id("tree");
+  found.detections = empty_detections(plan, type);
+  std::vector<TreeCandidate> kept = imagery && (bands > 3 || metres >= kFinePixel)
+                                        ? detect_by_network(info, metres, type, threads, progress)
+                                        : detect_by_canopy(plan, metres, method, type, threads, progress);
+  const double min_confidence = imagery ? plan.min_confidence : plan.min_treetop_confidence;
+  std::erase_if(kept, [&](const TreeCandidate& one) {
+    const double diameter = one.detection.outline.diameter();
+    return one.detection.confidence < min_confidence || diameter < plan.search.min_diameter ||
+           (plan.search.max_diameter > 0 && diameter > plan.search.max_diameter);
+  });
+  std::stable_sort(kept.begin(), kept.end(), [](const TreeCandidate& a, const TreeCandidate& b) {
+    const auto key = [](const Detection& d) { return std::tuple(-d.confidence, d.outline.y, d.outline.x); };
+    return key(a.detection) < key(b.detection);
+  });
+  for (TreeCandidate& one : kept) {
+    found.detections.detections.push_back(one.detection);
+    found.detections.features.push_back(std::move(one.features));
+  }
+  return found;
+}
+
+}  // namespace waymark

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/detection/write_detections.hpp"
+
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "exporters/staging_folder.hpp"
+#include "geodb/write_map.hpp"
+#include "workflows/output_path.hpp"
+#include "workflows/provenance.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_text(const std::string& output, const std::string& text) {
+  if (!output.starts_with("/vsi")) return write_file(output, text);
+  VSILFILE* file = VSIFOpenL(output.c_str(), "wb");
+  if (file == nullptr) fail_output(output, "GDAL cannot write there");
+  const bool written = VSIFWriteL(text.data(), 1, text.size(), file) == text.size();
+  if (VSIFCloseL(file) != 0 || !written) fail_output(output, "GDAL could not write all of it");
+}
+
+RunRecord run_record(const ImageDetections& found, const DetectionOutput& output) {
+  StageReport stage;
+  stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
+  stage.units = stage.made = 1;
+  stage.counts.in = stage.counts.out = static_cast<std::int64_t>(found.detections.size());
+  return make_single_step_record(std::move(stage), output.image, output.command_line, output.started);
+}
+
+}  // namespace
+
+void check_detection_output(const std::string& output) {
+  const fs::path path(output);
+  if (path.extension() == ".gpkg") return check_map_output(path);
+  const bool known =
+      path.extension() == ".csv" || path.extension() == ".geojson" || path.extension() == ".json";
+  if (!known)
+    throw Error(ErrorCode::usage, "detections are written as .csv, .geojson or .gpkg", output,
+                "e.g. -o " + fs::path(path).replace_extension(".csv").string());
+  if (output.starts_with("/vsi")) return;
+  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  if (!fs::is_directory(folder))
+    throw Error(ErrorCode::output, "the folder of the output does not exist: " + folder.string(), output,
+                "make it with: mkdir -p " + folder.string());
+  if (fs::is_directory(path))
+    throw Error(ErrorCode::output, "the output is a folder", output,
+                "name a file in it: -o " + (path / "detections.csv").string());
+}
+
+void write_detections(const ImageDetections& found, const DetectionOutput& output,
+                      const Callbacks& callbacks) {
+  const LandmarkType& type = all_types()[found.type];
+  const std::string extension = fs::path(output.path).extension().string();
+  if (extension == ".csv") return write_text(output.path, detections_to_csv(found, type));
+  if (extension != ".gpkg") return write_text(output.path, detections_to_geojson(found, type));
+  if (!found.georeference && !found.gsd)
+    callbacks.warning("the size of a pixel is not known: in the map a pixel counts as a metre; pass --gsd");
+  MapContents contents = detections_to_map(found, all_types());
+  contents.run = run_record(found, output);
+  write_map(output.path, contents, {.empty_tables = {type.name}});
+}
+
+}  // namespace waymark

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/evaluation/evaluate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.hpp"
+#include "exporters/report/track_picture.hpp"
+#include "exporters/staging_folder.hpp"
+#include "exporters/vector/track_file.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/harvested_trees.hpp"
+#include "localization/robot_log.hpp"
+#include "workflows/evaluation/scored_table.hpp"
+#include "workflows/localization/robot_map.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+struct Truth {
+  std::vector<StampedPose> poses;
+  std::vector<FelledReading> felled;
+  bool headings = true;
+};
+
+Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
+  const std::string& file = request.truth;
+  if (file.ends_with(".csv")) {
+    Truth truth;
+    for (const TrackRow& row : read_track_csv(file).rows) truth.poses.push_back({row.t, row.at.pose});
+    return truth;
+  }
+  RobotLog log = import_log(file, all_types(), request.log_format);
+  if (frame) convert_to_map_frame(log, *frame);
+  Truth truth{log.truth, log.felled, false};
+  for (const StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
+  return truth;
+}
+
+// Colours of the types' own symbols, paler so that tracks stand out.
+std::vector<PictureDot> map_dots(OpenedMap& opened) {
+  std::vector<PictureDot> dots;
+  for (const MapLandmark& l : opened.window.landmarks_near({0, 0}, 0).landmarks()) {
+    const std::string type = opened.map.types()[l.type].name;
+    const bool radius = type == "rock" || type == "crater";
+    const double size = radius && l.features.known(0)           ? l.features.value[0]
+                        : type == "tree" && l.features.known(1) ? l.features.value[1]
+                                                                : 0.5;
+    if (type == "crater") continue;  // wide discs would hide the rest
+    dots.push_back({l.at, size, type == "tree" ? "#8fbc8f" : "#b5ada3"});
+  }
+  return dots;
+}
+
+void draw(const TrackEvaluation& request, const Track& track, const Truth& truth, OpenedMap* opened) {
+  if (!request.picture.ends_with(".svg"))
+    throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", request.picture);
+  TrackPicture picture{.title = std::filesystem::path(request.track).stem(),
+                       .map = {},
+                       .truth = truth.poses,
+                       .tracks = {},
+                       .mapped = {}};
+  if (opened) picture.map = map_dots(*opened);
+  for (const std::string& more : request.also) {
+    const std::size_t equals = more.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw Error(ErrorCode::usage, "--also takes NAME=TRACK.csv, is '" + more + "'", "",
+                  "e.g. --also ekf=ekf.csv");
+    picture.tracks.push_back({more.substr(0, equals), read_track_csv(more.substr(equals + 1))});
+  }
+  picture.tracks.push_back({std::filesystem::path(request.track).stem(), track});
+  for (const HarvestedTree& tree : harvested_trees(truth.felled, track))
+    picture.mapped.push_back({tree.at, tree.diameter / 2, "#b22222"});
+  write_file(request.picture, track_picture(picture));
+}
+
+ScoredTables read_truth(const LandmarkEvaluation& request) {
+  ScoredTables truth = read_scored_things(request.truth, request.type, request.min_pixels);
+  if (request.ignore.empty()) return truth;
+  for (auto& [type, things] : read_scored_things(request.ignore, request.type, 0))
+    for (EvaluatedObject& thing : things) {
+      thing.ignored = true;
+      truth[type].push_back(thing);
+    }
+  return truth;
+}
+
+/// Throws why no row of the track has a true pose: other times, or a truth too coarse to interpolate.
+[[noreturn]] void refuse_times(const TrackEvaluation& request, const Track& track,
+                               const std::vector<StampedPose>& truth) {
+  if (track.rows.empty())
+    throw Error(ErrorCode::input, "the track has no rows", request.track,
+                "waymark localize writes one per event");
+  const double from = track.rows.front().t, to = track.rows.back().t;
+  double gap = 0;
+  for (std::size_t i = 1; i < truth.size(); ++i) gap = std::max(gap, truth[i].t - truth[i - 1].t);
+  if (from <= truth.back().t && truth.front().t <= to && gap > request.max_gap)
+    throw Error(
+        ErrorCode::input,
+        fmt::format(
+            "the true poses are up to {:.3g} s apart; only those at most {:.3g} s apart are interpolated",
+            gap, request.max_gap),
+        request.truth, fmt::format("pass --max-gap {:.3g}", 1.01 * gap));
+  throw Error(ErrorCode::input,
+              fmt::format("track and truth have no time in common: {:.3f} to {:.3f} s and {:.3f} to {:.3f} s",
+                          from, to, truth.front().t, truth.back().t),
+              request.track, "are they of the same drive, and both in seconds?");
+}
+
+/// Warns about types of which nothing was matched, and says why that may be.
+void warn_unmatched(const std::string& type, const std::vector<EvaluatedObject>& found,
+                    const std::vector<EvaluatedObject>& truth, const Score& result,
+                    const Callbacks& callbacks) {
+  if (result.all.matched > 0 || truth.empty()) return;
+  if (found.empty()) return callbacks.warning("the result has no " + type + ": nothing can match");
+  const auto extent = [](const std::vector<EvaluatedObject>& things) {
+    Eigen::AlignedBox2d box;
+    for (const EvaluatedObject& thing : things) box.extend(thing.at);
+    return box;
+  };
+  const Eigen::AlignedBox2d a = extent(found), b = extent(truth);
+  const auto text = [](const Eigen::AlignedBox2d& box) {
+    return fmt::format("x {:g} to {:g}, y {:g} to {:g}", box.min().x(), box.max().x(), box.min().y(),
+                       box.max().y());
+  };
+  callbacks.warning(fmt::format(
+      "no {} of the result matches a true one: the result has {}, the truth {}; {}", type, text(a), text(b),
+      a.intersects(b) ? "--share and --least allow larger distances" : "are both in one coordinate system?"));
+}
+
+}  // namespace
+
+std::map<std::string, Score> evaluate(const LandmarkEvaluation& request, const Callbacks& callbacks) {
+  if (!(request.max_distance >= 0) || !(request.always_allowed_distance >= 0) || !(request.min_diameter >= 0))
+    throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
+  const ScoredTables found = read_scored_things(request.result, request.type, 0);
+  const ScoredTables truth = read_truth(request);
+  MatchRules rules{.by = request.match_by == "overlap" ? MatchRules::By::overlap : MatchRules::By::distance,
+                   .distance_fraction = request.max_distance,
+                   .min_distance = request.always_allowed_distance,
+                   .min_diameter = request.min_diameter};
+  std::map<std::string, Score> scores;
+  for (const auto& [type, things] : pair_by_type(found, truth, request.type)) {
+    rules.scales.clear();
+    if (const LandmarkType* known = all_types().find(type))
+      for (const FeatureSpec& feature : known->features) rules.scales[feature.name] = feature.scale;
+    scores[type] = score(things.first, things.second, rules, request.size_edges);
+    warn_unmatched(type, things.first, things.second, scores[type], callbacks);
+  }
+  return scores;
+}
+
+TrackScore evaluate(const TrackEvaluation& request) {
+  const Track track = read_track_csv(request.track);
+  std::optional<OpenedMap> opened;
+  if (!request.map.empty()) opened = open_robot_map(request.map, nullptr);
+  const Truth truth = read_truth(request, opened ? &opened->map.frame : nullptr);
+  if (truth.poses.empty())
+    throw Error(ErrorCode::input, "the truth has no poses", request.truth, "is it a log without true poses?");
+  const TrackAlignment alignment = request.align == "se2"    ? TrackAlignment::se2
+                                   : request.align == "sim2" ? TrackAlignment::sim2
+                                                             : TrackAlignment::none;
+  TrackScore s = score(track, truth.poses, alignment, truth.headings, 1, request.max_gap);
+  if (s.poses == 0) refuse_times(request, track, truth.poses);
+  if (!request.picture.empty()) draw(request, track, truth, opened ? &*opened : nullptr);
+  return s;
+}
+
+std::vector<QualityCheck> check_quality(const std::string& map, const std::string& truth) {
+  const auto pairs = pair_by_type(read_scored_things(map, "", 0),
+                                  read_scored_things(truth, "", LandmarkEvaluation{}.min_pixels), "");
+  std::vector<QualityCheck> checks;
+  for (const auto& [type, things] : pairs) {
+    const Score result = score(things.first, things.second, {});
+    for (const auto& [claim, bins, error] :
+         {std::tuple{"confidence", result.by_confidence, result.confidence_error},
+          {"quality", result.by_quality, result.quality_error}}) {
+      QualityCheck check{.type = type, .claim = claim, .bins = {}, .expected_error = error};
+      for (const CalibrationBin& bin : bins) check.bins.push_back({bin.mean, bin.found, bin.right});
+      checks.push_back(std::move(check));
+    }
+  }
+  return checks;
+}
+
+}  // namespace waymark

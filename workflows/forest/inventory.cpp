@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/forest/inventory.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "core/error.hpp"
+#include "core/text_file.hpp"
+#include "exporters/report/inventory_report.hpp"
+#include "exporters/staging_folder.hpp"
+#include "exporters/vector/shape_csv.hpp"
+#include "geodb/atomic_file.hpp"
+#include "geodb/validate_map.hpp"
+#include "workflows/forest/stand_areas.hpp"
+#include "workflows/forest/stand_figures.hpp"
+#include "workflows/output_path.hpp"
+
+namespace waymark {
+namespace {
+
+namespace fs = std::filesystem;
+
+void check_request(const InventoryRequest& request) {
+  const std::string extension = fs::path(request.output).extension();
+  if (extension == ".gpkg")
+    check_map_output(request.output);
+  else if (extension != ".csv" && !request.output.empty())
+    throw Error(ErrorCode::usage, "the output is a .csv or a .gpkg", request.output, "e.g. -o stands.csv");
+  if (!request.stands.empty() && request.grid != 0)
+    throw Error(ErrorCode::usage, "--stands and --grid exclude each other", "", "give one of them");
+  if (request.grid != 0 && !(request.grid >= 1 && request.grid <= 1e5))
+    throw Error(ErrorCode::usage, fmt::format("--grid = {} is outside [1, 100000] m", request.grid));
+  if (request.max_trees < 1)
+    throw Error(ErrorCode::usage, fmt::format("--trees-at-once = {} is below 1", request.max_trees));
+  if (!(request.class_width >= 0.5 && request.class_width <= 100))
+    throw Error(ErrorCode::usage,
+                fmt::format("--class-width = {} is outside [0.5, 100] cm", request.class_width));
+}
+
+StandTables read_tables(const InventoryRequest& request) {
+  StandTables tables;
+  tables.diameters_file = request.allometry;
+  tables.volumes_file = request.volume;
+  if (!request.allometry.empty())
+    tables.diameters = parse_allometry(read_text(request.allometry, "this table"), request.allometry);
+  if (!request.volume.empty())
+    tables.volumes = parse_volume(read_text(request.volume, "this table"), request.volume);
+  return tables;
+}
+
+/// Returns warnings about stands without trees or diameters, the first 20 of them.
+std::vector<std::string> stand_warnings(const std::vector<StandResult>& results, bool named_stands) {
+  constexpr int kMaxWarnings = 20;
+  std::vector<std::string> warnings;
+  int count = 0;
+  for (const StandResult& r : results) {
+    if (named_stands && r.figures.trees == 0 && ++count <= kMaxWarnings)
+      warnings.push_back(fmt::format("stand {} has no trees", r.stand.name));
+    if (r.figures.without_diameter > 0 && ++count <= kMaxWarnings)
+      warnings.push_back(
+          fmt::format("stand {}: {} of {} trees have no diameter, so basal area and volume lack them",
+                      r.stand.name, r.figures.without_diameter, r.figures.trees));
+  }
+  if (count > kMaxWarnings)
+    warnings.push_back(fmt::format("{} more warnings of this kind", count - kMaxWarnings));
+  return warnings;
+}
+
+/// Returns the layer with every n-th of its rows, for a picture.
+ShapeLayer thinned(ShapeLayer layer, std::size_t every) {
+  std::size_t row = 0;
+  layer.generator([&](const Shape& shape) {
+    if (row++ % every == 0) layer.rows.push_back(shape);
+  });
+  layer.generator = {};
+  return layer;
+}
+
+/// Writes stands as CSV, or stands and trees as layers of a copy of the map or of the map itself.
+void write_output(const InventoryRequest& request, const ShapeLayer& stands, const ShapeLayer& trees) {
+  if (fs::path(request.output).extension() == ".csv") return write_file(request.output, layer_to_csv(stands));
+  check_before_copy(request.map);
+  const std::vector layers{stands, trees};
+  std::error_code other;
+  if (fs::equivalent(request.map, request.output, other)) return write_layers(request.output, layers);
+  AtomicFile copy(request.output);
+  fs::copy_file(request.map, copy.path(), fs::copy_options::overwrite_existing);
+  write_layers(copy.path(), layers, MapAccess::exclusive);
+  copy.commit();
+}
+
+void write_report_page(const InventoryRequest& request, const InventoryResult& result,
+                       const ShapeLayer& stands, const ShapeLayer& trees, const Crs& crs) {
+  const std::size_t every = 1 + result.trees / InventoryPage::kMaxTrees;
+  write_inventory_report(request.report, {.title = fs::path(request.map).filename().string(),
+                                          .crs = crs.id(),
+                                          .stands = stands,
+                                          .trees = thinned(trees, every),
+                                          .tree_count = result.trees,
+                                          .warnings = result.warnings,
+                                          .failed = result.failed});
+}
+
+}  // namespace
+
+InventoryResult inventory(const InventoryRequest& request, const Callbacks& callbacks) {
+  check_request(request);
+  InventoryResult result;
+  const auto warn = [&](const std::string& warning) {
+    callbacks.warning(warning);
+    result.warnings.push_back(warning);
+  };
+  const MapStore map = MapStore::open(request.map);
+  const TreeReader reader(map);
+  if (reader.count() == 0) warn("the map has no trees: every figure is 0 or empty");
+  StandAreas areas = read_stand_areas({request.stands, request.stands_layer, request.grid}, map, reader);
+  for (const std::string& warning : areas.warnings) warn(warning);
+  result.failed = std::move(areas.failed);
+  const StandBatches stands(reader, std::move(areas.stands), request.max_trees);
+  const StandTables tables = read_tables(request);
+  InventoryOptions options{.class_width = request.class_width / 100};
+  if (!request.recall.empty())
+    options.recall = parse_recall(read_text(request.recall, "this table"), request.recall);
+  stands.visit([&](const MapTrees& trees, const NamedStand& stand) {
+    result.stands.push_back(compute_stand_figures(trees, stand, tables, options));
+  });
+  for (const std::string& warning : stand_warnings(result.stands, !request.stands.empty())) warn(warning);
+  for (const StandResult& stand : result.stands)
+    result.trees += static_cast<std::size_t>(stand.figures.trees);
+  const ShapeLayer stand_rows = stand_layer(result.stands), tree_rows = tree_layer(stands, tables);
+  if (!request.output.empty()) write_output(request, stand_rows, tree_rows);
+  if (!request.report.empty()) write_report_page(request, result, stand_rows, tree_rows, map.crs());
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "geodb/shape_layer.hpp"
+#include "pipeline/forest/allometry.hpp"
+#include "pipeline/forest/stand_inventory.hpp"
+#include "pipeline/forest/stand_volume.hpp"
+#include "workflows/forest/stand_batches.hpp"
+#include "workflows/forest/stand_result.hpp"
+namespace waymark {
+
+/// Tables for diameters and volumes.
+struct StandTables {
+  /// Empty: the diameters of the map, and the built-in table for trees without one.
+  std::vector<Allometry> diameters;
+  std::vector<VolumeRow> volumes = built_in_volume();
+  std::string diameters_file, volumes_file;  ///< for messages
+};
+
+/// Trees in or near a stand, with the diameters and volumes of its species.
+struct StandStems {
+  std::vector<std::size_t> near;  ///< indices of MapTrees
+  std::vector<StandTree> trees;   ///< these
+};
+
+/// Throws Error{input} if a table has no row for the stand's species and none for "all".
+StandStems stand_stems(const MapTrees& map, const NamedStand& stand, const StandTables& tables);
+
+/// `map` holds the trees near the stand and may hold others. Throws as stand_stems().
+StandResult compute_stand_figures(const MapTrees& map, NamedStand stand, const StandTables& tables,
+                                  const InventoryOptions& options);
+
+/// Returns layer `stand`: a row per stand with its figures, standard errors in columns <name>_se, and stems
+/// of each diameter class. Every row has the classes of all.
+ShapeLayer stand_layer(const std::vector<StandResult>& results);
+
+/// Returns layer `stand_tree`: a row for each stand that a tree is counted in. Rows are made while they are
+/// written, so both arguments must outlive the layer.
+ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables);
+
+}  // namespace waymark

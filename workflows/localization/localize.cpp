@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/localization/localize.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.hpp"
+#include "exporters/vector/track_file.hpp"
+#include "geodb/validate_map.hpp"
+#include "localization/robot_log.hpp"
+#include "workflows/localization/drive_layers.hpp"
+#include "workflows/localization/localize_method.hpp"
+#include "workflows/parse_number.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+void check_output(const std::string& output) {
+  const std::filesystem::path file(output);
+  if (file.extension() != ".csv" && file.extension() != ".gpkg")
+    throw Error(ErrorCode::usage, "a track is written as .csv or .gpkg", output, "e.g. -o track.csv");
+}
+
+void check_written_map(const LocalizeRequest& request, const LocalizeMethod& method) {
+  if (request.write_map.empty() && !request.update_map) return;
+  const char* option = request.update_map ? "--update-map" : "--write-map";
+  if (!method.updates_map())
+    throw Error(ErrorCode::usage, fmt::format("--method {} does not change maps", method.name()), option,
+                "use --method slam or graph");
+  if (request.update_map && !request.write_map.empty())
+    throw Error(ErrorCode::usage, "--update-map and --write-map exclude each other", "", "give one");
+  if (request.update_map && request.map == "none")
+    throw Error(ErrorCode::usage, "there is no map to update", option, "use --write-map OUT.gpkg");
+  if (!request.write_map.empty() && std::filesystem::path(request.write_map).extension() != ".gpkg")
+    throw Error(ErrorCode::usage, "a map is written as .gpkg", request.write_map,
+                "e.g. --write-map map.gpkg");
+}
+
+std::string body_name(const Crs& crs) {
+  return crs.body().name.empty() ? "no body (a local frame)" : crs.body().name;
+}
+
+/// Throws if log and map are of different bodies or, for coordinates in a CRS, of different CRSs.
+void check_crs(const RobotLog& log, const RobotMap& map, const std::string& log_file) {
+  if (log.crs.empty()) return;
+  const Crs log_crs = Crs::from_text(log.crs);
+  if (log_crs.body().name != map.crs().body().name)
+    throw Error(ErrorCode::input,
+                fmt::format("the log is of {}, the map of {}", body_name(log_crs), body_name(map.crs())),
+                log_file, "use a map of the same body");
+  if (log.in_crs && !log_crs.same_as(map.crs()))
+    throw Error(ErrorCode::input,
+                fmt::format("the log's positions are in {}, the map is in {}", log_crs.id(), map.crs().id()),
+                log_file, "use a map in that CRS: waymark export MAP OUT --crs ...");
+}
+
+void check_distance(const PoseEstimate& start, const RobotMap& map, const std::string& log_file) {
+  if (map.bounds.isEmpty()) return;
+  const double away = map.bounds.exteriorDistance(start.pose.at());
+  if (away > std::max(1000.0, map.bounds.diagonal().norm()))
+    throw Error(ErrorCode::input,
+                fmt::format("the robot starts {:.1f} km from the nearest landmark of the map", away / 1000),
+                log_file,
+                "is it the right map, and is the start in the map's frame (or the log's \"frame\" \"crs\")?");
+}
+
+/// Parses "X,Y,YAW".
+Pose2 parse_start(const std::string& text) {
+  std::vector<double> words;
+  std::size_t from = 0;
+  while (from <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    words.push_back(parse_number("each of X,Y,YAW of --start", text.substr(from, comma - from)));
+    from = comma + 1;
+  }
+  if (words.size() != 3)
+    throw Error(ErrorCode::usage, "--start takes X,Y,YAW, truth or none, is '" + text + "'", "",
+                "e.g. --start 12.5,-3,1.57");
+  if (!(std::abs(words[2]) <= 12.6))
+    throw Error(ErrorCode::usage, fmt::format("the yaw of --start is {}: angles are radians", words[2]),
+                "--start " + text, "e.g. 1.57 for north");
+  return {words[0], words[1], wrap_angle(words[2])};
+}
+
+Eigen::Matrix3d start_covariance(double sd, double yaw_sd) {
+  return Eigen::Vector3d(sd * sd, sd * sd, yaw_sd * yaw_sd).asDiagonal();
+}
+
+std::optional<PoseEstimate> choose_start(const LocalizeRequest& request, const LocalizeSettings& settings,
+                                         const RobotLog& log, StartPolicy policy) {
+  if (policy == StartPolicy::ignored) return {};
+  if (request.start == "none") {
+    if (policy == StartPolicy::required)
+      throw Error(ErrorCode::usage, "--method " + request.method + " must know where the robot starts",
+                  "--start none", "give --start X,Y,YAW, or use --method pf");
+    return {};
+  }
+  PoseEstimate start{{}, start_covariance(settings.start_sd, settings.start_yaw_sd)};
+  if (!request.start.empty() && request.start != "truth") {
+    start.pose = parse_start(request.start);
+    return start;
+  }
+  if (!log.truth.empty()) {
+    const auto known = pose_at(log.truth, log.events.front().t, 5);
+    start.pose = known ? *known : log.truth.front().pose;
+    return start;
+  }
+  if (log.start && request.start.empty()) {
+    start.pose = *log.start;
+    const bool sd_given =
+        std::ranges::any_of(request.set, [](const std::string& s) { return s.starts_with("start_"); });
+    if (log.start_sd > 0 && !sd_given) start.covariance = start_covariance(log.start_sd, log.start_yaw_sd);
+    return start;
+  }
+  if (policy != StartPolicy::required && request.start.empty()) return {};
+  throw Error(ErrorCode::input, "the start of the robot is unknown", request.log,
+              "give --start X,Y,YAW (metres and radians), or use --method pf");
+}
+
+RobotLog read_log(const LocalizeRequest& request, const RobotMap& map, const Callbacks& callbacks) {
+  RobotLog log = import_log(request.log, map.types(), request.log_format);
+  check_crs(log, map, request.log);
+  convert_to_map_frame(log, map.frame);
+  if (map.unsound_covariances)
+    callbacks.warning(
+        fmt::format("{} landmarks have a covariance that is not positive definite; it is repaired: {}",
+                    map.unsound_covariances, request.map));
+  for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
+  if (log.events.empty())
+    throw Error(ErrorCode::input, "the log has no readings", request.log,
+                "docs/reference/log_format.md says what a log holds");
+  return log;
+}
+
+void write_track(const LocalizeRequest& request, const Track& track, const RobotMap& map) {
+  TrackOutput form{
+      .frame = request.in_map_crs ? &map.frame : nullptr, .crs = &map.crs(), .timing = request.timing};
+  if (std::filesystem::path(request.output).extension() == ".gpkg") {
+    form.frame = &map.frame;
+    write_track_geopackage(request.output, track, form);
+  } else {
+    write_track_csv(request.output, track, form);
+  }
+}
+
+const MethodTable& method_table() {
+  static const MethodTable table = [] {
+    MethodTable made;
+    register_methods(made);
+    return made;
+  }();
+  return table;
+}
+
+}  // namespace
+
+LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbacks) {
+  if (!request.output.empty()) check_output(request.output);
+  MethodTable methods;  // of this call: a method keeps its settings
+  register_methods(methods);
+  LocalizeMethod& method = methods.find(request.method);
+  check_written_map(request, method);
+  LocalizeSettings settings;
+  settings.particles.seed = request.seed;
+  const DescribeOptions options = [&](OptionVisitor& visitor) {
+    settings.describe(visitor);
+    method.describe(visitor);
+  };
+  for (const std::string& setting : request.set)
+    for (const std::string& warning : set_option(options, setting)) callbacks.warning(warning);
+  settings.check_distance(request.method);
+  settings.identification.use_identities = request.use_identities;
+  settings.particles.threads = request.threads;
+  if (!(request.min_confidence >= 0 && request.min_confidence <= 1))
+    throw Error(ErrorCode::usage,
+                fmt::format("--min-confidence must be 0 to 1, is {:g}", request.min_confidence));
+  const SensorProfile* sensor = request.sensor.empty() ? nullptr : &all_sensors().at(request.sensor);
+  OpenedMap opened =
+      request.map == "none" && !method.requires_map()
+          ? make_empty_robot_map()
+          : open_robot_map(request.map, sensor, !method.requires_map(), request.min_confidence);
+  const RobotMap map = opened.map;
+  RobotLog log = read_log(request, map, callbacks);
+  const std::optional<PoseEstimate> start = choose_start(request, settings, log, method.start());
+  if (start) check_distance(*start, map, request.log);
+  LocalizeTask task{
+      .map_file = request.map,
+      .log_file = request.log,
+      .log = log,
+      .map = std::move(opened),
+      .start = start,
+      .settings = settings,
+      .sensor = sensor,
+      .ground = open_terrain(map, request.dem),
+      .command_line = request.command_line,
+      .settings_json = options_as_json(option_table(options)),
+      .write_map = request.write_map,
+      .update_map = request.update_map,
+      .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt,
+      .callbacks = callbacks};
+  if (request.live != 0 && (request.layers.empty() || !(request.live > 0)))
+    throw Error(ErrorCode::usage, "--live takes the seconds between two writings of --layers", "--live",
+                "e.g. --layers MAP.gpkg --live 10");
+  if (!request.layers.empty()) check_before_copy(request.layers);
+  if (request.live > 0) task.watch = LiveLayers(request.layers, log, map.frame, request.live);
+  LocalizeResult result{.track = method.run(task), .settings = options_as_text(option_table(options))};
+  if (!request.output.empty()) write_track(request, result.track, map);
+  if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);
+  return result;
+}
+
+std::string localize_settings(const LocalizeRequest& request) {
+  MethodTable methods;
+  register_methods(methods);
+  LocalizeMethod& method = methods.find(request.method);
+  LocalizeSettings settings;
+  settings.particles.seed = request.seed;
+  const DescribeOptions options = [&](OptionVisitor& visitor) {
+    settings.describe(visitor);
+    method.describe(visitor);
+  };
+  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
+  return options_as_text(option_table(options));
+}
+
+std::vector<std::string> localize_methods() {
+  return method_table().names();
+}
+
+std::string describe_localize_methods() {
+  return method_table().summaries();
+}
+
+}  // namespace waymark

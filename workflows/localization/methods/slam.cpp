@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "localization/slam/ekf_slam.hpp"
+#include "workflows/localization/localizer_factory.hpp"
+#include "workflows/localization/slam_update.hpp"
+
+namespace waymark {
+namespace {
+
+class Slam final : public LocalizeMethod {
+ public:
+  std::string_view name() const override { return "slam"; }
+  std::string_view summary() const override {
+    return "robot and landmarks in one Gaussian, starting from the map or from none; --write-map and "
+           "--update-map store the result";
+  }
+  StartPolicy start() const override { return StartPolicy::optional; }
+  bool requires_map() const override { return false; }
+  bool updates_map() const override { return true; }
+  void describe(OptionVisitor& option) override {
+    options_.describe(option);
+    search_.describe(option);
+  }
+
+  Track run(LocalizeTask& task) override {
+    const SlamSetup setup = slam_setup(task, options_);
+    EkfSlam slam(setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
+                 FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
+    if (task.map.map.landmarks > 0) slam.set_pose_finder(make_pose_finder(task, search_));
+    Track track = run_slam(task, setup, slam);
+    const std::vector<SlamLandmark> landmarks = slam.landmarks();
+    summarize(landmarks, setup.options, task.callbacks);
+    write_updated_map(task, landmarks, setup.options.confirmed, name());
+    return track;
+  }
+
+ private:
+  static void summarize(const std::vector<SlamLandmark>& landmarks, const SlamOptions& options,
+                        const Callbacks& callbacks) {
+    std::size_t sure = 0, doubtful = 0, not_seen = 0, gone = 0;
+    for (const SlamLandmark& l : landmarks)
+      ++(l.gone ? gone : !l.slot ? not_seen : l.log_odds >= options.confirmed ? sure : doubtful);
+    callbacks.summary(
+        fmt::format("landmarks: {} sure, {} doubtful, {} of the map not seen, {} of the map not there\n",
+                    sure, doubtful, not_seen, gone));
+  }
+
+  SlamOptions options_;
+  SearchOptions search_;
+};
+
+}  // namespace
+
+void register_method_slam(MethodTable& methods);
+void register_method_slam(MethodTable& methods) {
+  methods.add<Slam>();
+}
+
+}  // namespace waymark

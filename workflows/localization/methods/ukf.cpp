@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/localization/localizer_factory.hpp"
+
+namespace waymark {
+namespace {
+
+class Ukf final : public FilterMethod {
+ public:
+  std::string_view name() const override { return "ukf"; }
+  std::string_view summary() const override {
+    return "unscented Kalman filter, square root form; without identities a sum of Gaussians, as ekf";
+  }
+
+  void describe(OptionVisitor& option) override { search_.describe(option); }
+
+ protected:
+  std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
+    return make_kalman_localizer(task, search_, true);
+  }
+
+ private:
+  SearchOptions search_;
+};
+
+}  // namespace
+
+void register_method_ukf(MethodTable& methods);
+void register_method_ukf(MethodTable& methods) {
+  methods.add<Ukf>();
+}
+
+}  // namespace waymark

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string_view>
+#include "geodb/map_contents.hpp"
+#include "localization/slam/ekf_slam.hpp"
+#include "workflows/localization/localize_method.hpp"
+namespace waymark {
+
+/// Changes that a drive makes to a map.
+struct SlamUpdate {
+  std::vector<Landmark> changed, added;
+  std::vector<Observation> evidence;  ///< one per observed landmark
+  std::size_t untyped = 0;            ///< landmarks left out because their type is unknown
+};
+
+/// Returns the changes that a drive makes to its map, in the map's CRS.
+/// - Landmarks of the map that were observed or missed: position, covariance, existence (confidence), counts
+///   of seen and visible, and features that the map lacked. Features and heights of the map stay.
+/// - New landmarks whose log odds reach `confirmed`, of the observed type, else `beacon` or the map's only
+///   type. A landmark with an identity gets it as uid; heights are unknown.
+/// - One observation per observed landmark, from `source`.
+SlamUpdate make_slam_update(std::span<const SlamLandmark> landmarks, const RobotMap& map,
+                            const LandmarkNames& names, const std::string& source, double confirmed);
+
+/// Options, start and odometry noise of SLAM for a task.
+struct SlamSetup {
+  SlamOptions options;
+  ReplayOptions play;
+  PoseEstimate start;
+};
+/// Throws Error{usage} if the map has landmarks and the start is unknown.
+SlamSetup slam_setup(const LocalizeTask& task, const SlamOptions& options);
+
+inline constexpr double kSlamRadius = 5000;  ///< m around the start, in a map too large to be read at once
+
+/// Plays the task's log to a SLAM localizer, with stems found in its scans.
+Track run_slam(const LocalizeTask& task, const SlamSetup& setup, Localizer& localizer);
+
+/// Carries out the task's `update_map` or `write_map`, if any, and sends a summary. The record of the run has
+/// the method, the log and all settings.
+void write_updated_map(const LocalizeTask& task, std::span<const SlamLandmark> landmarks, double confirmed,
+                       std::string_view method);
+
+}  // namespace waymark

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/mapping/assemble_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "geo/canopy_source.hpp"
+#include "geo/dem_handle.hpp"
+#include "landmarks/uid_index.hpp"
+#include "pipeline/forest/crown_table.hpp"
+#include "pipeline/fusion/projection/canopy_view.hpp"
+#include "workflows/mapping/crown_layer.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+ImageRecord image_record(const ImageView& image) {
+  ImageRecord record{.name = image.name,
+                     .footprint = image.footprint,
+                     .camera_json = camera_json(image),
+                     .taken_utc = image.taken_utc,
+                     .sun_azimuth = {},
+                     .sun_elevation = {},
+                     .gsd = {}};
+  if (image.sun) record.sun_azimuth = image.sun->azimuth;
+  if (image.sun) record.sun_elevation = image.sun->elevation;
+  if (std::isfinite(image.gsd)) record.gsd = Meters{image.gsd};
+  return record;
+}
+
+/// "1204 mountain_top", "12 crater, 3 rock".
+std::string list_counts(const std::map<std::string, std::int64_t>& counts) {
+  std::string text;
+  for (const auto& [type, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, type);
+  return text.empty() ? "no landmarks" : text;
+}
+
+std::string cell_count(double cells) {
+  return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
+}
+
+/// Returns the fraction of cells with data in a canopy model, sampled from every 64th of its rows.
+double known_fraction(const CanopySource& canopy) {
+  const GridGeometry& grid = canopy.geometry();
+  const std::int64_t step = std::max<std::int64_t>(1, grid.rows / 64);
+  std::int64_t all = 0, known = 0;
+  for (std::int64_t row = 0; row < grid.rows; row += step) {
+    const Grid<float> heights = canopy.read({0, row, grid.columns, 1});
+    all += grid.columns;
+    known += std::ranges::count_if(heights.cells(), [](float h) { return h > kNoCanopy; });
+  }
+  return all > 0 ? static_cast<double>(known) / static_cast<double>(all) : 0;
+}
+
+/// Returns the area that was searched for trees if it is a full rectangle. An inventory of the map needs it.
+std::optional<ShapeLayer> survey_layer(const Canopies& canopies) {
+  constexpr double kMinKnown = 0.995;
+  ShapeLayer layer{.name = "survey",
+                   .summary = "Ground that was searched for trees",
+                   .kind = ShapeKind::polygon,
+                   .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy model"}},
+                   .style = {.colour = "#546e7a", .width = 0.4}};
+  if (canopies.size() != 1 || known_fraction(*canopies[0]) < kMinKnown) return {};
+  const GridGeometry& grid = canopies[0]->geometry();
+  const double left = grid.where.x(-0.5), right = grid.where.x(static_cast<double>(grid.columns) - 0.5),
+               top = grid.where.y(-0.5), bottom = grid.where.y(static_cast<double>(grid.rows) - 0.5);
+  layer.rows.push_back({.parts = {{.outer = {{left, bottom}, {right, bottom}, {right, top}, {left, top}}}},
+                        .values = {canopies[0]->name()}});
+  return layer;
+}
+
+std::optional<std::size_t> find_attribute(const LandmarkType& type, std::string_view name) {
+  const auto found = std::ranges::find(type.attributes, name, &AttributeSpec::name);
+  if (found == type.attributes.end()) return {};
+  return static_cast<std::size_t>(found - type.attributes.begin());
+}
+
+template <class T>
+const T* attribute_of(const Landmark& landmark, std::optional<std::size_t> i) {
+  return i && *i < landmark.attributes.size() ? std::get_if<T>(&landmark.attributes[*i]) : nullptr;
+}
+
+/// Visits summits with a known key saddle: `visit(summit, saddle)`.
+void visit_saddles(const TypeRegistry& types, std::span<const Landmark> landmarks, const auto& visit) {
+  for (const Landmark& l : landmarks) {
+    const LandmarkType& type = types[l.type];
+    const double* x = attribute_of<double>(l, find_attribute(type, "saddle_x"));
+    const double* y = attribute_of<double>(l, find_attribute(type, "saddle_y"));
+    if (x && y) visit(l, Eigen::Vector2d(*x, *y));
+  }
+}
+
+/// Visits summits with a parent that is in the map: `visit(summit, parent)`.
+void visit_parents(const TypeRegistry& types, std::span<const Landmark> landmarks, const auto& visit) {
+  const UidIndex by_uid(landmarks);
+  for (const Landmark& l : landmarks) {
+    const auto* uid = attribute_of<std::string>(l, find_attribute(types[l.type], "parent_uid"));
+    const auto parent = uid ? by_uid.find(*uid) : std::nullopt;
+    if (parent) visit(l, landmarks[*parent]);
+  }
+}
+
+/// Returns the layers `saddle` and `parent_line` of summits; those without a row are left out. They read
+/// `landmarks` when they are written.
+std::vector<ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const Landmark> landmarks) {
+  std::vector<ShapeLayer> layers;
+  std::int64_t saddles = 0, parents = 0;
+  visit_saddles(types, landmarks, [&](const Landmark&, const Eigen::Vector2d&) { ++saddles; });
+  if (saddles > 0) visit_parents(types, landmarks, [&](const Landmark&, const Landmark&) { ++parents; });
+  if (saddles > 0)
+    layers.push_back(
+        {.name = "saddle",
+         .summary = "Key saddles: the lowest point on the highest path from a summit to higher terrain",
+         .kind = ShapeKind::point,
+         .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
+                     {"elevation", "m", AttributeSpec::Kind::real, "Elevation of the saddle"}},
+         .style = {.colour = "#8d6e63"},
+         .generator = [&types, landmarks](const auto& take) {
+           visit_saddles(types, landmarks, [&](const Landmark& summit, const Eigen::Vector2d& saddle) {
+             const double* height =
+                 attribute_of<double>(summit, find_attribute(types[summit.type], "saddle_elevation"));
+             take({{{.outer = {saddle}}}, {summit.uid, height ? AttributeValue(*height) : AttributeValue()}});
+           });
+         }});
+  if (parents > 0)
+    layers.push_back({.name = "parent_line",
+                      .summary = "Lines from summits to their parents, the summits beyond their key saddles",
+                      .kind = ShapeKind::line,
+                      .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
+                                  {"parent_uid", "", AttributeSpec::Kind::text, "Its parent"}},
+                      .style = {.colour = "#a1887f", .width = 0.15},
+                      .generator = [&types, landmarks](const auto& take) {
+                        visit_parents(types, landmarks, [&](const Landmark& summit, const Landmark& parent) {
+                          take({{{.outer = {summit.position.xyz.head<2>(), parent.position.xyz.head<2>()}}},
+                                {summit.uid, parent.uid}});
+                        });
+                      }});
+  return layers;
+}
+
+/// Concatenates the results of several stages.
+template <class T>
+std::vector<T> concatenate(std::vector<std::vector<T>> parts) {
+  std::vector<T> all;
+  for (auto& part : parts) {
+    if (all.empty())
+      all = std::move(part);
+    else
+      std::ranges::move(part, std::back_inserter(all));
+  }
+  return all;
+}
+
+/// Returns readers of the tiles' results, which stay where the engine keeps them.
+LandmarkParts tile_parts(RunResult& result) {
+  const auto landmarks = result.take_readers<std::vector<Landmark>>("landmarks");
+  const auto evidence = result.take_readers<std::vector<Observation>>("evidence");
+  return {.count = landmarks.size(),
+          .landmarks = [landmarks](std::size_t part) { return landmarks[part](); },
+          .evidence =
+              [evidence](std::size_t part) {
+                return evidence.empty() ? std::make_shared<const std::vector<Observation>>()
+                                        : evidence[part]();
+              }};
+}
+
+}  // namespace
+
+bool has_all_landmarks(const Pipeline& pipeline, const RunResult& result) {
+  const auto writes_landmarks = [](const std::unique_ptr<Step>& step) {
+    return std::ranges::count(step->spec().outputs, "landmarks", &OutputPort::name) > 0;
+  };
+  return std::ranges::all_of(pipeline.steps(), [&](const std::unique_ptr<Step>& step) {
+    return !writes_landmarks(step) || result.is_complete(step->spec().name, "landmarks");
+  });
+}
+
+std::vector<std::string> map_artifacts() {
+  return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views"};
+}
+
+MapContents assemble_map(RunResult& result, RunRecord run, bool with_dem) {
+  const auto& dem = result.artifact<DemHandle>("dem");
+  MapContents contents;
+  contents.types = all_types();
+  contents.crs = dem->geometry().where.crs;
+  contents.run = std::move(run);
+  if (with_dem) contents.dem_coverage = dem;
+  contents.parts = tile_parts(result);
+  contents.landmarks = concatenate(result.take<std::vector<Landmark>>("landmarks"));
+  contents.observations = concatenate(result.take<std::vector<Observation>>("evidence"));
+  auto tables = result.take_readers<CrownTable>("crowns");
+  for (CrownTable& table : result.take<CrownTable>("crowns"))
+    tables.push_back([held = std::make_shared<const CrownTable>(std::move(table))] { return held; });
+  for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
+    if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
+    for (const auto& canopy : *surveys) contents.images.push_back(image_record(canopy_view(*canopy)));
+  }
+  if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
+  for (ShapeLayer& layer : summit_layers(all_types(), contents.landmarks))
+    contents.layers.push_back(std::move(layer));
+  for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
+    for (const ImageView& image : *made) contents.images.push_back(image_record(image));
+  return contents;
+}
+
+std::vector<std::string> detected_types(const Pipeline& pipeline) {
+  std::vector<std::string> types;
+  for (const auto& step : pipeline.steps())
+    types.insert(types.end(), step->spec().finds.begin(), step->spec().finds.end());
+  std::ranges::sort(types);
+  types.erase(std::ranges::unique(types).begin(), types.end());
+  return types;
+}
+
+std::string summarize_run(const RunResult& result, const MapContents& contents,
+                          const std::map<std::string, std::int64_t>& written, const std::string& map) {
+  auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
+  const auto canopies = result.artifacts<Canopies>("canopies");
+  for (const auto& surveys : canopies) cells = static_cast<double>(common_grid(*surveys).cells());
+  std::string text = fmt::format("{}: {}\n", map, list_counts(written));
+  if (canopies.empty() && !contents.images.empty()) {
+    const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);
+    text += fmt::format("{} images, {} observations, {} of them used, {:.2f} s\n", contents.images.size(),
+                        contents.observations.size(), used, result.report.seconds);
+    return text;
+  }
+  text += fmt::format("{}, {:.2f} s", cell_count(cells), result.report.seconds);
+  std::int64_t reused = 0;
+  for (const StageReport& stage : result.report.stages) reused += stage.reused;
+  if (reused == 0 && result.report.seconds > 0)
+    text += fmt::format(", {:.2g} M cells/s", cells / 1e6 / result.report.seconds);
+  return text + "\n";
+}
+
+}  // namespace waymark

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/mapping/make_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/error.hpp"
+#include "geodb/write_map.hpp"
+#include "importers/hash.hpp"
+#include "workflows/mapping/assemble_map.hpp"
+#include "workflows/output_path.hpp"
+#include "workflows/provenance.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+void check_request(const Job& job, const MapRequest& request) {
+  const bool partial = request.shard || !request.unit.empty();
+  if (partial && request.work.empty())
+    throw Error(ErrorCode::usage, "a part of a job needs --work DIR, which all parts use");
+  if (request.map.empty() && !partial && !request.check)
+    throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg", "",
+                "--check looks at the job without making a map");
+  if (request.map.empty()) return;
+  for (const char* artifact : {"dem", "landmarks"})
+    if (!job.pipeline.find_writer(artifact))
+      throw Error(ErrorCode::usage,
+                  std::string("no stage of the job writes '") + artifact + "', so there is no map", job.name,
+                  "`waymark peaks DEM --print-job` shows a job that makes one");
+  check_map_output(request.map);
+}
+
+RunRecord run_record(const Job& job, const RunResult& result, const std::string& command_line,
+                     std::chrono::system_clock::time_point started) {
+  RunRecord run = make_run_record(command_line, started);
+  run.job_json = job_as_json(job.name, job.pipeline);
+  record_report(run, result.report);
+  run.inputs = result.inputs;
+  return run;
+}
+
+void check_job(const Job& job, const RunOptions& options, const Callbacks& callbacks) {
+  const Plan units = plan(job.pipeline, options);
+  const auto done = std::ranges::count(units.units, true, &Unit::done);
+  callbacks.summary(fmt::format("the job is sound: {} stages, {} units of work, {} of them done\n",
+                                job.pipeline.steps().size(), units.units.size(), done));
+}
+
+void send_report(const RunReport& report, const Callbacks& callbacks) {
+  callbacks.summary(report_as_text(report));
+  for (const Failure& failure : report.failures)
+    callbacks.send(MessageKind::failure, failure.unit + ": " + failure.message);
+}
+
+/// Requests a DEM in metres where the job loads images as well: images are placed on terrain in metres.
+void require_metric_dem(Pipeline& pipeline) {
+  const auto has = [&](const char* name) {
+    return std::ranges::any_of(pipeline.steps(), [&](const auto& step) { return step->spec().name == name; });
+  };
+  if (has("load_dem") && has("load_images")) pipeline.set("load_dem.metric=true");
+}
+
+}  // namespace
+
+RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
+  RunOptions options;
+  options.threads = request.threads;
+  options.progress = callbacks.progress;
+  options.hash_file = hash_file;
+  options.shard = request.shard;
+  options.unit = request.unit;
+  options.work = request.work;
+  options.rerun_from = request.rerun_from;
+  return options;
+}
+
+Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  Job job = read_job(file, all_stages());
+  require_metric_dem(job.pipeline);
+  for (const std::string& setting : settings) job.pipeline.set(setting);
+  return job;
+}
+
+MapResult make_map(const Job& job, const MapRequest& request, const Callbacks& callbacks) {
+  RunOptions options = run_options(request, callbacks);
+  options.results = map_artifacts();
+  options.scratch = std::filesystem::path(request.map).parent_path();
+  if (options.scratch.empty()) options.scratch = ".";
+  check_request(job, request);
+  for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
+  MapResult made;
+  if (request.check) {
+    check_job(job, options, callbacks);
+    return made;
+  }
+  const auto started = std::chrono::system_clock::now();
+  RunResult result = run(job.pipeline, options);
+  made.report = result.report;
+  made.inputs = result.inputs;
+  for (const InputFile& input : result.inputs)
+    callbacks.send(MessageKind::detail, fmt::format("{}  {}", input.sha256, input.path));
+  send_report(result.report, callbacks);
+  if (request.map.empty()) return made;
+  if (!has_all_landmarks(job.pipeline, result)) {
+    callbacks.summary(request.map + " is not written: some units of work are missing\n");
+    return made;
+  }
+  const MapContents contents =
+      assemble_map(result, run_record(job, result, request.command_line, started), request.with_dem);
+  made.landmarks = write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
+  made.written = true;
+  callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));
+  return made;
+}
+
+}  // namespace waymark

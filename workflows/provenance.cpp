@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/provenance.hpp"
+
+#include <fmt/chrono.h>
+
+#include "core/source_date.hpp"
+#include "importers/hash.hpp"
+
+namespace waymark {
+
+using Clock = std::chrono::system_clock;
+
+std::string program_version() {
+  return "waymark " WAYMARK_VERSION;
+}
+
+RunRecord make_run_record(const std::string& command_line, Clock::time_point started) {
+  RunRecord run;
+  if (const auto fixed = source_date()) started = *fixed;
+  run.version = program_version();
+  run.command_line = command_line;
+  run.started_utc = fmt::format(
+      "{:%FT%TZ}", fmt::gmtime(Clock::to_time_t(std::chrono::floor<std::chrono::seconds>(started))));
+  return run;
+}
+
+RunRecord make_single_step_record(StageReport stage, const std::string& input,
+                                  const std::string& command_line, Clock::time_point started) {
+  RunRecord run = make_run_record(command_line, started);
+  run.inputs = {hash_file(input)};
+  RunReport report;
+  report.seconds = stage.seconds = std::chrono::duration<double>(Clock::now() - started).count();
+  report.stages.push_back(std::move(stage));
+  record_report(run, std::move(report));
+  return run;
+}
+
+void record_report(RunRecord& run, RunReport report) {
+  if (source_date()) {
+    report.seconds = 0;
+    for (StageReport& stage : report.stages) stage.seconds = 0;
+  }
+  run.seconds = report.seconds;
+  run.report_json = report_as_json(report);
+}
+
+}  // namespace waymark

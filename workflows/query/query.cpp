@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/query/query.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "exporters/vector/vector_format.hpp"
+#include "workflows/parse_number.hpp"
+#include "workflows/query/query_area.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark {
+namespace {
+
+double check_not_negative(const std::string& what, double value) {
+  if (!(value >= 0)) throw Error(ErrorCode::usage, what + " must be 0 or more, is " + std::to_string(value));
+  return value;
+}
+
+double check_fraction(const std::string& what, double value) {
+  if (!(value >= 0 && value <= 1))
+    throw Error(ErrorCode::usage, fmt::format("{} must be 0 to 1, is {:g}", what, value));
+  return value;
+}
+
+/// Throws Error{usage} for metres given as degrees.
+void check_degrees(const std::string& option, double x, double y, const Crs& crs) {
+  if (crs.kind() != CrsKind::geographic || (std::abs(x) <= 540 && std::abs(y) <= 90)) return;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{} has the position {:g} {:g}, but coordinates are longitude and latitude in degrees ({})",
+                  option, x, y, crs.id()),
+      "", "e.g. 8.0 46.5; for metres name their CRS: --crs EPSG:...");
+}
+
+/// Parses "prominence=300" of --min or --max.
+std::pair<std::string, double> parse_bound(const std::string& option, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw Error(ErrorCode::usage, option + " takes FEATURE=VALUE, is '" + text + "'", "",
+                "e.g. " + option + " prominence=300");
+  const std::string feature = text.substr(0, equals);
+  return {feature, parse_number(option + " " + feature, text.substr(equals + 1))};
+}
+
+CrsTransform::XY in_map(const std::string& option, const std::vector<double>& point, const Crs& from,
+                        const MapStore& map) {
+  check_degrees(option, point[0], point[1], from);
+  if (from.same_as(map.crs())) return {point[0], point[1]};
+  const CrsTransform::XY at = CrsTransform(from, map.crs())(point[0], point[1]);
+  if (!std::isfinite(at.x) || !std::isfinite(at.y))
+    throw Error(ErrorCode::usage,
+                fmt::format("{} has the position {:g} {:g}, which is nowhere in the map's CRS, {}", option,
+                            point[0], point[1], map.crs().id()),
+                "", "the coordinates are in " + from.id());
+  return at;
+}
+
+}  // namespace
+
+PreparedQuery::PreparedQuery(const QueryRequest& request, const MapStore& map)
+    : crs_(request.crs.empty() ? map.crs() : Crs::from_text(request.crs)),
+      limit_(static_cast<std::size_t>(check_not_negative("--limit", static_cast<double>(request.limit)))) {
+  for (const std::string& type : request.types)
+    static_cast<void>(map.types().id(type));  // throws the nearest name
+  query_.types = request.types;
+  query_.min_quality = check_fraction("--min-quality", request.min_quality);
+  query_.min_confidence = check_fraction("--min-confidence", request.min_confidence);
+  query_.largest_first = request.largest;
+  if (!request.sensor.empty()) query_.sensor = &all_sensors().at(request.sensor);
+  for (const std::string& text : request.min_features) {
+    const auto [feature, value] = parse_bound("--min", text);
+    query_.features.push_back({.feature = feature, .min_value = value});
+  }
+  for (const std::string& text : request.max_features) {
+    const auto [feature, value] = parse_bound("--max", text);
+    query_.features.push_back({.feature = feature, .max_value = value});
+  }
+  set_centre(request, map);
+  set_box(request, map);
+  if (!outline_) {
+    query_.limit = request.limit;
+  } else if (query_.nearest) {  // which of the nearest are inside the box is known only afterwards
+    limit_ = std::min(limit_, static_cast<std::size_t>(query_.nearest->k));
+    query_.nearest->k = map.count();
+  }
+}
+
+void PreparedQuery::set_centre(const QueryRequest& request, const MapStore& map) {
+  if (!request.near.empty()) {
+    const auto centre = in_map("--near", request.near, crs_, map);
+    query_.near =
+        MapQuery::Near{centre.x, centre.y, Meters{check_not_negative("RADIUS of --near", request.near[2])}};
+  }
+  if (!request.nearest.empty()) {
+    const auto centre = in_map("--nearest", request.nearest, crs_, map);
+    const double count = check_not_negative("COUNT of --nearest", request.nearest[2]);
+    query_.nearest = MapQuery::NearestK{centre.x, centre.y, static_cast<std::int64_t>(count)};
+  }
+}
+
+void PreparedQuery::set_box(const QueryRequest& request, const MapStore& map) {
+  if (request.bbox.empty()) return;
+  check_degrees("--bbox", request.bbox[0], request.bbox[1], crs_);
+  check_degrees("--bbox", request.bbox[2], request.bbox[3], crs_);
+  const MapQuery::Box box{request.bbox[0], request.bbox[1], request.bbox[2], request.bbox[3]};
+  if (box.min_y > box.max_y || (box.min_x > box.max_x && crs_.kind() != CrsKind::geographic))
+    throw Error(ErrorCode::usage,
+                "--bbox takes the lower left and the upper right corner: X0 <= X1, Y0 <= Y1");
+  query_.box = box;
+  if (crs_.same_as(map.crs())) return;
+  outline_ = box;
+  query_.box = covering_box(box, crs_, map.crs());
+}
+
+std::vector<Landmark> PreparedQuery::run(const MapStore& map) const {
+  std::vector<Landmark> found = map.query(query_);
+  if (!outline_) return found;
+  const CrsTransform transform(map.crs(), crs_);
+  std::erase_if(found, [&](const Landmark& landmark) {
+    const auto at = transform(landmark.position.xyz.x(), landmark.position.xyz.y());
+    return !inside(*outline_, {{at.x, at.y, 0}}, crs_);
+  });
+  found.resize(std::min(found.size(), limit_));
+  return found;
+}
+
+double PreparedQuery::distance(const MapStore& map, const Landmark& landmark) const {
+  if (query_.near) return map.distance(landmark, query_.near->x, query_.near->y);
+  return map.distance(landmark, query_.nearest->x, query_.nearest->y);
+}
+
+QueryResult query(const std::filesystem::path& file, const QueryRequest& request) {
+  static const VectorFormat kGeoJson{.driver = "GeoJSON", .earth_only = true, .only_wgs84 = true};
+  const MapStore map = MapStore::open(file);
+  const PreparedQuery prepared(request, map);
+  QueryResult result{.types = map.types(),
+                     .crs = request.wgs84 ? output_crs(kGeoJson, map.crs(), "", file) : prepared.crs(),
+                     .sensor = prepared.sensor()};
+  const std::vector<Landmark> found = prepared.run(map);
+  if (prepared.from_point())
+    for (const Landmark& landmark : found) result.distances[landmark.uid] = prepared.distance(map, landmark);
+  result.landmarks = transform_landmarks(found, map.types(), map.crs(), result.crs);
+  return result;
+}
+
+}  // namespace waymark

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "landmarks/landmark_type.hpp"
+#include "landmarks/sensor_profile.hpp"
+namespace waymark {
+
+class Registry;
+
+/// Returns the built-in stages.
+const Registry& all_stages();
+/// Returns the built-in landmark types.
+const TypeRegistry& all_types();
+/// Returns the built-in sensor profiles.
+const SensorRegistry& all_sensors();
+
+}  // namespace waymark

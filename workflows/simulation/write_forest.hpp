@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+#include "geo/crs.hpp"
+#include "testbed/forest/forest.hpp"
+#include "testbed/scenario.hpp"
+#include "testbed/scene.hpp"
+namespace waymark {
+
+/// Returns the terrain of a scenario's forest: its relief without craters, rocks, dunes and outcrops, some
+/// metres wider than the forest.
+Scene make_forest_terrain(const Scenario& scenario);
+
+struct WrittenForest {
+  std::vector<StandingTree> trees;
+  std::string summary;  ///< for people, without \n
+};
+
+/// Plants the scenario's forest on the terrain, scans it from the air, and writes dtm.tif, dsm.tif, chm.tif,
+/// points.las, stands.geojson, job.json and the truth tables into an existing folder.
+WrittenForest write_forest(const std::filesystem::path& folder, const Scenario& scenario, const Scene& scene,
+                           const Crs& crs);
+
+}  // namespace waymark

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/training/train.hpp"
+
+#include <fmt/format.h>
+
+#include "core/error.hpp"
+#include "pipeline/craters/crater_training.hpp"
+#include "pipeline/craters/patch_network_training.hpp"
+#include "pipeline/engine/progress_meter.hpp"
+#include "workflows/training/crater_training_data.hpp"
+#include "workflows/training/model_source.hpp"
+#include "workflows/training/tree_training_data.hpp"
+
+namespace waymark {
+namespace {
+
+constexpr int kSide = 640;              // pixels of a scene of craters
+constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
+constexpr int kParts = 3;               // of the images, left out in turn
+
+struct CraterExamples {
+  std::vector<CraterExample> bowls;
+  std::vector<WidePatchExample> patch_examples;
+};
+
+CraterExamples make_crater_examples(std::int64_t scenes, const Callbacks& callbacks) {
+  CraterExamples examples;
+  for (std::int64_t i = 0; i < scenes; ++i) {
+    // In turn plain shading of relief that no testbed makes, and renderings of the testbed.
+    const auto index = static_cast<std::uint64_t>(i / 2);
+    const LabelledScene scene = i % 2 == 0 ? shaded_scene(index, kSide) : make_testbed_scene(index, kSide);
+    const auto bowls = make_crater_examples(scene, index);
+    examples.bowls.insert(examples.bowls.end(), bowls.begin(), bowls.end());
+    const auto patches = make_patch_examples(scene, static_cast<std::uint64_t>(i));
+    examples.patch_examples.insert(examples.patch_examples.end(), patches.begin(), patches.end());
+    if ((i + 1) % 20 == 0)
+      callbacks.summary(fmt::format("{} of {} scenes, {} examples\n", i + 1, scenes, examples.bowls.size()));
+  }
+  return examples;
+}
+
+void write_crater_model(const TrainRequest& request, const std::string& text) {
+  write_model(
+      request.output, text,
+      {"waymark train craters -o pipeline/craters/built_in_model.cpp", "pipeline/craters/crater_model.hpp",
+       "CraterModel", "built_in_crater_model", "parse_crater_model", "the built-in crater model", 480});
+}
+
+TrainResult train_craters(const TrainRequest& request, const Callbacks& callbacks) {
+  const CraterExamples examples = make_crater_examples(request.scenes, callbacks);
+  CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
+  CraterModel model = train_crater_model(examples.bowls, training, [&](int round, double loss) {
+    callbacks.summary(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
+  });
+  for (std::uint64_t net = 0; net < kNetworks; ++net)
+    model.convolution_nets.push_back(train_patch_network(
+        examples.patch_examples, training.rounds, training.seed + net, [&](int round, double loss) {
+          callbacks.summary(fmt::format("looks, network {} of {}, round {}: loss {:.4f}\n", net + 1,
+                                        kNetworks, round + 1, loss));
+        }));
+  model.trained_on =
+      fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
+                  request.scenes - 1, kSide, examples.bowls.size(), training.rounds, request.seed);
+  TrainResult result{as_text(model)};
+  if (!request.output.empty()) write_crater_model(request, result.model);
+  return result;
+}
+
+void write_tree_model(const TrainRequest& request, const std::string& text) {
+  const std::string name = request.colour ? "crown_network_colour" : "crown_network_infrared";
+  write_model(request.output, text,
+              {fmt::format("waymark train trees IMAGE...{} -o pipeline/forest/{}.cpp",
+                           request.colour ? " --colour" : "", name),
+               "pipeline/forest/crown_network.hpp", "DenseNetwork", name, "parse_dense_network",
+               "a built-in crown network"});
+}
+
+TrainResult train_trees(const TrainRequest& request, const Callbacks& callbacks) {
+  if (request.images.empty()) throw Error(ErrorCode::usage, "trees are trained on images, and none is given");
+  std::vector<TreeTrainingImage> images;
+  std::size_t trees = 0;
+  for (const std::string& image : request.images) {
+    images.push_back(read_training_image(image, !request.colour));
+    trees += images.back().trees.size();
+  }
+  NetworkTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
+  const bool validate = images.size() >= kParts;
+  ProgressMeter meter(callbacks.progress, "train trees", training.rounds * (validate ? kParts + 1 : 1));
+  std::string held_out;
+  if (validate) {
+    const Score score = cross_validate(images, kParts, training, request.threads, meter);
+    held_out = fmt::format("; left out in turn, {} parts: precision {:.3f}, recall {:.3f}, F1 {:.3f}", kParts,
+                           score.all.precision(), score.all.recall(), score.all.f1());
+    for (const CalibrationBin& bin : score.by_confidence)
+      callbacks.summary(fmt::format("confidence {:.2f} to {:.2f}: {} of {} are trees\n", bin.from, bin.to,
+                                    bin.right, bin.found));
+  }
+  DenseNetwork network = train_crown_network(images, training, meter);
+  meter.finish();
+  network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", images.size(), trees,
+                                   training.rounds, request.seed, held_out);
+  callbacks.summary(network.trained_on + "\n");
+  TrainResult result{as_text(network)};
+  if (!request.output.empty()) write_tree_model(request, result.model);
+  return result;
+}
+
+}  // namespace
+
+TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
+  if (request.scenes < 1 || request.rounds < 0)
+    throw Error(ErrorCode::usage, "there must be at least one scene and one round", "",
+                "leave out --scenes and --rounds for the usual");
+  if (request.what == "trees") return train_trees(request, callbacks);
+  if (!request.images.empty())
+    throw Error(ErrorCode::usage, "craters are trained on made scenes, not on images", request.images[0]);
+  return train_craters(request, callbacks);
+}
+
+}  // namespace waymark
