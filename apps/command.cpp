@@ -3,7 +3,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 
 Argument Argument::needed() const {
   Argument same = *this;
@@ -68,4 +68,4 @@ std::vector<CommandSpec> CommandTable::describe() const {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 constexpr auto kHead = R"(# bash completion for waymark, written by `waymark completion bash`
@@ -85,4 +85,4 @@ std::string bash_completion(std::span<const CommandSpec> commands, std::span<con
   return text + "    '') " + branches(before) + kTail;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,29 +6,29 @@
 #include "apps/log.hpp"
 #include "apps/progress.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
-void write_message(const Message& message) {
+void write_message(const workflows::Message& message) {
   switch (message.kind) {
-    case MessageKind::detail:
+    case workflows::MessageKind::detail:
       return log_detail(message.text);
-    case MessageKind::summary:
+    case workflows::MessageKind::summary:
       return log_summary(message.text);
-    case MessageKind::warning:
+    case workflows::MessageKind::warning:
       return log_warning(message.text);
-    case MessageKind::failure:  // a quiet log has no summary that lists it
+    case workflows::MessageKind::failure:  // a quiet log has no summary that lists it
       if (quiet_log()) log_error(message.text);
       return;
-    case MessageKind::result:
+    case workflows::MessageKind::result:
       std::cout << message.text;
   }
 }
 
 }  // namespace
 
-Callbacks console_callbacks(const Session& session) {
+workflows::Callbacks console_callbacks(const Session& session) {
   return {.progress = progress_renderer(session), .message = write_message};
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -2,10 +2,10 @@
 #pragma once
 #include "apps/session.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Returns callbacks that draw progress and write messages as the global options ask for: results to standard
 /// output, all else to the log.
-Callbacks console_callbacks(const Session& session);
+workflows::Callbacks console_callbacks(const Session& session);
 
-}  // namespace waymark
+}  // namespace waymark::apps

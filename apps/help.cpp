@@ -10,7 +10,7 @@
 #include "apps/session.hpp"
 #include "workflows/provenance.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 constexpr std::size_t kWidth = 100, kTextColumn = 26;
@@ -103,7 +103,7 @@ std::string command_help(const CommandSpec& command, std::span<const Argument> g
 }
 
 std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
-  std::string text = program_version() +
+  std::string text = workflows::program_version() +
                      ": semantic navigation maps from elevation models, images and laser data\n\n"
                      "Usage: waymark COMMAND [arguments and options]\n";
   for (const Group group : {Group::make, Group::use, Group::look_up}) {
@@ -116,4 +116,4 @@ std::string program_help(std::span<const CommandSpec> commands, std::span<const 
   return text + "\n`waymark COMMAND --help` explains a command and shows examples.\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 #include "apps/command.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Returns the text of `waymark --help`: commands by group, and global options.
 std::string program_help(std::span<const CommandSpec> commands, std::span<const Argument> globals);
@@ -20,4 +20,4 @@ struct ExitCode {
 };
 std::vector<ExitCode> exit_codes();
 
-}  // namespace waymark
+}  // namespace waymark::apps

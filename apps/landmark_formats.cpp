@@ -10,7 +10,7 @@
 #include "core/printable.hpp"
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -31,7 +31,7 @@ Json json_of(const AttributeValue& value) {
 std::string csv_cell(const AttributeValue& value) {
   if (const auto* real = std::get_if<double>(&value)) return fmt::format("{}", *real);
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* text = std::get_if<std::string>(&value)) return csv_text(*text);
+  if (const auto* text = std::get_if<std::string>(&value)) return exporters::csv_text(*text);
   return "";
 }
 
@@ -126,4 +126,4 @@ void print_geojson(std::ostream& out, std::span<const RowColumn> columns,
   out << "\n]}\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -4,7 +4,7 @@
 #include <span>
 #include "apps/landmark_rows.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 // Landmarks on standard output. Numbers round-trip, except in the table for people. Unknown values are empty
 // or null.
@@ -20,4 +20,4 @@ void print_json(std::ostream& out, std::span<const RowColumn> columns, std::span
 void print_geojson(std::ostream& out, std::span<const RowColumn> columns,
                    std::span<const Landmark> landmarks);
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -8,7 +8,7 @@
 
 #include "exporters/vector/export_columns.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using Value = std::function<AttributeValue(const Landmark&)>;
@@ -56,7 +56,7 @@ std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const
   std::map<std::string, std::map<TypeId, Value>> values;
   for (const std::string& name : chosen) {
     const TypeId id = types.id(name);
-    for (const ExportColumn& column : export_columns(types[id])) {
+    for (const exporters::ExportColumn& column : exporters::export_columns(types[id])) {
       if (column.name == "uid") continue;
       if (!values.contains(column.name))
         more.push_back(
@@ -77,4 +77,4 @@ std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const
   return columns;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

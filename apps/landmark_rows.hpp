@@ -7,7 +7,7 @@
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Column of printed landmarks.
 struct RowColumn {
@@ -28,4 +28,4 @@ struct RowContext {
 /// registry and the sensor must outlive them.
 std::vector<RowColumn> row_columns(const std::vector<std::string>& chosen, const RowContext& context);
 
-}  // namespace waymark
+}  // namespace waymark::apps

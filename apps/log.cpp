@@ -8,7 +8,7 @@
 
 #include "core/printable.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 constexpr std::size_t kMaxMessage = 4000;  // bytes: about a screen
@@ -52,4 +52,4 @@ void log_summary(std::string_view text) {
   std::fwrite(safe.data(), 1, safe.size(), stderr);
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
-namespace waymark {
+namespace waymark::apps {
 
 // Text for people, on standard error.
 enum class LogLevel { errors, warnings, all };
@@ -17,4 +17,4 @@ void log_detail(std::string_view text);
 /// Writes a summary as it is, unless the log is quiet.
 void log_summary(std::string_view text);
 
-}  // namespace waymark
+}  // namespace waymark::apps

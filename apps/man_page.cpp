@@ -8,7 +8,7 @@
 #include "apps/session.hpp"
 #include "workflows/provenance.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 /// Escapes text so that roff prints it literally, with hyphens that can be copied.
@@ -67,7 +67,7 @@ std::string section(const CommandSpec& command) {
 }  // namespace
 
 std::string man_page(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
-  std::string text = ".TH WAYMARK 1 \"\" \"" + program_version() +
+  std::string text = ".TH WAYMARK 1 \"\" \"" + workflows::program_version() +
                      "\" \"User commands\"\n.SH NAME\nwaymark \\- semantic navigation maps from elevation "
                      "models, images and laser data\n"
                      ".SH SYNOPSIS\n.B waymark\n.I COMMAND\n[arguments and options]\n.SH COMMANDS\n";
@@ -80,4 +80,4 @@ std::string man_page(std::span<const CommandSpec> commands, std::span<const Argu
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

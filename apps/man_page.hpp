@@ -3,9 +3,9 @@
 #include <span>
 #include <string>
 #include "apps/command.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Returns waymark(1) as roff, all commands on one page.
 std::string man_page(std::span<const CommandSpec> commands, std::span<const Argument> globals);
 
-}  // namespace waymark
+}  // namespace waymark::apps

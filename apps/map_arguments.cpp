@@ -5,9 +5,9 @@
 #include "pipeline/engine/registry.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 
-std::vector<Argument> map_arguments(MapRequest& request) {
+std::vector<Argument> map_arguments(workflows::MapRequest& request) {
   return {
       Argument{"-o,--output", "MAP.gpkg", &request.map,
                "Map to write. An older map of that name is replaced when the new one is complete; any other "
@@ -18,16 +18,16 @@ std::vector<Argument> map_arguments(MapRequest& request) {
           .offering(Offer::folder),
       Argument{"--rerun-from", "STAGE", &request.rerun_from,
                "Re-run this stage and its dependents, even if --work has their results"}
-          .offering(all_stages().names()),
+          .offering(workflows::all_stages().names()),
       {"--with-dem", "", &request.with_dem, "Store the DEM in the map as a gridded coverage"},
       {"--check", "", &request.check, "Check options, wiring and files, then stop"},
   };
 }
 
-int make_map_command(const Job& job, MapRequest request, const Session& session) {
+int make_map_command(const pipeline::Job& job, workflows::MapRequest request, const Session& session) {
   request.threads = static_cast<int>(session.threads);
   request.command_line = session.command_line;
-  return make_map(job, request, console_callbacks(session)).exit_code();
+  return workflows::make_map(job, request, console_callbacks(session)).exit_code();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "workflows/parse_number.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 constexpr int kAnyNumber = CLI::detail::expected_max_vector_size;
@@ -34,12 +34,14 @@ struct Store {
   const std::vector<std::string>& words;
 
   void operator()(bool* flag) const { *flag = true; }
-  void operator()(std::int64_t* into) const { *into = parse_integer(display_name(argument), words[0]); }
-  void operator()(double* into) const { *into = parse_number(display_name(argument), words[0]); }
+  void operator()(std::int64_t* into) const {
+    *into = workflows::parse_integer(display_name(argument), words[0]);
+  }
+  void operator()(double* into) const { *into = workflows::parse_number(display_name(argument), words[0]); }
   void operator()(std::string* into) const { *into = one_of(argument, words[0]); }
   void operator()(std::vector<double>* into) const {
     into->clear();
-    for (const auto& word : words) into->push_back(parse_number(display_name(argument), word));
+    for (const auto& word : words) into->push_back(workflows::parse_number(display_name(argument), word));
   }
   void operator()(std::vector<std::string>* into) const {
     for (const auto& word : words) into->push_back(one_of(argument, word));
@@ -193,4 +195,4 @@ std::string display_name(const Argument& argument) {
   return argument.positional() ? argument.value : argument.names.substr(argument.names.rfind(',') + 1);
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "apps/command.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Reads the options at the head of `words` and returns the words from the first that is none of them.
 std::vector<std::string> parse_leading(std::span<const Argument> options,
@@ -26,4 +26,4 @@ std::string synopsis(const Argument& argument);
 /// Returns the long name, else the short one, else the placeholder of a positional word.
 std::string display_name(const Argument& argument);
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -13,20 +13,20 @@
 
 #include "apps/session.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double fraction(const Progress& progress) {
+double fraction(const pipeline::Progress& progress) {
   return progress.total > 0 ? std::clamp(progress.done / static_cast<double>(progress.total), 0.0, 1.0) : 1.0;
 }
 
-bool finished(const Progress& progress) {
+bool finished(const pipeline::Progress& progress) {
   return !(progress.done < static_cast<double>(progress.total));
 }
 
-std::string speed(const Progress& progress) {
+std::string speed(const pipeline::Progress& progress) {
   return fmt::format("{:.3g} units/s", progress.rate);
 }
 
@@ -37,7 +37,7 @@ std::size_t terminal_width() {
 }
 
 /// "join_mountain_tops     [#######.......]  50 %  3.1 units/s  0:04 left", redrawn in place.
-void draw_bar(const Progress& progress) {
+void draw_bar(const pipeline::Progress& progress) {
   constexpr std::size_t kBar = 24;
   const double part = fraction(progress);
   const auto full = static_cast<std::size_t>(part * kBar);
@@ -52,7 +52,7 @@ void draw_bar(const Progress& progress) {
 /// GDAL's "0...10...20...30...40...50...60...70...80...90...100 - done.", a line per stage.
 class Dots {
  public:
-  void operator()(const Progress& progress) {
+  void operator()(const pipeline::Progress& progress) {
     if (progress.stage != stage_) {
       stage_ = progress.stage;
       drawn_ = -1;
@@ -73,7 +73,7 @@ class Dots {
   int drawn_ = -1;
 };
 
-void print_json(const Progress& progress) {
+void print_json(const pipeline::Progress& progress) {
   nlohmann::ordered_json line{{"stage", progress.stage},
                               {"done", progress.done},
                               {"total", progress.total},
@@ -85,7 +85,7 @@ void print_json(const Progress& progress) {
 /// Prints a line every half minute, for logs.
 class SparseLines {
  public:
-  void operator()(const Progress& progress) {
+  void operator()(const pipeline::Progress& progress) {
     const auto now = Clock::now();
     if (now - last_ < std::chrono::seconds(30)) return;
     last_ = now;
@@ -98,8 +98,9 @@ class SparseLines {
 };
 
 /// Drops repeats: the end of a stage may be reported twice.
-std::function<void(const Progress&)> without_repeats(std::function<void(const Progress&)> draw) {
-  return [draw = std::move(draw), last = Progress()](const Progress& progress) mutable {
+std::function<void(const pipeline::Progress&)> without_repeats(
+    std::function<void(const pipeline::Progress&)> draw) {
+  return [draw = std::move(draw), last = pipeline::Progress()](const pipeline::Progress& progress) mutable {
     if (progress.stage == last.stage && !(progress.done > last.done)) return;
     last = progress;
     draw(progress);
@@ -108,7 +109,7 @@ std::function<void(const Progress&)> without_repeats(std::function<void(const Pr
 
 }  // namespace
 
-std::function<void(const Progress&)> progress_renderer(const Session& session) {
+std::function<void(const pipeline::Progress&)> progress_renderer(const Session& session) {
   const bool automatic = session.progress == "auto";
   if (session.progress == "none" || (automatic && session.quiet)) return {};
   if (session.progress == "bar" || (automatic && isatty(STDERR_FILENO))) return without_repeats(draw_bar);
@@ -117,7 +118,7 @@ std::function<void(const Progress&)> progress_renderer(const Session& session) {
   return SparseLines();
 }
 
-double seconds_left(const Progress& progress) {
+double seconds_left(const pipeline::Progress& progress) {
   if (!(progress.rate > 0)) return -1;
   return std::max(0.0, static_cast<double>(progress.total) - progress.done) / progress.rate;
 }
@@ -129,4 +130,4 @@ std::string clock_time(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

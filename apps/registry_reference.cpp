@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "pipeline/engine/stage_pages.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 const std::string& form(const ReferenceEntry& one, const std::string& as) {
@@ -55,12 +55,12 @@ std::string everything(std::span<const ReferenceEntry> all, const std::string& a
 
 }  // namespace
 
-std::vector<ReferenceEntry> registry_reference(const Registry& stages) {
+std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages) {
   std::vector<ReferenceEntry> all;
   for (const std::string& name : stages.names()) {
-    const Step& step = stages.at(name);
-    all.push_back({name, step.spec().summary, stage_as_text(step), stage_as_json(step), stage_as_schema(step),
-                   stage_as_markdown(step)});
+    const pipeline::Step& step = stages.at(name);
+    all.push_back({name, step.spec().summary, pipeline::stage_as_text(step), pipeline::stage_as_json(step),
+                   pipeline::stage_as_schema(step), pipeline::stage_as_markdown(step)});
   }
   return all;
 }
@@ -78,4 +78,4 @@ void print_reference(std::span<const ReferenceEntry> all, const std::string& kin
                                           : form(find(all, kind, what.name), what.as));
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -7,7 +7,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
 #include "pipeline/engine/registry.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// A stage, landmark type or sensor profile in the four forms of `--as`.
 struct ReferenceEntry {
@@ -15,7 +15,7 @@ struct ReferenceEntry {
   std::string text, json, schema, markdown;
 };
 
-std::vector<ReferenceEntry> registry_reference(const Registry& stages);
+std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages);
 std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types);
 std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types);
 
@@ -31,4 +31,4 @@ std::vector<Argument> reference_arguments(ReferenceRequest& what, std::vector<st
 void print_reference(std::span<const ReferenceEntry> all, const std::string& kind,
                      const ReferenceRequest& what);
 
-}  // namespace waymark
+}  // namespace waymark::apps

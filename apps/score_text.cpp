@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using nlohmann::json;
@@ -21,15 +21,15 @@ json finite(double value) {
   return std::isfinite(value) ? json(value) : json(nullptr);
 }
 
-std::string counts_line(const std::string& what, const ScoreCounts& c) {
+std::string counts_line(const std::string& what, const testbed::ScoreCounts& c) {
   return fmt::format("{:<14} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n", what, c.truth, c.found, c.matched,
                      number(c.precision()), number(c.recall()), number(c.f1()));
 }
 
-std::string as_text(const Score& s) {
+std::string as_text(const testbed::Score& s) {
   std::string text = fmt::format("{:<14} {:>8} {:>8} {:>8} {:>10} {:>8} {:>8}\n", "diameter", "truth",
                                  "found", "matched", "precision", "recall", "F1");
-  for (const ScoreCounts& bin : s.by_size)
+  for (const testbed::ScoreCounts& bin : s.by_size)
     text += counts_line(
         fmt::format("{:g} - {}", bin.from, std::isfinite(bin.to) ? fmt::format("{:g}", bin.to) : ""), bin);
   text += counts_line("all", s.all);
@@ -47,10 +47,11 @@ std::string as_text(const Score& s) {
                               percent(e.relative_bias), percent(e.relative_sd), number(e.absolute), e.count)
                 : fmt::format("{}: bias {}, median error {}, n = {}\n", name, number(e.bias),
                               number(e.absolute), e.count);
-  const auto calibration = [&](const char* what, const std::vector<CalibrationBin>& bins, double error) {
+  const auto calibration = [&](const char* what, const std::vector<testbed::CalibrationBin>& bins,
+                               double error) {
     if (bins.empty()) return;
     text += fmt::format("{}: calibration error {}\n", what, number(error));
-    for (const CalibrationBin& bin : bins)
+    for (const testbed::CalibrationBin& bin : bins)
       text += fmt::format("  {:.1f} - {:.1f}: {} of {} right, {} claimed\n", bin.from, bin.to, bin.right,
                           bin.found, number(bin.mean));
   };
@@ -59,7 +60,7 @@ std::string as_text(const Score& s) {
   return text;
 }
 
-json as_json(const ScoreCounts& c) {
+json as_json(const testbed::ScoreCounts& c) {
   return {{"truth", c.truth},
           {"found", c.found},
           {"matched", c.matched},
@@ -68,15 +69,15 @@ json as_json(const ScoreCounts& c) {
           {"f1", finite(c.f1())}};
 }
 
-json as_json(const std::vector<CalibrationBin>& bins) {
+json as_json(const std::vector<testbed::CalibrationBin>& bins) {
   json all = json::array();
-  for (const CalibrationBin& b : bins)
+  for (const testbed::CalibrationBin& b : bins)
     all.push_back(
         {{"from", b.from}, {"to", b.to}, {"claimed", b.mean}, {"found", b.found}, {"right", b.right}});
   return all;
 }
 
-json as_json(const Score& s) {
+json as_json(const testbed::Score& s) {
   json object = as_json(s.all);
   object["average_precision"] = finite(s.average_precision);
   object["found_twice"] = s.duplicates;
@@ -87,7 +88,7 @@ json as_json(const Score& s) {
   object["inside_90"] = finite(s.inside_90);
   object["nees"] = finite(s.nees);
   object["by_size"] = json::array();
-  for (const ScoreCounts& bin : s.by_size) {
+  for (const testbed::ScoreCounts& bin : s.by_size) {
     json one = as_json(bin);
     one["from"] = bin.from, one["to"] = finite(bin.to);
     object["by_size"].push_back(one);
@@ -105,7 +106,7 @@ json as_json(const Score& s) {
   return object;
 }
 
-nlohmann::ordered_json as_json(const TrackScore& s, const std::string& align) {
+nlohmann::ordered_json as_json(const localization::TrackScore& s, const std::string& align) {
   nlohmann::ordered_json all;
   all["poses"] = s.poses;
   all["align"] = align;
@@ -132,23 +133,23 @@ nlohmann::ordered_json as_json(const TrackScore& s, const std::string& align) {
 
 }  // namespace
 
-std::string scores_as_text(const std::map<std::string, Score>& scores) {
+std::string scores_as_text(const std::map<std::string, testbed::Score>& scores) {
   std::string text;
   for (const auto& [type, s] : scores) text += (text.empty() ? "" : "\n") + type + "\n" + as_text(s);
   return text;
 }
 
-std::string scores_as_json(const std::map<std::string, Score>& scores) {
+std::string scores_as_json(const std::map<std::string, testbed::Score>& scores) {
   json all = json::object();
   for (const auto& [type, s] : scores) all[type] = as_json(s);
   return all.dump(2) + "\n";
 }
 
-std::string track_score_as_json(const TrackScore& score, const std::string& align) {
+std::string track_score_as_json(const localization::TrackScore& score, const std::string& align) {
   return as_json(score, align).dump(2) + "\n";
 }
 
-std::string track_score_as_text(const TrackScore& score, const std::string& align) {
+std::string track_score_as_text(const localization::TrackScore& score, const std::string& align) {
   const nlohmann::ordered_json all = as_json(score, align);
   std::string text;
   for (const auto& [name, value] : all.items())
@@ -160,4 +161,4 @@ std::string track_score_as_text(const TrackScore& score, const std::string& alig
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

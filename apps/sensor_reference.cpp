@@ -5,7 +5,7 @@
 
 #include "apps/registry_reference.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -62,4 +62,4 @@ std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, co
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/source_date.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 std::string quoted(const std::string& word) {
@@ -69,4 +69,4 @@ std::string quoted(const std::vector<std::string>& words) {
   return line;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

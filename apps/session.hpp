@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "apps/command.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Global options and the command line.
 struct Session {
@@ -24,4 +24,4 @@ void begin(const Session& session);
 /// Joins the words of a command line; words with spaces or signs of the shell are quoted.
 std::string quoted(const std::vector<std::string>& words);
 
-}  // namespace waymark
+}  // namespace waymark::apps

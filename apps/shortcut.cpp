@@ -6,7 +6,7 @@
 #include "apps/map_arguments.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 
 CommandSpec Shortcut::describe() {
   CommandSpec spec = describe_own();
@@ -18,13 +18,13 @@ CommandSpec Shortcut::describe() {
 }
 
 int Shortcut::run(const Session& session) {
-  Pipeline pipeline(all_stages());
+  pipeline::Pipeline pipeline(workflows::all_stages());
   add_stages(pipeline);
   options_.apply(pipeline);
-  const Job job{describe_own().name, std::move(pipeline)};
+  const pipeline::Job job{describe_own().name, std::move(pipeline)};
   if (!print_job_) return make_map_command(job, request_, session);
-  std::cout << job_as_json(job.name, job.pipeline) << '\n';
+  std::cout << pipeline::job_as_json(job.name, job.pipeline) << '\n';
   return 0;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,7 +6,7 @@
 #include "apps/stage_options.hpp"
 #include "pipeline/engine/pipeline.hpp"
 #include "workflows/mapping/make_map.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Command that builds a job from files and a few options of its stages, then runs it as `waymark run` does.
 /// --print-job prints the job instead.
@@ -25,11 +25,11 @@ class Shortcut : public Command {
   /// Returns the declaration without the arguments that all shortcuts share.
   virtual CommandSpec describe_own() = 0;
   /// Appends the stages of the job. Throws Error{usage} where the given files make no job.
-  virtual void add_stages(Pipeline& pipeline) const = 0;
+  virtual void add_stages(pipeline::Pipeline& pipeline) const = 0;
 
-  MapRequest request_;
+  workflows::MapRequest request_;
   StageOptions options_;
   bool print_job_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -12,7 +12,7 @@
 #include "pipeline/engine/step_options.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 std::string flag_name(std::string option) {
@@ -54,7 +54,7 @@ StageOptions::StageOptions(const std::vector<std::string_view>& names) {
   for (const std::string_view name : names) {
     const std::size_t dot = name.find('.');
     const std::string stage(name.substr(0, dot));
-    const auto rows = option_table(all_stages().at(stage));
+    const auto rows = option_table(workflows::all_stages().at(stage));
     const auto row = std::ranges::find(rows, name.substr(dot + 1), &OptionRow::name);
     if (row == rows.end()) throw std::logic_error("no stage has the option " + std::string(name));
     offered_.push_back({stage, *row, ""});
@@ -72,7 +72,7 @@ std::vector<Argument> StageOptions::arguments() {
   return all;
 }
 
-void StageOptions::apply(Pipeline& pipeline) const {
+void StageOptions::apply(pipeline::Pipeline& pipeline) const {
   for (const Offered& option : offered_) {
     if (option.given.empty()) continue;
     const std::string place = option.stage + "." + option.row.name;
@@ -84,4 +84,4 @@ void StageOptions::apply(Pipeline& pipeline) const {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,7 +6,7 @@
 #include "apps/command.hpp"
 #include "core/options/option_table.hpp"
 #include "pipeline/engine/pipeline.hpp"
-namespace waymark {
+namespace waymark::apps {
 
 /// Options of stages on the command line of a shortcut: load_dem.tile_cells as --tile-cells. Unit, range,
 /// choices, default and help are the stage's.
@@ -18,7 +18,7 @@ class StageOptions {
   /// Returns arguments that point into this object.
   std::vector<Argument> arguments();
   /// Sets the options that were given. Throws Error{usage} that names an option as it was typed.
-  void apply(Pipeline& pipeline) const;
+  void apply(pipeline::Pipeline& pipeline) const;
 
  private:
   struct Offered {
@@ -29,4 +29,4 @@ class StageOptions {
   std::vector<Offered> offered_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,7 +6,7 @@
 
 #include "apps/registry_reference.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -121,4 +121,4 @@ std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types) {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

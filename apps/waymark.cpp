@@ -15,7 +15,7 @@
 #include "core/error.hpp"
 #include "workflows/provenance.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 /// Parses the words after the command's name; global options may stand there too.
@@ -48,7 +48,7 @@ int run_program(const std::vector<std::string>& words) {
   const std::vector<Argument> globals = global_arguments(session);
   const std::vector<std::string> rest = parse_leading(globals, {words.begin() + 1, words.end()});
   if (session.version) {
-    std::cout << program_version() << '\n';
+    std::cout << workflows::program_version() << '\n';
     return 0;
   }
   if (rest.empty()) {
@@ -88,12 +88,12 @@ void report_interrupt(int signal) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::apps
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
-  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, waymark::report_interrupt);
+  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, waymark::apps::report_interrupt);
   std::vector<std::string> words(argv, argv + argc);
   words[0] = "waymark";
-  return waymark::guarded(words);
+  return waymark::apps::guarded(words);
 }

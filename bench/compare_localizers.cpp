@@ -29,35 +29,36 @@
 #include "testbed/landing/flight.hpp"
 #include "testbed/scenario.hpp"
 
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
 struct Site {
   std::string name;
-  Scenario scenario;
-  Scene scene;
-  MapStore store;
-  std::vector<MapLandmark> landmarks;
+  testbed::Scenario scenario;
+  testbed::Scene scene;
+  geodb::MapStore store;
+  std::vector<localization::MapLandmark> landmarks;
 };
 
 Site open_site(const std::string& name, const std::string& scenario_file, const std::string& map_file) {
-  Scenario scenario = read_scenario(read_text(scenario_file, "the scenario"), scenario_file);
-  scenario.ground = size_site(scenario, plan_shots(scenario));
-  Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
-  Site site{name, scenario, std::move(scene), MapStore::open(map_file), {}};
+  testbed::Scenario scenario =
+      testbed::read_scenario(read_text(scenario_file, "the scenario"), scenario_file);
+  scenario.ground = testbed::size_site(scenario, testbed::plan_shots(scenario));
+  testbed::Scene scene = testbed::make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
+  Site site{name, scenario, std::move(scene), geodb::MapStore::open(map_file), {}};
   const LocalFrame frame(site.store.crs(), Point<MapCrs>{});
   SensorRegistry sensors;
   register_sensor_profiles(sensors);
   for (const Landmark& l : site.store.query({.types = {"rock"}}))
     site.landmarks.push_back(
-        map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
+        localization::map_landmark(l, site.store.types()[l.type], frame, &sensors.at("horizontal_laser")));
   // A map worse than any of the testbed: as many false rocks as true ones, with low confidence.
   if (name.find("false rocks added") == std::string::npos) return site;
   Eigen::AlignedBox2d box;
-  for (const MapLandmark& l : site.landmarks) box.extend(l.at);
+  for (const localization::MapLandmark& l : site.landmarks) box.extend(l.at);
   Random random(1, "false rocks");
   for (std::size_t i = 0, n = site.landmarks.size(); i < n; ++i) {
-    MapLandmark l = site.landmarks[i];
+    localization::MapLandmark l = site.landmarks[i];
     l.key = i + 1;
     l.at = {random.uniform(box.min().x(), box.max().x()), random.uniform(box.min().y(), box.max().y())};
     l.quality = 0.15;
@@ -72,17 +73,19 @@ struct Variant {
 };
 
 enum class SensorKind { laser, stereo, camera };
-SensorKind kind_of(const LogEvent& e) {
-  if (std::holds_alternative<LaserScan>(e.what)) return SensorKind::laser;
-  const auto& set = std::get<SightingSet>(e.what);
+SensorKind kind_of(const localization::LogEvent& e) {
+  if (std::holds_alternative<localization::LaserScan>(e.what)) return SensorKind::laser;
+  const auto& set = std::get<localization::SightingSet>(e.what);
   const bool ranges = set.robot_from_sensor.x != 0;  // the depth camera is mounted 0.5 m ahead
   return ranges ? SensorKind::stereo : SensorKind::camera;
 }
 
-RobotLog filter_log(const RobotLog& log, const std::string& sensor, bool features, const ScanTypes& types) {
-  RobotLog some = log;
-  std::erase_if(some.events, [&](const LogEvent& e) {
-    if (!std::holds_alternative<LaserScan>(e.what) && !std::holds_alternative<SightingSet>(e.what))
+localization::RobotLog filter_log(const localization::RobotLog& log, const std::string& sensor, bool features,
+                                  const localization::ScanTypes& types) {
+  localization::RobotLog some = log;
+  std::erase_if(some.events, [&](const localization::LogEvent& e) {
+    if (!std::holds_alternative<localization::LaserScan>(e.what) &&
+        !std::holds_alternative<localization::SightingSet>(e.what))
       return false;
     const SensorKind kind = kind_of(e);
     return !(sensor == "laser + stereo" ? kind != SensorKind::camera
@@ -91,13 +94,13 @@ RobotLog filter_log(const RobotLog& log, const std::string& sensor, bool feature
                                         : kind == SensorKind::camera);
   });
   // Detectors run once per scan, so that all methods get the same sightings and only the update is timed.
-  for (LogEvent& e : some.events) {
-    if (const auto* scan = std::get_if<LaserScan>(&e.what)) {
-      SightingSet set = sightings_of_scan(*scan, types, {});
+  for (localization::LogEvent& e : some.events) {
+    if (const auto* scan = std::get_if<localization::LaserScan>(&e.what)) {
+      localization::SightingSet set = localization::sightings_of_scan(*scan, types, {});
       e.what = std::move(set);
     }
-    if (auto* set = std::get_if<SightingSet>(&e.what); set && !features)
-      for (SeenLandmark& s : set->sightings) s.features = {};
+    if (auto* set = std::get_if<localization::SightingSet>(&e.what); set && !features)
+      for (localization::SeenLandmark& s : set->sightings) s.features = {};
   }
   return some;
 }
@@ -120,31 +123,38 @@ double mean(const std::vector<double>& all) {
   return sum;
 }
 
-std::unique_ptr<Localizer> make(const Variant& v, const PoseEstimate& start, const LandmarkGrid& map,
-                                const TypeRegistry& types) {
-  IdentificationOptions id;
+std::unique_ptr<localization::Localizer> make(const Variant& v, const localization::PoseEstimate& start,
+                                              const localization::LandmarkGrid& map,
+                                              const TypeRegistry& types) {
+  localization::IdentificationOptions id;
   id.use_identities = false;
   if (v.sensor == "camera") id.bearing_reach = 30;
   if (!v.quality) id.quality_floor = 1;
-  const FeatureScales scales(types);
-  if (v.method == "odometry") return std::make_unique<DeadReckoning>(start);
-  if (v.method == "slam") return std::make_unique<EkfSlam>(start);
+  const localization::FeatureScales scales(types);
+  if (v.method == "odometry") return std::make_unique<localization::DeadReckoning>(start);
+  if (v.method == "slam") return std::make_unique<localization::EkfSlam>(start);
   if (v.method.starts_with("pf"))
-    return std::make_unique<ParticleFilter>(
-        start, LandmarkWindow(map), scales, id,
-        ParticleOptions{.particles = 300, .recovery = v.method != "pf", .threads = 1, .weight = {}});
-  if (v.method == "ukf") return std::make_unique<UnscentedKalman>(start, LandmarkWindow(map), scales, id);
+    return std::make_unique<localization::ParticleFilter>(
+        start, localization::LandmarkWindow(map), scales, id,
+        localization::ParticleOptions{
+            .particles = 300, .recovery = v.method != "pf", .threads = 1, .weight = {}});
+  if (v.method == "ukf")
+    return std::make_unique<localization::UnscentedKalman>(start, localization::LandmarkWindow(map), scales,
+                                                           id);
   if (v.method == "ekf, one Gaussian")
-    return std::make_unique<ExtendedKalman>(start, LandmarkWindow(map), scales, id);
-  return std::make_unique<MultiHypothesisFilter>(start, LandmarkWindow(map), scales, id);
+    return std::make_unique<localization::ExtendedKalman>(start, localization::LandmarkWindow(map), scales,
+                                                          id);
+  return std::make_unique<localization::MultiHypothesisFilter>(start, localization::LandmarkWindow(map),
+                                                               scales, id);
 }
 
-void run(const Variant& v, const RobotLog& log, const Site& site, const LandmarkGrid& map, Sum& sum) {
-  PoseEstimate start{*log.start, Eigen::Matrix3d::Zero()};
+void run(const Variant& v, const localization::RobotLog& log, const Site& site,
+         const localization::LandmarkGrid& map, Sum& sum) {
+  localization::PoseEstimate start{*log.start, Eigen::Matrix3d::Zero()};
   start.covariance.diagonal() << 0.02, 0.02, 0.0008;
   const auto localizer = make(v, start, map, site.store.types());
   ScoredLocalizer scored(*localizer, log, map);
-  ReplayOptions how;
+  localization::ReplayOptions how;
   // Wheels that slip by some per cent, and a gyro: closer to the vehicle than the defaults.
   how.odometry = {.along_per_metre = 0.01,
                   .across_per_metre = 0.003,
@@ -152,8 +162,9 @@ void run(const Variant& v, const RobotLog& log, const Site& site, const Landmark
                   .yaw_per_radian = 0.002,
                   .position_per_second = 1e-6,
                   .yaw_per_second = 1e-6};
-  const Track track = replay(log, scored, how);
-  const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
+  const localization::Track track = localization::replay(log, scored, how);
+  const localization::TrackScore s =
+      localization::score(track, log.truth, localization::TrackAlignment::none, true);
   sum.rmse.push_back(s.ate_rmse);
   sum.median.push_back(s.ate_median);
   sum.rpe.push_back(s.rpe);
@@ -167,10 +178,11 @@ void run(const Variant& v, const RobotLog& log, const Site& site, const Landmark
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 int main(int argc, char** argv) {
   using namespace waymark;
+  using namespace waymark::bench;
   if (argc < 8 || (argc - 5) % 3 != 0) {
     fmt::print(stderr, "usage: {} RUNS METRES OUT.md OUT.html NAME SCENARIO.json MAP.gpkg ...\n", argv[0]);
     return 2;
@@ -193,25 +205,26 @@ int main(int argc, char** argv) {
                  "us per update"});
   for (int s = 5; s < argc; s += 3) {
     const Site site = open_site(argv[s], argv[s + 1], argv[s + 2]);
-    std::vector<MapLandmark> flat = site.landmarks;
+    std::vector<localization::MapLandmark> flat = site.landmarks;
     double quality = 0;
-    for (MapLandmark& l : flat) quality += l.quality / static_cast<double>(flat.size()), l.quality = 1;
-    const LandmarkGrid with(site.landmarks), without(flat);
-    const ScanTypes types{{}, site.store.types().id("rock")};
+    for (localization::MapLandmark& l : flat)
+      quality += l.quality / static_cast<double>(flat.size()), l.quality = 1;
+    const localization::LandmarkGrid with(site.landmarks), without(flat);
+    const localization::ScanTypes types{{}, site.store.types().id("rock")};
     std::vector<Sum> sums(variants.size());
     for (int r = 0; r < runs; ++r) {
-      DriveSettings drive = site.scenario.drive;
+      testbed::DriveSettings drive = site.scenario.drive;
       drive.seed = 1000 + r;
       drive.length = metres;
       const bool laser_only = site.name.find("false rocks added") != std::string::npos;
       drive.stereo.on = drive.camera.on = !laser_only;
       drive.camera.every = 10;
-      const DriveWorld world = make_drive(drive, site.scene, {}, site.scene.seed);
+      const testbed::DriveWorld world = testbed::make_drive(drive, site.scene, {}, site.scene.seed);
       const std::string file = fmt::format("{}.{}.jsonl", argv[3], r);  // of this process alone
-      std::ofstream(file) << drive_log(world, {});
-      const RobotLog log = import_waymark_log(file, site.store.types());
+      std::ofstream(file) << testbed::drive_log(world, {});
+      const localization::RobotLog log = importers::import_waymark_log(file, site.store.types());
       std::filesystem::remove(file);
-      std::map<std::pair<std::string, bool>, RobotLog> logs;
+      std::map<std::pair<std::string, bool>, localization::RobotLog> logs;
       for (std::size_t i = 0; i < variants.size(); ++i) {
         const Variant& v = variants[i];
         if (laser_only && (v.sensor != "laser" || v.method == "slam" || v.method == "pf, recovery")) continue;

@@ -9,32 +9,32 @@ namespace {
 
 using namespace waymark;
 
-const LabelledScene& scene() {
-  static const LabelledScene made = shaded_scene(5001, 1024);
+const pipeline::LabelledScene& scene() {
+  static const pipeline::LabelledScene made = pipeline::shaded_scene(5001, 1024);
   return made;
 }
 
-void find(benchmark::State& state, CraterMethod method, bool verify) {
-  CraterSearch search;
+void find(benchmark::State& state, pipeline::CraterMethod method, bool verify) {
+  pipeline::CraterSearch search;
   search.method = method;
   search.verify = verify;
   search.sun_angle = scene().sun_angle;
-  for (auto _ : state) benchmark::DoNotOptimize(find_craters(scene().image, search));
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::find_craters(scene().image, search));
   state.SetItemsProcessed(state.iterations() * scene().image.columns() * scene().image.rows());
 }
 
-BENCHMARK_CAPTURE(find, bowl, CraterMethod::bowl, true)
+BENCHMARK_CAPTURE(find, bowl, pipeline::CraterMethod::bowl, true)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(find, bowl_without_model, CraterMethod::bowl, false)
+BENCHMARK_CAPTURE(find, bowl_without_model, pipeline::CraterMethod::bowl, false)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(find, edges, CraterMethod::edges, true)
+BENCHMARK_CAPTURE(find, edges, pipeline::CraterMethod::edges, true)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 
 void sun(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(estimate_crater_sun_angle(scene().image));
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::estimate_crater_sun_angle(scene().image));
   state.SetItemsProcessed(state.iterations() * scene().image.columns() * scene().image.rows());
 }
 BENCHMARK(sun)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);

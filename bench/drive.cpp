@@ -7,40 +7,40 @@
 #include "testbed/drive/laser_scanner.hpp"
 #include "testbed/scene.hpp"
 
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
-Scene site(double rocks) {
-  SiteModel ground;
+testbed::Scene site(double rocks) {
+  testbed::SiteModel ground;
   ground.width = ground.height = 150;
   ground.cell = 0.3;
   ground.relief = {.rms = 2, .longest = 250, .roughness = 0.5};
   ground.craters.density = 0.3;
   ground.rocks = {.k = rocks, .min_diameter = 0.5, .max_diameter = 4};
-  return make_scene(ground, 11);
+  return testbed::make_scene(ground, 11);
 }
 
-void scan_at_random_poses(benchmark::State& state, const LaserTargets& targets, double height) {
-  const LaserModel laser{.field = Degrees{240}};
+void scan_at_random_poses(benchmark::State& state, const testbed::LaserTargets& targets, double height) {
+  const testbed::LaserModel laser{.field = Degrees{240}};
   Random random(1);
   for (auto _ : state) {
     const double x = random.uniform(-50, 50), y = random.uniform(-50, 50);
-    const RayFan fan(targets, {x, y, *targets.terrain().height(x, y) + height}, laser.max_range);
-    benchmark::DoNotOptimize(sweep(fan, Eigen::Matrix3d::Identity(), laser, random));
+    const testbed::RayFan fan(targets, {x, y, *targets.terrain().height(x, y) + height}, laser.max_range);
+    benchmark::DoNotOptimize(testbed::sweep(fan, Eigen::Matrix3d::Identity(), laser, random));
   }
   state.SetItemsProcessed(state.iterations() * laser.beams() * laser.rays);
 }
 
 void rover_scan(benchmark::State& state) {
-  const Scene scene = site(0.16);
-  scan_at_random_poses(state, LaserTargets(scene.terrain, scene.solids), 0.3);
+  const testbed::Scene scene = site(0.16);
+  scan_at_random_poses(state, testbed::LaserTargets(scene.terrain, scene.solids), 0.3);
 }
 BENCHMARK(rover_scan)->Unit(benchmark::kMillisecond);
 
 void harvester_scan(benchmark::State& state) {
-  const Scene scene = site(0);
+  const testbed::Scene scene = site(0);
   Random random(2);
-  std::vector<StandingTree> trees;
+  std::vector<testbed::StandingTree> trees;
   for (int i = 0; i < 1125; ++i) {  // 500 per hectare
     const double x = random.uniform(-74, 74), y = random.uniform(-74, 74);
     trees.push_back({.foot = {x, y, *scene.terrain.height(x, y)},
@@ -49,12 +49,12 @@ void harvester_scan(benchmark::State& state) {
                      .crown_diameter = 4,
                      .crown_base = 9});
   }
-  ForestSolids solids = forest_solids(trees, {}, scene.terrain, 3);
-  scan_at_random_poses(state, LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
+  testbed::ForestSolids solids = testbed::forest_solids(trees, {}, scene.terrain, 3);
+  scan_at_random_poses(state, testbed::LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
 }
 BENCHMARK(harvester_scan)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

@@ -6,13 +6,17 @@
 
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 template <>
 struct Codec<std::int64_t> {
   static std::string encode(const std::int64_t& number) { return std::to_string(number); }
   static std::int64_t decode(std::string_view text) { return std::stoll(std::string(text)); }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::bench {
 
 namespace {
 
@@ -21,12 +25,12 @@ struct List {
     std::int64_t tiles = 1;
     void describe(OptionVisitor& option) { option("tiles", tiles, {.help = "How many tiles there are"}); }
   };
-  static constexpr Out<std::vector<Tile>> tiles{"tiles"};
-  static StageSpec spec() {
-    return {.name = "list", .summary = "", .lists = Scope::tile, .outputs = {tiles}};
+  static constexpr pipeline::Out<std::vector<pipeline::Tile>> tiles{"tiles"};
+  static pipeline::StageSpec spec() {
+    return {.name = "list", .summary = "", .lists = pipeline::Scope::tile, .outputs = {tiles}};
   }
-  static void run(const Options& options, StageContext& unit) {
-    std::vector<Tile> list;
+  static void run(const Options& options, pipeline::StageContext& unit) {
+    std::vector<pipeline::Tile> list;
     for (std::int64_t i = 0; i < options.tiles; ++i)
       list.push_back({.index = i, .column = i, .row = 0, .cells = {}});
     unit.write(tiles, std::move(list));
@@ -39,11 +43,11 @@ struct NoOptions {
 
 struct Count {
   using Options = NoOptions;
-  static constexpr Out<std::int64_t> count{"count"};
-  static StageSpec spec() {
-    return {.name = "count", .summary = "", .scope = Scope::tile, .outputs = {count}};
+  static constexpr pipeline::Out<std::int64_t> count{"count"};
+  static pipeline::StageSpec spec() {
+    return {.name = "count", .summary = "", .scope = pipeline::Scope::tile, .outputs = {count}};
   }
-  static void run(const Options&, StageContext& unit) {
+  static void run(const Options&, pipeline::StageContext& unit) {
     unit.count_in(1);
     unit.count_out(1);
     unit.write(count, unit.tile().index);
@@ -52,51 +56,53 @@ struct Count {
 
 struct Sum {
   using Options = NoOptions;
-  static constexpr In<std::int64_t> count{"count"};
-  static constexpr Out<std::int64_t> sum{"sum"};
-  static StageSpec spec() { return {.name = "sum", .summary = "", .inputs = {count}, .outputs = {sum}}; }
-  static void run(const Options&, StageContext& unit) {
+  static constexpr pipeline::In<std::int64_t> count{"count"};
+  static constexpr pipeline::Out<std::int64_t> sum{"sum"};
+  static pipeline::StageSpec spec() {
+    return {.name = "sum", .summary = "", .inputs = {count}, .outputs = {sum}};
+  }
+  static void run(const Options&, pipeline::StageContext& unit) {
     std::int64_t total = 0;
     for (const auto& part : unit.read_all(count)) total += *part;
     unit.write(sum, total);
   }
 };
 
-Pipeline pipeline_of(const Registry& registry, std::int64_t tiles) {
-  Pipeline pipeline(registry);
+pipeline::Pipeline pipeline_of(const pipeline::Registry& registry, std::int64_t tiles) {
+  pipeline::Pipeline pipeline(registry);
   pipeline.add<List>({.tiles = tiles}).add<Count>().add<Sum>();
   return pipeline;
 }
 
 void run_in_memory(benchmark::State& state) {
-  const Registry registry;
-  const Pipeline pipeline = pipeline_of(registry, state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(run(pipeline, {.threads = 2}));
+  const pipeline::Registry registry;
+  const pipeline::Pipeline pipeline = pipeline_of(registry, state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::run(pipeline, {.threads = 2}));
 }
 BENCHMARK(run_in_memory)->Arg(1)->Arg(16)->Arg(64)->Arg(10'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void run_with_work_folder(benchmark::State& state) {
-  const Registry registry;
-  const Pipeline pipeline = pipeline_of(registry, state.range(0));
+  const pipeline::Registry registry;
+  const pipeline::Pipeline pipeline = pipeline_of(registry, state.range(0));
   const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
   for (auto _ : state) {
     std::filesystem::remove_all(work);
-    benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
+    benchmark::DoNotOptimize(pipeline::run(pipeline, {.work = work, .threads = 2}));
   }
 }
 BENCHMARK(run_with_work_folder)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void resume_finished_run(benchmark::State& state) {
-  const Registry registry;
-  const Pipeline pipeline = pipeline_of(registry, state.range(0));
+  const pipeline::Registry registry;
+  const pipeline::Pipeline pipeline = pipeline_of(registry, state.range(0));
   const auto work = std::filesystem::temp_directory_path() / "waymark_bench_engine";
   std::filesystem::remove_all(work);
-  run(pipeline, {.work = work});
-  for (auto _ : state) benchmark::DoNotOptimize(run(pipeline, {.work = work, .threads = 2}));
+  pipeline::run(pipeline, {.work = work});
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::run(pipeline, {.work = work, .threads = 2}));
 }
 BENCHMARK(resume_finished_run)->Arg(64)->Arg(1'000)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

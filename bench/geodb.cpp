@@ -9,14 +9,14 @@
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
 constexpr double kSide = 100'000;  // m
 const std::filesystem::path kMap = std::filesystem::temp_directory_path() / "waymark_geodb_benchmark.gpkg";
 
-MapContents million(std::int64_t count) {
-  MapContents map;
+geodb::MapContents million(std::int64_t count) {
+  geodb::MapContents map;
   map.crs = Crs::from_text("EPSG:32632");
   LandmarkType type;
   type.name = "rock";
@@ -41,14 +41,14 @@ MapContents million(std::int64_t count) {
   return map;
 }
 
-const MapContents& million_map() {
-  static const MapContents map = million(1'000'000);
+const geodb::MapContents& million_map() {
+  static const geodb::MapContents map = million(1'000'000);
   return map;
 }
 
 void WriteMap(benchmark::State& state) {
-  const MapContents& map = million_map();
-  for (auto _ : state) write_map(kMap, map);
+  const geodb::MapContents& map = million_map();
+  for (auto _ : state) geodb::write_map(kMap, map);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(map.landmarks.size()));
   state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(kMap)) / 1e6;
 }
@@ -56,34 +56,34 @@ BENCHMARK(WriteMap)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(3);
 
 /// Boxes that hold state.range(0) landmarks on average, at random places.
 void BoxQuery(benchmark::State& state) {
-  static const MapStore map = (write_map(kMap, million_map()), MapStore::open(kMap));
+  static const geodb::MapStore map = (geodb::write_map(kMap, million_map()), geodb::MapStore::open(kMap));
   const double side = kSide * std::sqrt(static_cast<double>(state.range(0)) / 1e6);
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> place(0, kSide - side);
   std::size_t hits = 0;
   for (auto _ : state) {
     const double x = 400'000 + place(random), y = 5'000'000 + place(random);
-    hits += map.query({.box = MapQuery::Box{x, y, x + side, y + side}}).size();
+    hits += map.query({.box = geodb::MapQuery::Box{x, y, x + side, y + side}}).size();
   }
   state.counters["hits"] = benchmark::Counter(static_cast<double>(hits), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(BoxQuery)->Arg(1)->Arg(10)->Arg(100)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 void NearestTen(benchmark::State& state) {
-  const MapStore map = MapStore::open(kMap);
+  const geodb::MapStore map = geodb::MapStore::open(kMap);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> place(0, kSide);
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        map.query({.nearest = MapQuery::NearestK{400'000 + place(random), 5'000'000 + place(random), 10}}));
+    benchmark::DoNotOptimize(map.query(
+        {.nearest = geodb::MapQuery::NearestK{400'000 + place(random), 5'000'000 + place(random), 10}}));
 }
 BENCHMARK(NearestTen)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
-  std::filesystem::remove(waymark::kMap);
+  std::filesystem::remove(waymark::bench::kMap);
 }

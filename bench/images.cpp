@@ -8,7 +8,7 @@
 #include "geo/camera.hpp"
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
 Camera lens(bool distorted) {
@@ -54,7 +54,7 @@ void read_image(benchmark::State& state) {
                                              nullptr) != CE_None)
           state.SkipWithError("cannot write");
   }
-  const auto image = import_image(path);
+  const auto image = importers::import_image(path);
   for (auto _ : state) benchmark::DoNotOptimize(image->read({0, 0, side, side}));
   state.counters["Mpx/s"] = benchmark::Counter(static_cast<double>(state.iterations()) * side * side / 1e6,
                                                benchmark::Counter::kIsRate);
@@ -62,6 +62,6 @@ void read_image(benchmark::State& state) {
 BENCHMARK(read_image)->ArgName("bands")->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

@@ -71,13 +71,13 @@ void count_cells(benchmark::State& state) {
 // Opens the file each time: decompression included.
 void from_file(benchmark::State& state, const std::string& path, NodataPolicy policy) {
   for (auto _ : state)
-    read_all(*import_dem({.files = {path}, .nodata = policy}), static_cast<int>(state.range(0)));
+    read_all(*importers::import_dem({.files = {path}, .nodata = policy}), static_cast<int>(state.range(0)));
   count_cells(state);
 }
 
 // Cached blocks: cost of the conversion to double.
 void from_cache(benchmark::State& state, const std::string& path) {
-  const auto dem = import_dem({.files = {path}});
+  const auto dem = importers::import_dem({.files = {path}});
   read_all(*dem, 1);
   for (auto _ : state) read_all(*dem, static_cast<int>(state.range(0)));
   count_cells(state);

@@ -19,16 +19,17 @@
 #include "tests/localization/made_look.hpp"
 #include "tests/localization/made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::bench {
+using namespace test;
 namespace {
 
 constexpr double kDensity = 0.02;  // landmarks per square metre
 
-SightingSet sightings(std::size_t count) {
+localization::SightingSet sightings(std::size_t count) {
   Random random(1, "sightings");
-  SightingSet set;
+  localization::SightingSet set;
   for (std::size_t i = 0; i < count; ++i) {
-    SeenLandmark s;
+    localization::SeenLandmark s;
     s.type = TypeId{0};
     s.range = random.uniform(3, 20);
     s.bearing = random.uniform(-1.5, 1.5);
@@ -39,25 +40,25 @@ SightingSet sightings(std::size_t count) {
   return set;
 }
 
-LandmarkGrid map_of(std::size_t landmarks) {
+localization::LandmarkGrid map_of(std::size_t landmarks) {
   auto all = scatter_landmarks(landmarks, std::sqrt(static_cast<double>(landmarks) / kDensity), 1);
   Random random(1, "features");
-  for (MapLandmark& l : all) l.features.value[0] = random.uniform(0.2, 1);
-  return LandmarkGrid(std::move(all));
+  for (localization::MapLandmark& l : all) l.features.value[0] = random.uniform(0.2, 1);
+  return localization::LandmarkGrid(std::move(all));
 }
 
 /// Likelihoods of particles within a metre of each other, features compared.
 void weight(benchmark::State& state) {
-  const LandmarkGrid map = map_of(static_cast<std::size_t>(state.range(0)));
+  const localization::LandmarkGrid map = map_of(static_cast<std::size_t>(state.range(0)));
   const auto particles = static_cast<std::size_t>(state.range(1));
-  const SightingSet seen = sightings(static_cast<std::size_t>(state.range(2)));
+  const localization::SightingSet seen = sightings(static_cast<std::size_t>(state.range(2)));
   Random random(1, "particles");
-  std::vector<Pose2> poses(particles);
-  for (Pose2& p : poses) p = {random.normal(), random.normal(), 0.1 * random.normal()};
-  const FeatureScales scales;
+  std::vector<localization::Pose2> poses(particles);
+  for (localization::Pose2& p : poses) p = {random.normal(), random.normal(), 0.1 * random.normal()};
+  const localization::FeatureScales scales;
   std::vector<double> fit(particles);
   for (auto _ : state) {
-    SightingScore score(seen, map, scales, {}, {.use_identities = false});
+    localization::SightingScore score(seen, map, scales, {}, {.use_identities = false});
     score.prefetch(poses);
     score(poses, fit);
     benchmark::DoNotOptimize(fit.data());
@@ -78,23 +79,26 @@ BENCHMARK(weight)
 
 /// Sightings of a robot that drives in a circle, one set every 0.5 m, three landmarks of `map` each, with
 /// errors as stated.
-std::vector<SightingSet> round_trip_sightings(const LandmarkGrid& map, std::size_t count, bool ranges) {
+std::vector<localization::SightingSet> round_trip_sightings(const localization::LandmarkGrid& map,
+                                                            std::size_t count, bool ranges) {
   Random random(1, "looks");
-  std::vector<SightingSet> looks(count);
-  Pose2 robot;
-  const Pose2 step = twist_motion(0.5, 0, 2 * std::numbers::pi / static_cast<double>(count), 1, {}).step;
-  for (SightingSet& look : looks) {
+  std::vector<localization::SightingSet> looks(count);
+  localization::Pose2 robot;
+  const localization::Pose2 step =
+      localization::twist_motion(0.5, 0, 2 * std::numbers::pi / static_cast<double>(count), 1, {}).step;
+  for (localization::SightingSet& look : looks) {
     robot = robot * step;
     std::vector<std::uint32_t> near;
     map.near(robot.at(), 20, [&](std::uint32_t i) { near.push_back(i); });
     for (int i = 0; i < 3 && !near.empty(); ++i) {
       const auto chosen = near.begin() + static_cast<std::ptrdiff_t>(random.uniform_index(near.size()));
-      const MapLandmark& l = map[*chosen];
+      const localization::MapLandmark& l = map[*chosen];
       near.erase(chosen);
       const Eigen::Vector2d to = l.at - robot.at();
-      SeenLandmark s;
+      localization::SeenLandmark s;
       s.type = l.type;
-      s.bearing = wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw + s.bearing_sd * random.normal());
+      s.bearing =
+          localization::wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw + s.bearing_sd * random.normal());
       if (ranges) s.range = std::max(to.norm() + s.range_sd * random.normal(), 0.1);
       s.features.value[0] = l.features.value[0] + 0.1 * random.normal();
       s.features.variance[0] = 0.01;
@@ -107,16 +111,17 @@ std::vector<SightingSet> round_trip_sightings(const LandmarkGrid& map, std::size
 /// The particle filter's whole update, motion and sightings without identities: 1000 particles, three
 /// sightings, 50,000 landmarks in memory. `error_m`: mean, so that a filter that is lost shows.
 void particle_update(benchmark::State& state) {
-  const LandmarkGrid map = map_of(50000);
-  const std::vector<SightingSet> looks = round_trip_sightings(map, 200, state.range(0) != 0);
-  const BodyMotion step = twist_motion(0.5, 0, 2 * std::numbers::pi / 200, 1, {});
-  PoseEstimate start;
+  const localization::LandmarkGrid map = map_of(50000);
+  const std::vector<localization::SightingSet> looks = round_trip_sightings(map, 200, state.range(0) != 0);
+  const localization::BodyMotion step = localization::twist_motion(0.5, 0, 2 * std::numbers::pi / 200, 1, {});
+  localization::PoseEstimate start;
   start.covariance = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal();
-  ParticleOptions options;
+  localization::ParticleOptions options;
   options.particles = 1000;
   options.threads = 1;
-  ParticleFilter filter(start, LandmarkWindow(map), {}, {.use_identities = false}, options);
-  Pose2 truth;
+  localization::ParticleFilter filter(start, localization::LandmarkWindow(map), {}, {.use_identities = false},
+                                      options);
+  localization::Pose2 truth;
   double error = 0;
   std::size_t updates = 0;
   for (auto _ : state) {
@@ -132,16 +137,17 @@ BENCHMARK(particle_update)->ArgName("ranges")->Arg(0)->Unit(benchmark::kMillisec
 
 /// Cost of the update in a cached window of 200 m, which does not depend on the size of the map.
 void weight_in_window(benchmark::State& state) {
-  LandmarkWindow window(
+  localization::LandmarkWindow window(
       [](const Eigen::AlignedBox2d& box) {
         return scatter_landmarks(static_cast<std::size_t>(kDensity * box.volume()), box.sizes().x(), 1);
       },
       100);
-  const SightingSet seen = sightings(8);
-  const FeatureScales scales;
+  const localization::SightingSet seen = sightings(8);
+  const localization::FeatureScales scales;
   double sum = 0;
   for (auto _ : state) {
-    const SightingScore score(seen, window.landmarks_near({0, 0}, 30), scales, {}, {.use_identities = false});
+    const localization::SightingScore score(seen, window.landmarks_near({0, 0}, 30), scales, {},
+                                            {.use_identities = false});
     for (int i = 0; i < 1000; ++i) sum += score({0.001 * i, 0, 0});
   }
   benchmark::DoNotOptimize(sum);
@@ -153,7 +159,7 @@ struct MapFile {
   explicit MapFile(std::int64_t count)
       : path(std::filesystem::temp_directory_path() / ("waymark_windows_" + std::to_string(count) + ".gpkg")),
         side(std::sqrt(static_cast<double>(count) / kDensity)) {
-    MapContents map;
+    geodb::MapContents map;
     LandmarkType type;
     type.name = "rock";
     type.features = {{"radius", "m", Scale::ratio, 0.01, 100, ""},
@@ -170,7 +176,7 @@ struct MapFile {
       l.quality = {.seen = 3, .visible = 4, .feature_confidences = {0.9, 0.9}};
       l.observations = 3;
     }
-    write_map(path, map);
+    geodb::write_map(path, map);
   }
   ~MapFile() { std::filesystem::remove(path); }
   std::filesystem::path path;
@@ -181,7 +187,7 @@ struct MapFile {
 /// median and the 99th percentile of the times are counters, microseconds.
 void cold_window(benchmark::State& state) {
   const MapFile file(state.range(0));
-  const MapStore store = MapStore::open(file.path);
+  const geodb::MapStore store = geodb::MapStore::open(file.path);
   const LocalFrame frame(store.crs(), {});
   Random random(1, "places");
   std::vector<double> times;
@@ -189,10 +195,10 @@ void cold_window(benchmark::State& state) {
   for (auto _ : state) {
     const double x = random.uniform(0, file.side - 70), y = random.uniform(0, file.side - 70);
     const auto begun = std::chrono::steady_clock::now();
-    std::vector<MapLandmark> all;
-    for (const Landmark& l : store.query({.box = MapQuery::Box{x, y, x + 70, y + 70}}))
-      all.push_back(map_landmark(l, store.types()[l.type], frame));
-    const LandmarkGrid grid(std::move(all));
+    std::vector<localization::MapLandmark> all;
+    for (const Landmark& l : store.query({.box = geodb::MapQuery::Box{x, y, x + 70, y + 70}}))
+      all.push_back(localization::map_landmark(l, store.types()[l.type], frame));
+    const localization::LandmarkGrid grid(std::move(all));
     landmarks += grid.size();
     times.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begun).count());
@@ -214,13 +220,13 @@ void constellation(benchmark::State& state) {
   auto map = scatter_landmarks(static_cast<std::size_t>(state.range(0)),
                                std::sqrt(static_cast<double>(state.range(0)) / kDensity), 1, 0.05);
   Random random(1, "radius");
-  std::vector<LandmarkPosition> places;
-  for (MapLandmark& l : map) {
+  std::vector<localization::LandmarkPosition> places;
+  for (localization::MapLandmark& l : map) {
     l.features.value[0] = random.log_uniform(0.2, 1);
     places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
   }
-  const ConstellationIndex index(map, FeatureScales{});
-  std::vector<SightingSet> sets;
+  const localization::ConstellationIndex index(map, localization::FeatureScales{});
+  std::vector<localization::SightingSet> sets;
   for (int i = 0; i < 20; ++i)
     sets.push_back(look(map, places, {.origin = places[random.uniform_index(places.size())].at}, {},
                         {.reach = 18}, random)
@@ -233,33 +239,34 @@ void constellation(benchmark::State& state) {
 BENCHMARK(constellation)->Arg(1000)->Arg(30000)->Arg(300000)->Unit(benchmark::kMillisecond);
 
 void kalman_update(benchmark::State& state) {
-  MapLandmark landmark;
+  localization::MapLandmark landmark;
   landmark.at = {8, 2};
-  const SightingSet seen = sightings(1);
-  PoseEstimate e{{}, Eigen::Matrix3d::Identity() * 0.1};
-  for (auto _ : state) benchmark::DoNotOptimize(ekf_update(e, seen.sightings[0], {}, landmark));
+  const localization::SightingSet seen = sightings(1);
+  localization::PoseEstimate e{{}, Eigen::Matrix3d::Identity() * 0.1};
+  for (auto _ : state) benchmark::DoNotOptimize(localization::ekf_update(e, seen.sightings[0], {}, landmark));
 }
 BENCHMARK(kalman_update);
 
 void identify_eight(benchmark::State& state) {
-  const LandmarkGrid map = map_of(50000);
-  SightingSet seen = sightings(8);
-  PoseEstimate robot{{}, Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal()};
-  for (auto _ : state) benchmark::DoNotOptimize(identify(seen, robot, map, {}, {}).matches.size());
+  const localization::LandmarkGrid map = map_of(50000);
+  localization::SightingSet seen = sightings(8);
+  localization::PoseEstimate robot{{}, Eigen::Vector3d(0.04, 0.04, 1e-4).asDiagonal()};
+  for (auto _ : state)
+    benchmark::DoNotOptimize(localization::identify(seen, robot, map, {}, {}).matches.size());
 }
 BENCHMARK(identify_eight)->Unit(benchmark::kMicrosecond);
 
 void stems_in_scan(benchmark::State& state) {
   Random random(1, "scan");
-  LaserScan scan{
+  localization::LaserScan scan{
       .robot_from_sensor = {}, .first_angle = -1.57, .angle_step = 0.0087, .ranges = {}, .max_range = 80};
   for (int i = 0; i < 361; ++i)
     scan.ranges.push_back(static_cast<float>(random.bernoulli(0.7) ? 81.9 : random.uniform(3, 60)));
-  for (auto _ : state) benchmark::DoNotOptimize(find_stems(scan, {}).size());
+  for (auto _ : state) benchmark::DoNotOptimize(localization::find_stems(scan, {}).size());
 }
 BENCHMARK(stems_in_scan)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

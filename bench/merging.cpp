@@ -8,7 +8,8 @@
 
 #include "tests/pipeline/fusion/made_objects.hpp"
 
-namespace waymark::testing {
+namespace waymark::bench {
+using namespace test;
 namespace {
 
 std::vector<Observation> observations(std::uint32_t count) {
@@ -17,7 +18,7 @@ std::vector<Observation> observations(std::uint32_t count) {
   TypeRegistry types;
   register_landmark_types(types);
   std::vector<Observation> all;
-  for (const ObservedObject& s : made.seen) {
+  for (const pipeline::ObservedObject& s : made.seen) {
     Observation o;
     o.type = types.id("rock");
     o.source = "image_" + std::to_string(s.source);
@@ -38,7 +39,7 @@ void merge(benchmark::State& state) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(state.range(1)));
   std::size_t landmarks = 0;
-  for (auto _ : state) landmarks = merge_observations(all, types, Crs::local()).landmarks.size();
+  for (auto _ : state) landmarks = pipeline::merge_observations(all, types, Crs::local()).landmarks.size();
   state.counters["observations"] = static_cast<double>(all.size());
   state.counters["landmarks"] = static_cast<double>(landmarks);
 }
@@ -51,6 +52,6 @@ BENCHMARK(merge)
     ->Iterations(1);
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

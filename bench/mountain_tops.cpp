@@ -9,7 +9,8 @@
 #include "pipeline/terrain/isolation.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
 
-namespace waymark::testing {
+namespace waymark::bench {
+using namespace test;
 namespace {
 
 // Hills of every size from a few cells up: octaves of smoothed lattice noise, whole metres as in SRTM.
@@ -61,11 +62,11 @@ BENCHMARK(prominence)->Arg(1000)->Arg(2000)->Arg(4000)->Arg(8000)->Unit(benchmar
 
 void all_isolations(benchmark::State& state) {
   const auto& dem = dem_of(state.range(0));
-  std::vector<HighPoint> points;
-  for (const Summit& s : survey(dem, 1024)) points.push_back({s.cell, s.height});
+  std::vector<pipeline::HighPoint> points;
+  for (const pipeline::Summit& s : survey(dem, 1024)) points.push_back({s.cell, s.height});
   for (auto _ : state) {
-    const ReliefPyramid relief = pyramid_of(dem, 1024);
-    benchmark::DoNotOptimize(measure_isolation(points, dem, relief, {}));
+    const pipeline::ReliefPyramid relief = pyramid_of(dem, 1024);
+    benchmark::DoNotOptimize(pipeline::measure_isolation(points, dem, relief, {}));
   }
   state.counters["cells/s"] = benchmark::Counter(static_cast<double>(dem.geometry().cells()),
                                                  benchmark::Counter::kIsIterationInvariantRate);
@@ -75,6 +76,6 @@ void all_isolations(benchmark::State& state) {
 BENCHMARK(all_isolations)->Arg(1000)->Arg(2000)->Arg(4000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

@@ -9,7 +9,7 @@
 #include "pipeline/rocks/synthetic_rock.hpp"
 #include "pipeline/vision/local_background.hpp"
 #include "pipeline/vision/sun_angle.hpp"
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
 // A noisy image with drawn rocks, `per_megapixel` of them.
@@ -19,9 +19,9 @@ Pixels field(std::int64_t side, double per_megapixel) {
   for (float& value : image.cells()) value = static_cast<float>(random.normal(120, 1.5));
   const auto count = static_cast<int>(per_megapixel * static_cast<double>(side * side) * 1e-6);
   for (int i = 0; i < count; ++i) {
-    SyntheticRock rock{.radius = random.log_uniform(0.8, 6), .reach = 0, .x = 16, .y = 16};
+    pipeline::SyntheticRock rock{.radius = random.log_uniform(0.8, 6), .reach = 0, .x = 16, .y = 16};
     rock.reach = rock.radius * random.uniform(0.8, 1.6);
-    const Grid<float> picture = render_rock_shadow(rock, 40, 32);
+    const Grid<float> picture = pipeline::render_rock_shadow(rock, 40, 32);
     const auto x0 = static_cast<std::int64_t>(random.uniform_index(static_cast<std::uint64_t>(side - 40)));
     const auto y0 = static_cast<std::int64_t>(random.uniform_index(static_cast<std::uint64_t>(side - 32)));
     for (std::int64_t y = 0; y < 32; ++y)
@@ -30,37 +30,37 @@ Pixels field(std::int64_t side, double per_megapixel) {
   return image;
 }
 
-void find(benchmark::State& state, RockMethod method) {
+void find(benchmark::State& state, pipeline::RockMethod method) {
   const Pixels image = field(4096, static_cast<double>(state.range(0)));
-  const RockSearch search{.method = method, .sun_angle = Radians{0}, .sun_elevation = Radians{0.7}};
+  const pipeline::RockSearch search{.method = method, .sun_angle = Radians{0}, .sun_elevation = Radians{0.7}};
   std::size_t rocks = 0;
-  for (auto _ : state) rocks = find_rocks(image, search).size();
+  for (auto _ : state) rocks = pipeline::find_rocks(image, search).size();
   state.counters["rocks"] = static_cast<double>(rocks);
   state.SetItemsProcessed(state.iterations() * 4096 * 4096);  // pixels
 }
 void shadow(benchmark::State& state) {
-  find(state, RockMethod::shadow);
+  find(state, pipeline::RockMethod::shadow);
 }
 void classic(benchmark::State& state) {
-  find(state, RockMethod::classic);
+  find(state, pipeline::RockMethod::classic);
 }
 BENCHMARK(shadow)->Arg(50)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(classic)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 void background(benchmark::State& state) {
   const Pixels image = field(4096, 50);
-  for (auto _ : state) benchmark::DoNotOptimize(local_background(image, 32).level(0, 0));
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::local_background(image, 32).level(0, 0));
   state.SetItemsProcessed(state.iterations() * 4096 * 4096);
 }
 BENCHMARK(background)->Unit(benchmark::kMillisecond);
 
 void sun_angle(benchmark::State& state) {
   const Pixels image = field(2048, 500);
-  for (auto _ : state) benchmark::DoNotOptimize(estimate_sun_angle(image));
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::estimate_sun_angle(image));
   state.SetItemsProcessed(state.iterations() * 2048 * 2048);
 }
 BENCHMARK(sun_angle)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 BENCHMARK_MAIN();

@@ -6,22 +6,23 @@
 #include "localization/slam/graph_solver.hpp"
 #include "tests/localization/made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::bench {
+using namespace test;
 namespace {
 
 /// A set of sightings in a synthetic world with so many landmarks on 50 m by 50 m, about a tenth of them
 /// seen.
 void slam_set(benchmark::State& state) {
   MadeDrive drive(1, static_cast<std::size_t>(state.range(0)));
-  SlamOptions options;
+  localization::SlamOptions options;
   options.max_range = 12;
   options.nearest = 0.3;
-  EkfSlam slam({drive.truth(), Eigen::Matrix3d::Identity() * 1e-9}, options);
+  localization::EkfSlam slam({drive.truth(), Eigen::Matrix3d::Identity() * 1e-9}, options);
   for (int i = 0; i < 150; ++i) slam.predict(drive.drive()), slam.update(drive.look());
   for (auto _ : state) {
     state.PauseTiming();
-    const BodyMotion step = drive.drive();
-    const SightingSet seen = drive.look();
+    const localization::BodyMotion step = drive.drive();
+    const localization::SightingSet seen = drive.look();
     state.ResumeTiming();
     slam.predict(step);
     benchmark::DoNotOptimize(slam.update(seen).size());
@@ -30,29 +31,30 @@ void slam_set(benchmark::State& state) {
 }
 BENCHMARK(slam_set)->Arg(30)->Arg(60)->Arg(200)->Unit(benchmark::kMicrosecond);
 
-PoseGraph rounds(std::size_t poses) {
+localization::PoseGraph rounds(std::size_t poses) {
   Random random(1, "rounds");
-  PoseGraph graph;
+  localization::PoseGraph graph;
   for (std::size_t i = 0; i < poses; ++i) {
     graph.poses.push_back({.id = static_cast<std::int64_t>(i), .at = {}});
-    const Pose2 step{0.5 + 0.01 * random.normal(), 0.005 * random.normal(), 0.05 + 0.005 * random.normal()};
+    const localization::Pose2 step{0.5 + 0.01 * random.normal(), 0.005 * random.normal(),
+                                   0.05 + 0.005 * random.normal()};
     const Eigen::Matrix3d root = Eigen::Vector3d(100, 200, 200).asDiagonal();
     if (i > 0) graph.steps.push_back({i - 1, i, step, root});
     constexpr std::size_t kRound = 126;  // poses
     if (i >= kRound && i % 10 == 0)
       graph.steps.push_back(
-          {i - kRound, i, {0, 0, wrap_angle(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
+          {i - kRound, i, {0, 0, localization::wrap_angle(0.05 * kRound)}, Eigen::Matrix3d::Identity() * 20});
   }
   return graph;
 }
 
 void graph_from_odometry(benchmark::State& state) {
-  const PoseGraph graph = rounds(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(optimise(graph).chi2);
+  const localization::PoseGraph graph = rounds(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(localization::optimise(graph).chi2);
 }
 BENCHMARK(graph_from_odometry)->Arg(500)->Arg(2000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 #include <vector>
-namespace waymark {
+namespace waymark::bench {
 
 /// Tables with the same columns, as Markdown and as an HTML page.
 class Tables {
@@ -39,4 +39,4 @@ class Tables {
   std::string md_, html_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::bench

@@ -10,13 +10,13 @@
 #include "testbed/noise.hpp"
 #include "testbed/render.hpp"
 
-namespace waymark {
+namespace waymark::bench {
 namespace {
 
 const Terrain& rough_terrain() {
   static const Terrain terrain(
-      fractal_grid({.longest = 1000, .shortest = 2, .amplitude = 30, .hurst = 0.8, .seed = 1},
-                   {4097, 4097, 0, 0, 1}),
+      testbed::fractal_grid({.longest = 1000, .shortest = 2, .amplitude = 30, .hurst = 0.8, .seed = 1},
+                            {4097, 4097, 0, 0, 1}),
       0, 0, 1, 1);
   return terrain;
 }
@@ -49,39 +49,39 @@ void build_terrain(benchmark::State& state) {
 }
 BENCHMARK(build_terrain)->Unit(benchmark::kMillisecond);
 
-const Scene& site() {
-  static const Scene scene = [] {
-    SiteModel ground;
+const testbed::Scene& site() {
+  static const testbed::Scene scene = [] {
+    testbed::SiteModel ground;
     ground.width = ground.height = 800;
     ground.cell = 0.4;
-    return make_scene(ground, 1);
+    return testbed::make_scene(ground, 1);
   }();
   return scene;
 }
 
 void make_ground(benchmark::State& state) {
-  SiteModel ground;
+  testbed::SiteModel ground;
   ground.width = ground.height = 800;
   ground.cell = 0.4;
-  for (auto _ : state) benchmark::DoNotOptimize(make_scene(ground, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(testbed::make_scene(ground, 1));
 }
 BENCHMARK(make_ground)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 // 1 Mpx of descent image: rays, shading, cast shadows, rocks, point spread, noise.
 void render_descent(benchmark::State& state) {
-  const Exposure exposure;
-  const LitTerrain ground(site(), exposure.sun);
+  const testbed::Exposure exposure;
+  const testbed::LitTerrain ground(site(), exposure.sun);
   PosedCamera camera;
   camera.camera = {.columns = 1000, .rows = 1000, .fx = 1000, .fy = 1000, .cx = 499.5, .cy = 499.5};
   camera.grid_from_camera.transform.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   camera.grid_from_camera.transform.translation().z() = double(state.range(0));
   for (auto _ : state)
-    benchmark::DoNotOptimize(render_view(site(), ground, camera_view(camera), exposure, 1));
+    benchmark::DoNotOptimize(testbed::render_view(site(), ground, testbed::camera_view(camera), exposure, 1));
   state.SetItemsProcessed(state.iterations() * 1000 * 1000);
 }
 BENCHMARK(render_descent)->Arg(500)->Arg(200)->Arg(60)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::bench
 
 BENCHMARK_MAIN();

@@ -62,18 +62,18 @@ const std::string& forest_file() {
   return path;
 }
 
-void search(benchmark::State& state, const TreeSearch& how) {
+void search(benchmark::State& state, const pipeline::TreeSearch& how) {
   const std::string& file = forest_file();
   std::size_t trees = 0;
   for (auto _ : state) {
-    const auto canopy = import_canopy({.chm = {file}, .inspect = false});
+    const auto canopy = importers::import_canopy({.chm = {file}, .inspect = false});
     trees = 0;
     for (std::int64_t row = 0; row < kSide; row += 1024)
       for (std::int64_t column = 0; column < kSide; column += 1024)
-        trees += find_trees(*canopy,
-                            {column, row, std::min<std::int64_t>(1024, kSide - column),
-                             std::min<std::int64_t>(1024, kSide - row)},
-                            how)
+        trees += pipeline::find_trees(*canopy,
+                                      {column, row, std::min<std::int64_t>(1024, kSide - column),
+                                       std::min<std::int64_t>(1024, kSide - row)},
+                                      how)
                      .size();
   }
   state.counters["trees"] = static_cast<double>(trees);
@@ -82,7 +82,7 @@ void search(benchmark::State& state, const TreeSearch& how) {
 }
 
 void Treetops(benchmark::State& state) {
-  TreeSearch how{.crowns = false};
+  pipeline::TreeSearch how{.crowns = false};
   how.forest.tops.prominence = 0;
   search(state, how);
 }
@@ -99,8 +99,8 @@ void TreesWithCrowns(benchmark::State& state) {
 BENCHMARK(TreesWithCrowns)->Unit(benchmark::kMillisecond);
 
 void LocalMaxima(benchmark::State& state) {
-  TreeSearch how{.crowns = false};
-  how.forest = local_maxima_preset(how.forest);
+  pipeline::TreeSearch how{.crowns = false};
+  how.forest = pipeline::local_maxima_preset(how.forest);
   search(state, how);
 }
 BENCHMARK(LocalMaxima)->Unit(benchmark::kMillisecond);
@@ -136,8 +136,8 @@ const std::string& las_file() {
 void ReadLas(benchmark::State& state) {
   const std::string& file = las_file();
   for (auto _ : state) {
-    const LasHeader header = read_las_header(file);
-    benchmark::DoNotOptimize(read_las_points(header, 0, header.points).data());
+    const importers::LasHeader header = importers::read_las_header(file);
+    benchmark::DoNotOptimize(importers::read_las_points(header, 0, header.points).data());
   }
   state.counters["points"] = benchmark::Counter(2e6, benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -145,21 +145,22 @@ BENCHMARK(ReadLas)->Unit(benchmark::kMillisecond);
 
 void CatalogueLas(benchmark::State& state) {
   const std::string& file = las_file();
-  for (auto _ : state) benchmark::DoNotOptimize(LasCatalogue({file}, 1 << 28).points());
+  for (auto _ : state) benchmark::DoNotOptimize(importers::LasCatalogue({file}, 1 << 28).points());
   state.counters["points"] = benchmark::Counter(2e6, benchmark::Counter::kIsIterationInvariantRate);
 }
 BENCHMARK(CatalogueLas)->Unit(benchmark::kMillisecond);
 
 void CrownsOfColour(benchmark::State& state) {
   constexpr std::int64_t side = 768;
-  const std::int64_t reach = crown_probability_reach(0.6);
+  const std::int64_t reach = pipeline::crown_probability_reach(0.6);
   Random random(2, "bench colours");
-  ColourWindow image{{-reach, -reach, side + 2 * reach, side + 2 * reach}, 0.6, {}};
+  pipeline::ColourWindow image{{-reach, -reach, side + 2 * reach, side + 2 * reach}, 0.6, {}};
   image.bands.assign(4, Grid<float>(side + 2 * reach, side + 2 * reach));
   for (auto& band : image.bands)
     for (float& value : band.cells()) value = static_cast<float>(random.uniform());
   for (auto _ : state)
-    benchmark::DoNotOptimize(crown_probability(image, {0, 0, side, side}, crown_network_infrared()));
+    benchmark::DoNotOptimize(
+        pipeline::crown_probability(image, {0, 0, side, side}, pipeline::crown_network_infrared()));
   state.counters["pixels"] =
       benchmark::Counter(double(side * side), benchmark::Counter::kIsIterationInvariantRate);
 }

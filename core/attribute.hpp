@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 #include <vector>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Fact about a landmark that is not an observed feature, e.g. the position of the key saddle of a summit.
 /// An attribute has no spread, is never merged, and has its own column in the map.
@@ -21,4 +21,4 @@ using AttributeValue = std::variant<std::monostate, double, std::int64_t, std::s
 /// One value per AttributeSpec of the type, in the order of the specs.
 using AttributeSet = std::vector<AttributeValue>;
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <type_traits>
 #include <vector>
-namespace waymark {
+namespace waymark::inline core {
 
 static_assert(std::endian::native == std::endian::little, "artifacts are little-endian");
 
@@ -86,4 +86,4 @@ class ByteReader {
   std::string_view bytes_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

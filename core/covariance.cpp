@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/covariance.hpp"
 
-namespace waymark {
+namespace waymark::inline core {
 
 bool is_covariance(const Eigen::Matrix2d& matrix) {
   const double trace = matrix(0, 0) + matrix(1, 1);
@@ -9,4 +9,4 @@ bool is_covariance(const Eigen::Matrix2d& matrix) {
   return matrix.allFinite() && matrix(0, 0) >= 0 && matrix(1, 1) >= 0 && determinant >= -1e-9 * trace * trace;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

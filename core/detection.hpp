@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 #include "core/observation.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Ellipse in an image. (0, 0) is the centre of the first pixel, x to the right, y down.
 struct PixelEllipse {
@@ -40,4 +40,4 @@ struct Detection {
   friend bool operator==(const Detection&, const Detection&) = default;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -7,7 +7,7 @@
 
 #include "core/printable.hpp"
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 // Bytes, so that a message fits on a screen; hints may list every option of a stage.
@@ -48,4 +48,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Category of an error; determines the exit code of the program.
 enum class ErrorCode {
@@ -56,4 +56,4 @@ std::string nearest_name(std::string_view word, const auto& candidates) {
   return best;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 double weighted_mean(std::span<const WeightedValue> seen, double total) {
@@ -50,4 +50,4 @@ FeatureValue merge(std::span<const WeightedValue> seen, Scale scale) {
   return {value, has_spread ? spread / freedom : 0, static_cast<int>(seen.size())};
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Scale of measurement of a feature. The paper's formulas give wrong values if it is ignored.
 enum class Scale {
@@ -53,4 +53,4 @@ FeatureValue merge(std::span<const WeightedValue> seen, Scale scale);
 /// Returns a - b; for an axis the smallest signed angle between both, radians.
 double difference(double a, double b, Scale scale);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

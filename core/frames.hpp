@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
-namespace waymark {
+namespace waymark::inline core {
 
 struct MapCrs;       ///< x, y in the units of the map's CRS (x = easting or longitude), z in metres
 struct MapFrame;     ///< east, north, up in metres about the map's origin
@@ -45,4 +45,4 @@ struct Pose {
   Pose<From, To> inverse() const { return {transform.inverse()}; }
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Rectangle of cells: columns [column, column + columns), rows [row, row + rows). May extend beyond a grid.
 struct Window {
@@ -67,4 +67,4 @@ class Grid {
   std::vector<T> cells_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

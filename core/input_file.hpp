@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
-namespace waymark {
+namespace waymark::inline core {
 
 /// File that a run has read, with the hash that identifies its content.
 struct InputFile {
@@ -12,4 +12,4 @@ struct InputFile {
   friend bool operator==(const InputFile&, const InputFile&) = default;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -7,7 +7,7 @@
 
 #include "core/printable.hpp"
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 bool is_digit(char c) {
@@ -232,4 +232,4 @@ std::string_view json_or_empty(std::string_view text) {
   return find_json_fault(text) ? std::string_view() : text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

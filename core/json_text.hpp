@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 #include "core/error.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Largest depth of objects and lists in a JSON text. The formats that are read need at most ten; recursive
 /// code over deeper values overflows the stack.
@@ -30,4 +30,4 @@ std::string_view checked_json(std::string_view text, std::string_view origin,
 /// Returns `text` unchanged, or an empty text if it has a fault, for readers that go on without it.
 std::string_view json_or_empty(std::string_view text);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -8,7 +8,7 @@
 #include "core/feature.hpp"
 #include "core/frames.hpp"
 #include "core/observation.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Quality of the observations of a landmark: counts, and one confidence per feature.
 struct Quality {
@@ -31,4 +31,4 @@ struct Landmark {
   int observations = 1;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

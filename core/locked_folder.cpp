@@ -11,7 +11,7 @@
 #include <string>
 #include <system_error>
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ LockedFolder::~LockedFolder() {
   if (lock_ >= 0) ::close(lock_);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

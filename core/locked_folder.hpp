@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <string_view>
-namespace waymark {
+namespace waymark::inline core {
 
 /// A folder PREFIX<process>-XXXXXX, removed with its content by the destructor. It is locked while the
 /// process lives; the constructor removes those of dead processes in the same folder.
@@ -21,4 +21,4 @@ class LockedFolder {
   int lock_ = -1;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -6,7 +6,7 @@
 #include <string>
 #include "core/feature.hpp"
 #include "core/frames.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 using TypeId = std::uint16_t;  ///< index into the TypeRegistry
 
@@ -23,4 +23,4 @@ struct Observation {
   std::string rejected;  ///< reason; empty if accepted
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 #include "core/units.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Declaration of an option; source of its help, JSON schema, Markdown, range check and canonical form.
 struct Field {
@@ -50,4 +50,4 @@ class OptionVisitor {
   virtual void texts(std::string_view name, std::vector<std::string>& value, const Field&) = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::inline core {
 
 Eigen::Vector2d PrincipalAxes::major_direction() const {
   return {std::cos(angle), std::sin(angle)};
@@ -20,4 +20,4 @@ PrincipalAxes principal_axes(const Eigen::Matrix2d& matrix) {
   return {middle + reach, middle - reach, std::atan2(xy + 0.0, half) / 2};
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Eigenvalues and eigenvectors of a symmetric 2x2 matrix, e.g. of a covariance or of second moments.
 struct PrincipalAxes {
@@ -17,4 +17,4 @@ struct PrincipalAxes {
 /// gives NaN.
 PrincipalAxes principal_axes(const Eigen::Matrix2d& matrix);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 std::string escaped_byte(char c) {
@@ -78,4 +78,4 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
   return safe;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

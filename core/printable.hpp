@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Returns the bytes of the well-formed UTF-8 character at the begin of a text (Unicode 15, table 3-7); 0 if
 /// there is none.
@@ -14,4 +14,4 @@ std::size_t utf8_length(std::string_view text);
 /// than `max_bytes` is cut in its middle.
 std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

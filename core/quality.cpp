@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::inline core {
 
 std::optional<double> multiplicity_confidence(int seen, int visible) {
   if (visible <= 0) return std::nullopt;
@@ -41,4 +41,4 @@ std::optional<double> landmark_quality(std::optional<double> multiplicity,
   return *multiplicity * (total > 0 ? sum / total : 1.0);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

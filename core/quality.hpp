@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 #include "core/feature.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Computes the multiplicity-based confidence q_# = seen / visible in [0, 1] (Rossmann et al., eq. 5).
 /// `seen` counts the images that detected the landmark. `visible` counts the images that cover it and are at
@@ -33,4 +33,4 @@ std::optional<double> landmark_quality(std::optional<double> multiplicity,
                                        std::span<const std::optional<double>> feature_confidences,
                                        std::span<const double> weights);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

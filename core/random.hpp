@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string_view>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Scrambles the bits of a number (splitmix64, Steele, Lea & Flood 2014); neighbours become uncorrelated.
 constexpr std::uint64_t mix_bits(std::uint64_t x) {
@@ -75,4 +75,4 @@ class Random {
   std::uint64_t state_[4] = {};
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <utility>
 #include <vector>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Moves items[order[i]] to index i in place, by the cycles of the permutation, in O(n) moves.
 template <class T>
@@ -23,4 +23,4 @@ void reorder(std::vector<T>& items, std::vector<std::uint32_t> order) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 #include "core/error.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Returns the time that the environment variable SOURCE_DATE_EPOCH fixes, in seconds since 1970 UTC
 /// (reproducible-builds.org); `std::nullopt` if it is not set. With it, two runs write the same bytes: all
@@ -23,4 +23,4 @@ inline std::optional<std::chrono::sys_seconds> source_date() {
   return std::chrono::sys_seconds(std::chrono::seconds(seconds));
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace waymark {
+namespace waymark::inline core {
 
 std::string read_text(const std::filesystem::path& file, std::string_view what, ErrorCode code,
                       std::string_view hint) {
@@ -18,4 +18,4 @@ std::string read_text(const std::filesystem::path& file, std::string_view what, 
   return std::move(text).str();
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

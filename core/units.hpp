@@ -2,7 +2,7 @@
 #pragma once
 #include <compare>
 #include <numbers>
-namespace waymark {
+namespace waymark::inline core {
 
 /// Number with a unit. There is no implicit conversion to or from double, nor between units: Meters + Radians
 /// does not compile.
@@ -71,4 +71,4 @@ constexpr Degrees operator""_deg(unsigned long long v) {
 }
 }  // namespace literals
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/ziggurat.hpp"
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 // For 128 layers (Doornik 2005): start of the tail, and area of each layer.
@@ -38,4 +38,4 @@ double Ziggurat::sample_edge(Random& random, std::size_t layer, double u) const 
   return low + random.uniform() * (high - low) < curve(x) ? x : (*this)(random);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

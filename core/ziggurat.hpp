@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Sampler of N(0, 1) for inner loops, by the ziggurat method (Marsaglia & Tsang 2000). One draw of 64 bits
 /// gives layer and abscissa (Doornik 2005). Takes about 3 ns, a tenth of Random::normal, and gives another
@@ -29,4 +29,4 @@ class Ziggurat {
   std::array<double, kLayers> inner_;     // fraction of a layer that lies below the curve
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -27,15 +27,15 @@ std::string only_image(const std::filesystem::path& folder) {
 
 int main() try {
   std::ofstream("one_image.json") << kScenario;
-  simulate({.scenario = "one_image.json", .folder = "one_image"});
+  workflows::simulate({.scenario = "one_image.json", .folder = "one_image"});
 
   std::size_t found = 0;
   for (const std::string kind : {"craters", "rocks"}) {
-    DetectRequest request;
+    workflows::DetectRequest request;
     request.kind = kind;
     request.image = only_image("one_image/images");
     request.output = kind + ".csv";
-    const DetectResult result = detect(request);
+    const workflows::DetectResult result = workflows::detect(request);
     for (const std::string& warning : result.warnings) std::cout << "warning: " << warning << '\n';
     std::cout << result.detections.detections.size() << ' ' << kind << "; " << result.light << '\n';
     found += result.detections.detections.size();

@@ -24,20 +24,21 @@ constexpr const char* kScenario = R"({
 
 int main() try {
   std::ofstream("drive.json") << kScenario;
-  simulate({.scenario = "drive.json", .folder = "site"});
+  workflows::simulate({.scenario = "drive.json", .folder = "site"});
 
-  ImportRequest map{.table = "site/truth/landmarks.csv", .map = "rocks.gpkg"};
+  workflows::ImportRequest map{.table = "site/truth/landmarks.csv", .map = "rocks.gpkg"};
   map.options.map_crs = "local";
-  import_landmarks(map);
+  workflows::import_landmarks(map);
 
-  LocalizeRequest request{.map = "rocks.gpkg", .log = "site/log.jsonl"};
+  workflows::LocalizeRequest request{.map = "rocks.gpkg", .log = "site/log.jsonl"};
   request.output = "track.csv";
   request.method = "pf";
   request.use_identities = false;
   request.start = "truth";
-  const LocalizeResult result = localize(request);
+  const workflows::LocalizeResult result = workflows::localize(request);
 
-  const TrackScore score = evaluate(TrackEvaluation{.track = "track.csv", .truth = "site/log.jsonl"});
+  const localization::TrackScore score =
+      workflows::evaluate(workflows::TrackEvaluation{.track = "track.csv", .truth = "site/log.jsonl"});
   std::cout << result.track.rows.size() << " poses, median error " << score.ate_median << " m, "
             << score.wrong_matches.value_or(0) << " wrong matches\n";
   return score.poses > 0 ? 0 : 1;

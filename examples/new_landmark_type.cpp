@@ -36,15 +36,15 @@ Landmark merge_sightings(TypeId type, const LandmarkType& spec) {
 }  // namespace
 
 int main() {
-  MapContents map;
+  geodb::MapContents map;
   const TypeId type = map.types.add(lamp_post());
   map.crs = Crs::from_text("EPSG:4326");
   map.landmarks = {merge_sightings(type, map.types[type])};
   assign_uids(map.types, map.crs, map.landmarks);
-  write_map("lamp_posts.gpkg", map);
+  geodb::write_map("lamp_posts.gpkg", map);
 
   // The type is stored in the file, so programs without it can read the map.
-  const MapStore store = MapStore::open("lamp_posts.gpkg");
+  const geodb::MapStore store = geodb::MapStore::open("lamp_posts.gpkg");
   for (const LandmarkType& known : store.types()) std::cout << known.name << ": " << known.summary << '\n';
   for (const Landmark& post : store.query({.features = {{"height", 5, 10}}}))
     std::cout << post.uid << ": " << post.features[0].value << " m high, quality "

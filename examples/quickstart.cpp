@@ -8,28 +8,28 @@ using namespace waymark;
 int main(int argc, char** argv) try {
   const std::string dem = argc > 1 ? argv[1] : "sample_data/jacksboro/dem.tif";
 
-  Registry stages;
-  register_importer_stages(stages);
-  register_pipeline_stages(stages);
+  pipeline::Registry stages;
+  importers::register_importer_stages(stages);
+  pipeline::register_pipeline_stages(stages);
 
-  Pipeline mapping(stages);
+  pipeline::Pipeline mapping(stages);
   mapping.add("load_dem", R"({"files": [")" + dem + R"("], "nodata": "unknown"})")
       .add("find_mountain_tops", R"({"min_prominence": 50})")
       .add("join_mountain_tops")
       .add("measure_isolation")
       .add("map_mountain_tops");
-  const RunResult result = run(mapping);
+  const pipeline::RunResult result = pipeline::run(mapping);
   std::cout << result.report;  // per stage: in, out, rejected by reason, seconds
 
-  MapContents map;
+  geodb::MapContents map;
   register_landmark_types(map.types);
   map.crs = result.artifact<DemHandle>("dem")->geometry().where.crs;
   map.landmarks = result.artifact<std::vector<Landmark>>("landmarks");
-  write_map("quickstart.gpkg", map);
+  geodb::write_map("quickstart.gpkg", map);
 
-  const MapStore store = MapStore::open("quickstart.gpkg");
+  const geodb::MapStore store = geodb::MapStore::open("quickstart.gpkg");
   const std::size_t prominence = feature_index(store.types()[store.types().id("mountain_top")], "prominence");
-  const MapQuery::Near around_jacksboro{-84.18, 36.33, 12'000_m};
+  const geodb::MapQuery::Near around_jacksboro{-84.18, 36.33, 12'000_m};
   for (const Landmark& top :
        store.query({.near = around_jacksboro, .largest_first = "prominence", .limit = 3}))
     std::cout << top.uid << ": " << top.features[prominence].value << " m above its key saddle, "

@@ -28,17 +28,19 @@ SemanticMap make_rock_map(Random& random) {
 }
 
 // Simulates a laser with a range of 25 m: range, bearing and radius with noise, without identities.
-SightingSet observe(const Pose2& robot, const LandmarkGrid& rocks, Random& random) {
-  SightingSet seen;
-  for (const MapLandmark& rock : rocks.landmarks()) {
+localization::SightingSet observe(const localization::Pose2& robot, const localization::LandmarkGrid& rocks,
+                                  Random& random) {
+  localization::SightingSet seen;
+  for (const localization::MapLandmark& rock : rocks.landmarks()) {
     const Eigen::Vector2d away = rock.at - robot.at();
     if (away.norm() > 25) continue;
-    SeenLandmark one;
+    localization::SeenLandmark one;
     one.type = rock.type;
     one.features = rock.features;
     one.range_sd = 0.05, one.bearing_sd = 0.01;
     one.range = away.norm() + random.normal(0, one.range_sd);
-    one.bearing = wrap_angle(std::atan2(away.y(), away.x()) - robot.yaw + random.normal(0, one.bearing_sd));
+    one.bearing = localization::wrap_angle(std::atan2(away.y(), away.x()) - robot.yaw +
+                                           random.normal(0, one.bearing_sd));
     one.features.value[0] *= random.normal(1, 0.1);
     seen.sightings.push_back(one);
   }
@@ -50,27 +52,29 @@ SightingSet observe(const Pose2& robot, const LandmarkGrid& rocks, Random& rando
 int main() try {
   Random random(1, "rover");
   const SemanticMap map = make_rock_map(random);
-  const LandmarkGrid rocks(to_map_landmarks(map));
+  const localization::LandmarkGrid rocks(localization::to_map_landmarks(map));
 
-  Pose2 truth{0, -40, 0};
-  const PoseEstimate start{truth, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
-  IdentificationOptions without_names;
+  localization::Pose2 truth{0, -40, 0};
+  const localization::PoseEstimate start{truth, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+  localization::IdentificationOptions without_names;
   without_names.use_identities = false;
-  DeadReckoning odometry(start);
-  ExtendedKalman filter(start, LandmarkWindow(rocks), FeatureScales(map.types()), without_names);
+  localization::DeadReckoning odometry(start);
+  localization::ExtendedKalman filter(start, localization::LandmarkWindow(rocks),
+                                      localization::FeatureScales(map.types()), without_names);
 
   const double speed = 0.5, turn = 0.0125, seconds = 1;  // a circle of 40 m about the middle of the map
   std::size_t sightings = 0, matched = 0;
   for (double t = 0; t < 500; t += seconds) {
-    truth = truth * twist_motion(speed, 0, turn, seconds, {}).step;
+    truth = truth * localization::twist_motion(speed, 0, turn, seconds, {}).step;
     const double slip = random.normal(0.97, 0.05), drift = random.normal(0.001, 0.005);
-    const BodyMotion wheels = twist_motion(speed / slip, 0, turn + drift, seconds, {});
+    const localization::BodyMotion wheels =
+        localization::twist_motion(speed / slip, 0, turn + drift, seconds, {});
     odometry.predict(wheels);
     filter.predict(wheels);
-    for (const Match& match : filter.update(observe(truth, rocks, random)))
-      ++sightings, matched += match.verdict == Verdict::matched;
+    for (const localization::Match& match : filter.update(observe(truth, rocks, random)))
+      ++sightings, matched += match.verdict == localization::Verdict::matched;
   }
-  const auto error = [&](const Localizer& localizer) {
+  const auto error = [&](const localization::Localizer& localizer) {
     return (localizer.estimate().pose.at() - truth.at()).norm();
   };
   std::cout << "after 250 m: odometry is " << error(odometry) << " m off, the filter " << error(filter)

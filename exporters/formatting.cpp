@@ -10,7 +10,7 @@
 
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr const char* kNarrowSpace = "\u202f";
@@ -114,4 +114,4 @@ std::string csv_text(std::string_view text) {
   return quoted + "\"";
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -5,7 +5,7 @@
 #include "core/feature.hpp"
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Returns "mountain top" for "mountain_top".
 std::string readable_name(std::string_view name);
@@ -46,4 +46,4 @@ std::string spreadsheet_text(std::string_view text);
 /// Returns spreadsheet_text as a cell of a CSV table, quoted if necessary.
 std::string csv_text(std::string_view text);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

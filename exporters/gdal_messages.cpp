@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 void collect(CPLErr severity, CPLErrorNum, const char* text) {
@@ -44,4 +44,4 @@ void GdalMessages::add_warning(std::string text) {
   add_once(warnings_, std::move(text));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::exporters {
 
 /// Collects the messages of GDAL on this thread while the object lives, and keeps them off standard error.
 /// Objects nest like scopes. The first one registers the drivers.
@@ -26,4 +26,4 @@ class GdalMessages {
   std::vector<std::string> failures_, warnings_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::exporters

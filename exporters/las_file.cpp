@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr std::size_t kHeader = 375, kRecordHead = 54, kPoint = 30;
@@ -129,4 +129,4 @@ void LasFile::close() {
   s.staging.publish();
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

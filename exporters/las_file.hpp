@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A point of a cloud; x, y in the units of the CRS, z in metres.
 struct LasReturn {
@@ -36,4 +36,4 @@ class LasFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::exporters

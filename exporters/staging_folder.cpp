@@ -13,7 +13,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ void write_file(const fs::path& output, const std::string& content) {
   staging.publish();
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "core/locked_folder.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A hidden folder beside an output, on the same file system, where results are staged before they replace
 /// older ones. The destructor removes what was not published, so a failure leaves older results unchanged.
@@ -38,4 +38,4 @@ bool disk_is_full(const std::filesystem::path& output);
 /// Writes one file to a staging folder, flushes and renames it. Throws Error{output}.
 void write_file(const std::filesystem::path& output, const std::string& content);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 // Counts crossings of the ray towards +x.
@@ -47,4 +47,4 @@ bool Area::contains(double x, double y) const {
   return false;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

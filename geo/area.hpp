@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <vector>
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Area of interest: polygons, each an outer ring and its holes, in the CRS of the map.
 class Area {
@@ -24,4 +24,4 @@ class Area {
   bool degrees_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -4,7 +4,7 @@
 #include <GeographicLib/Geodesic.hpp>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::inline geo {
 
 double Body::mean_radius() const {
   return std::cbrt(equatorial_radius * equatorial_radius * polar_radius());
@@ -46,4 +46,4 @@ LonLat Geodesic::direct(LonLat from, double azimuth, double distance) const {
   return to;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

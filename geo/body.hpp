@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Celestial body as an ellipsoid of revolution.
 struct Body {
@@ -43,4 +43,4 @@ class Geodesic {
   std::shared_ptr<const Lines> lines_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -7,7 +7,7 @@
 
 #include "geo/distortion_limit.hpp"
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 struct Distorted {
@@ -169,4 +169,4 @@ std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<Grid
                  Point<CameraFrame>{view.grid_from_camera.transform.linear().transpose() * away});
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include "core/frames.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Central camera. Pixel (0, 0) is the centre of the first pixel, x to the right, y down; OpenCV axes.
 struct Camera {
@@ -47,4 +47,4 @@ std::optional<Ray<GridFrame>> ray(const PosedCamera& view, const Eigen::Vector2d
 /// Projects a point of the grid frame; `std::nullopt` as for a Camera.
 std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<GridFrame>& point);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

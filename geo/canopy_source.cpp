@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::inline geo {
 
 GridGeometry common_grid(const Canopies& canopies) {
   if (canopies.empty()) throw std::logic_error("common_grid: no canopy");
@@ -42,4 +42,4 @@ Window tile_window(const GridGeometry& grid, const GridGeometry& common, const W
   return part;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "geo/georeference.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Height above ground of a cell without data. Less than every real height; comparisons need no special case.
 inline constexpr float kNoCanopy = -std::numeric_limits<float>::infinity();
@@ -42,4 +42,4 @@ GridGeometry common_grid(const Canopies& canopies);
 /// tiles are disjoint and cover the survey.
 Window tile_window(const GridGeometry& grid, const GridGeometry& common, const Window& tile);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -11,7 +11,7 @@
 #include "core/units.hpp"
 #include "geo/proj_object.hpp"
 
-namespace waymark {
+namespace waymark::inline geo {
 
 struct Crs::Definition {
   CrsKind kind = CrsKind::local;
@@ -220,4 +220,4 @@ Crs geographic_crs(const Crs& crs) {
   return Crs::from_text(wkt_of(geodetic.get(), PJ_WKT2_2019));
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "geo/body.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Kind of coordinates.
 enum class CrsKind {
@@ -71,4 +71,4 @@ class CrsTransform {
 /// for a local CRS.
 Crs geographic_crs(const Crs& crs);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

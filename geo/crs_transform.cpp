@@ -9,7 +9,7 @@
 #include "geo/crs.hpp"
 #include "geo/proj_object.hpp"
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 [[noreturn]] void refuse(const Crs& from, const Crs& to, const std::string& why, const std::string& hint) {
@@ -67,4 +67,4 @@ void CrsTransform::apply(std::vector<double>& x, std::vector<double>& y) const {
     if (!std::isfinite(x[i]) || !std::isfinite(y[i])) x[i] = y[i] = std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

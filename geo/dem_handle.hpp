@@ -2,9 +2,9 @@
 #pragma once
 #include <memory>
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// DEM as passed between stages.
 using DemHandle = std::shared_ptr<const DemSource>;
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "geo/georeference.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Meaning of no-data cells; chosen by the user, never guessed.
 enum class NodataPolicy {
@@ -52,4 +52,4 @@ class DemSource {
   virtual std::vector<std::string> files() const = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

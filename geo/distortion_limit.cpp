@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -101,4 +101,4 @@ double distortion_limit(const Camera& camera) {
   return known.field;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 #include "geo/camera.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Returns the distance from the axis up to which the radial distortion increases and is invertible. Brown:
 /// tan(theta); fisheye: theta, at most pi/2. Infinity if the distortion always increases. Each thread caches
@@ -14,4 +14,4 @@ double distortion_limit(const Camera& camera);
 /// Brackets the root between the roots of the derivative, then bisects to machine precision.
 double first_positive_root(const std::vector<double>& coefficients);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Georeference of a north-up grid without rotation. Column 0, row 0 is the *centre* of the first cell, for
 /// rasters and images in the whole project. GDAL's corner-based geotransforms are shifted by half a cell in
@@ -30,4 +30,4 @@ struct GridGeometry {
   std::int64_t index(std::int64_t column, std::int64_t row) const { return row * columns + column; }
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -9,7 +9,7 @@
 #include "geo/camera.hpp"
 #include "geo/georeference.hpp"
 #include "geo/sun.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Brightness, linear in the values of the file; NaN for pixels without data.
 using Pixels = Grid<float>;
@@ -45,4 +45,4 @@ using ImageHandle = std::shared_ptr<const ImageSource>;
 /// Images of a job, in the order of their list.
 using ImageSet = std::vector<ImageHandle>;
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

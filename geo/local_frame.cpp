@@ -5,7 +5,7 @@
 #include <mutex>
 #include <optional>
 
-namespace waymark {
+namespace waymark::inline geo {
 
 struct LocalFrame::Conversion {
   Conversion(const Crs& crs, const Point<MapCrs>& at) : origin(at) {
@@ -68,4 +68,4 @@ Point<MapCrs> LocalFrame::crs_from_map_frame(const Point<MapFrame>& point) const
   return {c.through(c.from_degrees, degrees)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

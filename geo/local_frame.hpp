@@ -3,7 +3,7 @@
 #include <memory>
 #include "core/frames.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Local Cartesian frame: east, north, up in metres about an origin; the frame of the robot's pose.
 /// - On a body it is tangent to the ellipsoid at the origin (GeographicLib::LocalCartesian), exact at any
@@ -23,4 +23,4 @@ class LocalFrame {
   std::shared_ptr<const Conversion> conversion_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

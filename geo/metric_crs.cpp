@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 constexpr double kNorthEnd = 84, kSouthEnd = -80;  // of UTM, degrees
@@ -32,4 +32,4 @@ std::string fitting_metric_crs(const GridGeometry& grid) {
   return fmt::format("'+proj=tmerc +lat_0={:.4f} +lon_0={:.4f} {}'", lat, lon, shape);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -3,7 +3,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::inline geo {
 
 PlaneDem::PlaneDem(const Crs& crs, double height, double height_sd) : height_(height), height_sd_(height_sd) {
   if (crs.kind() == CrsKind::geographic)
@@ -31,4 +31,4 @@ bool is_assumed_plane(const DemSource& dem) {
   return dynamic_cast<const PlaneDem*>(&dem) != nullptr;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

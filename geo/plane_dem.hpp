@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Horizontal plane assumed if there is no DEM: 40 000 km by 40 000 km, in cells of 40 km.
 class PlaneDem final : public DemSource {
@@ -25,4 +25,4 @@ class PlaneDem final : public DemSource {
 /// Returns whether the DEM is an assumed plane.
 bool is_assumed_plane(const DemSource& dem);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace waymark {
+namespace waymark::inline geo {
 
 void ProjRelease::operator()(PJconsts* object) const {
   proj_destroy(object);
@@ -34,4 +34,4 @@ ProjContext& ProjContext::current() {
   return context;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

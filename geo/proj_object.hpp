@@ -4,7 +4,7 @@
 #include <string>
 struct PJconsts;  // proj.h: PJ
 struct pj_ctx;    // proj.h: PJ_CONTEXT
-namespace waymark {
+namespace waymark::inline geo {
 
 struct ProjRelease {
   void operator()(PJconsts* object) const;
@@ -32,4 +32,4 @@ class ProjContext {
   std::string message_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

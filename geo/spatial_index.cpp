@@ -6,7 +6,7 @@
 #include <boost/geometry/index/rtree.hpp>
 #include <iterator>
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 namespace bg = boost::geometry;
@@ -95,4 +95,4 @@ std::vector<std::size_t> SpatialIndex::nearest(const Eigen::Vector3d& centre, st
   return indices;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Spatial index of fixed points: a packed R-tree (Leutenegger et al. 1997, "STR", via Boost.Geometry).
 /// Points of a plane have z = 0. Queries return indices into the given points and are thread-safe. Building
@@ -33,4 +33,4 @@ class SpatialIndex {
   std::unique_ptr<Tree> tree_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

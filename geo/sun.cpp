@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::inline geo {
 
 Direction<GridFrame> sun_direction(const Sun& sun) {
   const double azimuth = to_radians(sun.azimuth).value, elevation = to_radians(sun.elevation).value;
@@ -11,4 +11,4 @@ Direction<GridFrame> sun_direction(const Sun& sun) {
   return {{level * std::sin(azimuth), level * std::cos(azimuth), std::sin(elevation)}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -2,7 +2,7 @@
 #pragma once
 #include "core/frames.hpp"
 #include "core/units.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Position of the sun, seen from the ground.
 struct Sun {
@@ -16,4 +16,4 @@ struct Sun {
 /// Returns the unit vector from the ground to the sun.
 Direction<GridFrame> sun_direction(const Sun& sun);
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "geo/terrain_pyramid.hpp"
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 constexpr double kContactTolerance = 1e-6;  // metres below the terrain that count as on it
@@ -96,4 +96,4 @@ bool Terrain::in_shadow(const Point<GridFrame>& point, const Direction<GridFrame
   return range && pyramid_->first_hit(line, *range, UnknownCells::pass).end == RayEnd::ground;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -6,7 +6,7 @@
 #include <optional>
 #include "core/frames.hpp"
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Outcome of ray casting.
 enum class RayEnd {
@@ -58,4 +58,4 @@ class Terrain {
   std::shared_ptr<const Pyramid> pyramid_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

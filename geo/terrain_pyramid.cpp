@@ -6,7 +6,7 @@
 #include <bit>
 #include <limits>
 
-namespace waymark {
+namespace waymark::inline geo {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -188,4 +188,4 @@ PyramidHit Terrain::Pyramid::first_hit(const GridRay& ray, const RayRange& range
   return {};
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 #include "geo/terrain.hpp"
-namespace waymark {
+namespace waymark::inline geo {
 
 /// Bilinear height a + b u + c v + d u v of one cell, u and v in [0, 1] in the direction of columns and rows.
 struct Patch {
@@ -56,4 +56,4 @@ struct Terrain::Pyramid {
   std::vector<Grid<float>> levels;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline geo

@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::string_view kSuffix = ".part";
@@ -90,4 +90,4 @@ void AtomicFile::commit() {
   flush(folder_of(final_path_), O_RDONLY | O_DIRECTORY);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

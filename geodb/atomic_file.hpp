@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-namespace waymark {
+namespace waymark::geodb {
 
 /// Temporary file that replaces its target atomically: readers see the old file or the new one, never a part.
 /// The destructor removes it unless commit() was called. Writers lock their file (flock), and remove unlocked
@@ -24,4 +24,4 @@ class AtomicFile {
   int lock_ = -1;  ///< file descriptor
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -5,7 +5,7 @@
 
 #include "geodb/rtree/hilbert.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::uint32_t kBins = 65536;
@@ -54,4 +54,4 @@ std::vector<HilbertRange> divide_hilbert_curve(std::size_t parts, const PartPosi
   return ranges;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 #include "geodb/geopackage/geometry_blob.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the index of a position on the Hilbert curve that fills `extent`.
 std::uint32_t hilbert_position(const Eigen::Vector2d& position, const Envelope& extent);
@@ -31,4 +31,4 @@ using PartPositions =
 std::vector<HilbertRange> divide_hilbert_curve(std::size_t parts, const PartPositions& positions,
                                                const Envelope& extent, std::size_t max_in_memory);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -8,7 +8,7 @@
 #include "geodb/map_store.hpp"
 #include "geodb/open_map.hpp"
 #include "geodb/rtree/search_windows.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Prepared statements that read the table of one type.
 struct LandmarkTable {
@@ -46,4 +46,4 @@ struct MapStore::Connection {
   std::deque<LandmarkTable> tables;  ///< by TypeId
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

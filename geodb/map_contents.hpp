@@ -14,7 +14,7 @@
 #include "geo/dem_handle.hpp"
 #include "geodb/shape_layer.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Provenance of a map, sufficient to reproduce it.
 struct RunRecord {
@@ -64,4 +64,4 @@ struct MapContents {
   DemHandle dem_coverage;  ///< stored in the map as elevation tiles; null: none
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

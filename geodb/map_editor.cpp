@@ -9,7 +9,7 @@
 #include "geodb/map_connection.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using Connection = MapStore::Connection;
@@ -173,4 +173,4 @@ void MapEditor::transact(const std::function<void()>& changes) {
   in_transaction_ = false;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string_view>
 #include "geodb/map_store.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Editor of a map file in place.
 /// - Each call is a transaction, or part of the transaction of transact().
@@ -40,4 +40,4 @@ class MapEditor {
   bool in_transaction_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

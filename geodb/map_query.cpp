@@ -11,7 +11,7 @@
 #include "geodb/map_connection.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using Tables = std::vector<LandmarkTable*>;
@@ -122,4 +122,4 @@ std::vector<Landmark> MapStore::query(const MapQuery& query) const {
   return search(*connection_, tables, query, windows).take();
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

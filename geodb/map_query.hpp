@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 #include "core/units.hpp"
-namespace waymark {
-
+namespace waymark::inline landmarks {
 struct SensorProfile;
+}
+
+namespace waymark::geodb {
 
 /// Query of landmarks that meet every given condition. Coordinates are in the map's CRS; longitudes are equal
 /// modulo 360 degrees.
@@ -51,4 +53,4 @@ struct MapQuery {
   std::int64_t limit = std::numeric_limits<std::int64_t>::max();
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -14,7 +14,7 @@
 #include "geodb/map_connection.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 Envelope extent_of_map(const sqlite::Database& database) {
@@ -184,4 +184,4 @@ bool MapStore::has_dem_coverage() const {
   return connection_->database.has_table("dem");
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -10,7 +10,7 @@
 #include <vector>
 #include "geodb/map_contents.hpp"
 #include "geodb/map_query.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Map file opened for reading. It never writes the file or other files beside it. Any number of readers and
 /// one MapEditor may have the file open. Movable; not thread-safe: open one per thread.
@@ -64,4 +64,4 @@ class MapStore {
   std::unique_ptr<Connection> connection_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -7,7 +7,7 @@
 #include "core/locked_folder.hpp"
 #include "geodb/geopackage/migrations.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ OpenMap open_for_update(const fs::path& path) {
   });
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include "core/error.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Connection to a map file.
 struct OpenMap {
@@ -32,4 +32,4 @@ auto with_map_name(const std::filesystem::path& map, const Action& action) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

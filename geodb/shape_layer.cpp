@@ -20,7 +20,7 @@
 #include "geodb/sqlite/attribute_column.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 [[noreturn]] void refuse(const std::string& problem, const std::string& where, const char* hint) {
@@ -207,4 +207,4 @@ void write_layers(const std::filesystem::path& map, std::span<const ShapeLayer> 
   all.commit();
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -12,7 +12,7 @@
 #include "core/attribute.hpp"
 #include "geo/crs.hpp"
 #include "geodb/map_query.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Geometry type of a shape layer. Shape layers are the layers of a map other than landmarks: crowns, stands,
 /// tracks, harvested trees. Each is a table of two-dimensional geometries in the map's CRS, with attributes.
@@ -94,4 +94,4 @@ void visit_shape_layer(const std::filesystem::path& map, std::string_view name,
 /// Returns the number of rows of a layer; 0 if the map has no such layer.
 std::int64_t count_shapes(const std::filesystem::path& map, std::string_view name);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

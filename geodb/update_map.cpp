@@ -8,7 +8,7 @@
 #include "geodb/open_map.hpp"
 #include "geodb/validate_map.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,4 +91,4 @@ fs::path restore_map(const fs::path& map) {
   return backup;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

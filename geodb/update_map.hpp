@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 #include "geodb/map_editor.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Writes `original` with `changes` to `result`, which may be the same file, atomically.
 /// - A copy beside `result` is edited in one transaction, flushed and renamed. A killed process leaves the
@@ -22,4 +22,4 @@ std::filesystem::path backup_name(const std::filesystem::path& map, std::size_t 
 /// Throws Error{input} if there is no backup of that state.
 std::filesystem::path restore_map(const std::filesystem::path& map);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -8,7 +8,7 @@
 #include "geodb/geopackage/type_catalogue.hpp"
 #include "geodb/open_map.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 
 namespace {
 
@@ -55,4 +55,4 @@ void check_before_copy(const std::filesystem::path& map) {
               map.string() + table + row, "`waymark validate` lists them; run its job again");
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

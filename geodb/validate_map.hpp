@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::geodb {
 
 /// Error in a map file, found by validate_map().
 struct Finding {
@@ -24,4 +24,4 @@ std::vector<Finding> validate_map(const std::filesystem::path& path);
 /// Throws Error{input} with the first finding if a map has errors: a map made from it would have them, too.
 void check_before_copy(const std::filesystem::path& map);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

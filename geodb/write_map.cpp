@@ -26,7 +26,7 @@
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/uid_index.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 [[noreturn]] void refuse(std::string problem, std::string where) {
@@ -284,4 +284,4 @@ std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path,
   return counts;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 #include "geodb/map_contents.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Options of write_map().
 struct WriteMapOptions {
@@ -30,4 +30,4 @@ struct WriteMapOptions {
 std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path, const MapContents& contents,
                                               const WriteMapOptions& options = {});
 
-}  // namespace waymark
+}  // namespace waymark::geodb

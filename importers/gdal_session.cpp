@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "importers/standard_input.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // Not every path names a file: "NETCDF:a.nc:height" and "<VRTDataset>..." only GDAL can check.
@@ -66,4 +66,4 @@ GdalDataset open_raster(const std::string& path) {
   return dataset;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

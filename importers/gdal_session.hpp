@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 class GDALDataset;
-namespace waymark {
+namespace waymark::importers {
 
 struct GdalClose {
   void operator()(GDALDataset* dataset) const;
@@ -31,4 +31,4 @@ class GdalListener {
 /// empty or of no format that GDAL knows, with GDAL's message.
 GdalDataset open_raster(const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -15,7 +15,7 @@
 #include "importers/standard_input.hpp"
 #include "pipeline/engine/sha256.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20;
@@ -46,7 +46,7 @@ std::vector<std::string> parts_of(const std::string& path) {
   }
 }
 
-std::uint64_t add_content(const std::string& path, Sha256& sum) {
+std::uint64_t add_content(const std::string& path, pipeline::Sha256& sum) {
   const GdalListener gdal;
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(seekable_path(path).c_str(), "rb"));
   if (!file)
@@ -68,7 +68,7 @@ bool is_folder(const std::string& path) {
 }
 
 // Names and sizes of the files.
-void add_listing(const std::string& folder, Sha256& sum) {
+void add_listing(const std::string& folder, pipeline::Sha256& sum) {
   for (const std::string& path : image_files_in(folder)) {
     VSIStatBufL status;
     const bool there = VSIStatL(path.c_str(), &status) == 0;
@@ -88,7 +88,7 @@ std::vector<std::string> files_in(const std::string& folder) {
 }  // namespace
 
 InputFile hash_file(const std::string& path) {
-  Sha256 sum;
+  pipeline::Sha256 sum;
   InputFile input{.path = path, .bytes = 0, .sha256 = {}};
   if (path.ends_with('/') && seekable_path(path) == path) {
     add_listing(path, sum);
@@ -113,4 +113,4 @@ std::vector<std::string> raster_file_list(const std::string& raster) {
   return files;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

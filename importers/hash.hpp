@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "core/input_file.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns size and SHA-256 (FIPS 180-4) of a file, `/vsi...` paths included; a FileHasher of the engine.
 /// - A raster of several files (a VRT and its sources, masks, `.aux.xml`) is hashed as their concatenation.
@@ -16,4 +16,4 @@ InputFile hash_file(const std::string& path);
 /// if GDAL cannot open it.
 std::vector<std::string> raster_file_list(const std::string& raster);
 
-}  // namespace waymark
+}  // namespace waymark::importers

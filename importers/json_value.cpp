@@ -14,7 +14,7 @@
 #include "core/json_text.hpp"
 #include "importers/gdal_session.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Json = nlohmann::json;
@@ -167,4 +167,4 @@ std::string read_vsi_text(const std::string& path) {
   return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

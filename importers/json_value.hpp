@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-namespace waymark {
+namespace waymark::importers {
 
 /// A value of a JSON file with its location, so that every error names the file and the JSON path. Access to
 /// a missing member or one of another kind throws Error{input}.
@@ -59,4 +59,4 @@ std::string read_vsi_head(const std::string& path, std::size_t bytes = 4096);
 /// Returns the whole file. Throws Error{input} if it cannot be read.
 std::string read_vsi_text(const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

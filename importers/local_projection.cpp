@@ -5,7 +5,7 @@
 
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
 std::string local_projection(const Crs& crs, double lon, double lat) {
   const Body& body = crs.body();
@@ -16,4 +16,4 @@ std::string local_projection(const Crs& crs, double lon, double lat) {
   return fmt::format("+proj=tmerc +lat_0={:.4f} +lon_0={:.4f} {} +units=m +no_defs", lat, wrapped, shape);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

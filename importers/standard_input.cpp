@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::size_t kPipePiece = std::size_t{1} << 20;
@@ -68,4 +68,4 @@ std::string seekable_path(const std::string& path) {
   return copy;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

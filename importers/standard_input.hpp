@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns a path that can be opened any number of times and read in any order. For /vsistdin/ (with options
 /// or not) that is a nameless temporary copy of standard input, made by the first call and shared by all
@@ -9,4 +9,4 @@ namespace waymark {
 /// Error{input} if standard input is empty or a terminal, Error{output} if the disk is full.
 std::string seekable_path(const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

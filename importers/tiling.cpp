@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cassert>
 
-namespace waymark {
+namespace waymark::importers {
 
-std::vector<Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t side) {
+std::vector<pipeline::Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t side) {
   assert(side > 0);
-  std::vector<Tile> tiles;
+  std::vector<pipeline::Tile> tiles;
   for (std::int64_t top = 0; top < rows; top += side)
     for (std::int64_t left = 0; left < columns; left += side)
       tiles.push_back({.index = static_cast<std::int64_t>(tiles.size()),
@@ -18,4 +18,4 @@ std::vector<Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t
   return tiles;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

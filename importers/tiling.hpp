@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 #include "pipeline/engine/tile.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Cuts a grid into squares of `side` > 0 cells, row by row from the top left. The last tile of a row and the
 /// last row may be smaller.
-std::vector<Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t side);
+std::vector<pipeline::Tile> tiles_of(std::int64_t columns, std::int64_t rows, std::int64_t side);
 
-}  // namespace waymark
+}  // namespace waymark::importers

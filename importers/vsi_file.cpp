@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 VSILFILE* handle(void* file) {
@@ -33,4 +33,4 @@ std::uint64_t VsiFile::size() {
   return VSIFTellL(handle(file_));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

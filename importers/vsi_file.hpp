@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-namespace waymark {
+namespace waymark::importers {
 
 /// A file at any path GDAL knows (`/vsizip/...`), open for reading. One thread at a time may use it.
 class VsiFile {
@@ -22,4 +22,4 @@ class VsiFile {
   void* file_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

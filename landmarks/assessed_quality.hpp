@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 #include "core/landmark.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Returns whether the observations say anything about a landmark's quality: two images could have shown it,
 /// or a feature with a weight has a confidence. Seen once of once, eq. 8 would give 1, which no observation
@@ -15,4 +15,4 @@ inline bool is_quality_assessed(const Quality& quality, std::span<const double> 
   return false;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Returns true for a colour of a map symbol: "#rrggbb".
 inline bool is_colour(std::string_view text) {
@@ -9,4 +9,4 @@ inline bool is_colour(std::string_view text) {
          text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "landmarks/colour.hpp"
 
-namespace waymark {
+namespace waymark::inline landmarks {
 namespace {
 
 bool is_column_name(std::string_view name) {
@@ -68,4 +68,4 @@ std::size_t attribute_index(const LandmarkType& type, std::string_view attribute
   return static_cast<std::size_t>(found - type.attributes.begin());
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

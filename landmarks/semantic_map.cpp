@@ -9,7 +9,7 @@
 #include "geo/spatial_index.hpp"
 #include "landmarks/surface_distance.hpp"
 
-namespace waymark {
+namespace waymark::inline landmarks {
 namespace {
 
 Point<MapCrs> centroid(const Crs& crs, const std::vector<Landmark>& landmarks) {
@@ -192,4 +192,4 @@ SemanticMap::LandmarkRefs SemanticMap::nearest(const Point<MapCrs>& centre, std:
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

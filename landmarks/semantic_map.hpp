@@ -11,7 +11,7 @@
 #include "geo/local_frame.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Conditions of a query on landmarks.
 struct LandmarkFilter {
@@ -62,4 +62,4 @@ class SemanticMap {
   std::shared_ptr<const Content> content_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

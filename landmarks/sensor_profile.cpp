@@ -10,7 +10,7 @@
 #include "core/quality.hpp"
 #include "landmarks/assessed_quality.hpp"
 
-namespace waymark {
+namespace waymark::inline landmarks {
 namespace {
 
 std::optional<double> weighted_quality(const Landmark& landmark, const std::vector<double>& weights) {
@@ -70,4 +70,4 @@ std::vector<std::string> SensorRegistry::names() const {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

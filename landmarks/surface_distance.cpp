@@ -4,7 +4,7 @@
 #include <GeographicLib/Geocentric.hpp>
 #include <mutex>
 
-namespace waymark {
+namespace waymark::inline landmarks {
 
 struct SurfaceDistance::ToDegrees {
   explicit ToDegrees(const Crs& crs) : transform(crs, geographic_crs(crs)) {}
@@ -38,4 +38,4 @@ Eigen::Vector3d SurfaceDistance::cartesian(const Eigen::Vector2d& position) cons
   return point;
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

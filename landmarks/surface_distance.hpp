@@ -6,7 +6,7 @@
 #include "core/frames.hpp"
 #include "geo/body.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Distances between positions on the surface of a body. A position is longitude and latitude in degrees, or
 /// x and y of a local CRS. Thread-safe.
@@ -31,4 +31,4 @@ class SurfaceDistance {
   std::unique_ptr<ToDegrees> to_degrees_;  // of a projected CRS
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

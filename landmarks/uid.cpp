@@ -6,7 +6,7 @@
 #include <string_view>
 #include <unordered_map>
 
-namespace waymark {
+namespace waymark::inline landmarks {
 namespace {
 
 // FNV-1a (Fowler, Noll, Vo), 64 bits, then MurmurHash3's finaliser, so that near positions differ in all
@@ -66,4 +66,4 @@ void assign_uids(const TypeRegistry& types, const Crs& crs, std::span<Landmark> 
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -5,7 +5,7 @@
 #include "core/landmark.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Returns the uid of a landmark, e.g. "mt-3kq8zt0v5d1xj". It is stable over runs, tiles and threads.
 /// - It consists of the initials of the type and a 64-bit hash of type, CRS id and position in Crockford's
@@ -17,4 +17,4 @@ std::string make_uid(const LandmarkType& type, const Crs& crs, const Point<MapCr
 /// Assigns uids to all landmarks. Duplicates get the suffixes "-2", "-3", ... in the given order: sort first.
 void assign_uids(const TypeRegistry& types, const Crs& crs, std::span<Landmark> landmarks);
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -4,7 +4,7 @@
 #include <bit>
 #include <functional>
 
-namespace waymark {
+namespace waymark::inline landmarks {
 
 UidIndex::UidIndex(std::span<const Landmark> landmarks) : landmarks_(landmarks) {
   fill(landmarks.size());
@@ -33,4 +33,4 @@ std::optional<std::uint32_t> UidIndex::find(std::string_view uid) const {
   return entry == kFree ? std::nullopt : std::optional(entry);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

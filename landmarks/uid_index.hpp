@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "core/landmark.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 /// Hash index of landmarks by uid, about ten bytes per landmark. The landmarks must outlive it with unchanged
 /// uids.
@@ -29,4 +29,4 @@ class UidIndex {
   std::vector<std::uint32_t> slots_;       ///< their number is a power of two
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -6,7 +6,7 @@
 
 #include "localization/chi_square.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 template <int Rows>
@@ -51,4 +51,4 @@ bool FixGate::pass(double squares, int rows) {
   return true;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A position measured by an absolute sensor such as a GNSS receiver.
 struct GnssFix {
@@ -42,4 +42,4 @@ class FixGate {
   bool forced_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 
 MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
@@ -52,4 +52,4 @@ Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance) {
   return root;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

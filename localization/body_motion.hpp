@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Motion of the robot, new_from_old of its frame, with covariance (x forward, y left, yaw). Every motion
 /// model returns one, and every filter predicts with one.
@@ -42,4 +42,4 @@ PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion
 /// Accepts positive semidefinite covariances, such as those of a robot that cannot slip sideways.
 Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance);
 
-}  // namespace waymark
+}  // namespace waymark::localization

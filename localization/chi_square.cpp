@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 
 double chi_square_probability(double x, double freedom) {
   if (!(x > 0)) return 0;
@@ -26,4 +26,4 @@ double chi_square_quantile(double p, double freedom) {
   return (low + high) / 2;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the probability that a chi-square variable with `freedom` >= 1 degrees of freedom is at most x.
 /// Uses the series of the incomplete gamma function; accurate to 1e-12.
@@ -10,4 +10,4 @@ double chi_square_probability(double x, double freedom);
 /// Bisects, which takes about 10 us: compute it once, not for each landmark.
 double chi_square_quantile(double p, double freedom);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 
 #include "localization/chi_square.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kMost = 4096;  // autocorrelations cost up to the square of it
@@ -62,4 +62,4 @@ Consistency consistency(std::span<const double> t, std::span<const double> squar
   return c;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

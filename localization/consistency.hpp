@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
-namespace waymark {
+namespace waymark::localization {
 
 /// Agreement of the errors of a filter with its covariances.
 struct Consistency {
@@ -18,4 +18,4 @@ struct Consistency {
 ///   simulated drives of consistent filters about 19 of 20 lie inside.
 Consistency consistency(std::span<const double> t, std::span<const double> squares, double dimensions);
 
-}  // namespace waymark
+}  // namespace waymark::localization

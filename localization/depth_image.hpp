@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Depth image of a stereo pair or a time-of-flight camera. The camera's axes are x forward, y left, z up,
 /// pitched down by `tilt`. Pixel (c, r) looks along (1, -(c - cx) / f, -(r - cy) / f).
@@ -23,4 +23,4 @@ struct DepthImage {
   }
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 
 std::vector<HarvestedTree> harvested_trees(std::span<const FelledReading> felled, const Track& track) {
   std::vector<HarvestedTree> trees;
@@ -28,4 +28,4 @@ std::vector<HarvestedTree> harvested_trees(std::span<const FelledReading> felled
   return trees;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

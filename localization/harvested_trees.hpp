@@ -5,7 +5,7 @@
 #include <vector>
 #include "localization/robot_log.hpp"
 #include "localization/track.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A felled tree on the map.
 struct HarvestedTree {
@@ -19,4 +19,4 @@ struct HarvestedTree {
 /// each tree. Can be called while the machine works. Omits trees before the first row. O(trees log rows).
 std::vector<HarvestedTree> harvested_trees(std::span<const FelledReading> felled, const Track& track);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// One sweep of a line scanner. Beam i points at first_angle + i angle_step, radians from the sensor's x
 /// axis (forward) to the left.
@@ -19,4 +19,4 @@ struct LaserScan {
   std::optional<double> beam_width = {};
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 
 void LineOfSightOptions::describe(OptionVisitor& option) {
   option("sensor_height", sensor_height,
@@ -47,4 +47,4 @@ std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkG
   return hidden;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include "core/options.hpp"
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/terrain_pose.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns whether the terrain leaves the line of sight from a sensor pose to a landmark free. Empty:
 /// always free.
@@ -30,4 +30,4 @@ LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions
 std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkGrid& map, double range,
                                             const LineOfSight& visible);
 
-}  // namespace waymark
+}  // namespace waymark::localization

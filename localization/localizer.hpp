@@ -4,7 +4,7 @@
 #include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
 #include "localization/identification/identification.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Status of a localizer.
 enum class LocalizationStatus {
@@ -42,4 +42,4 @@ class DeadReckoning final : public Localizer {
   PoseEstimate estimate_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

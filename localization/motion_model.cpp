@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 Eigen::Matrix3d noise_of(double metres, double radians, double seconds, const OdometryNoise& n) {
@@ -64,4 +64,4 @@ BodyMotion step_motion(const Pose2& step, double seconds, const OdometryNoise& n
   return {step, noise_of(std::hypot(step.x, step.y), std::abs(step.yaw), seconds, noise)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

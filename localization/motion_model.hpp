@@ -2,7 +2,7 @@
 #pragma once
 #include "core/options.hpp"
 #include "localization/body_motion.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Growth of odometry errors. Errors of successive readings are independent, so their variances are
 /// proportional to the distance and the turn: many small steps have the noise of one large step. Differs
@@ -40,4 +40,4 @@ BodyMotion ackermann_motion(const Ackermann& car, double wheel_speed, double ste
 /// Returns a measured step (visual odometry, inertial navigation) with the noise of its distance.
 BodyMotion step_motion(const Pose2& step, double seconds, const OdometryNoise& noise);
 
-}  // namespace waymark
+}  // namespace waymark::localization

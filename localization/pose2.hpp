@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numbers>
-namespace waymark {
+namespace waymark::localization {
 
 /// Wraps an angle to [-pi, pi].
 inline double wrap_angle(double angle) {
@@ -44,4 +44,4 @@ struct PoseEstimate {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 
 #include "localization/identification/joint_evidence.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 class Replay {
@@ -163,4 +163,4 @@ Track replay(const RobotLog& log, Localizer& localizer, const ReplayOptions& opt
   return Replay(log, localizer, options, detect, clock, ground).replay(watch);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include "localization/robot_log.hpp"
 #include "localization/terrain_pose.hpp"
 #include "localization/track.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the replay of a log.
 struct ReplayOptions {
@@ -34,4 +34,4 @@ Track replay(const RobotLog& log, Localizer& localizer, const ReplayOptions& opt
              const ScanDetector& detect = {}, const TimeSource& clock = {}, const TerrainHeight& ground = {},
              const TrackWatcher& watch = {});
 
-}  // namespace waymark
+}  // namespace waymark::localization

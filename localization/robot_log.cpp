@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 bool drives(const LogEvent& e) {
@@ -87,4 +87,4 @@ std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, doubl
                wrap_angle(a.pose.yaw + k * wrap_angle(b.pose.yaw - a.pose.yaw))};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

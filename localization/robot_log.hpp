@@ -14,7 +14,7 @@
 #include "localization/motion_model.hpp"
 #include "localization/sighting.hpp"
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Speeds of a differential drive, valid until the next reading.
 struct TwistReading {
@@ -81,4 +81,4 @@ void convert_to_map_frame(RobotLog& log, const LocalFrame& frame);
 /// `std::nullopt` if they are more than `max_gap` seconds apart or do not enclose the time.
 std::optional<Pose2> pose_at(std::span<const StampedPose> truth, double t, double max_gap = 0.5);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include "localization/identification/known_features.hpp"
 #include "localization/identification/map_landmark.hpp"
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Type of a sighting whose landmark type is not in the map.
 inline constexpr TypeId kNoSuchType = 0xFFFF;
@@ -42,4 +42,4 @@ inline bool SeenLandmark::is_valid() const {
          (!range || (std::isfinite(*range) && *range > 0 && std::isfinite(range_sd) && range_sd > 0));
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

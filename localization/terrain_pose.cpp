@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 
 std::optional<TerrainPose> pose_on_terrain(const TerrainHeight& ground, const Pose2& pose, double length,
                                            double width) {
@@ -25,4 +25,4 @@ double curvature_drop(double distance, double radius, double refraction) {
   return radius > 0 ? (1 - refraction) * distance * distance / (2 * radius) : 0;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

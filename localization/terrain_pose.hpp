@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the height of the terrain at a position of the map frame, metres above the datum. `std::nullopt`
 /// where it is unknown.
@@ -30,4 +30,4 @@ Pose2 project_to_map(const Pose2& step, const TerrainPose& terrain_pose);
 /// without air.
 double curvature_drop(double distance, double radius, double refraction);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Estimate of a localizer after one event of a log.
 struct TrackRow {
@@ -30,4 +30,4 @@ struct Track {
   double seconds = 0;                              ///< of all updates, if timed
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 double root_mean_square(const std::vector<double>& errors) {
@@ -151,4 +151,4 @@ TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAl
   return s;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

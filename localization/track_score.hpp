@@ -5,7 +5,7 @@
 #include <string>
 #include "localization/consistency.hpp"
 #include "localization/track.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 struct StampedPose;
 
@@ -42,4 +42,4 @@ struct TrackScore {
 TrackScore score(const Track& track, std::span<const StampedPose> truth, TrackAlignment alignment,
                  bool headings, double rpe_seconds = 1, double max_gap = 0.5);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -8,7 +8,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 // Table of 64 directions, so that lattice points need no trigonometry.
@@ -165,4 +165,4 @@ Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes) {
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

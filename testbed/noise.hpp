@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Value and slope of gradient noise (Perlin 2002, quintic fade): smooth, mean 0, standard deviation about
 /// 1, features about one unit wide. Deterministic for a seed on all machines.
@@ -44,4 +44,4 @@ struct NodeGrid {
 /// cubically (error below 1 % of the octave), so the cost is that of about three octaves.
 Grid<float> fractal_grid(const Fractal& fractal, const NodeGrid& nodes);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -12,7 +12,7 @@
 #include "testbed/landing/rock_tiles.hpp"
 #include "testbed/sensor.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kMinRock = 0.6;  // pixels; smaller rocks change no pixel by more than the noise
@@ -114,4 +114,4 @@ Pixels render_view(const Scene& scene, const View& view, const Exposure& exposur
   return render_view(scene, LitTerrain(scene, exposure.sun), view, exposure, noise_seed);
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

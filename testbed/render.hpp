@@ -8,7 +8,7 @@
 #include "geo/image_source.hpp"
 #include "geo/sun.hpp"
 #include "testbed/scene.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 class LitTerrain;
 
@@ -57,4 +57,4 @@ std::optional<PixelEllipse> image_outline(const View& view, const TrueRock& rock
 /// Returns the direction towards the sun at the image centre, radians from x (right) towards y (down).
 double image_sun_angle(const View& view, const Sun& sun);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -12,7 +12,7 @@
 #include "testbed/drive/scenario_drive.hpp"
 #include "testbed/scenario_sections.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -132,4 +132,4 @@ std::string scenario_schema() {
   return schema.dump(2) + "\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -9,7 +9,7 @@
 #include "testbed/forest/forest_model.hpp"
 #include "testbed/render.hpp"
 #include "testbed/site_model.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Camera of all flights: Brown distortion model, square pixels, principal point in the centre.
 struct Lens {
@@ -72,4 +72,4 @@ std::string scenario_schema();
 /// Returns the scenario with all values as JSON.
 std::string scenario_json(const Scenario& scenario);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

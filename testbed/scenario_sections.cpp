@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "testbed/scenario_sections.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 void describe_file(Scenario& s, OptionVisitor& field) {
@@ -198,4 +198,4 @@ void describe_flight(Flight& f, OptionVisitor& field) {
   field("track_sd", f.track_sd, {.help = "Standard deviation of the path, metres", .min = 0, .max = 1e4});
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

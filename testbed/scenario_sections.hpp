@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "testbed/scenario.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Section of a scenario; its fields are declared once for reader, writer and schema.
 struct ScenarioSection {
@@ -18,4 +18,4 @@ const std::vector<ScenarioSection>& scenario_sections();
 void describe_forest(Scenario& scenario, OptionVisitor& field);
 void describe_flight(Flight& flight, OptionVisitor& field);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

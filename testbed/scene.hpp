@@ -7,7 +7,7 @@
 #include "geo/terrain.hpp"
 #include "testbed/landing/rock_solid.hpp"
 #include "testbed/site_model.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// True rock of a scene.
 struct TrueRock {
@@ -47,4 +47,4 @@ struct Scene {
 /// threads. Throws Error{usage} for invalid sizes and above 1e9 nodes. About 1 s per 4 M nodes on one core.
 Scene make_scene(const SiteModel& ground, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

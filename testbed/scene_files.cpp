@@ -7,7 +7,7 @@
 #include "core/random.hpp"
 #include "testbed/noise.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 
 using Json = nlohmann::ordered_json;
 
@@ -96,4 +96,4 @@ SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
   return dem;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

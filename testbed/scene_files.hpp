@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "testbed/landing/flight.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Returns the camera file (docs/reference/camera_file.md). `exact`: with true poses and without standard
 /// deviations.
@@ -30,4 +30,4 @@ struct SimulatedDem {
 };
 SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -10,7 +10,7 @@
 
 #include "testbed/score_match.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -200,4 +200,4 @@ Score score(std::span<const EvaluatedObject> found, std::span<const EvaluatedObj
   return s;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

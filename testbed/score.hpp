@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 #include "core/feature.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Detected or true object. Lengths in one unit (metres or pixels).
 struct EvaluatedObject {
@@ -91,4 +91,4 @@ struct Score {
 Score score(std::span<const EvaluatedObject> found, std::span<const EvaluatedObject> truth,
             const MatchRules& rules, std::span<const double> size_edges = {});
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -8,7 +8,7 @@
 
 #include "geo/spatial_index.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 std::vector<int> order_by(std::size_t count, const auto& key) {
@@ -110,4 +110,4 @@ ObjectMatching match_objects(std::span<const EvaluatedObject> found, std::span<c
                                               : by_overlap(found, truth, rules);
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "testbed/score.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Matching of detections to true objects. Deterministic: ties by index.
 struct ObjectMatching {
@@ -16,4 +16,4 @@ ObjectMatching match_objects(std::span<const EvaluatedObject> found, std::span<c
 /// Returns the intersection over union of two circles.
 double circle_overlap(double distance, double diameter_a, double diameter_b);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -8,7 +8,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 std::vector<double> gaussian(double sd) {
@@ -84,4 +84,4 @@ Pixels apply_sensor(const Pixels& light, const Exposure& exposure, double sunlit
   return image;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

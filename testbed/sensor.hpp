@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 #include "testbed/render.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Applies a Gaussian blur; NaN pixels stay NaN and have no weight.
 Pixels gaussian_blur(const Pixels& image, double sd);
@@ -11,4 +11,4 @@ Pixels gaussian_blur(const Pixels& image, double sd);
 /// of level sunlit ground, which sets the path radiance of the haze.
 Pixels apply_sensor(const Pixels& light, const Exposure& exposure, double sunlit, std::uint64_t noise_seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/units.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Relief without landmarks: fractal noise (each octave half as long and 2^-hurst as high) and mountains.
 struct ReliefModel {
@@ -75,4 +75,4 @@ struct SiteModel {
   AlbedoModel albedo;
 };
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -6,7 +6,7 @@
 
 #include "testbed/scene_files.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kMinListed = 2;  // pixels; minimum size of an outline listed per image
@@ -67,4 +67,4 @@ TruthTables truth_tables(const Scenario&, const Scene& scene, const std::vector<
   return tables;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

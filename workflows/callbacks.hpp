@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 #include "pipeline/engine/progress.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Purpose of a message.
 enum class MessageKind {
@@ -23,7 +23,7 @@ struct Message {
 /// Functions that a workflow calls while it runs. Empty functions are not called. They are called from one
 /// thread at a time.
 struct Callbacks {
-  ProgressListener progress = {};
+  pipeline::ProgressListener progress = {};
   std::function<void(const Message&)> message = {};
 
   void send(MessageKind kind, std::string text) const {
@@ -33,4 +33,4 @@ struct Callbacks {
   void warning(std::string text) const { send(MessageKind::warning, std::move(text)); }
 };
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ void check_old(const fs::path& map) {
   if (!fs::exists(map)) return;
   if (fs::is_regular_file(map) && fs::file_size(map) == 0) return;  // as mktemp makes: nobody's work
   try {
-    MapStore::open(map);
+    geodb::MapStore::open(map);
   } catch (const Error& error) {
     throw Error(ErrorCode::output,
                 "the output exists and is no map of this version, so it is not replaced: " + error.problem(),
@@ -54,4 +54,4 @@ void check_map_output(const fs::path& map) {
   check_old(map);
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 template <class Number>
@@ -29,4 +29,4 @@ std::int64_t parse_integer(const std::string& what, const std::string& word) {
   return number<std::int64_t>(what, word, "whole number");
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

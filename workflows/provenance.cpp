@@ -6,7 +6,7 @@
 #include "core/source_date.hpp"
 #include "importers/hash.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 
 using Clock = std::chrono::system_clock;
 
@@ -14,8 +14,8 @@ std::string program_version() {
   return "waymark " WAYMARK_VERSION;
 }
 
-RunRecord make_run_record(const std::string& command_line, Clock::time_point started) {
-  RunRecord run;
+geodb::RunRecord make_run_record(const std::string& command_line, Clock::time_point started) {
+  geodb::RunRecord run;
   if (const auto fixed = source_date()) started = *fixed;
   run.version = program_version();
   run.command_line = command_line;
@@ -24,24 +24,24 @@ RunRecord make_run_record(const std::string& command_line, Clock::time_point sta
   return run;
 }
 
-RunRecord make_single_step_record(StageReport stage, const std::string& input,
-                                  const std::string& command_line, Clock::time_point started) {
-  RunRecord run = make_run_record(command_line, started);
-  run.inputs = {hash_file(input)};
-  RunReport report;
+geodb::RunRecord make_single_step_record(pipeline::StageReport stage, const std::string& input,
+                                         const std::string& command_line, Clock::time_point started) {
+  geodb::RunRecord run = make_run_record(command_line, started);
+  run.inputs = {importers::hash_file(input)};
+  pipeline::RunReport report;
   report.seconds = stage.seconds = std::chrono::duration<double>(Clock::now() - started).count();
   report.stages.push_back(std::move(stage));
   record_report(run, std::move(report));
   return run;
 }
 
-void record_report(RunRecord& run, RunReport report) {
+void record_report(geodb::RunRecord& run, pipeline::RunReport report) {
   if (source_date()) {
     report.seconds = 0;
-    for (StageReport& stage : report.stages) stage.seconds = 0;
+    for (pipeline::StageReport& stage : report.stages) stage.seconds = 0;
   }
   run.seconds = report.seconds;
-  run.report_json = report_as_json(report);
+  run.report_json = pipeline::report_as_json(report);
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -2,15 +2,17 @@
 #pragma once
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
-
+namespace waymark::pipeline {
 class Registry;
+}
+
+namespace waymark::workflows {
 
 /// Returns the built-in stages.
-const Registry& all_stages();
+const pipeline::Registry& all_stages();
 /// Returns the built-in landmark types.
 const TypeRegistry& all_types();
 /// Returns the built-in sensor profiles.
 const SensorRegistry& all_sensors();
 
-}  // namespace waymark
+}  // namespace waymark::workflows

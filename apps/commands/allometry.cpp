@@ -3,7 +3,7 @@
 #include "apps/console.hpp"
 #include "workflows/training/fit_allometry.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class AllometryCommand final : public Command {
@@ -43,13 +43,13 @@ class AllometryCommand final : public Command {
   }
 
   int run(const Session& session) override {
-    fit_allometry(request_, console_callbacks(session));
+    workflows::fit_allometry(request_, console_callbacks(session));
     return 0;
   }
 
  private:
   std::string what_;
-  AllometryRequest request_;
+  workflows::AllometryRequest request_;
 };
 
 }  // namespace
@@ -59,4 +59,4 @@ void register_command_allometry(CommandTable& commands) {
   commands.add<AllometryCommand>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -6,7 +6,7 @@
 #include "apps/command.hpp"
 #include "apps/session.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Completion final : public Command {
@@ -41,4 +41,4 @@ void register_command_completion(CommandTable& commands) {
   commands.add<Completion>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -2,7 +2,7 @@
 #include "apps/shortcut.hpp"
 #include "workflows/mapping/jobs.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Craters final : public Shortcut {
@@ -32,7 +32,9 @@ class Craters final : public Shortcut {
                           "The job, to change it and `waymark run` it"}}};
   }
 
-  void add_stages(Pipeline& pipeline) const override { add_crater_stages(pipeline, files_); }
+  void add_stages(pipeline::Pipeline& pipeline) const override {
+    workflows::add_crater_stages(pipeline, files_);
+  }
 
   std::vector<std::string> files_;
 };
@@ -44,4 +46,4 @@ void register_command_craters(CommandTable& commands) {
   commands.add<Craters>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

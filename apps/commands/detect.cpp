@@ -3,10 +3,10 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
-std::vector<Argument> detect_arguments(DetectRequest& request) {
+std::vector<Argument> detect_arguments(workflows::DetectRequest& request) {
   return {
       Argument{"", "craters|rocks|trees", &request.kind, "What to detect"}.needed().offering(
           {"craters", "rocks", "trees"}),
@@ -74,12 +74,12 @@ class Detect final : public Command {
   int run(const Session& session) override {
     request_.threads = static_cast<int>(session.threads);
     request_.command_line = session.command_line;
-    detect(request_, console_callbacks(session));
+    workflows::detect(request_, console_callbacks(session));
     return 0;
   }
 
  private:
-  DetectRequest request_;
+  workflows::DetectRequest request_;
 };
 
 }  // namespace
@@ -89,4 +89,4 @@ void register_command_detect(CommandTable& commands) {
   commands.add<Detect>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

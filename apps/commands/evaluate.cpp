@@ -6,10 +6,10 @@
 #include "apps/score_text.hpp"
 #include "workflows/evaluation/evaluate.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
-std::vector<Argument> track_arguments(TrackEvaluation& into) {
+std::vector<Argument> track_arguments(workflows::TrackEvaluation& into) {
   return {
       Argument{"--align", "HOW", &into.align, "track: how it is aligned with the truth first"}
           .one_of({"none", "se2", "sim2"})
@@ -95,20 +95,20 @@ class Evaluate final : public Command {
     if (what_ == "track") {
       track_.track = landmarks_.result;
       track_.truth = landmarks_.truth;
-      const TrackScore score = evaluate(track_);
+      const localization::TrackScore score = workflows::evaluate(track_);
       std::cout << (format_ == "json" ? track_score_as_json(score, track_.align)
                                       : track_score_as_text(score, track_.align));
       return 0;
     }
-    const auto scores = evaluate(landmarks_, console_callbacks(session));
+    const auto scores = workflows::evaluate(landmarks_, console_callbacks(session));
     std::cout << (format_ == "json" ? scores_as_json(scores) : scores_as_text(scores));
     return 0;
   }
 
  private:
   std::string what_, format_ = "text";
-  LandmarkEvaluation landmarks_;
-  TrackEvaluation track_;
+  workflows::LandmarkEvaluation landmarks_;
+  workflows::TrackEvaluation track_;
 };
 
 }  // namespace
@@ -118,4 +118,4 @@ void register_command_evaluate(CommandTable& commands) {
   commands.add<Evaluate>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

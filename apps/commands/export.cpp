@@ -7,7 +7,7 @@
 #include "exporters/vector/export_map.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Export final : public Command {
@@ -28,7 +28,7 @@ class Export final : public Command {
                                "Format by GDAL's name, if the extension is ambiguous"}
                           .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
-                          .offering(all_types().names()),
+                          .offering(workflows::all_types().names()),
                       Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
                       Argument{"--area", "KM2", &options_.area_km2,
                                "Counting area of a crater count (.scc, .diam)"}
@@ -42,9 +42,9 @@ class Export final : public Command {
   }
 
   int run(const Session&) override {
-    const ExportSummary done = export_map(map_, out_, options_);
+    const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
-    for (const ExportedLayer& layer : done.layers)
+    for (const exporters::ExportedLayer& layer : done.layers)
       log_summary(fmt::format("{} {}\n", layer.landmarks, layer.type));
     log_summary(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
     return 0;
@@ -52,7 +52,7 @@ class Export final : public Command {
 
  private:
   std::string map_, out_;
-  ExportOptions options_;
+  exporters::ExportOptions options_;
 };
 
 }  // namespace
@@ -62,4 +62,4 @@ void register_command_export(CommandTable& commands) {
   commands.add<Export>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -4,7 +4,7 @@
 #include "workflows/mapping/import_landmarks.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Import final : public Command {
@@ -33,7 +33,7 @@ class Import final : public Command {
                           .needed()
                           .offering(Offer::file),
                       Argument{"--type", "T", &request_.options.type, "What the rows are"}
-                          .offering(all_types().names())
+                          .offering(workflows::all_types().names())
                           .or_else("the table's column `type`, or the layer's name"),
                       Argument{"--from", "FORMAT", &request_.format, "Kind of table"}
                           .one_of({"csv", "ogr", "mrclam"})
@@ -62,12 +62,12 @@ class Import final : public Command {
 
   int run(const Session& session) override {
     request_.command_line = session.command_line;
-    import_landmarks(request_, console_callbacks(session));
+    workflows::import_landmarks(request_, console_callbacks(session));
     return 0;
   }
 
  private:
-  ImportRequest request_;
+  workflows::ImportRequest request_;
 };
 
 }  // namespace
@@ -77,4 +77,4 @@ void register_command_import(CommandTable& commands) {
   commands.add<Import>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -7,7 +7,7 @@
 #include "core/options/option_reader.hpp"
 #include "workflows/forest/inventory.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 constexpr std::int64_t kNotGiven = -1;
@@ -71,7 +71,7 @@ class Inventory final : public Command {
 
   int run(const Session& session) override {
     set_memory();
-    const InventoryResult result = inventory(request_, console_callbacks(session));
+    const workflows::InventoryResult result = workflows::inventory(request_, console_callbacks(session));
     log_summary(
         fmt::format("{}: {} stands, {} trees\n", request_.output, result.stands.size(), result.trees));
     for (const std::string& failure : result.failed) log_error(failure + ": left out");
@@ -87,10 +87,10 @@ class Inventory final : public Command {
     }
     check_options([this](OptionVisitor& option) { memory_.describe(option); },
                   {.owner = "inventory", .prefix = "--"});
-    request_.max_trees = trees_in_memory(memory_);
+    request_.max_trees = workflows::trees_in_memory(memory_);
   }
 
-  InventoryRequest request_;
+  workflows::InventoryRequest request_;
   MemoryOption memory_;
   std::int64_t trees_at_once_ = kNotGiven;
 };
@@ -102,4 +102,4 @@ void register_command_inventory(CommandTable& commands) {
   commands.add<Inventory>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -11,7 +11,7 @@
 #include "workflows/localization/localize.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Localize final : public Command {
@@ -23,7 +23,7 @@ class Localize final : public Command {
         .summary = "Follow a robot through a map by its log",
         .about =
             "Writes the pose of the robot after each event of the log, with covariances. Methods: " +
-            describe_localize_methods() +
+            workflows::describe_localize_methods() +
             ". With --ids unknown landmarks are associated by type, position and features.\n\n"
             "Metres are those of the map's east-north-up frame about the middle of its landmarks; in a local "
             "CRS, its own coordinates. --crs writes coordinates of the map's CRS.",
@@ -40,11 +40,11 @@ class Localize final : public Command {
                  .needed()
                  .offering(Offer::file),
              Argument{"--method", "NAME", &request_.method, "How to localize"}
-                 .one_of(localize_methods())
+                 .one_of(workflows::localize_methods())
                  .or_else("ekf"),
              Argument{"--sensor", "NAME", &request_.sensor,
                       "Weight landmark quality for this sensor profile (eq. 8)"}
-                 .offering(all_sensors().names()),
+                 .offering(workflows::all_sensors().names()),
              Argument{"--min-confidence", "P", &request_.min_confidence,
                       "Use only landmarks that exist with at least this probability, 0 to 1"}
                  .or_else("0"),
@@ -97,19 +97,20 @@ class Localize final : public Command {
     request_.use_identities = ids_ == "known";
     request_.threads = session.threads;
     request_.command_line = session.command_line;
-    if (list_) std::cout << localize_settings(request_);
+    if (list_) std::cout << workflows::localize_settings(request_);
     if (list_ && (request_.map.empty() || request_.log.empty() || request_.output.empty())) return 0;
-    const LocalizeResult result = localize(request_, console_callbacks(session));
+    const workflows::LocalizeResult result = workflows::localize(request_, console_callbacks(session));
     summarize(result.track);
     return 0;
   }
 
  private:
-  void summarize(const Track& track) const {
+  void summarize(const localization::Track& track) const {
     std::vector<std::string> parts;
-    for (int v = 0; v < kVerdicts; ++v)
+    for (int v = 0; v < localization::kVerdicts; ++v)
       if (const auto count = track.verdicts[static_cast<std::size_t>(v)])
-        parts.push_back(fmt::format("{} {}", count, wording(static_cast<Verdict>(v))));
+        parts.push_back(
+            fmt::format("{} {}", count, localization::wording(static_cast<localization::Verdict>(v))));
     log_summary(fmt::format("{}: {} rows\n", request_.output, track.rows.size()));
     if (!parts.empty()) log_summary(fmt::format("sightings: {}\n", fmt::join(parts, ", ")));
     if (track.fixes)
@@ -121,14 +122,14 @@ class Localize final : public Command {
     if (track.updates)
       log_summary(
           fmt::format("{:.1f} us per update\n", 1e6 * track.seconds / static_cast<double>(track.updates)));
-    const auto lost = std::ranges::count(track.rows, true, &TrackRow::lost);
+    const auto lost = std::ranges::count(track.rows, true, &localization::TrackRow::lost);
     if (lost) {
-      const auto first = std::ranges::find(track.rows, true, &TrackRow::lost);
+      const auto first = std::ranges::find(track.rows, true, &localization::TrackRow::lost);
       log_warning(fmt::format("lost in {} of {} rows, first at {:.3f} s", lost, track.rows.size(), first->t));
     }
   }
 
-  LocalizeRequest request_;
+  workflows::LocalizeRequest request_;
   std::string ids_ = "known";
   bool list_ = false;
 };
@@ -140,4 +141,4 @@ void register_command_localize(CommandTable& commands) {
   commands.add<Localize>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -5,7 +5,7 @@
 #include "apps/man_page.hpp"
 #include "apps/session.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Man final : public Command {
@@ -34,4 +34,4 @@ void register_command_man(CommandTable& commands) {
   commands.add<Man>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

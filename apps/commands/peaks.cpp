@@ -4,7 +4,7 @@
 #include "apps/shortcut.hpp"
 #include "workflows/mapping/jobs.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Peaks final : public Shortcut {
@@ -42,10 +42,10 @@ class Peaks final : public Shortcut {
             {"waymark peaks alps.tif --print-job > job.json", "The job, to change it and `waymark run` it"}}};
   }
 
-  void add_stages(Pipeline& pipeline) const override {
+  void add_stages(pipeline::Pipeline& pipeline) const override {
     std::vector<std::string> files = files_;
     std::ranges::replace(files, "-", "/vsistdin/");
-    add_mountain_top_stages(pipeline, files);
+    workflows::add_mountain_top_stages(pipeline, files);
   }
 
   std::vector<std::string> files_;
@@ -58,4 +58,4 @@ void register_command_peaks(CommandTable& commands) {
   commands.add<Peaks>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -8,7 +8,7 @@
 #include "core/error.hpp"
 #include "workflows/mapping/make_map.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class PlanJob final : public Command {
@@ -41,15 +41,15 @@ class PlanJob final : public Command {
       throw Error(ErrorCode::usage,
                   "--set goes with --as jsonl only: the scheduler's calls read the job file", "",
                   "write the options into " + job_);
-    const Job job = load_job(job_, settings_);
-    const MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
-    const Callbacks callbacks = console_callbacks(session);
+    const pipeline::Job job = workflows::load_job(job_, settings_);
+    const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
+    const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
-    const Plan units = plan(job.pipeline, run_options(request, callbacks));
-    const PlanCommand call{.job = job_, .work = work_};
-    std::cout << (as_ == "snakemake" ? plan_as_snakemake(units, call)
-                  : as_ == "slurm"   ? plan_as_slurm(units, call)
-                                     : plan_as_jsonl(units));
+    const pipeline::Plan units = pipeline::plan(job.pipeline, workflows::run_options(request, callbacks));
+    const pipeline::PlanCommand call{.job = job_, .work = work_};
+    std::cout << (as_ == "snakemake" ? pipeline::plan_as_snakemake(units, call)
+                  : as_ == "slurm"   ? pipeline::plan_as_slurm(units, call)
+                                     : pipeline::plan_as_jsonl(units));
     return 0;
   }
 
@@ -65,4 +65,4 @@ void register_command_plan(CommandTable& commands) {
   commands.add<PlanJob>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

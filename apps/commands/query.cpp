@@ -6,13 +6,13 @@
 #include "workflows/query/query.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
-std::vector<Argument> query_arguments(QueryRequest& request) {
+std::vector<Argument> query_arguments(workflows::QueryRequest& request) {
   return {
       Argument{"--type", "T", &request.types, "Landmarks of this type; may be repeated"}
-          .offering(all_types().names())
+          .offering(workflows::all_types().names())
           .or_else("all"),
       {"--bbox", "X0 Y0 X1 Y1", &request.bbox, "Landmarks in this box; X0 > X1 crosses the antimeridian"},
       {"--near", "X Y RADIUS", &request.near, "Landmarks within RADIUS metres of X Y, nearest first"},
@@ -25,7 +25,7 @@ std::vector<Argument> query_arguments(QueryRequest& request) {
       Argument{"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed"}.or_else("the map's"),
       Argument{"--sensor", "NAME", &request.sensor,
                "Quality as this sensor sees it; `waymark sensors` lists them"}
-          .offering(all_sensors().names()),
+          .offering(workflows::all_sensors().names()),
       {"--min-confidence", "P", &request.min_confidence,
        "Landmarks that exist with at least this probability, 0 to 1"},
       {"--min-quality", "Q", &request.min_quality,
@@ -63,7 +63,7 @@ class Query final : public Command {
 
   int run(const Session&) override {
     request_.wgs84 = format_ == "geojson";
-    const QueryResult found = query(map_, request_);
+    const workflows::QueryResult found = workflows::query(map_, request_);
     RowContext context{.types = &found.types, .sensor = found.sensor};
     if (!request_.near.empty() || !request_.nearest.empty())
       context.distance = [&](const Landmark& landmark) { return found.distances.at(landmark.uid); };
@@ -82,7 +82,7 @@ class Query final : public Command {
   }
 
   std::string map_, format_ = "table";
-  QueryRequest request_;
+  workflows::QueryRequest request_;
 };
 
 }  // namespace
@@ -92,4 +92,4 @@ void register_command_query(CommandTable& commands) {
   commands.add<Query>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

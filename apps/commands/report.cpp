@@ -4,7 +4,7 @@
 #include "exporters/report/report_html.hpp"
 #include "workflows/evaluation/evaluate.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Report final : public Command {
@@ -38,15 +38,15 @@ class Report final : public Command {
   }
 
   int run(const Session&) override {
-    if (!truth_.empty()) options_.checks = check_quality(map_, truth_);
-    write_report(map_, html_, options_);
+    if (!truth_.empty()) options_.checks = workflows::check_quality(map_, truth_);
+    exporters::write_report(map_, html_, options_);
     log_summary(html_ + "\n");
     return 0;
   }
 
  private:
   std::string map_, html_, truth_;
-  ReportOptions options_;
+  exporters::ReportOptions options_;
 };
 
 }  // namespace
@@ -56,4 +56,4 @@ void register_command_report(CommandTable& commands) {
   commands.add<Report>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

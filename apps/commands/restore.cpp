@@ -5,7 +5,7 @@
 #include "apps/log.hpp"
 #include "geodb/update_map.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Restore final : public Command {
@@ -23,7 +23,7 @@ class Restore final : public Command {
   }
 
   int run(const Session&) override {
-    const auto backup = restore_map(map_);
+    const auto backup = geodb::restore_map(map_);
     log_summary(fmt::format("{}: as it was in {}\n", map_, backup.string()));
     return 0;
   }
@@ -39,4 +39,4 @@ void register_command_restore(CommandTable& commands) {
   commands.add<Restore>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -4,11 +4,11 @@
 #include "apps/map_arguments.hpp"
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
-Shard parse_shard(const std::string& text) {
-  Shard shard;
+pipeline::Shard parse_shard(const std::string& text) {
+  pipeline::Shard shard;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 || shard.index < 1 ||
       shard.index > shard.count)
@@ -46,7 +46,7 @@ class Run final : public Command {
   }
 
   int run(const Session& session) override {
-    const Job job = load_job(job_, settings_);
+    const pipeline::Job job = workflows::load_job(job_, settings_);
     if (!shard_.empty()) request_.shard = parse_shard(shard_);
     return make_map_command(job, request_, session);
   }
@@ -54,7 +54,7 @@ class Run final : public Command {
  private:
   std::string job_, shard_;
   std::vector<std::string> settings_;
-  MapRequest request_;
+  workflows::MapRequest request_;
 };
 
 }  // namespace
@@ -64,4 +64,4 @@ void register_command_run(CommandTable& commands) {
   commands.add<Run>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -2,7 +2,7 @@
 #include "apps/registry_reference.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Sensors final : public Command {
@@ -15,12 +15,12 @@ class Sensors final : public Command {
         .about =
             "A sensor profile says how much each feature helps that sensor to distinguish landmarks. "
             "`waymark query --sensor NAME` ranks landmarks by it.",
-        .arguments = reference_arguments(what_, all_sensors().names()),
+        .arguments = reference_arguments(what_, workflows::all_sensors().names()),
         .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
   }
 
   int run(const Session&) override {
-    print_reference(registry_reference(all_sensors(), all_types()), "sensor", what_);
+    print_reference(registry_reference(workflows::all_sensors(), workflows::all_types()), "sensor", what_);
     return 0;
   }
 
@@ -35,4 +35,4 @@ void register_command_sensors(CommandTable& commands) {
   commands.add<Sensors>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

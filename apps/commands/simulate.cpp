@@ -3,7 +3,7 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Simulate final : public Command {
@@ -39,12 +39,12 @@ class Simulate final : public Command {
   int run(const Session& session) override {
     if (seed_ >= 0) request_.seed = seed_;
     if (drive_seed_ >= 0) request_.drive_seed = drive_seed_;
-    simulate(request_, console_callbacks(session));
+    workflows::simulate(request_, console_callbacks(session));
     return 0;
   }
 
  private:
-  SimulateRequest request_;
+  workflows::SimulateRequest request_;
   std::int64_t seed_ = -1, drive_seed_ = -1;
 };
 
@@ -55,4 +55,4 @@ void register_command_simulate(CommandTable& commands) {
   commands.add<Simulate>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

@@ -3,7 +3,7 @@
 #include "pipeline/engine/registry.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Stages final : public Command {
@@ -13,13 +13,13 @@ class Stages final : public Command {
         .name = "stages",
         .group = Group::look_up,
         .summary = "List the stages a job can name, or describe one with all its options",
-        .arguments = reference_arguments(what_, all_stages().names()),
+        .arguments = reference_arguments(what_, workflows::all_stages().names()),
         .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
                      {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
   }
 
   int run(const Session&) override {
-    print_reference(registry_reference(all_stages()), "stage", what_);
+    print_reference(registry_reference(workflows::all_stages()), "stage", what_);
     return 0;
   }
 
@@ -34,4 +34,4 @@ void register_command_stages(CommandTable& commands) {
   commands.add<Stages>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

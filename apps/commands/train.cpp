@@ -3,7 +3,7 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Train final : public Command {
@@ -40,12 +40,12 @@ class Train final : public Command {
 
   int run(const Session& session) override {
     request_.threads = static_cast<int>(session.threads);
-    train(request_, console_callbacks(session));
+    workflows::train(request_, console_callbacks(session));
     return 0;
   }
 
  private:
-  TrainRequest request_;
+  workflows::TrainRequest request_;
 };
 
 }  // namespace
@@ -55,4 +55,4 @@ void register_command_train(CommandTable& commands) {
   commands.add<Train>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

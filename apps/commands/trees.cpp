@@ -2,7 +2,7 @@
 #include "apps/shortcut.hpp"
 #include "workflows/mapping/jobs.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Trees final : public Shortcut {
@@ -52,13 +52,13 @@ class Trees final : public Shortcut {
              "The job, to change it and `waymark run` it"}}};
   }
 
-  void add_stages(Pipeline& pipeline) const override {
-    CanopyFiles files = files_;
+  void add_stages(pipeline::Pipeline& pipeline) const override {
+    workflows::CanopyFiles files = files_;
     files.crowns = !no_crowns_;
-    add_tree_stages(pipeline, files);
+    workflows::add_tree_stages(pipeline, files);
   }
 
-  CanopyFiles files_;
+  workflows::CanopyFiles files_;
   bool no_crowns_ = false;
 };
 
@@ -69,4 +69,4 @@ void register_command_trees(CommandTable& commands) {
   commands.add<Trees>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

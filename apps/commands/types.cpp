@@ -2,7 +2,7 @@
 #include "apps/registry_reference.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Types final : public Command {
@@ -11,13 +11,13 @@ class Types final : public Command {
     return {.name = "types",
             .group = Group::look_up,
             .summary = "List the landmark types, or describe one with its features",
-            .arguments = reference_arguments(what_, all_types().names()),
+            .arguments = reference_arguments(what_, workflows::all_types().names()),
             .examples = {{"waymark types mountain_top", "Its features with units and plausible ranges"},
                          {"waymark types rock --as json", "The same for a script"}}};
   }
 
   int run(const Session&) override {
-    print_reference(registry_reference(all_types()), "landmark type", what_);
+    print_reference(registry_reference(workflows::all_types()), "landmark type", what_);
     return 0;
   }
 
@@ -32,4 +32,4 @@ void register_command_types(CommandTable& commands) {
   commands.add<Types>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

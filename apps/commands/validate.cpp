@@ -7,7 +7,7 @@
 #include "apps/log.hpp"
 #include "geodb/validate_map.hpp"
 
-namespace waymark {
+namespace waymark::apps {
 namespace {
 
 class Validate final : public Command {
@@ -25,8 +25,8 @@ class Validate final : public Command {
   }
 
   int run(const Session&) override {
-    const std::vector<Finding> findings = validate_map(map_);
-    for (const Finding& finding : findings)
+    const std::vector<geodb::Finding> findings = geodb::validate_map(map_);
+    for (const geodb::Finding& finding : findings)
       std::cout << fmt::format("{}\t{}\t{}\t{}\n", finding.code, finding.table,
                                finding.row ? std::to_string(*finding.row) : "", finding.text);
     log_summary(findings.empty() ? map_ + ": sound\n"
@@ -45,4 +45,4 @@ void register_command_validate(CommandTable& commands) {
   commands.add<Validate>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::apps

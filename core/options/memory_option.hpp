@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 #include "core/options.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// The option `memory` of every stage and command that has one: data held at a time, which is read again when
 /// it is needed. No result depends on it.
@@ -20,4 +20,4 @@ struct MemoryOption {
   }
 };
 
-}  // namespace waymark
+}  // namespace waymark::inline core

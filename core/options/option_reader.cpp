@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 using Json = nlohmann::json;
@@ -207,4 +207,4 @@ void check_options(const DescribeOptions& describe, const OptionLocation& locati
   for (const OptionRow& row : option_table(describe)) check_value(row, location);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "core/options/option_table.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Receives the warnings about an object's options, one sentence each. An empty function is not called.
 using OptionWarning = std::function<void(const std::string&)>;
@@ -38,4 +38,4 @@ void read_and_warn(const DescribeOptions& describe, std::string_view json_object
 /// Error{usage}.
 void check_options(const DescribeOptions& describe, const OptionLocation& location);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

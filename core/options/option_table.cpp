@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace waymark {
+namespace waymark::inline core {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
@@ -119,4 +119,4 @@ std::string option_schemas(const std::vector<OptionRow>& rows) {
   return dump(schemas);
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline core

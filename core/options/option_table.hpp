@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 #include "core/options.hpp"
-namespace waymark {
+namespace waymark::inline core {
 
 /// Passes the options of one object to a visitor, in the order of declaration.
 using DescribeOptions = std::function<void(OptionVisitor&)>;
@@ -47,4 +47,4 @@ std::string canonical_options(const std::vector<OptionRow>& rows);
 /// Returns the `properties` of a JSON schema: types, defaults, units, ranges, choices.
 std::string option_schemas(const std::vector<OptionRow>& rows);
 
-}  // namespace waymark
+}  // namespace waymark::inline core

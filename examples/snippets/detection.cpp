@@ -23,12 +23,12 @@ void find_in_pixels() {
   for (std::int64_t row = 0; row < 96; ++row)
     for (std::int64_t column = 1; column < 95; ++column)
       image(column, row) += static_cast<float>(0.2 * (bowl(column + 1, row) - bowl(column - 1, row)));
-  CraterSearch craters;
+  pipeline::CraterSearch craters;
   craters.sun_angle = Radians{std::numbers::pi};  // towards the sun, from x (right) towards y (down)
-  for (const Detection& crater : find_craters(image, craters))
+  for (const Detection& crater : pipeline::find_craters(image, craters))
     std::cout << crater.outline.diameter() << " px across at " << crater.outline.x << ", " << crater.outline.y
               << '\n';
-  for (const Detection& rock : find_rocks(image, {.sun_angle = craters.sun_angle}))
+  for (const Detection& rock : pipeline::find_rocks(image, {.sun_angle = craters.sun_angle}))
     std::cout << rock.outline.x << '\n';
   //! [pixels]
 }
@@ -38,7 +38,8 @@ void find_in_heights() {
   HeightWindow heights(96, 96);
   for (std::int64_t row = 0; row < 96; ++row)
     for (std::int64_t column = 0; column < 96; ++column) heights(column, row) = bowl(column, row);
-  for (const DemCrater& crater : find_craters(heights, DemCraterSearch{.cell_width = 1, .cell_height = 1}))
+  for (const pipeline::DemCrater& crater :
+       pipeline::find_craters(heights, pipeline::DemCraterSearch{.cell_width = 1, .cell_height = 1}))
     std::cout << crater.diameter() << " m across, " << crater.depth << " m deep\n";
   //! [heights]
 }
@@ -47,25 +48,25 @@ void find_in_file() {
   std::ofstream("view.json") << R"({"waymark_scenario": 1, "crs": "local", "ground": {"cell": 0.5},
     "rocks": {"k": 0.1, "min_diameter": 0.8, "max_diameter": 5}, "camera": {"columns": 320, "rows": 320},
     "flights": [{"name": "view", "images": 1, "from_altitude": 200, "to_altitude": 200}]})";
-  simulate({.scenario = "view.json", .folder = "view"});
+  workflows::simulate({.scenario = "view.json", .folder = "view"});
   const std::string image = std::filesystem::directory_iterator("view/images")->path().string();
   //! [detect]
-  DetectRequest request;  // as `waymark detect rocks IMAGE -o rocks.csv --gsd 0.5`
+  workflows::DetectRequest request;  // as `waymark detect rocks IMAGE -o rocks.csv --gsd 0.5`
   request.kind = "rocks";
   request.image = image;
   request.output = "rocks.csv";
   request.gsd = 0.5;  // metres per pixel
-  const DetectResult found = detect(request);
+  const workflows::DetectResult found = workflows::detect(request);
   std::cout << found.detections.detections.size() << " rocks; " << found.light << '\n';
   //! [detect]
 }
 
 void train_model() {
   //! [train]
-  TrainRequest request{.what = "craters"};  // as `waymark train craters --scenes 2`
-  request.scenes = 2;                       // far too few for a good model
+  workflows::TrainRequest request{.what = "craters"};  // as `waymark train craters --scenes 2`
+  request.scenes = 2;                                  // far too few for a good model
   request.rounds = 1;
-  std::cout << train(request).model.size() << " bytes\n";
+  std::cout << workflows::train(request).model.size() << " bytes\n";
   //! [train]
 }
 

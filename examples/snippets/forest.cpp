@@ -35,21 +35,21 @@ struct TwoTrees final : CanopySource {
 void find() {
   //! [trees]
   const TwoTrees canopy;
-  const TreeSearch search{.forest = forest_preset(ForestType::conifer)};
-  for (const DetectedTree& tree : find_trees(canopy, Window{0, 0, 40, 20}, search))
+  const pipeline::TreeSearch search{.forest = pipeline::forest_preset(ForestType::conifer)};
+  for (const pipeline::DetectedTree& tree : pipeline::find_trees(canopy, Window{0, 0, 40, 20}, search))
     std::cout << tree.height << " m high, crown " << tree.crown_diameter << " m wide\n";
   //! [trees]
 }
 
 void count() {
   //! [stand]
-  const StandPolygon hectare{.rings = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}}};  // metres
-  std::vector<StandTree> trees(3);
+  const pipeline::StandPolygon hectare{.rings = {{{0, 0}, {100, 0}, {100, 100}, {0, 100}}}};  // metres
+  std::vector<pipeline::StandTree> trees(3);
   for (std::size_t i = 0; i < trees.size(); ++i) {
     trees[i].position = {20. + 30. * static_cast<double>(i), 50};
     trees[i].height = 24, trees[i].diameter = 0.3;  // metres
   }
-  const StandAttributes figures = inventory(trees, hectare);
+  const pipeline::StandAttributes figures = inventory(trees, hectare);
   std::cout << figures.stems.value << " stems per hectare, " << figures.basal_area.value
             << " m2 per hectare\n";
   //! [stand]
@@ -58,14 +58,15 @@ void count() {
 void count_map() {
   std::ofstream("trees.csv")
       << "x,y,height,diameter\n10,10,20,0.25\n30,12,24,0.31\n20,40,18,0.22\n40,35,26,0.35\n";
-  ImportRequest map{.table = "trees.csv", .map = "trees.gpkg"};
+  workflows::ImportRequest map{.table = "trees.csv", .map = "trees.gpkg"};
   map.options.type = "tree";
   map.options.map_crs = "local";
-  import_landmarks(map);
+  workflows::import_landmarks(map);
   //! [inventory]
-  InventoryRequest request{.map = "trees.gpkg"};  // as `waymark inventory trees.gpkg -o stands.csv`
+  workflows::InventoryRequest request{.map =
+                                          "trees.gpkg"};  // as `waymark inventory trees.gpkg -o stands.csv`
   request.output = "stands.csv";
-  for (const StandResult& stand : inventory(request).stands)
+  for (const workflows::StandResult& stand : inventory(request).stands)
     std::cout << stand.stand.name << ": " << stand.figures.volume.value << " m3 per hectare\n";
   //! [inventory]
 }
@@ -79,10 +80,10 @@ void fit() {
   }
   table.close();
   //! [allometry]
-  AllometryRequest request{.input = "measured.csv"};  // as `waymark allometry fit measured.csv`
+  workflows::AllometryRequest request{.input = "measured.csv"};  // as `waymark allometry fit measured.csv`
   request.columns.diameter_unit = "cm";
-  for (const Allometry& row : fit_allometry(request))
-    if (const auto stem = stem_diameter(row, 20, 0.5, 0, 0))
+  for (const pipeline::Allometry& row : workflows::fit_allometry(request))
+    if (const auto stem = pipeline::stem_diameter(row, 20, 0.5, 0, 0))
       std::cout << stem->metres << " m at a height of 20 m\n";
   //! [allometry]
 }

@@ -10,7 +10,7 @@ namespace {
 
 void write() {
   //! [write]
-  MapContents map;  // in a local CRS: metres
+  geodb::MapContents map;  // in a local CRS: metres
   register_landmark_types(map.types);
   const TypeId rock = map.types.id("rock");
   Landmark boulder{
@@ -19,7 +19,7 @@ void write() {
   boulder.features[feature_index(map.types[rock], "radius")] = {.value = 0.8, .observations = 3};
   map.landmarks = {boulder};
   assign_uids(map.types, map.crs, map.landmarks);
-  write_map("rocks.gpkg", map);
+  geodb::write_map("rocks.gpkg", map);
   //! [write]
 }
 
@@ -30,7 +30,7 @@ void add_type() {
              .summary = "Street light",
              .features = {{"height", "m", Scale::ratio, 2, 20, "Ground to lamp"}},
              .drawn_as = Solid::cylinder});
-  std::cout << qml_style(types[types.id("lamp_post")]).size() << " bytes of style for QGIS\n";
+  std::cout << geodb::qml_style(types[types.id("lamp_post")]).size() << " bytes of style for QGIS\n";
   //! [type]
 }
 
@@ -46,10 +46,10 @@ void merge_observations() {
 
 void read() {
   //! [read]
-  const MapStore store = MapStore::open("rocks.gpkg");
-  MapQuery nearby;
+  const geodb::MapStore store = geodb::MapStore::open("rocks.gpkg");
+  geodb::MapQuery nearby;
   nearby.types = {"rock"};
-  nearby.near = MapQuery::Near{10, 30, 5_m};
+  nearby.near = geodb::MapQuery::Near{10, 30, 5_m};
   for (const Landmark& rock : store.query(nearby))
     std::cout << rock.uid << " is " << store.distance(rock, 10, 30) << " m away\n";
   //! [read]
@@ -57,16 +57,17 @@ void read() {
 
 void ask() {
   //! [query]
-  QueryRequest request;  // as `waymark query rocks.gpkg --largest radius --limit 3`
+  workflows::QueryRequest request;  // as `waymark query rocks.gpkg --largest radius --limit 3`
   request.largest = "radius";
   request.limit = 3;
-  for (const Landmark& rock : query("rocks.gpkg", request).landmarks) std::cout << rock.uid << '\n';
+  for (const Landmark& rock : workflows::query("rocks.gpkg", request).landmarks)
+    std::cout << rock.uid << '\n';
   //! [query]
 }
 
 void edit() {
   //! [edit]
-  MapEditor editor = MapEditor::open("rocks.gpkg");
+  geodb::MapEditor editor = geodb::MapEditor::open("rocks.gpkg");
   Landmark rock = editor.map().query({}).front();
   rock.confidence = 0.5;
   editor.transact([&] { editor.update(rock); });  // all changes of the function, or none
@@ -75,7 +76,7 @@ void edit() {
 
 void keep_in_memory() {
   //! [memory]
-  const MapStore store = MapStore::open("rocks.gpkg");
+  const geodb::MapStore store = geodb::MapStore::open("rocks.gpkg");
   const SemanticMap map(store.types(), store.crs(), store.query({}));
   for (const Landmark& rock : map.near(Point<MapCrs>{{12, 31, 0}}, 2_m)) std::cout << rock.uid << '\n';
   //! [memory]
@@ -83,8 +84,8 @@ void keep_in_memory() {
 
 void weigh() {
   //! [sensor]
-  const MapStore store = MapStore::open("rocks.gpkg");
-  const SensorProfile& laser = all_sensors().at("horizontal_laser");
+  const geodb::MapStore store = geodb::MapStore::open("rocks.gpkg");
+  const SensorProfile& laser = workflows::all_sensors().at("horizontal_laser");
   for (const Landmark& rock : store.query({}))
     std::cout << quality_for(laser, store.types()[rock.type], rock).value_or(0) << '\n';  // eq. 8
   //! [sensor]
@@ -93,27 +94,27 @@ void weigh() {
 void import_table() {
   std::ofstream("survey.csv") << "x,y,radius\n3,4,0.5\n8,1,1.2\n";
   //! [import]
-  ImportRequest request{.table = "survey.csv", .map = "survey.gpkg"};
+  workflows::ImportRequest request{.table = "survey.csv", .map = "survey.gpkg"};
   request.options.type = "rock";
   request.options.map_crs = "local";
-  const ImportedTable table = import_landmarks(request);
+  const importers::ImportedTable table = workflows::import_landmarks(request);
   std::cout << table.rows << " rows\n";
   //! [import]
 }
 
 void deliver() {
   //! [deliver]
-  for (const Finding& finding : validate_map("survey.gpkg"))
+  for (const geodb::Finding& finding : geodb::validate_map("survey.gpkg"))
     std::cout << finding.code << ": " << finding.text << '\n';
-  export_map("survey.gpkg", "survey.fgb", {.overwrite = true});
-  write_report("survey.gpkg", "survey.html", {.title = "Survey"});
+  exporters::export_map("survey.gpkg", "survey.fgb", {.overwrite = true});
+  exporters::write_report("survey.gpkg", "survey.html", {.title = "Survey"});
   //! [deliver]
 }
 
 void fail() {
   //! [error]
   try {
-    MapStore::open("nowhere.gpkg");
+    geodb::MapStore::open("nowhere.gpkg");
   } catch (const Error& error) {
     std::cout << error.what() << "\nexit code " << exit_code(error.code()) << '\n';  // problem, place, remedy
   }

@@ -10,34 +10,37 @@ namespace {
 
 void make(const std::string& dem) {
   //! [make]
-  Pipeline pipeline(all_stages());
-  add_mountain_top_stages(pipeline, {dem});
+  pipeline::Pipeline pipeline(workflows::all_stages());
+  workflows::add_mountain_top_stages(pipeline, {dem});
   pipeline.set("find_mountain_tops.min_prominence=300");
-  const MapResult made = make_map(Job{"peaks", std::move(pipeline)}, {.map = "peaks.gpkg"});
+  const workflows::MapResult made =
+      workflows::make_map(pipeline::Job{"peaks", std::move(pipeline)}, {.map = "peaks.gpkg"});
   std::cout << made.landmarks.at("mountain_top") << " mountain tops\n" << made.report;
   //! [make]
 }
 
 void listen(const std::string& dem) {
   //! [listen]
-  Pipeline pipeline(all_stages());
-  add_mountain_top_stages(pipeline, {dem});
-  const Callbacks callbacks{
+  pipeline::Pipeline pipeline(workflows::all_stages());
+  workflows::add_mountain_top_stages(pipeline, {dem});
+  const workflows::Callbacks callbacks{
       .progress =
-          [](const Progress& now) { std::cout << now.stage << ' ' << now.done << '/' << now.total << '\n'; },
-      .message = [](const Message& message) { std::cout << message.text << '\n'; }};
-  make_map(Job{"peaks", std::move(pipeline)}, {.map = "all_peaks.gpkg"}, callbacks);
+          [](const pipeline::Progress& now) {
+            std::cout << now.stage << ' ' << now.done << '/' << now.total << '\n';
+          },
+      .message = [](const workflows::Message& message) { std::cout << message.text << '\n'; }};
+  workflows::make_map(pipeline::Job{"peaks", std::move(pipeline)}, {.map = "all_peaks.gpkg"}, callbacks);
   //! [listen]
 }
 
 void resume(const std::string& dem) {
   //! [resume]
-  Pipeline pipeline(all_stages());
-  add_mountain_top_stages(pipeline, {dem});
-  const RunOptions options{.work = "peaks_work"};  // keeps finished units of work
-  const Plan units = plan(pipeline, options);
-  std::cout << units.units.size() << " units\n" << plan_as_jsonl(units);
-  std::cout << run(pipeline, options).report;
+  pipeline::Pipeline pipeline(workflows::all_stages());
+  workflows::add_mountain_top_stages(pipeline, {dem});
+  const pipeline::RunOptions options{.work = "peaks_work"};  // keeps finished units of work
+  const pipeline::Plan units = pipeline::plan(pipeline, options);
+  std::cout << units.units.size() << " units\n" << pipeline::plan_as_jsonl(units);
+  std::cout << pipeline::run(pipeline, options).report;
   //! [resume]
 }
 
@@ -50,13 +53,13 @@ struct KeepHighLandmarks {
       option("min_height", min_height, {.help = "Lowest landmark kept"});
     }
   };
-  static constexpr In<std::vector<Landmark>> all{"landmarks"};
-  static constexpr Out<std::vector<Landmark>> high{"high_landmarks"};
-  static StageSpec spec() {
+  static constexpr pipeline::In<std::vector<Landmark>> all{"landmarks"};
+  static constexpr pipeline::Out<std::vector<Landmark>> high{"high_landmarks"};
+  static pipeline::StageSpec spec() {
     return {
         .name = "keep_high_landmarks", .summary = "Keeps high landmarks", .inputs = {all}, .outputs = {high}};
   }
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     std::vector<Landmark> kept;
     for (const Landmark& one : unit.read(all)) {
       unit.count_in(1);
@@ -72,28 +75,29 @@ struct KeepHighLandmarks {
 
 void run_own_stage(const std::string& dem) {
   //! [registry]
-  Registry stages;
-  register_importer_stages(stages);
-  register_pipeline_stages(stages);
+  pipeline::Registry stages;
+  importers::register_importer_stages(stages);
+  pipeline::register_pipeline_stages(stages);
   stages.add<KeepHighLandmarks>();
-  Pipeline pipeline(stages);
+  pipeline::Pipeline pipeline(stages);
   pipeline.add("load_dem", R"({"files": [")" + dem + R"("]})")
       .add("find_mountain_tops")
       .add("join_mountain_tops")
       .add("measure_isolation")
       .add("map_mountain_tops");
   pipeline.add<KeepHighLandmarks>({.min_height = 900_m});
-  std::cout << run(pipeline).report << stage_as_text(stages.at("keep_high_landmarks"));
+  std::cout << pipeline::run(pipeline).report << pipeline::stage_as_text(stages.at("keep_high_landmarks"));
   //! [registry]
 }
 
 void read_job_file(const std::string& dem) {
   //! [job]
-  const Job job = parse_job(R"({"name": "tops", "stages": [{"stage": "load_dem", "files": [")" + dem + R"("]},
+  const pipeline::Job job =
+      pipeline::parse_job(R"({"name": "tops", "stages": [{"stage": "load_dem", "files": [")" + dem + R"("]},
                                 {"stage": "find_mountain_tops"}, {"stage": "join_mountain_tops"}]})",
-                            all_stages());
+                          workflows::all_stages());
   job.pipeline.check();  // throws Error{usage} if stages do not fit together
-  std::cout << job_as_json(job.name, job.pipeline) << '\n';
+  std::cout << pipeline::job_as_json(job.name, job.pipeline) << '\n';
   //! [job]
 }
 
@@ -104,8 +108,9 @@ void measure_prominence() {
     heights(column, 1) = std::array{9., 5., 4., 6., 7.}[column - 1];
   GridGeometry grid;
   grid.columns = 5, grid.rows = 1;
-  const auto tree = std::make_shared<const DivideTree>(build_divide_tree(heights, {0, 0, 5, 1}, grid, {}));
-  for (const Summit& summit : join_divide_trees({{tree}}, 1, BasePolicy::sea))
+  const auto tree = std::make_shared<const pipeline::DivideTree>(
+      pipeline::build_divide_tree(heights, {0, 0, 5, 1}, grid, {}));
+  for (const pipeline::Summit& summit : pipeline::join_divide_trees({{tree}}, 1, pipeline::BasePolicy::sea))
     std::cout << summit.height << " m, prominence " << summit.prominence << " m\n";  // 9 and 9, 7 and 3
   //! [prominence]
 }
@@ -126,11 +131,12 @@ void measure_isolation_of_cells() {
     std::vector<std::string> files() const override { return {}; }
   } ridge;
   const Window all{0, 0, 5, 1};
-  const auto relief =
-      std::make_shared<const BlockRelief>(block_relief(ridge.read({-1, -1, 7, 3}), all, kNoHeight));
-  const std::array summits{HighPoint{.cell = 4, .height = 7}};
-  const auto isolations = measure_isolation(summits, ridge, ReliefPyramid({{relief}}, 5, 1),
-                                            {.end = IsolationEnd::cell, .distance = DistanceKind::planar});
+  const auto relief = std::make_shared<const pipeline::BlockRelief>(
+      pipeline::block_relief(ridge.read({-1, -1, 7, 3}), all, kNoHeight));
+  const std::array summits{pipeline::HighPoint{.cell = 4, .height = 7}};
+  const auto isolations = pipeline::measure_isolation(
+      summits, ridge, pipeline::ReliefPyramid({{relief}}, 5, 1),
+      {.end = pipeline::IsolationEnd::cell, .distance = pipeline::DistanceKind::planar});
   std::cout << isolations[0].metres.value() << " m\n";  // 4, to the cell of height 9
   //! [isolation]
 }

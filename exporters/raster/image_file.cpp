@@ -10,7 +10,7 @@
 #include "exporters/gdal_messages.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 
 void write_image(const std::filesystem::path& path, const Pixels& image, int bits) {
   GdalMessages messages;
@@ -35,4 +35,4 @@ void write_image(const std::filesystem::path& path, const Pixels& image, int bit
   if (!file || !messages.failures().empty()) fail_output(path, messages.cause("not all of it was written"));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

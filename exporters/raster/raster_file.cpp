@@ -8,7 +8,7 @@
 #include "exporters/gdal_messages.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 
 void write_raster(const std::filesystem::path& path, const Grid<float>& cells, const Georeference& where) {
   GdalMessages messages;
@@ -36,4 +36,4 @@ void write_raster(const std::filesystem::path& path, const Grid<float>& cells, c
     fail_output(path, messages.cause("not all of it was written"));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace waymark {
+namespace waymark::exporters {
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -22,4 +22,4 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -13,7 +13,7 @@
 #include "exporters/report/map_drawing.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 using Corners = std::vector<Eigen::Vector2d>;
@@ -55,11 +55,11 @@ void add_polygons(const OGRGeometry& geometry, std::vector<CountingArea::Ring>& 
     for (int i = 0; i < parts->getNumGeometries(); ++i) add_polygons(*parts->getGeometryRef(i), rings);
 }
 
-std::vector<CountingArea::Ring> union_of(const std::vector<ImageRecord>& images) {
+std::vector<CountingArea::Ring> union_of(const std::vector<geodb::ImageRecord>& images) {
   const GdalMessages quiet;
   OGRMultiPolygon all;
-  for (const ImageRecord& image : images)
-    for (const ImageRecord::Ring& ring : image.footprint) {
+  for (const geodb::ImageRecord& image : images)
+    for (const geodb::ImageRecord::Ring& ring : image.footprint) {
       auto polygon = std::make_unique<OGRPolygon>();
       polygon->addRingDirectly(ogr_ring(ring));
       if (polygon->IsValid()) {
@@ -142,7 +142,7 @@ double area_of(const Relief& relief, const Crs& crs) {
   return sum;
 }
 
-std::optional<CountingArea> counting_area(const MapStore& map) {
+std::optional<CountingArea> counting_area(const geodb::MapStore& map) {
   CountingArea area;
   const auto images = map.images();
   area.rings = union_of(images);
@@ -160,4 +160,4 @@ std::optional<CountingArea> counting_area(const MapStore& map) {
   return area.square_metres > 0 ? std::optional(area) : std::nullopt;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

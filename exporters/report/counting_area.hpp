@@ -6,9 +6,11 @@
 #include <vector>
 #include "exporters/report/relief_source.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
-
+namespace waymark::geodb {
 class MapStore;
+}
+
+namespace waymark::exporters {
 
 /// The area in which the landmarks of a map were counted, for densities.
 struct CountingArea {
@@ -24,7 +26,7 @@ struct CountingArea {
 /// Returns the union of the images' footprints; without images the cells of the DEM that have heights, read
 /// at picture resolution (accurate to 0.1 %). `std::nullopt` if neither is known, as for a catalogue. Areas
 /// are on the body's ellipsoid for footprints, on its sphere for a DEM.
-std::optional<CountingArea> counting_area(const MapStore& map);
+std::optional<CountingArea> counting_area(const geodb::MapStore& map);
 
 /// Returns the ground area of the cells that have a height, square metres.
 double area_of(const Relief& relief, const Crs& crs);
@@ -32,4 +34,4 @@ double area_of(const Relief& relief, const Crs& crs);
 /// Returns the area of a polygon with holes in any CRS, square metres; 0 for a degenerate polygon.
 double polygon_area(const std::vector<CountingArea::Ring>& rings, const Crs& crs);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

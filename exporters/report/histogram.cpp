@@ -9,7 +9,7 @@
 #include "exporters/formatting.hpp"
 #include "exporters/report/map_view.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kWidth = 360, kHeight = 150;  // of the bars, drawing units
@@ -138,4 +138,4 @@ std::string histogram_figures(const LandmarkSection& section) {
   return figures.empty() ? "" : "<div class='histograms'>" + figures + "</div>\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "exporters/report/landmark_section.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Counts of values between edges; edges.size() = counts.size() + 1. The last bin includes its upper edge.
 struct Histogram {
@@ -20,4 +20,4 @@ Histogram histogram_of(const std::vector<double>& values, Scale scale);
 /// Returns one figure per feature with at least two known values: bars, the median, and the counts.
 std::string histogram_figures(const LandmarkSection& section);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

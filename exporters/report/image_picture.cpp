@@ -11,7 +11,7 @@
 
 #include "exporters/gdal_messages.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kLargePart = 1e8;  // pixels; beyond, averaging all of them costs seconds
@@ -124,4 +124,4 @@ std::optional<ImagePicture> image_picture(const std::string& path, const Window&
   return picture.jpeg.empty() ? std::nullopt : std::optional(std::move(picture));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A part of an image as a JPEG for display.
 struct ImagePicture {
@@ -21,4 +21,4 @@ std::optional<Window> image_extent(const std::string& path);
 /// in colour. `std::nullopt` if the file cannot be read, since pictures are optional.
 std::optional<ImagePicture> image_picture(const std::string& path, const Window& part, std::int64_t longest);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

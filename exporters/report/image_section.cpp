@@ -17,7 +17,7 @@
 #include "exporters/report/landmark_section.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,15 +35,15 @@ const char* outline_colour(TypeId type) {
 
 /// Observations in one image.
 struct ImageObservations {
-  const ImageRecord* record = nullptr;
+  const geodb::ImageRecord* record = nullptr;
   std::vector<const Observation*> seen;  ///< with a pixel
   std::int64_t used = 0;
 };
 
-std::vector<ImageObservations> observed_images(const std::vector<ImageRecord>& images,
+std::vector<ImageObservations> observed_images(const std::vector<geodb::ImageRecord>& images,
                                                const std::vector<Observation>& observations) {
   std::map<std::string, ImageObservations> by_name;
-  for (const ImageRecord& image : images) by_name[image.name].record = &image;
+  for (const geodb::ImageRecord& image : images) by_name[image.name].record = &image;
   for (const Observation& one : observations) {
     const auto found = by_name.find(one.source);
     if (found == by_name.end() || !one.pixel) continue;
@@ -58,10 +58,10 @@ std::vector<ImageObservations> observed_images(const std::vector<ImageRecord>& i
   return all;
 }
 
-std::optional<std::string> file_of(const MapStore& map, const std::string& name) {
+std::optional<std::string> file_of(const geodb::MapStore& map, const std::string& name) {
   const fs::path folder = map.path().parent_path();
   std::vector<std::string> candidates;
-  for (const RunRecord& run : map.runs())
+  for (const geodb::RunRecord& run : map.runs())
     for (const InputFile& input : run.inputs)
       if (fs::path(input.path).filename() == name) candidates.push_back(input.path);
   candidates.push_back((folder / name).string());
@@ -73,7 +73,7 @@ std::optional<std::string> file_of(const MapStore& map, const std::string& name)
   return {};
 }
 
-double radius_in_pixels(const Observation& one, const LandmarkType& type, const ImageRecord& image) {
+double radius_in_pixels(const Observation& one, const LandmarkType& type, const geodb::ImageRecord& image) {
   for (const auto& [name, factor] : {std::pair{"radius", 1.0}, {"crown_diameter", 0.5}, {"diameter", 0.5}}) {
     const auto feature = find_feature(type, name);
     if (feature && *feature < one.features.size() && one.features[*feature].known() && image.gsd)
@@ -146,7 +146,7 @@ std::string counts_html(const ImageObservations& image, const TypeRegistry& type
   return html;
 }
 
-std::string image_html(const MapStore& map, const ImageObservations& image) {
+std::string image_html(const geodb::MapStore& map, const ImageObservations& image) {
   std::string known;
   if (image.record->gsd) known += fmt::format("<span>{:.3g} m per pixel</span>", image.record->gsd->value);
   if (image.record->sun_elevation)
@@ -170,7 +170,7 @@ std::string image_html(const MapStore& map, const ImageObservations& image) {
 
 }  // namespace
 
-std::string image_figures(const MapStore& map, std::int64_t most) {
+std::string image_figures(const geodb::MapStore& map, std::int64_t most) {
   const auto records = map.images();
   if (records.empty() || most < 1) return {};
   const auto observations = map.observations();
@@ -186,4 +186,4 @@ std::string image_figures(const MapStore& map, std::int64_t most) {
   return html;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

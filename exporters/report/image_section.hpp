@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <string>
-namespace waymark {
-
+namespace waymark::geodb {
 class MapStore;
+}
+
+namespace waymark::exporters {
 
 /// Returns figures of images with the observations in them: each image whole, and its densest part at full
 /// resolution.
@@ -12,6 +14,6 @@ class MapStore;
 /// - Shows the `most` images with the most used observations.
 /// - Files are searched at the paths of the run, and beside the map.
 /// Empty if the map has no image with observations.
-std::string image_figures(const MapStore& map, std::int64_t most);
+std::string image_figures(const geodb::MapStore& map, std::int64_t most);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

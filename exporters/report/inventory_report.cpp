@@ -12,7 +12,7 @@
 #include "exporters/report/page_style.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kWidth = 1000;  // of the drawing
@@ -31,20 +31,20 @@ constexpr const char* kStyle = R"css(
 @media print { body { max-width: none; padding: 0; font-size: 11px; } .histogram, tr { break-inside: avoid; } }
 )css";
 
-std::size_t column(const ShapeLayer& layer, std::string_view name) {
+std::size_t column(const geodb::ShapeLayer& layer, std::string_view name) {
   for (std::size_t i = 0; i < layer.columns.size(); ++i)
     if (layer.columns[i].name == name) return i;
   return layer.columns.size();
 }
 
-double number(const Shape& row, std::size_t column) {
+double number(const geodb::Shape& row, std::size_t column) {
   if (column >= row.values.size()) return std::numeric_limits<double>::quiet_NaN();
   if (const auto* real = std::get_if<double>(&row.values[column])) return *real;
   if (const auto* whole = std::get_if<std::int64_t>(&row.values[column])) return static_cast<double>(*whole);
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string text(const Shape& row, std::size_t column) {
+std::string text(const geodb::Shape& row, std::size_t column) {
   const auto* words = column < row.values.size() ? std::get_if<std::string>(&row.values[column]) : nullptr;
   return words ? *words : "";
 }
@@ -58,9 +58,9 @@ struct Drawing {
     const double huge = std::numeric_limits<double>::infinity();
     low = {huge, huge};
     high = -low;
-    for (const ShapeLayer* layer : {&page.stands, &page.trees})
-      for (const Shape& row : layer->rows)
-        for (const ShapePart& part : row.parts)
+    for (const geodb::ShapeLayer* layer : {&page.stands, &page.trees})
+      for (const geodb::Shape& row : layer->rows)
+        for (const geodb::ShapePart& part : row.parts)
           for (const auto& corner : part.outer) low = low.cwiseMin(corner), high = high.cwiseMax(corner);
     if (!(low.x() <= high.x())) low = {0, 0}, high = {1, 1};
     const Eigen::Vector2d margin = Eigen::Vector2d::Constant(std::max(0.02 * (high - low).maxCoeff(), 1e-9));
@@ -73,14 +73,14 @@ struct Drawing {
   double y(double north) const { return (high.y() - north) * scale; }
 };
 
-std::string path_of(const Drawing& drawing, const Shape& row) {
+std::string path_of(const Drawing& drawing, const geodb::Shape& row) {
   std::string d;
   const auto add = [&](const std::vector<Eigen::Vector2d>& ring) {
     for (std::size_t i = 0; i < ring.size(); ++i)
       d += fmt::format("{}{:.1f} {:.1f}", i == 0 ? 'M' : 'L', drawing.x(ring[i].x()), drawing.y(ring[i].y()));
     d += 'Z';
   };
-  for (const ShapePart& part : row.parts) {
+  for (const geodb::ShapePart& part : row.parts) {
     add(part.outer);
     for (const auto& hole : part.holes) add(hole);
   }
@@ -94,10 +94,10 @@ std::string map_figure(const InventoryPage& page) {
       "stands\">\n",
       kWidth, drawing.height() + 34);
   const std::size_t name = column(page.stands, "stand"), crown = column(page.trees, "crown_diameter_m");
-  for (const Shape& row : page.stands.rows)
+  for (const geodb::Shape& row : page.stands.rows)
     svg += fmt::format("<path class=\"stand\" d=\"{}\"><title>{}</title></path>\n", path_of(drawing, row),
                        escape_markup(text(row, name)));
-  for (const Shape& row : page.trees.rows) {
+  for (const geodb::Shape& row : page.trees.rows) {
     if (row.parts.empty()) continue;
     const double width = number(row, crown),
                  radius = std::isnan(width) ? 1.5 : std::max(0.6, width * 0.2 * drawing.scale);
@@ -107,7 +107,7 @@ std::string map_figure(const InventoryPage& page) {
   }
   if (page.stands.rows.size() <= kMaxCharts) {
     svg += "\n<g class=\"labels\">";
-    for (const Shape& row : page.stands.rows) {
+    for (const geodb::Shape& row : page.stands.rows) {
       if (row.parts.empty()) continue;
       Eigen::Vector2d middle(0, 0);
       for (const auto& corner : row.parts[0].outer)
@@ -147,17 +147,18 @@ constexpr TableColumn kTable[] = {{"stems_per_ha", "stems / ha", 0},
                                   {"biomass_t_per_ha", "dry mass t/ha", 0}};
 
 std::string table_of(const InventoryPage& page) {
-  const ShapeLayer& stands = page.stands;
+  const geodb::ShapeLayer& stands = page.stands;
   std::string html = "<div class=\"stands\"><table><thead><tr><th>stand</th><th>ha</th><th>trees</th>";
   std::vector<TableColumn> shown;
   for (const TableColumn& c : kTable) {
     const std::size_t at = column(stands, c.name);
-    if (std::ranges::any_of(stands.rows, [&](const Shape& row) { return !std::isnan(number(row, at)); }))
+    if (std::ranges::any_of(stands.rows,
+                            [&](const geodb::Shape& row) { return !std::isnan(number(row, at)); }))
       shown.push_back(c);
   }
   for (const TableColumn& c : shown) html += fmt::format("<th>{}</th>", c.title);
   html += "</tr></thead><tbody>\n";
-  for (const Shape& row : stands.rows) {
+  for (const geodb::Shape& row : stands.rows) {
     html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td>",
                         escape_markup(text(row, column(stands, "stand"))),
                         number_text(number(row, column(stands, "area_ha")), 2),
@@ -172,7 +173,7 @@ std::string table_of(const InventoryPage& page) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string chart_of(const ShapeLayer& stands, const Shape& row, double tallest) {
+std::string chart_of(const geodb::ShapeLayer& stands, const geodb::Shape& row, double tallest) {
   constexpr double kHigh = 120, kWide = 300;
   std::string svg = fmt::format(
       "<figure class=\"histogram\"><h3>{}</h3><svg class=\"bars\" viewBox=\"-34 -8 {} {}\" role=\"img\" "
@@ -204,9 +205,9 @@ std::string chart_of(const ShapeLayer& stands, const Shape& row, double tallest)
                    tallest, kHigh, kWide / 2, kHigh + 29);
 }
 
-std::string charts_of(const ShapeLayer& stands) {
+std::string charts_of(const geodb::ShapeLayer& stands) {
   double tallest = 1;
-  for (const Shape& row : stands.rows)
+  for (const geodb::Shape& row : stands.rows)
     for (std::size_t i = 0; i + 1 < stands.columns.size(); ++i)
       if (stands.columns[i].name.starts_with("stems_per_ha_d") && !stands.columns[i].name.ends_with("_se"))
         tallest = std::max(tallest, number(row, i));
@@ -227,7 +228,7 @@ std::string fact(const std::string& value, const char* what) {
 
 std::string inventory_html(const InventoryPage& page) {
   double hectares = 0, trees = 0;
-  for (const Shape& row : page.stands.rows) {
+  for (const geodb::Shape& row : page.stands.rows) {
     hectares += number(row, column(page.stands, "area_ha"));
     trees += number(row, column(page.stands, "trees"));
   }
@@ -261,4 +262,4 @@ void write_inventory_report(const std::filesystem::path& path, const InventoryPa
   write_file(path, inventory_html(page));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 #include "geodb/shape_layer.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Content of a printed inventory: the layers `stand` and `stand_tree` of `waymark inventory`.
 struct InventoryPage {
   static constexpr std::size_t kMaxTrees = 20'000;  ///< drawn in the map
   std::string title, crs;
-  ShapeLayer stands;
-  ShapeLayer trees;            ///< those to be drawn
+  geodb::ShapeLayer stands;
+  geodb::ShapeLayer trees;     ///< those to be drawn
   std::size_t tree_count = 0;  ///< of all
   std::vector<std::string> warnings, failed;
 };
@@ -23,4 +23,4 @@ void write_inventory_report(const std::filesystem::path& path, const InventoryPa
 /// Returns the HTML of the page.
 std::string inventory_html(const InventoryPage& page);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

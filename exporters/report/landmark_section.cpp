@@ -7,7 +7,7 @@
 
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 void sort_by_rank(LandmarkSection& section) {
@@ -28,7 +28,7 @@ void sort_by_rank(LandmarkSection& section) {
 
 }  // namespace
 
-std::vector<LandmarkSection> landmark_sections(const MapStore& map) {
+std::vector<LandmarkSection> landmark_sections(const geodb::MapStore& map) {
   std::vector<LandmarkSection> sections;
   for (const LandmarkType& type : map.types()) {
     sections.push_back({type, map.query({.types = {type.name}})});
@@ -70,4 +70,4 @@ std::vector<double> known_values(const LandmarkSection& section, std::size_t fea
   return values;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

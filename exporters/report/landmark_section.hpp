@@ -4,9 +4,11 @@
 #include <vector>
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
-
+namespace waymark::geodb {
 class MapStore;
+}
+
+namespace waymark::exporters {
 
 /// All landmarks of one type, ranked by the feature that sizes their symbol (by its certified lower bound
 /// where there is one), else by confidence; unknown values last, ties by uid.
@@ -14,7 +16,7 @@ struct LandmarkSection {
   LandmarkType type;
   std::vector<Landmark> landmarks;
 };
-std::vector<LandmarkSection> landmark_sections(const MapStore& map);
+std::vector<LandmarkSection> landmark_sections(const geodb::MapStore& map);
 
 /// Returns the index of the feature of that name; `std::nullopt` for an empty or unknown name.
 std::optional<std::size_t> find_feature(const LandmarkType& type, const std::string& name);
@@ -33,4 +35,4 @@ double certified_value(const LandmarkType& type, const Landmark& landmark, const
 /// Returns all known values of a feature, unsorted.
 std::vector<double> known_values(const LandmarkSection& section, std::size_t feature);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -12,7 +12,7 @@
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 /// One column: its heading and the cell of a landmark.
@@ -123,4 +123,4 @@ std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::
   return html + "</tbody></table></div>\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -8,7 +8,7 @@
 
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kWidth = 340, kHeight = 300;                       // of the frame, drawing units
@@ -110,4 +110,4 @@ std::string log_plot_figure(const LogPlot& plot) {
       svg_points(x, y, plot));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

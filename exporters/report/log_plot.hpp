@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::exporters {
 
 /// A point with its standard deviation; x, y > 0.
 struct LogPoint {
@@ -21,4 +21,4 @@ struct LogPlot {
 /// deviation up and down, to the frame if y - sd is not above 0. Empty for fewer than two points.
 std::string log_plot_figure(const LogPlot& plot);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

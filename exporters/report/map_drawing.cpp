@@ -13,7 +13,7 @@
 #include "exporters/report/relief_picture.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,11 +52,11 @@ std::string legend(const std::vector<LandmarkSection>& sections, const MapMarker
 
 }  // namespace
 
-std::vector<std::string> relief_names(const MapStore& map) {
+std::vector<std::string> relief_names(const geodb::MapStore& map) {
   if (map.has_dem_coverage()) return {"GPKG:" + map.path().string() + ":dem"};
   std::vector<std::string> names, images;
-  for (const ImageRecord& image : map.images()) images.push_back(image.name);
-  for (const RunRecord& run : map.runs())
+  for (const geodb::ImageRecord& image : map.images()) images.push_back(image.name);
+  for (const geodb::RunRecord& run : map.runs())
     for (const InputFile& input : run.inputs) {
       if (std::ranges::count(images, fs::path(input.path).filename().string()) > 0) continue;  // no heights
       const fs::path beside = map.path().parent_path() / fs::path(input.path).filename();
@@ -70,7 +70,7 @@ std::vector<std::string> relief_names(const MapStore& map) {
   return names;
 }
 
-std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& sections,
+std::string map_figure(const geodb::MapStore& map, const std::vector<LandmarkSection>& sections,
                        std::int64_t relief_pixels) {
   const auto landmarks = extent_of(sections, map.crs());
   const double near_x = landmarks ? landmarks->west + landmarks->width() / 2 : 0;
@@ -99,4 +99,4 @@ std::string map_figure(const MapStore& map, const std::vector<LandmarkSection>& 
       view.height, legend(sections, markers, ramp));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

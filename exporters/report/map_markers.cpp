@@ -8,7 +8,7 @@
 
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr std::size_t kMaxMarkers = 2500;  // of a type; more hide each other and enlarge the file
@@ -171,4 +171,4 @@ std::string svg_symbol(const LandmarkType& type, double size) {
       shape_of(type.drawn_as));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <vector>
 #include "exporters/report/landmark_section.hpp"
 #include "exporters/report/map_view.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Markers and labels of the foremost landmarks.
 struct MapMarkers {
@@ -22,4 +22,4 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
 /// Returns the symbol of a type for legends, `size` drawing units wide.
 std::string svg_symbol(const LandmarkType& type, double size);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

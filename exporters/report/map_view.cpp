@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kLongSide = 1000;  // drawing units
@@ -161,4 +161,4 @@ double round_length(double at_most) {
   return power;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -5,7 +5,7 @@
 #include "exporters/report/landmark_section.hpp"
 #include "exporters/report/relief_source.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Mapping from the map to the drawing: x right, y down, drawing units.
 struct MapView {
@@ -41,4 +41,4 @@ std::string svg_north_arrow(const MapView& view);
 /// Returns the largest of 1, 2 or 5 times a power of ten that is not above `at_most` > 0.
 double round_length(double at_most);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

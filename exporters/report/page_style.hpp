@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
-namespace waymark {
+namespace waymark::exporters {
 
 /// The style sheet of a report: light, dark and print.
 extern const std::string_view kPageStyle;
@@ -11,4 +11,4 @@ inline constexpr std::string_view kContentPolicy =
     "<meta http-equiv='Content-Security-Policy' content=\"default-src 'none'; style-src 'unsafe-inline'; "
     "img-src data:; base-uri 'none'; form-action 'none';\">";
 
-}  // namespace waymark
+}  // namespace waymark::exporters

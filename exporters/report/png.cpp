@@ -10,7 +10,7 @@
 #include "exporters/gdal_messages.hpp"
 #include "exporters/report/relief_picture.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 std::string unique_name() {
@@ -53,4 +53,4 @@ std::string encode_png(const Grid<Colour>& picture) {
   return taken_from_memory(name);
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -12,7 +12,7 @@
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kSide = 260;  // of a calibration plot, drawing units
@@ -72,7 +72,7 @@ std::string observed_table(const std::vector<LandmarkSection>& sections) {
          rows + "</tbody></table></div>\n";
 }
 
-std::string rejection_table(const MapStore& map) {
+std::string rejection_table(const geodb::MapStore& map) {
   std::map<std::pair<std::string, std::string>, std::int64_t> counts;
   std::map<std::string, std::int64_t> used;
   map.visit_observations([&](Observation&& one) {
@@ -152,7 +152,7 @@ std::string calibration_figures(const std::vector<LandmarkSection>& sections,
 
 }  // namespace
 
-std::string quality_section(const MapStore& map, const std::vector<LandmarkSection>& sections,
+std::string quality_section(const geodb::MapStore& map, const std::vector<LandmarkSection>& sections,
                             const std::vector<QualityCheck>& checks) {
   const std::string curves = calibration_figures(sections, checks);
   const bool by_images = !map.images().empty() && map.count() > 0;
@@ -162,4 +162,4 @@ std::string quality_section(const MapStore& map, const std::vector<LandmarkSecti
          "</section>\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

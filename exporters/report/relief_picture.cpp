@@ -6,7 +6,7 @@
 
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr Colour kDeepWater{92, 132, 163}, kShallowWater{176, 204, 219};
@@ -169,4 +169,4 @@ Grid<Colour> shade(const Relief& relief, const HypsometricTint& tint) {
   return picture;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

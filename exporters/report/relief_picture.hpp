@@ -7,7 +7,7 @@
 #include "core/grid.hpp"
 #include "exporters/report/relief_source.hpp"
 #include "geo/body.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 struct Colour {
   std::uint8_t red = 0, green = 0, blue = 0, alpha = 255;
@@ -36,4 +36,4 @@ Grid<Colour> shade(const Relief& relief, const HypsometricTint& tint);
 /// Returns the bytes of a PNG file, written by GDAL.
 std::string encode_png(const Grid<Colour>& picture);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

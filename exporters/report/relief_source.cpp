@@ -10,7 +10,7 @@
 
 #include "exporters/gdal_messages.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -153,4 +153,4 @@ std::optional<Relief> read_relief(const std::vector<std::string>& names, const C
   return relief;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

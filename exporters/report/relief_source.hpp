@@ -7,7 +7,7 @@
 #include "core/grid.hpp"
 #include "core/units.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A rectangle in CRS units.
 struct Extent {
@@ -41,4 +41,4 @@ GroundScale ground_scale(const Crs& crs, const Extent& extent);
 std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
                                   std::int64_t pixels);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -19,7 +19,7 @@
 #include "exporters/staging_folder.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 std::string fact(const std::string& number, const std::string& of) {
@@ -29,7 +29,7 @@ std::string fact(const std::string& number, const std::string& of) {
 constexpr int kFactsPerType = 3;
 
 /// Returns the key figures of the map.
-std::string facts(const std::vector<LandmarkSection>& sections, const std::vector<RunRecord>& runs) {
+std::string facts(const std::vector<LandmarkSection>& sections, const std::vector<geodb::RunRecord>& runs) {
   std::string items;
   for (const LandmarkSection& section : sections) {
     if (section.landmarks.empty()) continue;
@@ -73,10 +73,10 @@ std::string section_html(const LandmarkSection& section, const Crs& crs,
                      landmark_table(section, crs, top));
 }
 
-std::string page(const MapStore& map, const std::string& title, const ReportOptions& options) {
+std::string page(const geodb::MapStore& map, const std::string& title, const ReportOptions& options) {
   const auto sections = landmark_sections(map);
   const auto runs = map.runs();
-  const RunRecord latest = runs.empty() ? RunRecord{} : runs.back();
+  const geodb::RunRecord latest = runs.empty() ? geodb::RunRecord{} : runs.back();
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang='en'>\n<head>\n<meta charset='utf-8'>\n{3}\n"
       "<meta name='viewport' content='width=device-width, initial-scale=1'>\n<meta name='generator' "
@@ -105,9 +105,9 @@ std::string page(const MapStore& map, const std::string& title, const ReportOpti
 
 void write_report(const std::filesystem::path& map_path, const std::filesystem::path& html,
                   const ReportOptions& options) {
-  const MapStore map = MapStore::open(map_path);
+  const geodb::MapStore map = geodb::MapStore::open(map_path);
   const std::string title = options.title.empty() ? title_of(map_path.stem().string()) : options.title;
   write_file(html, page(map, title, options));
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::exporters {
 
 /// A bin of a reliability diagram: landmarks of about the same claimed probability, and how many are correct.
 struct ReliabilityBin {
@@ -40,4 +40,4 @@ struct ReportOptions {
 void write_report(const std::filesystem::path& map, const std::filesystem::path& html,
                   const ReportOptions& options = {});
 
-}  // namespace waymark
+}  // namespace waymark::exporters

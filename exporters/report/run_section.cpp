@@ -8,7 +8,7 @@
 #include "core/json_text.hpp"
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -66,7 +66,7 @@ std::string fact(const char* name, const std::string& html) {
   return html.empty() ? "" : fmt::format("<dt>{}</dt><dd>{}</dd>", name, html);
 }
 
-std::string inputs_table(const RunRecord& run) {
+std::string inputs_table(const geodb::RunRecord& run) {
   if (run.inputs.empty()) return {};
   std::string rows;
   for (const InputFile& input : run.inputs)
@@ -82,7 +82,7 @@ std::string code(const std::string& text) {
   return text.empty() ? "" : "<code>" + escape_markup(text) + "</code>";
 }
 
-std::string job_details(const RunRecord& run) {
+std::string job_details(const geodb::RunRecord& run) {
   const Json job = Json::parse(json_or_empty(run.job_json), nullptr, false);
   if (run.job_json.empty()) return {};
   return fmt::format("<details><summary>Job with every option</summary><pre>{}</pre></details>\n",
@@ -91,7 +91,7 @@ std::string job_details(const RunRecord& run) {
 
 }  // namespace
 
-std::string stage_table(const RunRecord& run) {
+std::string stage_table(const geodb::RunRecord& run) {
   const Json stages = list_at(parsed(run.report_json), "stages");
   if (stages.empty()) return {};
   std::string html =
@@ -107,7 +107,7 @@ std::string stage_table(const RunRecord& run) {
   return html + "</tbody></table></div>\n";
 }
 
-std::string warning_list(const RunRecord& run) {
+std::string warning_list(const geodb::RunRecord& run) {
   const Json report = parsed(run.report_json);
   std::string items;
   for (const Json& failure : list_at(report, "failures"))
@@ -121,7 +121,7 @@ std::string warning_list(const RunRecord& run) {
   return items.empty() ? "" : "<ul class='warnings'>" + items + "</ul>\n";
 }
 
-std::string provenance(const std::vector<RunRecord>& runs) {
+std::string provenance(const std::vector<geodb::RunRecord>& runs) {
   if (runs.empty()) return "<p class='empty'>No run is recorded in this map.</p>";
   std::string html;
   for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
@@ -136,4 +136,4 @@ std::string provenance(const std::vector<RunRecord>& runs) {
   return html;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

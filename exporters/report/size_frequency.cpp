@@ -9,7 +9,7 @@
 #include "exporters/formatting.hpp"
 #include "exporters/report/log_plot.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr std::size_t kMinCount = 5;
@@ -98,4 +98,4 @@ std::string size_frequency_figures(const LandmarkSection& section, const std::op
   return figures.empty() ? "" : "<div class='histograms plots'>" + figures + "</div>\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

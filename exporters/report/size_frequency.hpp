@@ -5,7 +5,7 @@
 #include <vector>
 #include "exporters/report/counting_area.hpp"
 #include "exporters/report/landmark_section.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A bin of diameters for crater counting, growing by the square root of two (Crater Analysis Techniques
 /// Working Group 1979): 2^(k/2) km.
@@ -28,4 +28,4 @@ double relative_density(const SizeBin& bin, double square_metres);
 /// known. Empty for other types and for fewer than five landmarks of known size.
 std::string size_frequency_figures(const LandmarkSection& section, const std::optional<CountingArea>& area);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

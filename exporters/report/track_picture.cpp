@@ -14,7 +14,7 @@
 #include "exporters/formatting.hpp"
 #include "exporters/report/map_view.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 constexpr double kEllipseScale = 10;
@@ -27,9 +27,9 @@ constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "
 class Drawing {
  public:
   explicit Drawing(const TrackPicture& picture) : picture_(picture) {
-    for (const StampedPose& p : picture.truth) box_.extend(p.pose.at());
+    for (const localization::StampedPose& p : picture.truth) box_.extend(p.pose.at());
     for (const PictureTrack& t : picture.tracks)
-      for (const TrackRow& row : t.track.rows) box_.extend(row.at.pose.at());
+      for (const localization::TrackRow& row : t.track.rows) box_.extend(row.at.pose.at());
     if (box_.isEmpty()) box_.extend(Eigen::Vector2d(0, 0));
     const double margin = 0.06 * std::max(10.0, box_.sizes().maxCoeff());
     box_.extend(Eigen::Vector2d(box_.min().array() - margin));
@@ -102,7 +102,7 @@ class Drawing {
     legend();
   }
 
-  void ellipses(const std::vector<TrackRow>& rows, const char* paint) {
+  void ellipses(const std::vector<localization::TrackRow>& rows, const char* paint) {
     const std::size_t step = std::max<std::size_t>(1, rows.size() / 14);
     for (std::size_t i = step; i < rows.size(); i += step) {
       const PrincipalAxes axes = principal_axes(rows[i].at.covariance.topLeftCorner<2, 2>());
@@ -145,15 +145,15 @@ class Drawing {
         left + 6, at, kEllipseScale);
   }
 
-  std::vector<std::pair<double, double>> errors(const Track& track) const {
+  std::vector<std::pair<double, double>> errors(const localization::Track& track) const {
     std::vector<std::pair<double, double>> all;
-    for (const TrackRow& row : track.rows)
-      if (const auto truth = pose_at(picture_.truth, row.t, 1.5))
+    for (const localization::TrackRow& row : track.rows)
+      if (const auto truth = localization::pose_at(picture_.truth, row.t, 1.5))
         all.emplace_back(row.t, (row.at.pose.at() - truth->at()).norm());
     return all;
   }
 
-  std::string median_text(const Track& track) const {
+  std::string median_text(const localization::Track& track) const {
     auto all = errors(track);
     if (all.empty()) return "";
     const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
@@ -205,4 +205,4 @@ std::string track_picture(const TrackPicture& picture) {
   return Drawing(picture).page();
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -5,7 +5,7 @@
 #include <vector>
 #include "localization/robot_log.hpp"
 #include "localization/track.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// A landmark as a dot: metres, in the frame of the tracks.
 struct PictureDot {
@@ -16,13 +16,13 @@ struct PictureDot {
 
 struct PictureTrack {
   std::string name;
-  Track track;
+  localization::Track track;
 };
 
 struct TrackPicture {
   std::string title;
   std::vector<PictureDot> map;
-  std::vector<StampedPose> truth;
+  std::vector<localization::StampedPose> truth;
   std::vector<PictureTrack> tracks;  ///< drawn in this order, the first one below
   std::vector<PictureDot> mapped;    ///< drawn as rings
 };
@@ -33,4 +33,4 @@ struct TrackPicture {
 /// points.
 std::string track_picture(const TrackPicture& picture);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -15,7 +15,7 @@
 #include "exporters/staging_folder.hpp"
 #include "geodb/map_store.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,8 @@ struct Crater {
   Eigen::Vector2d at;     ///< map
 };
 
-const LandmarkType& type_of(const MapStore& map, const ExportOptions& options, const std::string& shown) {
+const LandmarkType& type_of(const geodb::MapStore& map, const ExportOptions& options,
+                            const std::string& shown) {
   const std::string name = options.types.empty() ? "crater" : options.types.front();
   if (options.types.size() > 1)
     throw Error(ErrorCode::usage, "a crater count holds one type", "--type", "name one, or none for craters");
@@ -36,7 +37,7 @@ const LandmarkType& type_of(const MapStore& map, const ExportOptions& options, c
   return *type;
 }
 
-CountingArea area_of(const MapStore& map, const ExportOptions& options) {
+CountingArea area_of(const geodb::MapStore& map, const ExportOptions& options) {
   auto area = counting_area(map);
   if (!(options.area_km2 >= 0))
     throw Error(ErrorCode::usage, fmt::format("--area is {:g} km2", options.area_km2), "",
@@ -63,7 +64,7 @@ bool inside(const std::vector<CountingArea::Ring>& rings, const Eigen::Vector2d&
   return in;
 }
 
-std::vector<Crater> craters_of(const MapStore& map, const LandmarkType& type, const CountingArea& area,
+std::vector<Crater> craters_of(const geodb::MapStore& map, const LandmarkType& type, const CountingArea& area,
                                ExportSummary& summary) {
   const auto radius = find_feature(type, "radius");
   std::vector<Crater> craters;
@@ -105,7 +106,8 @@ std::string boundary_text(const std::vector<CountingArea::Ring>& rings, const Cr
   return text + "}\n#\n";
 }
 
-std::string scc_text(const MapStore& map, const CountingArea& area, const std::vector<Crater>& craters) {
+std::string scc_text(const geodb::MapStore& map, const CountingArea& area,
+                     const std::vector<Crater>& craters) {
   const Body& body = map.crs().body();
   const Crs degrees = geographic_crs(map.crs());
   const CrsTransform to_degrees(map.crs(), degrees);
@@ -140,7 +142,7 @@ bool is_crater_count(const std::string& out) {
 ExportSummary export_crater_count(const fs::path& map_path, const std::string& out,
                                   const ExportOptions& options) {
   const bool with_places = out.ends_with(".scc");
-  const MapStore map = MapStore::open(map_path);
+  const geodb::MapStore map = geodb::MapStore::open(map_path);
   if (with_places && map.crs().kind() == CrsKind::local)
     throw Error(ErrorCode::usage, "a .scc has longitudes and latitudes, but the map is on no body", out,
                 "write .diam, which holds diameters and an area");
@@ -161,4 +163,4 @@ ExportSummary export_crater_count(const fs::path& map_path, const std::string& o
   return summary;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

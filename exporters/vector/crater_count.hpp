@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 #include "exporters/vector/export_map.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Returns true for the file names of craterstats: .scc (craters with positions and the outline of the area)
 /// and .diam (diameters and an area).
@@ -18,4 +18,4 @@ bool is_crater_count(const std::string& out);
 ExportSummary export_crater_count(const std::filesystem::path& map, const std::string& out,
                                   const ExportOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -13,7 +13,7 @@
 #include "core/principal_axes.hpp"
 #include "landmarks/uid.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -202,13 +202,13 @@ std::string detections_to_geojson(const ImageDetections& found, const LandmarkTy
   return text + "\n]}\n";
 }
 
-MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& types) {
+geodb::MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& types) {
   ImageDetections sized = found;
   if (!pixel_size(found)) sized.gsd = Meters{1};
   const Eigen::Vector2d size = *pixel_size(sized);
   const Georeference place = found.georeference.value_or(
       Georeference{Crs::local(), 0, 0, sized.gsd ? sized.gsd->value : 1, sized.gsd ? -sized.gsd->value : -1});
-  MapContents map;
+  geodb::MapContents map;
   map.types = types;
   map.crs = place.crs;
   const LandmarkType& type = types[found.type];
@@ -241,7 +241,7 @@ MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& 
     seen.features = landmark.features;
     map.observations.push_back(std::move(seen));
   }
-  ImageRecord image;
+  geodb::ImageRecord image;
   image.name = found.image;
   const double right = static_cast<double>(found.columns) - 0.5, low = static_cast<double>(found.rows) - 0.5;
   image.footprint = {{{place.x(-0.5), place.y(-0.5)},
@@ -260,4 +260,4 @@ MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& 
   return map;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -9,7 +9,7 @@
 #include "geo/georeference.hpp"
 #include "geodb/map_contents.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Detections in one image, with the scale and orientation of its pixels on the ground.
 struct ImageDetections {
@@ -54,6 +54,6 @@ std::string detections_to_geojson(const ImageDetections& found, const LandmarkTy
 /// Returns a map: every detection is a landmark with one observation, the image has its outline. An image
 /// without georeference lies on a local plane in metres, x right, y up, its pixel (0, 0) at the origin; a
 /// pixel of unknown size counts as a metre. Run, types and DEM are left to the caller.
-MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& types);
+geodb::MapContents detections_to_map(const ImageDetections& found, const TypeRegistry& types);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

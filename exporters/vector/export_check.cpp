@@ -12,7 +12,7 @@
 #include "exporters/gdal_messages.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 
 std::vector<std::string> check_export(const VectorFormat& format, const std::string& path,
                                       const std::string& output_name, const Crs& crs,
@@ -46,4 +46,4 @@ std::vector<std::string> check_export(const VectorFormat& format, const std::str
   return {fmt::format("{} stores the definition of the CRS, not its code {}", format.driver, crs.id())};
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -6,7 +6,7 @@
 #include "core/quality.hpp"
 #include "landmarks/assessed_quality.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 using Kind = AttributeSpec::Kind;
@@ -96,4 +96,4 @@ std::optional<double> equal_weight_quality(const Landmark& landmark) {
   return landmark_quality(multiplicity(landmark), landmark.quality.feature_confidences, weights);
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

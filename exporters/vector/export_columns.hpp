@@ -6,7 +6,7 @@
 #include "core/attribute.hpp"
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// One column of a table of landmarks, named as in the map.
 struct ExportColumn {
@@ -23,4 +23,4 @@ std::vector<ExportColumn> export_columns(const LandmarkType& type);
 /// Returns the landmark quality (eq. 8) with equal weights; `std::nullopt` if none of its terms is known.
 std::optional<double> equal_weight_quality(const Landmark& landmark);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -20,14 +20,14 @@
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// State shared by the steps of one export.
 struct Export {
-  const MapStore& map;
+  const geodb::MapStore& map;
   const VectorFormat format;
   const Crs crs;
   ExportSummary summary;
@@ -115,7 +115,7 @@ void refuse_existing(const std::string& out, bool overwrite) {
   if (VSI_ISDIR(status.st_mode) && !out.ends_with(".gdb")) fail_output(out, "it is a folder");
 }
 
-std::vector<std::string> chosen_types(const MapStore& map, const std::vector<std::string>& asked) {
+std::vector<std::string> chosen_types(const geodb::MapStore& map, const std::vector<std::string>& asked) {
   std::vector<std::string> types;
   for (const std::string& type : asked.empty() ? map.types().names() : asked) {
     static_cast<void>(map.types().id(type));  // throws with the nearest name
@@ -144,9 +144,9 @@ std::vector<OutputFile> output_files(const VectorFormat& format, const std::stri
 }
 
 void write_map_file(Export& job, const std::vector<std::string>& types, const fs::path& out) {
-  check_before_copy(job.map.path());
+  geodb::check_before_copy(job.map.path());
   MapSubset subset = map_subset(job.map, types, job.crs);
-  write_map(out, subset.contents, {.empty_tables = types});
+  geodb::write_map(out, subset.contents, {.empty_tables = types});
   job.summary.layers = std::move(subset.layers);
   job.summary.files = {out.string()};
   job.warn(std::move(subset.warnings));
@@ -157,7 +157,7 @@ void write_map_file(Export& job, const std::vector<std::string>& types, const fs
 ExportSummary export_map(const fs::path& map_path, const std::string& out, const ExportOptions& options) {
   if (options.driver.empty() && is_crater_count(out)) return export_crater_count(map_path, out, options);
   const VectorFormat format = vector_format(out, options.driver);
-  const MapStore map = MapStore::open(map_path);
+  const geodb::MapStore map = geodb::MapStore::open(map_path);
   const auto types = chosen_types(map, options.types);
   Export job{map, format, output_crs(format, map.crs(), options.crs, map_path.string()), {}};
   job.summary.driver = format.driver;
@@ -177,4 +177,4 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
   return std::move(job.summary);
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <vector>
-namespace waymark {
+namespace waymark::exporters {
 
 /// Which landmarks are exported, and how.
 struct ExportOptions {
@@ -44,4 +44,4 @@ struct ExportSummary {
 ExportSummary export_map(const std::filesystem::path& map, const std::string& out,
                          const ExportOptions& options = {});
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -8,13 +8,13 @@
 
 #include "exporters/vector/reproject.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
-void reproject(std::vector<ImageRecord>& images, const Crs& from, const Crs& to) {
+void reproject(std::vector<geodb::ImageRecord>& images, const Crs& from, const Crs& to) {
   if (from.same_as(to)) return;
   const CrsTransform transform(from, to);
-  for (ImageRecord& image : images)
+  for (geodb::ImageRecord& image : images)
     for (auto& ring : image.footprint)
       for (Eigen::Vector2d& corner : ring) {
         const auto there = transform(corner.x(), corner.y());
@@ -42,9 +42,9 @@ bool keep(Observation& seen, const TypeRegistry& from, const TypeRegistry& to,
 
 }  // namespace
 
-MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types, const Crs& crs) {
+MapSubset map_subset(const geodb::MapStore& map, const std::vector<std::string>& types, const Crs& crs) {
   MapSubset subset;
-  MapContents& contents = subset.contents;
+  geodb::MapContents& contents = subset.contents;
   contents.crs = crs;
   std::set<std::string> uids;
   for (const std::string& name : types) {
@@ -75,4 +75,4 @@ MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types,
   return subset;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

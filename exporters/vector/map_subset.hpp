@@ -5,14 +5,14 @@
 #include "exporters/vector/export_map.hpp"
 #include "geodb/map_contents.hpp"
 #include "geodb/map_store.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Some types of a map with their evidence, images and latest run, in a CRS of the same body.
 struct MapSubset {
-  MapContents contents;
+  geodb::MapContents contents;
   std::vector<ExportedLayer> layers;
   std::vector<std::string> warnings;  ///< parts that were left out
 };
-MapSubset map_subset(const MapStore& map, const std::vector<std::string>& types, const Crs& crs);
+MapSubset map_subset(const geodb::MapStore& map, const std::vector<std::string>& types, const Crs& crs);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -15,7 +15,7 @@
 #include "exporters/vector/export_columns.hpp"
 #include "exporters/vector/placemark_text.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 /// A column and the field it is written to.
@@ -201,4 +201,4 @@ std::vector<std::string> OgrOutput::close() {
   return warnings;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -8,7 +8,7 @@
 #include "exporters/vector/vector_format.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Landmarks of a layer, one at a time; may be called several times and visits the same landmarks each time.
 using LandmarkStream = std::function<void(const std::function<void(const Landmark&)>& visit)>;
@@ -33,4 +33,4 @@ class OgrOutput {
   std::unique_ptr<File> file_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -9,7 +9,7 @@
 #include "exporters/formatting.hpp"
 #include "exporters/vector/export_columns.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 std::string row(const std::string& title, const std::string& text) {
@@ -40,4 +40,4 @@ std::string placemark_description(const Landmark& landmark, const LandmarkType& 
   return fmt::format("<p>{}</p><table>{}</table>", escape_markup(type.summary), rows);
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -3,11 +3,11 @@
 #include <string>
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Returns the name of a landmark for a globe or a navigator.
 std::string placemark_name(const Landmark& landmark, const LandmarkType& type);
 /// Returns an HTML table: each feature with its spread, and the confidence in the landmark.
 std::string placemark_description(const Landmark& landmark, const LandmarkType& type);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

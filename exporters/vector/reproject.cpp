@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 struct Pair {
@@ -53,4 +53,4 @@ Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type,
   return {std::move(landmarks), static_cast<std::int64_t>(lost)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -5,7 +5,7 @@
 #include "core/landmark.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Landmarks with positions in another CRS: their own, and every attribute pair `<stem>_x`, `<stem>_y` of the
 /// type, by convention a position in the map's CRS (a saddle, the end of isolation). An attribute pair
@@ -17,4 +17,4 @@ struct Reprojected {
 Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type, const Crs& from,
                       const Crs& to);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -7,7 +7,7 @@
 
 #include "exporters/formatting.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 std::string cell(const AttributeValue& value) {
@@ -20,15 +20,15 @@ std::string cell(const AttributeValue& value) {
 
 }  // namespace
 
-std::string layer_to_csv(const ShapeLayer& layer) {
+std::string layer_to_csv(const geodb::ShapeLayer& layer) {
   std::string text;
   for (const AttributeSpec& column : layer.columns) text += (text.empty() ? "" : ",") + csv_text(column.name);
   text += '\n';
-  for (const Shape& row : layer.rows) {
+  for (const geodb::Shape& row : layer.rows) {
     for (std::size_t i = 0; i < row.values.size(); ++i) text += (i == 0 ? "" : ",") + cell(row.values[i]);
     text += '\n';
   }
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -15,7 +15,7 @@
 #include "exporters/gdal_messages.hpp"
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,14 +28,14 @@ using Values = std::array<double, kColumns.size()>;
 constexpr std::size_t kWrong = 13;
 
 /// Wrong matches are unknown if no matched sighting has an identity in the log.
-bool knows_wrong_matches(const Track& track) {
+bool knows_wrong_matches(const localization::Track& track) {
   std::int64_t matched = 0;
-  for (const TrackRow& row : track.rows) matched += row.matched;
+  for (const localization::TrackRow& row : track.rows) matched += row.matched;
   return matched == 0 || track.named > 0;
 }
 
 /// Unknown values are NaN.
-Values values_of(const TrackRow& row, const LocalFrame* frame, bool wrong_known) {
+Values values_of(const localization::TrackRow& row, const LocalFrame* frame, bool wrong_known) {
   const Eigen::Matrix3d& c = row.at.covariance;
   Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
   if (frame) at = frame->crs_from_map_frame({at}).xyz;
@@ -65,12 +65,12 @@ std::size_t columns_of(const TrackOutput& output) {
   return kColumns.size() - !output.timing;  // times are the last column
 }
 
-TrackRow row_of(const Values& v) {
-  TrackRow row{.t = v[0],
-               .at = {{v[1], v[2], wrap_angle(v[6])}, Eigen::Matrix3d::Zero()},
-               .z = v[3],
-               .roll = v[4],
-               .pitch = v[5]};
+localization::TrackRow row_of(const Values& v) {
+  localization::TrackRow row{.t = v[0],
+                             .at = {{v[1], v[2], localization::wrap_angle(v[6])}, Eigen::Matrix3d::Zero()},
+                             .z = v[3],
+                             .roll = v[4],
+                             .pitch = v[5]};
   row.at.covariance << v[7], v[9], v[15], v[9], v[8], v[16], v[15], v[16], v[10];
   row.matched = static_cast<int>(v[11]);
   row.rejected = static_cast<int>(v[12]);
@@ -82,7 +82,7 @@ TrackRow row_of(const Values& v) {
 
 }  // namespace
 
-void write_track_csv(const fs::path& file, const Track& track, const TrackOutput& output) {
+void write_track_csv(const fs::path& file, const localization::Track& track, const TrackOutput& output) {
   fmt::memory_buffer text;
   const std::size_t columns = columns_of(output);
   for (std::size_t i = 0; i < columns; ++i)
@@ -90,7 +90,7 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
   text.push_back('\n');
   const bool wrong_known = knows_wrong_matches(track);
   const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
-  for (const TrackRow& row : track.rows) {
+  for (const localization::TrackRow& row : track.rows) {
     const Values v = values_of(row, output.frame, wrong_known);
     const int places = degrees ? 11 : 6;
     fmt::format_to(std::back_inserter(text), "{:.4f},{:.{}f},{:.{}f},{:.4f},{:.6f},{:.6f},{:.6f}", v[0], v[1],
@@ -104,7 +104,8 @@ void write_track_csv(const fs::path& file, const Track& track, const TrackOutput
   write_file(file, fmt::to_string(text));
 }
 
-void write_track_geopackage(const fs::path& file, const Track& track, const TrackOutput& output) {
+void write_track_geopackage(const fs::path& file, const localization::Track& track,
+                            const TrackOutput& output) {
   const GdalMessages messages;
   StagingFolder staging(file);
   const fs::path staged = staging.path() / file.filename();
@@ -127,7 +128,7 @@ void write_track_geopackage(const fs::path& file, const Track& track, const Trac
   }
   const bool wrong_known = knows_wrong_matches(track);
   set->StartTransaction();
-  for (const TrackRow& row : track.rows) {
+  for (const localization::TrackRow& row : track.rows) {
     const Values v = values_of(row, output.frame, wrong_known);
     OGRFeature feature(layer->GetLayerDefn());
     for (std::size_t i = 0; i < columns; ++i)
@@ -142,7 +143,7 @@ void write_track_geopackage(const fs::path& file, const Track& track, const Trac
   staging.publish();
 }
 
-Track read_track_csv(const fs::path& file) {
+localization::Track read_track_csv(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
   if (!in || !std::getline(in, line))
@@ -161,7 +162,7 @@ Track read_track_csv(const fs::path& file) {
   if (!found[0] || !found[1] || !found[2])
     throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
                 "waymark localize writes such files");
-  Track track;
+  localization::Track track;
   bool wrong_known = found[kWrong];
   for (std::size_t number = 2; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \r\t") == std::string::npos) continue;
@@ -183,8 +184,8 @@ Track read_track_csv(const fs::path& file) {
     track.rows.push_back(row_of(values));
   }
   if (wrong_known)
-    for (const TrackRow& row : track.rows) track.named += row.matched;
+    for (const localization::TrackRow& row : track.rows) track.named += row.matched;
   return track;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

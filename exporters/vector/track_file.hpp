@@ -3,7 +3,7 @@
 #include <filesystem>
 #include "geo/local_frame.hpp"
 #include "localization/track.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 struct TrackOutput {
   const LocalFrame* frame =
@@ -16,13 +16,15 @@ struct TrackOutput {
 /// (matches that contradict the log; empty if the log has no identities), lost (0 or 1), cov_x_yaw,
 /// cov_y_yaw, nis and nis_rows; seconds, metres, radians; with `timing` also seconds_used. Staged and
 /// renamed. Throws Error{output}.
-void write_track_csv(const std::filesystem::path& file, const Track& track, const TrackOutput& output = {});
+void write_track_csv(const std::filesystem::path& file, const localization::Track& track,
+                     const TrackOutput& output = {});
 
 /// Writes the same columns as points of a GeoPackage, layer `track`. Needs `output.frame` and `output.crs`.
-void write_track_geopackage(const std::filesystem::path& file, const Track& track, const TrackOutput& output);
+void write_track_geopackage(const std::filesystem::path& file, const localization::Track& track,
+                            const TrackOutput& output);
 
 /// Reads such a CSV. Columns may be in any order; t, x, y are required, others default to 0; Track::named
 /// counts the matches where `wrong` is known. Throws Error{input} with the line.
-Track read_track_csv(const std::filesystem::path& file);
+localization::Track read_track_csv(const std::filesystem::path& file);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

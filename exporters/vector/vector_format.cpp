@@ -14,7 +14,7 @@
 #include "core/error.hpp"
 #include "exporters/gdal_messages.hpp"
 
-namespace waymark {
+namespace waymark::exporters {
 namespace {
 
 // Formats defined in WGS 84. GDAL has no flag for it.
@@ -162,4 +162,4 @@ std::vector<std::string> shorten_names(const VectorFormat& format, const std::ve
   return fitting;
 }
 
-}  // namespace waymark
+}  // namespace waymark::exporters

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::exporters {
 
 /// Properties of a vector format of this GDAL that matter for an export.
 struct VectorFormat {
@@ -33,4 +33,4 @@ Crs output_crs(const VectorFormat& format, const Crs& map_crs, const std::string
 /// (`_sd`, `_low`). With ten letters prominence_low becomes promin_low.
 std::vector<std::string> shorten_names(const VectorFormat& format, const std::vector<std::string>& names);
 
-}  // namespace waymark
+}  // namespace waymark::exporters

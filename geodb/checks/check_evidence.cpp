@@ -3,7 +3,7 @@
 #include "geodb/checks/map_checks.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr const char* kDeadLink =
@@ -48,4 +48,4 @@ void check_evidence(const sqlite::Database& database, const TypeRegistry& types,
       findings.add("evidence.features", "observation", row.integer(0), "column features is not JSON");
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

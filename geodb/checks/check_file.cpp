@@ -8,7 +8,7 @@
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/colour.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 bool is_sha256(std::string_view text) {
@@ -111,4 +111,4 @@ bool check_columns(const sqlite::Database& database, const LandmarkLayout& layou
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -10,7 +10,7 @@
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/sensor_profile.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr double kRounding = 1e-9;  // of stored quotients and sums against recomputed ones
@@ -151,4 +151,4 @@ void check_landmarks(const sqlite::Database& database, const LandmarkLayout& lay
               {{"t", table}, {"a", attribute.name}}));
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

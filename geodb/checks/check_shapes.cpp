@@ -7,7 +7,7 @@
 #include "geodb/layers/shape_table.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 
 void check_shapes(const sqlite::Database& database, std::int32_t srs_id, FindingList& findings) {
   for (const ShapeLayer& layer : declared_layers(database)) {
@@ -33,4 +33,4 @@ void check_shapes(const sqlite::Database& database, std::int32_t srs_id, Finding
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

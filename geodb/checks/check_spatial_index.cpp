@@ -4,7 +4,7 @@
 #include "geodb/checks/map_checks.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr const char* kTriggers[] = {"insert", "update1", "update2", "update3", "update4", "delete"};
@@ -49,4 +49,4 @@ void check_spatial_index(const sqlite::Database& database, const std::string& ta
     find_rows(database, findings, code, table, substitute_keys(sql, {{"t", table}}));
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

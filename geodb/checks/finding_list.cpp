@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::int64_t kMaxPerKind = 100;
@@ -24,4 +24,4 @@ std::vector<Finding> FindingList::take() {
   return std::move(findings_);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 #include "geodb/validate_map.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Collects findings: the first hundred of each code and table, and the number of the others.
 class FindingList {
@@ -19,4 +19,4 @@ class FindingList {
   std::map<std::pair<std::string, std::string>, std::int64_t> count_;  ///< by code and table
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -3,7 +3,7 @@
 #include "geodb/checks/finding_list.hpp"
 #include "geodb/layers/landmark_layout.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Checks of validate_map(); each adds its findings.
 
@@ -34,4 +34,4 @@ void check_layer(const sqlite::Database& database, const std::string& table, Fin
 void find_rows(const sqlite::Database& database, FindingList& findings, const std::string& code,
                const std::string& table, const std::string& sql);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::int32_t kCartesian = -1, kGeographic = 0, kWgs84 = 4326, kFirstForeign = 100'000;
@@ -83,4 +83,4 @@ Crs read_crs(const sqlite::Database& database, std::int32_t srs_id) {
               "srs_id " + std::to_string(srs_id), "a newer PROJ may know it: `projinfo --version`");
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include "geo/crs.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Stores `crs` and the three mandatory definitions of a GeoPackage, and returns the srs_id of `crs`. It is
 /// the EPSG code, 100000 for any other authority or none, -1 ("undefined Cartesian") for a local CRS. WKT 2
@@ -14,4 +14,4 @@ std::int32_t write_crs(const sqlite::Database& database, const Crs& crs);
 /// neither.
 Crs read_crs(const sqlite::Database& database, std::int32_t srs_id);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -9,7 +9,7 @@
 
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::int64_t kSide = 256;                              // cells of a tile
@@ -151,4 +151,4 @@ void write_dem_coverage(const sqlite::Database& database, const DemSource& dem, 
   pyramid.store_all();
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

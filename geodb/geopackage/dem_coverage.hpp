@@ -7,7 +7,7 @@
 #include "core/grid.hpp"
 #include "geo/dem_source.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Stores a DEM as the gridded coverage `dem`: tiles of 256 x 256 cells, float32 metres, with coarser levels
 /// up to a single tile.
@@ -22,4 +22,4 @@ void write_dem_coverage(const sqlite::Database& database, const DemSource& dem, 
 /// format of the coverage extension.
 std::vector<std::byte> float_tiff(const Grid<float>& cells);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

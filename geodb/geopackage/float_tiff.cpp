@@ -4,7 +4,7 @@
 
 #include "geodb/geopackage/dem_coverage.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 enum class Field : std::uint16_t { number16 = 3, number32 = 4 };
@@ -58,4 +58,4 @@ std::vector<std::byte> float_tiff(const Grid<float>& cells) {
   return tiff;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -8,7 +8,7 @@
 
 #include "geodb/geopackage/wkb_reader.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using namespace wkb;
@@ -148,4 +148,4 @@ std::vector<std::vector<Eigen::Vector2d>> polygons_of(std::span<const std::byte>
   return outer;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

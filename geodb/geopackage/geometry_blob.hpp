@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::geodb {
 
 /// GeoPackage geometries: "GP", version, flags, srs_id, then WKB (OGC 12-128r18, 2.1.3). Written
 /// little-endian, points without an envelope; read in any byte order and of any type.
@@ -41,4 +41,4 @@ bool has_z(std::span<const std::byte> blob);
 /// Returns the closed outer rings of a polygon or multipolygon; empty if the bytes are neither.
 std::vector<std::vector<Eigen::Vector2d>> polygons_of(std::span<const std::byte> blob);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

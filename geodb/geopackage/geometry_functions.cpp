@@ -5,7 +5,7 @@
 
 #include "geodb/geopackage/geometry_blob.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 std::optional<Envelope> envelope_of(sqlite3_value* value) {
@@ -39,4 +39,4 @@ void add_geometry_functions(sqlite3* database) {
   add("ST_MaxY", bound<&Envelope::max_y>);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -10,7 +10,7 @@
 
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::string_view kRelatedTables = "http://www.geopackage.org/18-000.html";
@@ -126,4 +126,4 @@ void create_landmark_view(const sqlite::Database& database, const TypeRegistry& 
   database.execute(fmt::format("CREATE VIEW landmark AS\n{}", fmt::join(parts, "\nUNION ALL\n")));
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/layers/landmark_layout.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Description of a table or view with geometries for the GeoPackage.
 struct Layer {
@@ -45,4 +45,4 @@ void store_style(const sqlite::Database& database, std::string_view table, const
 /// Creates the view `landmark`: the common columns of all landmark types.
 void create_landmark_view(const sqlite::Database& database, const TypeRegistry& types);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

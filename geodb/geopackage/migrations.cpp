@@ -10,7 +10,7 @@
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::int64_t kGeoPackage = 0x47504B47;  // "GPKG", SQLite's application_id
@@ -68,4 +68,4 @@ void migrate(const sqlite::Database& database) {
   all.commit();
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Version of the schema this program writes (sql/schema.sql).
 inline constexpr int kSchemaVersion = 3;
@@ -17,4 +17,4 @@ int schema_version(const sqlite::Database& database);
 /// Migrates an older map to kSchemaVersion, by all steps (sql/migrate_<version>.sql) or none.
 void migrate(const sqlite::Database& database);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -12,7 +12,7 @@
 #include "core/source_date.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using nlohmann::ordered_json;
@@ -175,4 +175,4 @@ std::string time_stamp_now() {
       fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::system_clock::to_time_t(now))));
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -5,7 +5,7 @@
 #include <vector>
 #include "geodb/map_contents.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Write and read table `run`. A RunRecord reads back unchanged, except for its time: see time_stamp().
 void write_run(const sqlite::Database& database, const RunRecord& run);
@@ -23,4 +23,4 @@ void write_metadata(const sqlite::Database& database, const RunRecord& run, std:
 std::string time_stamp(std::string_view iso_8601);
 std::string time_stamp_now();
 
-}  // namespace waymark
+}  // namespace waymark::geodb

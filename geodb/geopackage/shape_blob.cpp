@@ -6,7 +6,7 @@
 
 #include "geodb/geopackage/wkb_reader.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using Ring = std::vector<Eigen::Vector2d>;
@@ -107,4 +107,4 @@ std::vector<ShapePart> parts_of(std::span<const std::byte> blob) {
   return parts;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

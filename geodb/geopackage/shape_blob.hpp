@@ -6,7 +6,7 @@
 #include <vector>
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/shape_layer.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the geometry of a shape, little-endian: POINT, or MULTILINESTRING and MULTIPOLYGON with envelope.
 /// Outer rings are counter-clockwise, holes clockwise, all closed. Without parts the geometry is empty.
@@ -17,4 +17,4 @@ std::vector<ShapePart> parts_of(std::span<const std::byte> blob);
 
 Envelope envelope_of(std::span<const ShapePart> parts);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "landmarks/colour.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::array<std::string_view, 3> kScales = {"ratio", "interval", "axis"};
@@ -118,4 +118,4 @@ TypeRegistry read_types(const sqlite::Database& database) {
   return types;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

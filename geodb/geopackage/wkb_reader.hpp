@@ -8,7 +8,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
-namespace waymark::wkb {
+namespace waymark::geodb::wkb {
 
 /// Reader of GeoPackage geometries of any type and byte order; private to geodb.
 
@@ -113,4 +113,4 @@ inline std::optional<std::span<const std::byte>> wkb_of(std::span<const std::byt
   return blob.subspan(header->size);
 }
 
-}  // namespace waymark::wkb
+}  // namespace waymark::geodb::wkb

@@ -8,7 +8,7 @@
 #include "core/json_text.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 using nlohmann::json;
@@ -111,4 +111,4 @@ std::vector<Observation> read_evidence(const sqlite::Database& database, const T
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

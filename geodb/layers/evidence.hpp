@@ -7,7 +7,7 @@
 #include "core/observation.hpp"
 #include "geodb/sqlite/sqlite.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Stores observations and links the accepted ones to their landmarks.
 class EvidenceWriter {
@@ -31,4 +31,4 @@ std::vector<Observation> read_evidence(const sqlite::Database& database, const T
 void visit_evidence(const sqlite::Database& database, const TypeRegistry& types, std::string_view where,
                     std::string_view parameter, const std::function<void(Observation&&)>& visit);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

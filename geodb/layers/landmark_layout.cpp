@@ -15,7 +15,7 @@
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/sensor_profile.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::array kOurTables = {"observation", "image", "run", "landmark", "layer_styles", "dem"};
@@ -178,4 +178,4 @@ Landmark LandmarkLayout::read(const sqlite::Statement& row) const {
   return landmark;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

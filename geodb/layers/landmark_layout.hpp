@@ -5,7 +5,7 @@
 #include "core/landmark.hpp"
 #include "geodb/sqlite/sqlite.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// The table of type k (from 0) has row ids from k * kRowsPerType + 1, so that ids are unique in the view
 /// over all types, also after other programs have added rows.
@@ -54,4 +54,4 @@ class LandmarkLayout {
   std::vector<LandmarkColumn> columns_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -7,7 +7,7 @@
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "landmarks/sensor_profile.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr std::size_t kMinToPrune = 1000;  // smaller lists are not pruned
@@ -98,4 +98,4 @@ std::optional<int> number_column(const LandmarkLayout& layout, std::string_view 
   return number ? std::optional(static_cast<int>(found - columns.begin())) : std::nullopt;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

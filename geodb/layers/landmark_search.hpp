@@ -10,7 +10,7 @@
 #include "geodb/layers/landmark_layout.hpp"
 #include "geodb/map_query.hpp"
 #include "geodb/rtree/search_windows.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 struct RankedLandmark {
   double rank = 0;  ///< smaller is better
@@ -72,4 +72,4 @@ class LandmarkSearch {
 /// Returns the column of numbers with that name; `std::nullopt` if the table has none.
 std::optional<int> number_column(const LandmarkLayout& layout, std::string_view name);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -10,7 +10,7 @@
 
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 std::string index_name(std::string_view table, std::string_view column) {
@@ -70,4 +70,4 @@ std::string largest_condition(const sqlite::Database& database, std::string_view
   return condition_text(column, threshold);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -8,7 +8,7 @@
 #include "core/landmark.hpp"
 #include "geodb/sqlite/sqlite.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// The largest values of each feature among many landmarks, to index these alone: a query for the largest
 /// reads thousands of rows of a large map and not all.
@@ -37,4 +37,4 @@ void create_largest_indexes(const sqlite::Database& database, const LandmarkType
 std::string largest_condition(const sqlite::Database& database, std::string_view table,
                               std::string_view column);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

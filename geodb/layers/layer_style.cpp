@@ -8,7 +8,7 @@
 
 #include "geodb/layers/landmark_layout.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 struct Marker {
@@ -223,4 +223,4 @@ std::string sld_style(const LandmarkType& type) {
                      marker.filled ? "#ffffff" : type.colour, label);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the style of a landmark type for QGIS 3 (QML); sld_style() for OGC (SLD 1.1): marker by `drawn_as`
 /// in `colour`, label by `label_feature`. In QML the size grows with the logarithm of `size_feature`, larger
@@ -11,4 +11,4 @@ std::string qml_style(const LandmarkType& type);
 /// Returns the style as SLD, see qml_style().
 std::string sld_style(const LandmarkType& type);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

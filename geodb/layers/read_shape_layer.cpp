@@ -11,7 +11,7 @@
 #include "geodb/sqlite/attribute_column.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 std::string unit_of(std::string_view title) {
@@ -116,4 +116,4 @@ ShapeLayer read_shape_layer(const std::filesystem::path& map, std::string_view n
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -9,7 +9,7 @@
 
 #include "geodb/layers/shape_table.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 std::string rgba(const std::string& colour, double opacity) {
@@ -189,4 +189,4 @@ std::string sld_shape_style(const ShapeLayer& layer) {
                      layer.name, symbol);
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -6,7 +6,7 @@
 #include <vector>
 #include "geodb/shape_layer.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the shape layers of an open map from its table `waymark_layer`: sorted names, kinds and summaries,
 /// without rows.
@@ -19,4 +19,4 @@ const char* geometry_name(ShapeKind kind);
 std::string qml_shape_style(const ShapeLayer& layer);
 std::string sld_shape_style(const ShapeLayer& layer);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

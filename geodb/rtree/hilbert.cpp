@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace waymark {
+namespace waymark::geodb {
 
 std::uint32_t hilbert_index(std::uint16_t column, std::uint16_t row) {
   std::uint32_t x = column, y = row, index = 0;
@@ -20,4 +20,4 @@ std::uint32_t hilbert_index(std::uint16_t column, std::uint16_t row) {
   return index;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 /// Prefetches the landmarks soon after `at`, since landmarks in curve order are scattered in memory.
@@ -124,4 +124,4 @@ void LandmarkOrder::visit_evidence(const std::function<void(const Observation&, 
     throw std::logic_error("the evidence of a part refers to a landmark outside the part");
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

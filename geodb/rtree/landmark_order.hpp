@@ -6,7 +6,7 @@
 #include <vector>
 #include "geodb/hilbert_ranges.hpp"
 #include "geodb/map_contents.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Row order of the landmarks of one type: by index on a Hilbert curve through their extent, then by uid. It
 /// does not depend on the order of input or the division into parts. About `max_in_memory` landmarks of
@@ -37,4 +37,4 @@ class LandmarkOrder {
   std::vector<HilbertRange> ranges_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -13,7 +13,7 @@
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 // Node: depth of the tree (only in the root, node 1), count of cells, then per cell the rowid (leaf) or child
@@ -137,4 +137,4 @@ void fill_rtree(const sqlite::Database& database, std::string_view table) {
   });
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Box of a row in a spatial index.
 struct IndexedBox {
@@ -22,4 +22,4 @@ void fill_rtree(const sqlite::Database& database, std::string_view table, std::s
 /// memory is half a byte per row.
 void fill_rtree(const sqlite::Database& database, std::string_view table);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -7,7 +7,7 @@
 
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 namespace {
 
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
@@ -69,4 +69,4 @@ double MapDistance::operator()(double x0, double y0, double x1, double y1) const
   return std::hypot(x1 - x0, y1 - y0) * metres_per_unit_;
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

@@ -5,7 +5,7 @@
 #include "geo/body.hpp"
 #include "geo/crs.hpp"
 #include "geodb/map_query.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Disjoint boxes in map coordinates that cover a region. A geographic CRS has one box for each range of
 /// longitudes (-180..180, 0..360) that the map may use.
@@ -31,4 +31,4 @@ class MapDistance {
   double metres_per_unit_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::geodb

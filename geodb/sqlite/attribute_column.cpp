@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-namespace waymark {
+namespace waymark::geodb {
 
 const char* sql_type(AttributeSpec::Kind kind) {
   switch (kind) {
@@ -41,4 +41,4 @@ AttributeValue read_attribute(const sqlite::Statement& row, int column, Attribut
   return {};
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

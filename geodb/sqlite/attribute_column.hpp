@@ -2,7 +2,7 @@
 #pragma once
 #include "core/attribute.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the SQL type of a column of attributes.
 const char* sql_type(AttributeSpec::Kind kind);
@@ -11,4 +11,4 @@ const char* sql_type(AttributeSpec::Kind kind);
 void bind_attribute(sqlite::Statement& statement, int parameter, const AttributeValue& value);
 AttributeValue read_attribute(const sqlite::Statement& row, int column, AttributeSpec::Kind kind);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

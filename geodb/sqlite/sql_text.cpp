@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geodb/sqlite/sql_text.hpp"
 
-namespace waymark {
+namespace waymark::geodb {
 
 std::string substitute_keys(std::string_view text,
                             std::initializer_list<std::pair<std::string_view, std::string_view>> values) {
@@ -24,4 +24,4 @@ std::string quote_identifier(std::string_view identifier) {
   return out + '"';
 }
 
-}  // namespace waymark
+}  // namespace waymark::geodb

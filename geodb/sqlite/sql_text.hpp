@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
-namespace waymark {
+namespace waymark::geodb {
 
 /// Returns the text of geodb/sql/<name>.sql, which is compiled in.
 std::string_view sql_text(std::string_view name);
@@ -17,4 +17,4 @@ std::string substitute_keys(std::string_view text,
 /// Quotes an SQL identifier; quotes inside are doubled.
 std::string quote_identifier(std::string_view identifier);
 
-}  // namespace waymark
+}  // namespace waymark::geodb

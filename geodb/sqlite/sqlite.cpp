@@ -11,7 +11,7 @@
 #include "geodb/geopackage/geometry_functions.hpp"
 #include "geodb/sqlite/sqlite_error.hpp"
 
-namespace waymark::sqlite {
+namespace waymark::geodb::sqlite {
 namespace {
 
 // Polls for a lock of another process for 30 s. SQLite's own handler increases its pauses, so that a busy
@@ -242,4 +242,4 @@ void Transaction::commit() {
   open_ = false;
 }
 
-}  // namespace waymark::sqlite
+}  // namespace waymark::geodb::sqlite

@@ -12,7 +12,7 @@
 #include <utility>
 struct sqlite3;
 struct sqlite3_stmt;
-namespace waymark::sqlite {
+namespace waymark::geodb::sqlite {
 
 /// Instructions of SQLite's virtual machine that one execution of a statement may take. A foreign file may
 /// hold views and triggers that never end.
@@ -111,4 +111,4 @@ class Transaction {
   bool open_ = true;
 };
 
-}  // namespace waymark::sqlite
+}  // namespace waymark::geodb::sqlite

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark::sqlite {
+namespace waymark::geodb::sqlite {
 namespace {
 
 struct Explanation {
@@ -78,4 +78,4 @@ void check(sqlite3* database, int result) {
   if (result != SQLITE_OK && result != SQLITE_ROW && result != SQLITE_DONE) fail(database);
 }
 
-}  // namespace waymark::sqlite
+}  // namespace waymark::geodb::sqlite

@@ -12,7 +12,7 @@
 /// register_camera_format_<format>(CameraFormats&).
 #include "geo/camera.hpp"
 #include "geo/sun.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Frame of the poses in a camera file.
 struct CameraWorld {
@@ -75,4 +75,4 @@ class CameraFormats {
   std::vector<CameraFormat> all_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

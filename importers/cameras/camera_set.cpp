@@ -12,7 +12,7 @@
 #include "importers/cameras/place_cameras.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
 void register_camera_formats(CameraFormats& formats);  // generated from the folder formats
 
@@ -91,4 +91,4 @@ const ImageCamera* find_camera(const CameraSet& set, const std::string& image_fi
   return best;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

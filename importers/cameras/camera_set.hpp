@@ -7,7 +7,7 @@
 #include "geo/crs.hpp"
 #include "geo/sun.hpp"
 #include "importers/cameras/similarity.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Options for information that a camera file may lack.
 struct CameraImport {
@@ -59,4 +59,4 @@ CameraSet import_cameras(const std::string& path, const std::string& format, con
 /// last one may lack its extension. Null if there is none, or if two agree equally.
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file);
 
-}  // namespace waymark
+}  // namespace waymark::importers

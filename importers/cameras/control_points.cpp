@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr const char* kColumns = "columns are frame_x, frame_y, frame_z, x, y, z or image, x, y, z";
@@ -94,4 +94,4 @@ Similarity similarity_from_text(const std::string& text) {
   return {.scale = v[0], .rotation = turn.normalized().toRotationMatrix(), .shift = {v[5], v[6], v[7]}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

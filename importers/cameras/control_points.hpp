@@ -4,7 +4,7 @@
 #include <vector>
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/similarity.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Similarity from a camera frame to the map, as estimated from control points.
 struct Georeferencing {
@@ -20,4 +20,4 @@ Georeferencing read_control_points(const std::string& path, const CameraFile& ca
 /// Parses "scale,qw,qx,qy,qz,x,y,z": map = scale * rotation * frame + shift. Throws Error{usage}.
 Similarity similarity_from_text(const std::string& text);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::importers {
 
 FittedLens fit_brown(const std::vector<LensPair>& pairs) {
   const auto count = static_cast<Eigen::Index>(pairs.size());
@@ -27,4 +27,4 @@ FittedLens fit_brown(const std::vector<LensPair>& pairs) {
   return fitted;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

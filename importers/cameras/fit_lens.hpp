@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <vector>
-namespace waymark {
+namespace waymark::importers {
 
 /// A direction without and with distortion, both as x/z and y/z.
 struct LensPair {
@@ -19,4 +19,4 @@ struct FittedLens {
 /// the Brown model lacks.
 FittedLens fit_brown(const std::vector<LensPair>& pairs);
 
-}  // namespace waymark
+}  // namespace waymark::importers

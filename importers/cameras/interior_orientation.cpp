@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 double positive(const JsonValue& value) {
@@ -213,4 +213,4 @@ Camera interior_named(const std::map<std::string, Camera>& all, const std::strin
               fmt::format("one of them: {}", all.begin()->first));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

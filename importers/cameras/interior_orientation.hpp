@@ -4,7 +4,7 @@
 #include <string>
 #include "geo/camera.hpp"
 #include "importers/json_value.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Reads a lens of Waymark's own camera file; docs/reference/camera_file.md.
 Camera camera_from_json(const JsonValue& json);
@@ -24,4 +24,4 @@ std::map<std::string, Camera> read_interior(const std::string& path);
 Camera interior_named(const std::map<std::string, Camera>& all, const std::string& name,
                       const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -14,7 +14,7 @@
 #include "importers/images/image.hpp"
 #include "importers/images/sun_position.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -172,4 +172,4 @@ CameraSet place_cameras(const CameraFile& given, const std::string& path, const 
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

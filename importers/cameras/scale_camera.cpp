@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // The corner of pixel (0, 0) is at -0.5 and stays there.
@@ -79,4 +79,4 @@ void check_camera(const Camera& camera, const std::string& file, const std::stri
                     where, 100 * fraction));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "geo/camera.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Adapts a camera to the size of an image.
 /// - A camera calibrated on the same picture at another size is scaled, with a warning; pixel corners stay
@@ -21,4 +21,4 @@ Camera scale_camera(const Camera& camera, std::int64_t columns, std::int64_t row
 void check_camera(const Camera& camera, const std::string& file, const std::string& place,
                   std::vector<std::string>& warnings);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 Eigen::Matrix3Xd columns_of(const std::vector<Eigen::Vector3d>& points) {
@@ -58,4 +58,4 @@ double residual(const Similarity& similarity, const std::vector<Eigen::Vector3d>
   return frame.empty() ? 0 : std::sqrt(sum / static_cast<double>(frame.size()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -13,7 +13,7 @@
 #include "geo/local_frame.hpp"
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Vector = Eigen::Vector3d;
@@ -113,4 +113,4 @@ LocalRotation local_rotation_at(const WorldToGrid& to_grid, const Eigen::Vector3
   return turn;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

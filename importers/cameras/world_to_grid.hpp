@@ -6,7 +6,7 @@
 #include "geo/crs.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/similarity.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Transforms a point from the frame of a camera file to the grid frame. NaN for a point outside the domain
 /// of the projection.
@@ -26,4 +26,4 @@ struct LocalRotation {
 };
 LocalRotation local_rotation_at(const WorldToGrid& to_grid, const Eigen::Vector3d& place);
 
-}  // namespace waymark
+}  // namespace waymark::importers

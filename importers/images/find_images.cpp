@@ -18,7 +18,7 @@
 #include "core/error.hpp"
 #include "importers/gdal_session.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ std::vector<FoundImage> find_images(const std::vector<std::string>& files, const
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

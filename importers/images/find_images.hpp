@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "importers/cameras/camera_set.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Expected path of an image, and its name.
 struct FoundImage {
@@ -31,4 +31,4 @@ std::vector<std::string> expand_pattern(const std::string& pattern);
 /// Lists the images in a folder, not below, sorted; empty if there is no such folder.
 std::vector<std::string> image_files_in(const std::string& folder);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Metadata of an image that its file does not hold.
 struct ImageImport {
@@ -47,4 +47,4 @@ std::shared_ptr<const ImportedImage> import_image(const std::string& path, const
 /// Degrees are rounded to 1e-4.
 std::string local_projection(const Crs& crs, double lon, double lat);
 
-}  // namespace waymark
+}  // namespace waymark::importers

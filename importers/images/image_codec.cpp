@@ -6,7 +6,7 @@
 #include "core/json_text.hpp"
 #include "importers/images/image_set.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Json = nlohmann::json;
@@ -115,7 +115,7 @@ std::string to_json(const ImageInfo& image) {
   return json_of(image).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string Codec<ImageSet>::encode(const ImageSet& images) {
+std::string encode_images(const ImageSet& images) {
   Json all = Json::array();
   for (const ImageHandle& image : images) {
     const auto* imported = dynamic_cast<const ImportedImage*>(image.get());
@@ -127,7 +127,7 @@ std::string Codec<ImageSet>::encode(const ImageSet& images) {
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-ImageSet Codec<ImageSet>::decode(std::string_view bytes) {
+ImageSet decode_images(std::string_view bytes) {
   CrsMaker crs;
   std::vector<ImageInfo> images;
   int band = 0;
@@ -138,4 +138,4 @@ ImageSet Codec<ImageSet>::decode(std::string_view bytes) {
   return image_set(images, band);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using GeoTransform = std::array<double, 6>;  // as in GDAL, about the corner of the first pixel
@@ -115,4 +115,4 @@ std::optional<Georeference> orthophoto_georeference(GDALDataset& dataset, const 
   return Georeference{where, t[0] + t[1] / 2, t[3] + t[5] / 2, t[1], t[5]};
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include <vector>
 #include "geo/georeference.hpp"
 #include "importers/gdal_session.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Size and properties of an image file.
 struct ImageHeader {
@@ -25,4 +25,4 @@ std::optional<Georeference> orthophoto_georeference(GDALDataset& dataset, const 
                                                     const std::string& crs,
                                                     std::vector<std::string>& warnings);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -14,7 +14,7 @@
 #include "importers/json_value.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::size_t kLabelBytes = std::size_t{1} << 18;
@@ -112,4 +112,4 @@ std::string label_of(const std::string& image_path) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

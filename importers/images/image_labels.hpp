@@ -5,7 +5,7 @@
 #include <string_view>
 #include "core/units.hpp"
 #include "importers/gdal_session.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Time of exposure, from the image file.
 struct TimeTaken {
@@ -32,4 +32,4 @@ LabelSun label_sun(std::string_view label);
 /// is none.
 std::string label_of(const std::string& image_path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

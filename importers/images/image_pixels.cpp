@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
@@ -140,4 +140,4 @@ Pixels read_pixels(GDALDataset& dataset, const Window& window, int band, const s
   return pixels;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

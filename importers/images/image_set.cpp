@@ -13,7 +13,7 @@
 #include "importers/images/image_pixels.hpp"
 #include "importers/rasters/raster_handles.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // An image that opens its file when first read.
@@ -107,4 +107,4 @@ ImageSet image_set(const std::vector<ImageInfo>& images, int band) {
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

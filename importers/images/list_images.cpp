@@ -15,7 +15,7 @@
 #include "importers/images/image_labels.hpp"
 #include "importers/images/sun_position.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::size_t kNamed = 5;  // names in one warning
@@ -221,4 +221,4 @@ ListedImages list_images(const ImageListing& listing) {
   return out;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

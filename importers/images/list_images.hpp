@@ -5,7 +5,7 @@
 #include <vector>
 #include "geo/image_source.hpp"
 #include "importers/cameras/camera_set.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Options that select images and supply their metadata.
 struct ImageListing {
@@ -38,4 +38,4 @@ struct ListedImages {
 /// Throws Error if there are no images or a camera file cannot be read.
 ListedImages list_images(const ImageListing& listing);
 
-}  // namespace waymark
+}  // namespace waymark::importers

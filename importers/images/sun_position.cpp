@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 double wrapped(double degrees) {
@@ -144,4 +144,4 @@ std::string utc_text(double unix_seconds) {
                      rest / 60 % 60, rest % 60);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include <string_view>
 #include "geo/crs.hpp"
 #include "geo/sun.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns the sun for a vector towards it in the grid frame, any length > 0.
 Sun sun_from_direction(const Eigen::Vector3d& towards_sun);
@@ -28,4 +28,4 @@ std::optional<double> utc_seconds(std::string_view text);
 /// Returns the time as "2019-04-11T03:01:21Z".
 std::string utc_text(double unix_seconds);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -13,7 +13,7 @@
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,7 +43,7 @@ struct Line {
       fail(fmt::format("'{}' of {} is no id", rest[i], word), "ids are whole numbers");
     return static_cast<std::int64_t>(value);
   }
-  Pose2 pose(std::size_t i) const { return {real(i), real(i + 1), real(i + 2)}; }
+  localization::Pose2 pose(std::size_t i) const { return {real(i), real(i + 1), real(i + 2)}; }
   /// Throws unless the line has exactly `count` numbers.
   void needs(std::size_t count, std::size_t or_else = 0) const {
     if (rest.size() == count || (or_else && rest.size() == or_else)) return;
@@ -129,7 +129,7 @@ class Reader {
 
   void vertex(const Line& line) {
     line.needs(4);
-    const Pose2 at = line.pose(1);
+    const localization::Pose2 at = line.pose(1);
     if (!poses_.emplace(line.id(0), at).second || (!isam_ && landmarks_.contains(line.id(0))))
       line.fail(fmt::format("vertex {} is defined twice", line.id(0)));
   }
@@ -146,7 +146,7 @@ class Reader {
       if (upper.diagonal().cwiseAbs().minCoeff() > 0) return upper;
     } else {
       try {
-        return information_root(Matrix(upper.template selfadjointView<Eigen::Upper>()));
+        return localization::information_root(Matrix(upper.template selfadjointView<Eigen::Upper>()));
       } catch (const std::invalid_argument&) {
       }
     }
@@ -172,7 +172,7 @@ class Reader {
   }
   void sighting(const Line& line) {
     line.needs(7, isam_ ? 4 : 0);
-    SightingEdge edge;
+    localization::SightingEdge edge;
     edge.value = {line.real(2), line.real(3)};
     if (line.rest.size() > 4) {
       Eigen::Matrix2d upper;
@@ -185,8 +185,8 @@ class Reader {
     line.needs(4);
     const double information = line.real(3);
     if (!(information > 0)) line.fail("the information of a bearing must be above 0");
-    SightingEdge edge;
-    edge.kind = SightingKind::bearing;
+    localization::SightingEdge edge;
+    edge.kind = localization::SightingKind::bearing;
     edge.value = {0, line.real(2)};
     edge.root = Eigen::Matrix2d::Identity() * std::sqrt(information);
     sightings_.push_back({line.id(0), line.id(1), edge, line});
@@ -218,13 +218,13 @@ class Reader {
     }
     if (landmarks_.empty())
       for (const auto& s : sightings_) landmark_index[s.b];
-    PoseGraph& g = out_.graph;
+    localization::PoseGraph& g = out_.graph;
     for (auto& [id, index] : pose_index) {
       index = g.poses.size();
       const auto at = poses_.find(id);
       g.poses.push_back({.id = id,
                          .t = static_cast<double>(id),
-                         .at = at == poses_.end() ? Pose2{} : at->second,
+                         .at = at == poses_.end() ? localization::Pose2{} : at->second,
                          .given = at != poses_.end()});
     }
     for (auto& [id, index] : landmark_index) {
@@ -252,11 +252,11 @@ class Reader {
   }
 
   bool isam_, toro_;
-  std::map<std::int64_t, Pose2> poses_;
+  std::map<std::int64_t, localization::Pose2> poses_;
   std::map<std::int64_t, Eigen::Vector2d> landmarks_;
-  std::vector<Of<StepEdge>> steps_;
-  std::vector<Of<SightingEdge>> sightings_;
-  std::vector<Of<PosePrior>> priors_;
+  std::vector<Of<localization::StepEdge>> steps_;
+  std::vector<Of<localization::SightingEdge>> sightings_;
+  std::vector<Of<localization::PosePrior>> priors_;
   std::vector<std::pair<std::int64_t, Line>> fixed_;
   std::map<std::string, std::size_t> unknown_;
   ImportedGraph out_;
@@ -297,4 +297,4 @@ ImportedGraph import_graph(const fs::path& file, const std::string& format) {
   return graph;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// A pose graph from a file.
 struct ImportedGraph {
-  PoseGraph graph;  ///< poses and landmarks by ascending id; t of a pose is its id
+  localization::PoseGraph graph;  ///< poses and landmarks by ascending id; t of a pose is its id
   std::string format;
   std::vector<std::string> remarks;  ///< skipped lines, for people
 };
@@ -28,4 +28,4 @@ std::string graph_format(const std::filesystem::path& file);
 /// definite, an edge of a vertex that is not there, a vertex twice, a graph in space, a file without edges.
 ImportedGraph import_graph(const std::filesystem::path& file, const std::string& format);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,15 +6,15 @@
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
-SeenLandmark sighting_of(const SightingEdge& edge, std::int64_t landmark) {
-  SeenLandmark seen;
-  seen.identity = landmark_key(std::to_string(landmark));
+localization::SeenLandmark sighting_of(const localization::SightingEdge& edge, std::int64_t landmark) {
+  localization::SeenLandmark seen;
+  seen.identity = localization::landmark_key(std::to_string(landmark));
   Eigen::Vector2d value = edge.value;
   Eigen::Matrix2d covariance = (edge.root.transpose() * edge.root).inverse();
-  if (edge.kind == SightingKind::position) {
+  if (edge.kind == localization::SightingKind::position) {
     value << edge.value.norm(), std::atan2(edge.value.y(), edge.value.x());
     const double range = std::max(value[0], 1e-3);
     Eigen::Matrix2d to_polar;
@@ -24,7 +24,7 @@ SeenLandmark sighting_of(const SightingEdge& edge, std::int64_t landmark) {
   }
   seen.bearing = value[1];
   seen.bearing_sd = std::sqrt(covariance(1, 1));
-  if (edge.kind != SightingKind::bearing) {
+  if (edge.kind != localization::SightingKind::bearing) {
     seen.range = value[0];
     seen.range_sd = std::sqrt(covariance(0, 0));
   }
@@ -33,30 +33,31 @@ SeenLandmark sighting_of(const SightingEdge& edge, std::int64_t landmark) {
 
 }  // namespace
 
-RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format) {
+localization::RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format) {
   ImportedGraph imported = import_graph(file, format);
-  const PoseGraph& graph = imported.graph;
-  RobotLog log;
+  const localization::PoseGraph& graph = imported.graph;
+  localization::RobotLog log;
   log.remarks = std::move(imported.remarks);
-  for (const GraphLandmark& l : graph.landmarks)
-    log.names.emplace(landmark_key(std::to_string(l.id)), std::to_string(l.id));
+  for (const localization::GraphLandmark& l : graph.landmarks)
+    log.names.emplace(localization::landmark_key(std::to_string(l.id)), std::to_string(l.id));
   log.start = graph.poses.front().at;
-  std::vector<const StepEdge*> step_to(graph.poses.size(), nullptr);
-  for (const StepEdge& e : graph.steps)
+  std::vector<const localization::StepEdge*> step_to(graph.poses.size(), nullptr);
+  for (const localization::StepEdge& e : graph.steps)
     if (e.to == e.from + 1 && !step_to[e.to]) step_to[e.to] = &e;
-  std::vector<SightingSet> seen(graph.poses.size());
-  for (const SightingEdge& e : graph.sightings)
+  std::vector<localization::SightingSet> seen(graph.poses.size());
+  for (const localization::SightingEdge& e : graph.sightings)
     seen[e.pose].sightings.push_back(sighting_of(e, graph.landmarks[e.landmark].id));
   for (std::size_t i = 0; i < graph.poses.size(); ++i) {
     const double t = graph.poses[i].t;
-    if (step_to[i]) log.events.emplace_back().t = t, log.events.back().what = StepReading{step_to[i]->step};
+    if (step_to[i])
+      log.events.emplace_back().t = t, log.events.back().what = localization::StepReading{step_to[i]->step};
     if (seen[i].sightings.empty()) continue;
     log.events.emplace_back().t = t;
-    log.events.back().what.emplace<SightingSet>(std::move(seen[i]));
+    log.events.back().what.emplace<localization::SightingSet>(std::move(seen[i]));
   }
-  if (log.events.empty()) log.events.emplace_back().what = StepReading{};
-  log.graph = std::make_shared<const PoseGraph>(std::move(imported.graph));
+  if (log.events.empty()) log.events.emplace_back().what = localization::StepReading{};
+  log.graph = std::make_shared<const localization::PoseGraph>(std::move(imported.graph));
   return log;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 #include "importers/logs/graph_file.hpp"
 #include "localization/robot_log.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ std::string recognised(const fs::path& path) {
 /// single wild stamp would make every uncertainty of the log boundless.
 constexpr double kMaxPause = 1e6;
 
-void check_times(const RobotLog& log, const fs::path& path) {
+void check_times(const localization::RobotLog& log, const fs::path& path) {
   const auto check = [&](const auto& records, const char* what) {
     for (std::size_t i = 1; i < records.size(); ++i)
       if (const double pause = records[i].t - records[i - 1].t; !(pause <= kMaxPause))
@@ -46,7 +46,7 @@ void check_times(const RobotLog& log, const fs::path& path) {
   check(log.felled, "felled tree");
 }
 
-RobotLog read_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
+localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
   const std::string format = how.format.empty() ? recognised(path) : how.format;
   if (format == "waymark") return import_waymark_log(path, types);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
@@ -59,10 +59,10 @@ RobotLog read_log(const fs::path& path, const TypeRegistry& types, const LogImpo
 
 }  // namespace
 
-RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
-  RobotLog log = read_log(path, types, how);
+localization::RobotLog import_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
+  localization::RobotLog log = read_log(path, types, how);
   check_times(log, path);
   return log;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -5,9 +5,11 @@
 #include <string>
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
-
+namespace waymark::localization {
 struct RobotLog;
+}
+
+namespace waymark::importers {
 
 /// Options for reading a log.
 struct LogImport {
@@ -18,15 +20,17 @@ struct LogImport {
 
 /// Reads a log of any format. `types` maps the types of the sightings to ids; other types become kNoSuchType.
 /// Throws Error{input} with file and line, and Error{usage} for an unknown format.
-RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types, const LogImport& how = {});
+localization::RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types,
+                                  const LogImport& how = {});
 
 /// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md).
-RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types);
+localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types);
 
 /// Reads UTIAS MRCLAM (Leung et al. 2011): the folder of a dataset with `robot`, or one of its RobotK_*.dat.
 /// Landmarks have type `beacon` and their subject number as uid ("6"); other robots have no type. If the map
 /// has no type `beacon`, sightings are of any type.
-RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot, const TypeRegistry& types);
+localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot,
+                                         const TypeRegistry& types);
 
 /// Reads Landmark_Groundtruth.dat of an MRCLAM dataset (or its folder), in a local CRS. `type` is the type of
 /// the landmarks.
@@ -35,10 +39,10 @@ std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path,
 
 /// Reads a graph file (graph_file.hpp) as a graph, and as steps and sightings with known identities, one time
 /// unit per pose. Loop closures that are not steps of the drive are in the graph only.
-RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format);
+localization::RobotLog import_graph_log(const std::filesystem::path& file, const std::string& format);
 
 /// Reads ACFR Victoria Park as text: a folder with DRS.txt, LASER.txt, GPS.txt. Scans are of a laser on the
 /// front bumper; the truth is GPS, positions only (yaw 0).
-RobotLog import_victoria_park(const std::filesystem::path& folder);
+localization::RobotLog import_victoria_park(const std::filesystem::path& folder);
 
-}  // namespace waymark
+}  // namespace waymark::importers

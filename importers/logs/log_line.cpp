@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
 using nlohmann::json;
 
@@ -102,11 +102,11 @@ std::string LogLine::text(const char* key) const {
   return value_of(object_)[key];
 }
 
-Pose2 LogLine::pose() const {
+localization::Pose2 LogLine::pose() const {
   return {number("x"), number("y"), angle("yaw", 0)};
 }
-Pose2 LogLine::mount() const {
-  return has("mount") ? part("mount").pose() : Pose2{};
+localization::Pose2 LogLine::mount() const {
+  return has("mount") ? part("mount").pose() : localization::Pose2{};
 }
 
 void LogLine::fail(const std::string& problem) const {
@@ -114,4 +114,4 @@ void LogLine::fail(const std::string& problem) const {
               "docs/reference/log_format.md describes each record");
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

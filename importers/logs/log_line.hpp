@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// One line of a log, or an object within it, with checked values. Throws Error{input} with file and line.
 class LogLine {
@@ -33,8 +33,8 @@ class LogLine {
   /// Returns numbers; `otherwise` replaces null.
   std::vector<float> numbers(const char* key, float otherwise) const;
   std::string text(const char* key) const;
-  Pose2 pose() const;
-  Pose2 mount() const;
+  localization::Pose2 pose() const;
+  localization::Pose2 mount() const;
 
   [[noreturn]] void fail(const std::string& problem) const;
 
@@ -49,4 +49,4 @@ class LogLine {
   const void* object_;  ///< within the document; opaque, so that users do not include the JSON library
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -11,7 +11,7 @@
 #include "importers/logs/number_table.hpp"
 #include "localization/robot_log.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // These constants are the same for all robots, and were fitted on robots 1 and 2 of set 6 against the truth.
@@ -22,13 +22,13 @@ constexpr double kCommandDelay = 0.2, kSpeedFactor = 0.93,
 constexpr double kLatency = 0.05;
 // Errors of ranges (with distance) and bearings, and how long one code is misread in the same way, seconds.
 constexpr double kRangeSd = 0.03, kRangeSdPerMetre = 0.06, kBearingSd = 0.02;
-constexpr ErrorMemory kMemory{.range = 3, .bearing = 1};
-constexpr OdometryNoise kOdometry{.along_per_metre = 0.015,
-                                  .across_per_metre = 2e-4,
-                                  .yaw_per_metre = 0,
-                                  .yaw_per_radian = 0.01,
-                                  .position_per_second = 1e-6,
-                                  .yaw_per_second = 3e-4};
+constexpr localization::ErrorMemory kMemory{.range = 3, .bearing = 1};
+constexpr localization::OdometryNoise kOdometry{.along_per_metre = 0.015,
+                                                .across_per_metre = 2e-4,
+                                                .yaw_per_metre = 0,
+                                                .yaw_per_radian = 0.01,
+                                                .position_per_second = 1e-6,
+                                                .yaw_per_second = 3e-4};
 constexpr int kRobots = 5;
 
 std::filesystem::path folder_of(const std::filesystem::path& path) {
@@ -48,19 +48,20 @@ std::string uid_of(int subject) {
 /// Sightings of one camera frame: same time, nearby lines.
 class Frames {
  public:
-  void add(double t, const SeenLandmark& sighting) {
-    if (events_.empty() || events_.back().t != t) events_.push_back({t, SightingSet{}});
-    std::get<SightingSet>(events_.back().what).sightings.push_back(sighting);
+  void add(double t, const localization::SeenLandmark& sighting) {
+    if (events_.empty() || events_.back().t != t) events_.push_back({t, localization::SightingSet{}});
+    std::get<localization::SightingSet>(events_.back().what).sightings.push_back(sighting);
   }
-  std::vector<LogEvent> take() { return std::move(events_); }
+  std::vector<localization::LogEvent> take() { return std::move(events_); }
 
  private:
-  std::vector<LogEvent> events_;
+  std::vector<localization::LogEvent> events_;
 };
 
 }  // namespace
 
-RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot, const TypeRegistry& types) {
+localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot,
+                                         const TypeRegistry& types) {
   const std::filesystem::path folder = folder_of(path);
   if (robot == 0) robot = robot_number(path);
   if (robot < 1 || robot > kRobots)
@@ -82,30 +83,31 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
   for (std::size_t i = 0; i < seen.size(); i += 4) {
     const auto subject = subject_of.find(static_cast<int>(seen[i + 1]));
     unknown += subject == subject_of.end();
-    SeenLandmark s{.type = beacon,
-                   .bearing = seen[i + 3],
-                   .bearing_sd = kBearingSd,
-                   .range = seen[i + 2],
-                   .range_sd = std::hypot(kRangeSd, kRangeSdPerMetre * seen[i + 2]),
-                   .features = {},
-                   .identity = {}};
+    localization::SeenLandmark s{.type = beacon,
+                                 .bearing = seen[i + 3],
+                                 .bearing_sd = kBearingSd,
+                                 .range = seen[i + 2],
+                                 .range_sd = std::hypot(kRangeSd, kRangeSdPerMetre * seen[i + 2]),
+                                 .features = {},
+                                 .identity = {}};
     if (subject == subject_of.end() || subject->second <= kRobots)
-      s.type = kNoSuchType;  // another robot, or a misread code
-    if (subject != subject_of.end()) s.identity = landmark_key(uid_of(subject->second));
+      s.type = localization::kNoSuchType;  // another robot, or a misread code
+    if (subject != subject_of.end()) s.identity = localization::landmark_key(uid_of(subject->second));
     frames.add(seen[i] - kLatency, s);
   }
-  RobotLog log;
+  localization::RobotLog log;
   for (const auto& [code, subject] : subject_of)
-    log.names.emplace(landmark_key(uid_of(subject)), uid_of(subject));
+    log.names.emplace(localization::landmark_key(uid_of(subject)), uid_of(subject));
   log.in_crs = true;
   const auto odometry = number_table(file("Odometry"), 3);
   for (std::size_t i = 0; i < odometry.size(); i += 3)
-    log.events.push_back({odometry[i] + kCommandDelay,
-                          TwistReading{kSpeedFactor * odometry[i + 1], 0, kTurnFactor * odometry[i + 2]}});
+    log.events.push_back(
+        {odometry[i] + kCommandDelay,
+         localization::TwistReading{kSpeedFactor * odometry[i + 1], 0, kTurnFactor * odometry[i + 2]}});
   log.error_memory = kMemory;
   log.odometry = kOdometry;
-  for (LogEvent& e : frames.take()) log.events.push_back(std::move(e));
-  std::ranges::stable_sort(log.events, {}, &LogEvent::t);
+  for (localization::LogEvent& e : frames.take()) log.events.push_back(std::move(e));
+  std::ranges::stable_sort(log.events, {}, &localization::LogEvent::t);
   if (std::filesystem::exists(file("Groundtruth"))) {
     const auto truth = number_table(file("Groundtruth"), 4);
     for (std::size_t i = 0; i < truth.size(); i += 4)
@@ -113,7 +115,7 @@ RobotLog import_mrclam_log(const std::filesystem::path& path, std::int64_t robot
   }
   if (unknown)
     log.remarks.push_back(fmt::format("{} sightings of bar codes that are not in Barcodes.dat", unknown));
-  clean_log(log);
+  localization::clean_log(log);
   return log;
 }
 
@@ -136,4 +138,4 @@ std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path,
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
 std::vector<double> number_table(const std::filesystem::path& file, std::size_t per_row) {
   const std::string text = read_text(file, "the file");
@@ -45,4 +45,4 @@ std::vector<double> number_table(const std::filesystem::path& file, std::size_t 
   return numbers;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

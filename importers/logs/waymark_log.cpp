@@ -17,7 +17,7 @@
 #include "localization/detectors/horizon_summits.hpp"
 #include "localization/robot_log.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
@@ -31,17 +31,18 @@ class Reader {
     if (kind == "header") return header(line);
     const double t = line.number("t");
     if (kind == "odometry")
-      add(t, TwistReading{line.number("v"), line.number("sideways", 0), line.angular_rate("omega")});
+      add(t, localization::TwistReading{line.number("v"), line.number("sideways", 0),
+                                        line.angular_rate("omega")});
     else if (kind == "car")
-      add(t, CarReading{line.number("v"), line.angle("steering")});
+      add(t, localization::CarReading{line.number("v"), line.angle("steering")});
     else if (kind == "step")
-      add(t, StepReading{{line.number("dx"), line.number("dy"), line.angle("dyaw")}});
+      add(t, localization::StepReading{{line.number("dx"), line.number("dy"), line.angle("dyaw")}});
     else if (kind == "sightings")
       add(t, sightings(line));
     else if (kind == "laser")
       add(t, scan(line));
     else if (kind == "depth")
-      add(t, sightings_of_rocks(depth(line), {.type = type("rock")}));
+      add(t, localization::sightings_of_rocks(depth(line), {.type = type("rock")}));
     else if (kind == "panorama")
       add(t, panorama(line));
     else if (kind == "felled")
@@ -56,26 +57,26 @@ class Reader {
       ++unknown_[kind];
   }
 
-  RobotLog take() {
+  localization::RobotLog take() {
     for (const auto& [kind, count] : unknown_)
       log_.remarks.push_back(fmt::format("{} records of the kind '{}' are skipped", count, kind));
     for (const auto& [type, count] : no_type_)
       log_.remarks.push_back(
           fmt::format("{} sightings of type '{}', which the map does not have", count, type));
-    clean_log(log_);
+    localization::clean_log(log_);
     return std::move(log_);
   }
 
  private:
-  void add(double t, LogReading reading) { log_.events.push_back({t, std::move(reading)}); }
+  void add(double t, localization::LogReading reading) { log_.events.push_back({t, std::move(reading)}); }
 
   // A yaw that was never wrapped grows turn by turn. One that begins beyond two turns, or jumps, is probably
   // in degrees.
-  Pose2 truth(const LogLine& line) {
+  localization::Pose2 truth(const LogLine& line) {
     const double yaw = line.number("yaw", 0);
     if (!(std::abs(yaw - last_truth_yaw_) <= std::numbers::pi)) line.angle("yaw", 0);
     last_truth_yaw_ = yaw;
-    return {line.number("x"), line.number("y"), wrap_angle(yaw)};
+    return {line.number("x"), line.number("y"), localization::wrap_angle(yaw)};
   }
 
   void header(const LogLine& line) {
@@ -96,15 +97,15 @@ class Reader {
     log_.start_yaw_sd = line.positive("yaw_sd", log_.start_yaw_sd);
   }
 
-  SightingSet sightings(const LogLine& line) {
-    SightingSet set;
+  localization::SightingSet sightings(const LogLine& line) {
+    localization::SightingSet set;
     set.robot_from_sensor = line.mount();
     for (const LogLine& item : line.parts("items")) set.sightings.push_back(sighting(item));
     return set;
   }
 
-  SeenLandmark sighting(const LogLine& line) {
-    SeenLandmark s;
+  localization::SeenLandmark sighting(const LogLine& line) {
+    localization::SeenLandmark s;
     if (!line.has("bearing"))
       line.fail(
           "has a sighting without \"bearing\": a range alone is not used to localize, directions are needed");
@@ -125,7 +126,7 @@ class Reader {
     s.elevation_sd = line.positive("elevation_sd", 0.002);
     if (line.has("landmark")) {
       const std::string uid = line.text("landmark");
-      s.identity = landmark_key(uid);
+      s.identity = localization::landmark_key(uid);
       log_.names.emplace(*s.identity, uid);
     }
     if (!line.has("type")) return s;
@@ -133,7 +134,7 @@ class Reader {
     const LandmarkType* type = types_.find(name);
     if (!type) {
       ++no_type_[name];
-      s.type = kNoSuchType;
+      s.type = localization::kNoSuchType;
       return s;
     }
     s.type = types_.id(name);
@@ -141,8 +142,8 @@ class Reader {
     return s;
   }
 
-  static void features(const LogLine& line, const LandmarkType& type, KnownFeatures& into) {
-    for (std::size_t i = 0; i < std::min(type.features.size(), kMaxFeatures); ++i) {
+  static void features(const LogLine& line, const LandmarkType& type, localization::KnownFeatures& into) {
+    for (std::size_t i = 0; i < std::min(type.features.size(), localization::kMaxFeatures); ++i) {
       const FeatureSpec& spec = type.features[i];
       if (!line.has(spec.name.c_str())) continue;
       const bool with_sd = line.is_object(spec.name.c_str());
@@ -158,15 +159,15 @@ class Reader {
         line.fail(fmt::format("has the feature \"{}\", which the type {} has not", name, type.name));
   }
 
-  static LaserScan scan(const LogLine& line) {
-    LaserScan scan{.robot_from_sensor = line.mount(),
-                   .first_angle = line.angle("first_angle"),
-                   .angle_step = line.angle("angle_step"),
-                   .ranges = line.numbers("ranges", 0),
-                   .max_range = line.positive("most_range", 80),
-                   .roll = line.angle("roll", 0),
-                   .pitch = line.angle("pitch", 0),
-                   .beam_width = {}};
+  static localization::LaserScan scan(const LogLine& line) {
+    localization::LaserScan scan{.robot_from_sensor = line.mount(),
+                                 .first_angle = line.angle("first_angle"),
+                                 .angle_step = line.angle("angle_step"),
+                                 .ranges = line.numbers("ranges", 0),
+                                 .max_range = line.positive("most_range", 80),
+                                 .roll = line.angle("roll", 0),
+                                 .pitch = line.angle("pitch", 0),
+                                 .beam_width = {}};
     if (line.has("beam_width")) scan.beam_width = std::max(0.0, line.angle("beam_width"));
     return scan;
   }
@@ -182,36 +183,36 @@ class Reader {
     return static_cast<std::int64_t>(count);
   }
 
-  static DepthImage depth(const LogLine& line) {
-    DepthImage image{.robot_from_sensor = line.mount(),
-                     .height = line.positive("height", 1.5),
-                     .tilt = line.angle("tilt", 0),
-                     .roll = line.angle("roll", 0),
-                     .pitch = line.angle("pitch", 0),
-                     .columns = pixels(line, "columns"),
-                     .rows = pixels(line, "rows"),
-                     .focal = line.positive("focal", 1),
-                     .depths = line.numbers("depths", kMissing)};
+  static localization::DepthImage depth(const LogLine& line) {
+    localization::DepthImage image{.robot_from_sensor = line.mount(),
+                                   .height = line.positive("height", 1.5),
+                                   .tilt = line.angle("tilt", 0),
+                                   .roll = line.angle("roll", 0),
+                                   .pitch = line.angle("pitch", 0),
+                                   .columns = pixels(line, "columns"),
+                                   .rows = pixels(line, "rows"),
+                                   .focal = line.positive("focal", 1),
+                                   .depths = line.numbers("depths", kMissing)};
     if (static_cast<std::int64_t>(image.depths.size()) != image.columns * image.rows)
       line.fail(
           fmt::format("has {} depths for {} x {} pixels", image.depths.size(), image.columns, image.rows));
     return image;
   }
 
-  SightingSet panorama(const LogLine& line) const {
-    const HorizonProfile profile{.first_angle = line.angle("first_angle"),
-                                 .angle_step = line.angle("angle_step"),
-                                 .elevation_sd = line.positive("elevation_sd", 0.001),
-                                 .elevations = line.numbers("elevations", kMissing)};
-    return sightings_of_summits(profile, {.type = type("mountain_top")});
+  localization::SightingSet panorama(const LogLine& line) const {
+    const localization::HorizonProfile profile{.first_angle = line.angle("first_angle"),
+                                               .angle_step = line.angle("angle_step"),
+                                               .elevation_sd = line.positive("elevation_sd", 0.001),
+                                               .elevations = line.numbers("elevations", kMissing)};
+    return localization::sightings_of_summits(profile, {.type = type("mountain_top")});
   }
 
-  static FelledReading felled(const LogLine& line, double t) {
-    FelledReading f{.t = t,
-                    .range = line.positive("range", 1),
-                    .bearing = line.angle("bearing"),
-                    .range_sd = line.positive("range_sd", 0.1),
-                    .bearing_sd = line.positive("bearing_sd", 0.01)};
+  static localization::FelledReading felled(const LogLine& line, double t) {
+    localization::FelledReading f{.t = t,
+                                  .range = line.positive("range", 1),
+                                  .bearing = line.angle("bearing"),
+                                  .range_sd = line.positive("range_sd", 0.1),
+                                  .bearing_sd = line.positive("bearing_sd", 0.01)};
     if (line.has("features")) {
       const LogLine features = line.part("features");
       f.diameter = features.has("diameter") ? features.positive("diameter", 1) : 0;
@@ -220,10 +221,12 @@ class Reader {
     return f;
   }
 
-  static HeadingFix heading(const LogLine& line) { return {line.angle("yaw"), line.positive("sd", 0.1)}; }
+  static localization::HeadingFix heading(const LogLine& line) {
+    return {line.angle("yaw"), line.positive("sd", 0.1)};
+  }
 
-  static GnssFix fix(const LogLine& line) {
-    GnssFix fix;
+  static localization::GnssFix fix(const LogLine& line) {
+    localization::GnssFix fix;
     fix.at = {line.number("x"), line.number("y")};
     fix.sd = line.positive("sd", 3);
     return fix;
@@ -231,13 +234,13 @@ class Reader {
 
   double last_truth_yaw_ = 0;
   const TypeRegistry& types_;
-  RobotLog log_;
+  localization::RobotLog log_;
   std::map<std::string, std::size_t> unknown_, no_type_;
 };
 
 }  // namespace
 
-RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
+localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
   std::istringstream text(read_text(file, "the file"));
   Reader reader(types);
   std::size_t number = 0, records = 0;
@@ -251,4 +254,4 @@ RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistr
   return reader.take();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -15,7 +15,7 @@
 #include "importers/points/inspect_canopy.hpp"
 #include "importers/rasters/dem.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr float kMaxHeight = 150;  // metres; the tallest tree known has 116
@@ -262,4 +262,4 @@ std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import) 
   return std::make_shared<const RasterCanopy>(import);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Input files of the canopy model of one survey: heights above ground; surface and terrain; or laser points.
 struct CanopyImport {
@@ -45,4 +45,4 @@ std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import);
 /// there are too few points to find the ground.
 std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,9 +7,9 @@
 #include "core/json_text.hpp"
 #include "importers/points/canopy.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
-std::string Codec<Canopies>::encode(const Canopies& canopies) {
+std::string encode_canopies(const Canopies& canopies) {
   nlohmann::json all = nlohmann::json::array();
   for (const auto& canopy : canopies) {
     const auto* raster = dynamic_cast<const ImportedCanopy*>(canopy.get());
@@ -28,7 +28,7 @@ std::string Codec<Canopies>::encode(const Canopies& canopies) {
   return all.dump();
 }
 
-Canopies Codec<Canopies>::decode(std::string_view bytes) {
+Canopies decode_canopies(std::string_view bytes) {
   Canopies canopies;
   for (const auto& json : nlohmann::json::parse(checked_json(bytes, "canopies")))
     canopies.push_back(import_canopy({.chm = json.at("chm"),
@@ -44,4 +44,4 @@ Canopies Codec<Canopies>::decode(std::string_view bytes) {
   return canopies;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::int64_t kSide = 128, kSquares = 6;   // cells; squares along each axis
@@ -91,4 +91,4 @@ std::vector<std::string> inspect_canopy(const CanopySource& canopy, const std::s
   return warnings;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "geo/canopy_source.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns heights as in the rasters, negative and absurd ones included; kNoCanopy if unknown.
 using CanopyReader = std::function<Grid<float>(const Window&)>;
@@ -15,4 +15,4 @@ using CanopyReader = std::function<Grid<float>(const Window&)>;
 std::vector<std::string> inspect_canopy(const CanopySource& canopy, const std::string& terrain,
                                         const std::string& file, const CanopyReader& read);
 
-}  // namespace waymark
+}  // namespace waymark::importers

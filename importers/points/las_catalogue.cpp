@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -74,4 +74,4 @@ void LasCatalogue::visit(const LasBox& box, const std::function<void(const LasPo
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

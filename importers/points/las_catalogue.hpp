@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 #include "importers/points/las_points.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// A rectangle in the units of the files.
 struct LasBox {
@@ -63,4 +63,4 @@ inline bool is_first(const LasPoint& p) {
   return p.return_number <= 1;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -12,7 +12,7 @@
 #include "core/error.hpp"
 #include "importers/vsi_file.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::array<int, 11> kLeastLength{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -186,4 +186,4 @@ LasHeader read_las_header(const std::string& path) {
   return header;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

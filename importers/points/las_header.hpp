@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Header of a LAS file (ASPRS LAS 1.0 to 1.4, R15).
 struct LasHeader {
@@ -24,4 +24,4 @@ struct LasHeader {
 /// name), a point format above 10, a record shorter than its format, or fewer points than the header states.
 LasHeader read_las_header(const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "importers/vsi_file.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // Offsets of the fields of a record; formats 6 to 10 have wider return numbers and classes.
@@ -48,4 +48,4 @@ std::vector<LasPoint> read_las_points(const LasHeader& header, std::uint64_t fir
   return points;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "importers/points/las_header.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// A laser return, in the units of the file.
 struct LasPoint {
@@ -18,4 +18,4 @@ inline constexpr std::uint64_t kLasChunk = std::uint64_t{1} << 16;
 /// early. About 10 M points/s.
 std::vector<LasPoint> read_las_points(const LasHeader& header, std::uint64_t first, std::uint64_t count);
 
-}  // namespace waymark
+}  // namespace waymark::importers

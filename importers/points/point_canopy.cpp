@@ -12,7 +12,7 @@
 #include "pipeline/forest/canopy_model.hpp"
 #include "pipeline/forest/ground_filter.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
@@ -167,7 +167,7 @@ class PointCanopy final : public ImportedCanopy {
           fmt::format("{:.2g} first returns per m2 are few for cells of {:g} m", density, cell));
   }
 
-  std::shared_ptr<const CanopyBlock> block_at(std::int64_t column, std::int64_t row) const {
+  std::shared_ptr<const pipeline::CanopyBlock> block_at(std::int64_t column, std::int64_t row) const {
     const std::int64_t key = row * (1 << 24) + column;
     {
       const std::scoped_lock lock(mutex_);
@@ -177,21 +177,21 @@ class PointCanopy final : public ImportedCanopy {
           return it->second;
         }
     }
-    auto made = std::make_shared<const CanopyBlock>(compute_block(column, row));
+    auto made = std::make_shared<const pipeline::CanopyBlock>(compute_block(column, row));
     const std::scoped_lock lock(mutex_);
     blocks_.emplace_front(key, made);
     if (blocks_.size() > kKeptBlocks) blocks_.pop_back();
     return made;
   }
 
-  CanopyBlock compute_block(std::int64_t column, std::int64_t row) const {
+  pipeline::CanopyBlock compute_block(std::int64_t column, std::int64_t row) const {
     const Georeference& where = grid_.where;
     const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
-    const CellFrame frame{
+    const pipeline::CellFrame frame{
         where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
     const bool classified = catalogue_.ground_points() > 0;
     const double around = (classified ? kHalo : kGroundHalo) / unit_, last = static_cast<double>(kBlock);
-    LaserPoints points;
+    pipeline::LaserPoints points;
     catalogue_.visit({where.x(first) - around, where.y(top + last) - around, where.x(first + last) + around,
                       where.y(top) + around},
                      [&](const LasPoint& p) {
@@ -199,8 +199,8 @@ class PointCanopy final : public ImportedCanopy {
                        if (p.classification == 2 || !classified) points.ground.push_back(at);
                        if (is_first(p)) points.surface.push_back(at);
                      });
-    if (!classified) points.ground = ground_returns(points.ground);
-    return canopy_block(points, frame, spacing_);
+    if (!classified) points.ground = pipeline::ground_returns(points.ground);
+    return pipeline::canopy_block(points, frame, spacing_);
   }
 
   CanopyImport import_;
@@ -210,7 +210,7 @@ class PointCanopy final : public ImportedCanopy {
   std::vector<std::string> warnings_;
   std::string name_;
   mutable std::mutex mutex_;
-  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const CanopyBlock>>>
+  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const pipeline::CanopyBlock>>>
       blocks_;  // most recently used first
 };
 
@@ -220,4 +220,4 @@ std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import) 
   return std::make_shared<const PointCanopy>(import);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "geo/dem_source.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 [[noreturn]] void refuse(const RasterHeader& header, int column, int row, const std::string& said) {
@@ -129,4 +129,4 @@ void copy_heights(const Block& block, std::size_t first, const HeightScale& scal
              block.cells);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 #include "importers/rasters/raster_header.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// A decoded block of a file: `block_rows` rows of `block_columns` cells, in the file's order, unscaled.
 /// Masked cells are NaN. Cells beyond the edge of the file have any value.
@@ -35,4 +35,4 @@ ImplausibleCells implausible_cells(const Block& block, std::size_t first, std::s
 /// Implausible heights are left out.
 void copy_heights(const Block& block, std::size_t first, const HeightScale& scale, std::span<double> into);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/rasters/block_cache.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
 std::shared_ptr<const Block> BlockCache::get(const Key& key, const std::function<Block()>& read) {
   if (auto block = find(key)) return block;
@@ -31,4 +31,4 @@ void BlockCache::keep(const Key& key, std::shared_ptr<const Block> block) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <unordered_map>
 #include "importers/rasters/block.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Cache of decoded blocks of all files of a DEM, shared by all threads: neighbouring windows share blocks,
 /// and decompression costs ten times the copying. Evicts the least recently used block.
@@ -43,4 +43,4 @@ class BlockCache {
   std::unordered_map<Key, std::list<Entry>::iterator, Hash> places_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -13,7 +13,7 @@
 #include "importers/rasters/mosaic.hpp"
 #include "importers/tables/area_of_interest.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::vector<RasterHeader> read_headers(const DemImport& import) {
@@ -74,4 +74,4 @@ std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
   return import.metric ? project_to_metres(std::move(dem)) : dem;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

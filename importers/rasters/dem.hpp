@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/options/memory_option.hpp"
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Input files of a DEM and options for reading them.
 struct DemImport {
@@ -47,4 +47,4 @@ class ImportedDem : public DemSource {
 /// remedy. Costs about 1 ms per file, and with `inspect` the reading of the overlaps.
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import);
 
-}  // namespace waymark
+}  // namespace waymark::importers

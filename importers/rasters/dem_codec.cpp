@@ -9,9 +9,9 @@
 #include "importers/rasters/dem.hpp"
 #include "importers/rasters/nodata_policy.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 
-std::string Codec<DemHandle>::encode(const DemHandle& dem) {
+std::string encode_dem(const DemHandle& dem) {
   if (const auto* plane = dynamic_cast<const PlaneDem*>(dem.get())) {
     const Crs& crs = plane->geometry().where.crs;
     return nlohmann::json{{"plane", plane->height()},
@@ -36,7 +36,7 @@ std::string Codec<DemHandle>::encode(const DemHandle& dem) {
       .dump();
 }
 
-DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
+DemHandle decode_dem(std::string_view bytes) {
   const auto json = nlohmann::json::parse(checked_json(bytes, "DEM"));
   if (json.contains("plane")) {
     const std::string crs = json.at("crs");
@@ -57,4 +57,4 @@ DemHandle Codec<DemHandle>::decode(std::string_view bytes) {
                      .inspect = false});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "importers/gdal_session.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 Window clip_to_grid(const Window& window, const GridGeometry& grid) {
@@ -91,4 +91,4 @@ HeightWindow read_filled(const Mosaic& mosaic, const Window& window, int distanc
   return heights;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kFoot = 0.3048;               // international, exact
@@ -48,4 +48,4 @@ HeightUnit stated_height_unit(std::string_view name) {
   return unit;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

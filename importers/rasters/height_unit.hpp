@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string_view>
-namespace waymark {
+namespace waymark::importers {
 
 struct HeightUnit {
   double metres = 1;
@@ -14,4 +14,4 @@ HeightUnit height_unit(std::string_view name);
 /// Returns the unit that a user named. Throws Error{usage} with the names for an unknown one.
 HeightUnit stated_height_unit(std::string_view name);
 
-}  // namespace waymark
+}  // namespace waymark::importers

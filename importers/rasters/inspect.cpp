@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kSeamTolerance = 1e-3;  // metres
@@ -121,4 +121,4 @@ std::vector<std::string> inspect(const Mosaic& mosaic, std::size_t cache_bytes) 
   return warnings;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 #include "importers/rasters/mosaic.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Checks the cells for faults that a header cannot show. Throws Error for a file whose last block is damaged
 /// (truncation) and for a DEM without any height. Warns of a DEM of one height, of seams where overlapping
 /// files disagree by more than 1 mm, and of a block layout that exceeds the memory limit.
 std::vector<std::string> inspect(const Mosaic& mosaic, std::size_t cache_bytes);
 
-}  // namespace waymark
+}  // namespace waymark::importers

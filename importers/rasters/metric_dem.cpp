@@ -11,7 +11,7 @@
 #include "importers/images/image.hpp"
 #include "importers/tables/area_of_interest.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kMaxExtent = 6;  // degrees on the ground: scale is true to 0.2 % there
@@ -136,4 +136,4 @@ std::shared_ptr<const ImportedDem> project_to_metres(std::shared_ptr<const Impor
   return std::make_shared<const MetricDem>(std::move(dem));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

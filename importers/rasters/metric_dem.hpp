@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "importers/rasters/dem.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Projects a DEM in degrees to metres, for cameras: transverse Mercator about its middle, with cells as fine
 /// as the finer side of its own there.
@@ -12,4 +12,4 @@ namespace waymark {
 /// %.
 std::shared_ptr<const ImportedDem> project_to_metres(std::shared_ptr<const ImportedDem> dem);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::vector<std::string> paths_of(const std::vector<RasterHeader>& headers) {
@@ -132,4 +132,4 @@ void Mosaic::add_file(std::size_t file, const Window& part, const Window& window
       });
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 #include "importers/rasters/block_cache.hpp"
 #include "importers/rasters/mosaic_layout.hpp"
 #include "importers/rasters/raster_handles.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Heights of several files on one grid, without interpolation. Safe to read from many threads.
 class Mosaic {
@@ -41,4 +41,4 @@ class Mosaic {
 /// Returns the intersection of two windows; it has no cells if they are disjoint.
 Window intersection(const Window& a, const Window& b);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "importers/rasters/wraparound.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kAlignment = 1e-3;  // cells
@@ -114,4 +114,4 @@ MosaicLayout lay_out(const std::vector<RasterHeader>& given) {
   return layout;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -3,7 +3,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "importers/rasters/raster_header.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// One grid for several files.
 struct MosaicLayout {
@@ -18,4 +18,4 @@ struct MosaicLayout {
 /// 1/1000 of a cell.
 MosaicLayout lay_out(const std::vector<RasterHeader>& headers);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::array<NodataPolicy, 3> kPolicies = {NodataPolicy::ocean, NodataPolicy::unknown,
@@ -41,4 +41,4 @@ std::vector<std::string> nodata_policy_names() {
   return names;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

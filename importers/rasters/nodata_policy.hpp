@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns "ocean", "unknown" or "fill".
 std::string to_string(NodataPolicy policy);
@@ -14,4 +14,4 @@ NodataPolicy nodata_policy(std::string_view name);
 
 std::vector<std::string> nodata_policy_names();
 
-}  // namespace waymark
+}  // namespace waymark::importers

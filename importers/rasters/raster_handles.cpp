@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::importers {
 
 GdalDataset RasterHandles::take(std::size_t file) {
   {
@@ -25,4 +25,4 @@ void RasterHandles::give_back(std::size_t file, GdalDataset dataset) {
   if (idle_.size() > kIdle) closing.splice(closing.begin(), idle_, std::prev(idle_.end()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

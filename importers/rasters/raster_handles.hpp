@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 #include "importers/gdal_session.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Pool of open files. Lends each to one thread at a time, since a GDAL data set may not be shared. Opens
 /// files on demand and keeps the `kIdle` most recently used idle ones open.
@@ -44,4 +44,4 @@ class RasterHandles {
   std::list<Idle> idle_;  // most recently used first
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

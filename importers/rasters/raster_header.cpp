@@ -13,7 +13,7 @@
 #include "importers/rasters/height_unit.hpp"
 #include "importers/rasters/reference_radius.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using GeoTransform = std::array<double, 6>;
@@ -200,4 +200,4 @@ RasterHeader read_header(GDALDataset& dataset, const std::string& path, const Ra
   return header;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

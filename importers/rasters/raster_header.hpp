@@ -7,7 +7,7 @@
 #include "geo/dem_source.hpp"
 #include "geo/georeference.hpp"
 #include "importers/gdal_session.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Type of decoded cells: the smallest that holds every value of the band.
 enum class CellType { int16, float32, float64 };
@@ -48,4 +48,4 @@ struct RasterReading {
 /// CRS, degrees in a metric CRS and the reverse.
 RasterHeader read_header(GDALDataset& dataset, const std::string& path, const RasterReading& reading);
 
-}  // namespace waymark
+}  // namespace waymark::importers

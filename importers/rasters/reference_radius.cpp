@@ -11,7 +11,7 @@
 #include "geo/dem_source.hpp"
 #include "importers/rasters/block.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kOffsetTolerance = 1000;  // m: archives round the radius of Mars to 3396000
@@ -72,4 +72,4 @@ ReferenceRadius detect_reference_radius(GDALDataset& dataset, const RasterHeader
   return {radius, fmt::format("the first ones are {:.10g} to {:.10g} m", low, high)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

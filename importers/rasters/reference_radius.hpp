@@ -4,7 +4,7 @@
 
 #include "importers/rasters/raster_header.hpp"
 class GDALDataset;
-namespace waymark {
+namespace waymark::importers {
 
 /// Radius to subtract from distances to the body's centre to get elevations.
 struct ReferenceRadius {
@@ -18,4 +18,4 @@ struct ReferenceRadius {
 /// reach that far.
 ReferenceRadius detect_reference_radius(GDALDataset& dataset, const RasterHeader& header);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // Converts cells to longitude and latitude of their centres, degrees, in any CRS.
@@ -53,4 +53,4 @@ void mark_wraparound(GridGeometry& grid) {
   grid.south_pole = 90 + bottom <= tall * (1 + 1e-6);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

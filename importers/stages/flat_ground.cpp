@@ -3,7 +3,7 @@
 #include "importers/rasters/dem_codec.hpp"
 #include "pipeline/engine/stage.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 struct FlatGround {
@@ -21,17 +21,17 @@ struct FlatGround {
               .max = 1e4});
     }
   };
-  static constexpr Out<DemHandle> dem{"dem"};
+  static constexpr pipeline::Out<DemHandle> dem{"dem"};
 
-  static StageSpec spec() {
+  static pipeline::StageSpec spec() {
     return {.name = "flat_ground",
             .summary = "Level ground for images where there is no DEM: the map has no heights then",
             .version = 1,
-            .scope = Scope::map,
+            .scope = pipeline::Scope::map,
             .outputs = {dem}};
   }
 
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     if (options.crs.empty())
       throw Error(ErrorCode::usage, "flat_ground does not know the map's CRS", "flat_ground.crs",
                   "name a projected CRS (EPSG:32633), or local for metres on no body");
@@ -43,9 +43,9 @@ struct FlatGround {
 
 }  // namespace
 
-void register_stage_flat_ground(Registry& registry);
-void register_stage_flat_ground(Registry& registry) {
+void register_stage_flat_ground(pipeline::Registry& registry);
+void register_stage_flat_ground(pipeline::Registry& registry) {
   registry.add<FlatGround>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -10,7 +10,7 @@
 #include "importers/tiling.hpp"
 #include "pipeline/engine/stage.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 struct LoadCanopy {
@@ -52,16 +52,16 @@ struct LoadCanopy {
     }
   };
 
-  static constexpr Out<DemHandle> dem{"dem"};
-  static constexpr Out<Canopies> canopies{"canopies"};
-  static constexpr Out<std::vector<Tile>> tiles{"tiles"};
+  static constexpr pipeline::Out<DemHandle> dem{"dem"};
+  static constexpr pipeline::Out<Canopies> canopies{"canopies"};
+  static constexpr pipeline::Out<std::vector<pipeline::Tile>> tiles{"tiles"};
 
-  static StageSpec spec() {
+  static pipeline::StageSpec spec() {
     return {.name = "load_canopy",
             .summary = "Opens canopy height models, or surface and terrain models, and cuts them into tiles",
             .version = 1,
-            .scope = Scope::map,
-            .lists = Scope::tile,
+            .scope = pipeline::Scope::map,
+            .lists = pipeline::Scope::tile,
             .outputs = {dem, canopies, tiles}};
   }
 
@@ -73,7 +73,7 @@ struct LoadCanopy {
     return all;
   }
 
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     const auto resolved = [&](std::vector<std::string> files) {
       for (std::string& file : files) file = unit.path(file);
       return files;
@@ -139,9 +139,9 @@ struct LoadCanopy {
 
 }  // namespace
 
-void register_stage_load_canopy(Registry& registry);
-void register_stage_load_canopy(Registry& registry) {
+void register_stage_load_canopy(pipeline::Registry& registry);
+void register_stage_load_canopy(pipeline::Registry& registry) {
   registry.add<LoadCanopy>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include "importers/tiling.hpp"
 #include "pipeline/engine/stage.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 struct LoadDem {
@@ -62,15 +62,15 @@ struct LoadDem {
     }
   };
 
-  static constexpr Out<DemHandle> dem{"dem"};
-  static constexpr Out<std::vector<Tile>> tiles{"tiles"};
+  static constexpr pipeline::Out<DemHandle> dem{"dem"};
+  static constexpr pipeline::Out<std::vector<pipeline::Tile>> tiles{"tiles"};
 
-  static StageSpec spec() {
+  static pipeline::StageSpec spec() {
     return {.name = "load_dem",
             .summary = "Opens elevation rasters as one grid and cuts it into tiles",
             .version = 4,
-            .scope = Scope::map,
-            .lists = Scope::tile,
+            .scope = pipeline::Scope::map,
+            .lists = pipeline::Scope::tile,
             .outputs = {dem, tiles}};
   }
 
@@ -80,7 +80,7 @@ struct LoadDem {
     return files;
   }
 
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     DemImport import{.nodata = nodata_policy(options.nodata),
                      .crs = options.crs,
                      .band = static_cast<int>(options.band),
@@ -102,9 +102,9 @@ struct LoadDem {
 
 }  // namespace
 
-void register_stage_load_dem(Registry& registry);
-void register_stage_load_dem(Registry& registry) {
+void register_stage_load_dem(pipeline::Registry& registry);
+void register_stage_load_dem(pipeline::Registry& registry) {
   registry.add<LoadDem>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

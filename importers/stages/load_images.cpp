@@ -13,7 +13,7 @@
 #include "importers/tables/text_table.hpp"
 #include "pipeline/engine/stage.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::vector<std::string> format_names() {
@@ -93,16 +93,16 @@ struct LoadImages {
     }
   };
 
-  static constexpr In<DemHandle> dem{"dem"};
-  static constexpr Out<ImageSet> images{"image_set"};
-  static constexpr Out<std::vector<ImageItem>> items{"images"};
+  static constexpr pipeline::In<DemHandle> dem{"dem"};
+  static constexpr pipeline::Out<ImageSet> images{"image_set"};
+  static constexpr pipeline::Out<std::vector<pipeline::ImageItem>> items{"images"};
 
-  static StageSpec spec() {
+  static pipeline::StageSpec spec() {
     return {.name = "load_images",
             .summary = "Lists images with their camera or georeference and the sun",
             .version = 2,
-            .scope = Scope::map,
-            .lists = Scope::image,
+            .scope = pipeline::Scope::map,
+            .lists = pipeline::Scope::image,
             .inputs = {dem},
             .outputs = {images, items}};
   }
@@ -124,7 +124,7 @@ struct LoadImages {
     return files;
   }
 
-  static ImageListing listing_of(const Options& options, const StageContext& unit) {
+  static ImageListing listing_of(const Options& options, const pipeline::StageContext& unit) {
     const auto path = [&](const std::string& file) { return file.empty() ? file : unit.path(file); };
     ImageListing listing;
     for (const std::string& file : options.files) listing.files.push_back(path(file));
@@ -160,12 +160,12 @@ struct LoadImages {
     return Degrees{angle};
   }
 
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     ImageListing listing = listing_of(options, unit);
     if (listing.import.crs.empty()) listing.import.crs = unit.read(dem)->geometry().where.crs.wkt2();
     const ListedImages listed = list_images(listing);
     for (const std::string& warning : listed.warnings) unit.warn(warning);
-    std::vector<ImageItem> list;
+    std::vector<pipeline::ImageItem> list;
     for (ImageInfo info : listed.images) {
       const std::string path = std::exchange(info.path, {});  // the path does not change the image
       list.push_back({static_cast<std::int64_t>(list.size()), info.name, path, to_json(info)});
@@ -178,9 +178,9 @@ struct LoadImages {
 
 }  // namespace
 
-void register_stage_load_images(Registry& registry);
-void register_stage_load_images(Registry& registry) {
+void register_stage_load_images(pipeline::Registry& registry);
+void register_stage_load_images(pipeline::Registry& registry) {
   registry.add<LoadImages>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -13,7 +13,7 @@
 #include "core/error.hpp"
 #include "importers/tables/vector_layer.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kEdgesPerSide = 100;  // of a polygon's bounding box, where it is transformed
@@ -72,4 +72,4 @@ Area read_area_of_interest(const std::string& path, const Crs& into) {
   return {std::move(polygons), into.kind() == CrsKind::geographic};
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

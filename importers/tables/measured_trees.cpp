@@ -13,7 +13,7 @@
 #include "importers/tables/text_table.hpp"
 #include "pipeline/forest/allometry_fit.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::string plain(std::string_view name) {
@@ -59,11 +59,12 @@ std::optional<double> number(const TableRow& row, std::size_t column, bool decim
 }
 
 // Returns centimetres per unit, inferred from the median diameter of stems: 3 to 200 cm.
-double unit_of(const std::vector<MeasuredTree>& trees, const std::string& asked, std::string& name) {
+double unit_of(const std::vector<pipeline::MeasuredTree>& trees, const std::string& asked,
+               std::string& name) {
   name = asked;
   if (asked.empty()) {
     std::vector<double> all;
-    for (const MeasuredTree& tree : trees) all.push_back(tree.diameter);
+    for (const pipeline::MeasuredTree& tree : trees) all.push_back(tree.diameter);
     std::ranges::sort(all);
     const double median = all.empty() ? 20 : all[all.size() / 2];
     name = median < 2 ? "m" : median > 150 ? "mm" : "cm";
@@ -97,8 +98,8 @@ MeasuredTrees read_measured_trees(const std::string& path, const TreeColumns& co
       ++read.skipped_rows;
       continue;
     }
-    MeasuredTree tree{.height = *h, .diameter = *d};
-    if (crown) tree.crown = number(row, *crown, header.decimal_comma).value_or(Allometry::kUnknown);
+    pipeline::MeasuredTree tree{.height = *h, .diameter = *d};
+    if (crown) tree.crown = number(row, *crown, header.decimal_comma).value_or(pipeline::Allometry::kUnknown);
     if (species && *species < row.cells.size() && !row.cells[*species].empty())
       tree.species = row.cells[*species];
     if (plot && *plot < row.cells.size()) tree.plot = row.cells[*plot];
@@ -106,7 +107,7 @@ MeasuredTrees read_measured_trees(const std::string& path, const TreeColumns& co
   }
   std::string unit;
   const double centimetres = unit_of(read.trees, columns.diameter_unit, unit);
-  for (MeasuredTree& tree : read.trees) tree.diameter *= centimetres;
+  for (pipeline::MeasuredTree& tree : read.trees) tree.diameter *= centimetres;
   read.columns = fmt::format("height from {}, diameter from {} in {}", header.columns[height],
                              header.columns[diameter], unit);
   for (const auto& [what, at] : {std::pair{"crown diameter", crown}, {"species", species}, {"plot", plot}})
@@ -114,4 +115,4 @@ MeasuredTrees read_measured_trees(const std::string& path, const TreeColumns& co
   return read;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -2,9 +2,11 @@
 #pragma once
 #include <string>
 #include <vector>
-namespace waymark {
-
+namespace waymark::pipeline {
 struct MeasuredTree;
+}
+
+namespace waymark::importers {
 
 /// Names of the columns of a tree table. Empty: recognised by the usual names (height, h, ht, hmax; dbh, d,
 /// diameter, stemDiameter; crown_diameter, cd, maxCrownDiameter; species, taxonID, sp; plot, plotID).
@@ -15,7 +17,7 @@ struct TreeColumns {
 
 /// Trees read from a table.
 struct MeasuredTrees {
-  std::vector<MeasuredTree> trees;
+  std::vector<pipeline::MeasuredTree> trees;
   std::int64_t skipped_rows = 0;  ///< rows without a height or a diameter
   std::string columns;            ///< the columns used, for people: "height from H, diameter from DBH in cm"
 };
@@ -24,4 +26,4 @@ struct MeasuredTrees {
 /// diameter is not among them.
 MeasuredTrees read_measured_trees(const std::string& path, const TreeColumns& columns);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -15,7 +15,7 @@
 #include "core/error.hpp"
 #include "importers/tables/vector_layer.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr double kMaxCoordinate = 1e9;  // CRS units; the largest body that is mapped has 7e7 m around it
@@ -207,4 +207,4 @@ StandOutlines read_stand_outlines(const std::string& path, const std::string& la
   return Reader(path, layer, into).read();
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

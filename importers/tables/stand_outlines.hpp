@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Outline of a stand, from a polygon layer.
 struct StandOutline {
@@ -31,4 +31,4 @@ struct StandOutlines {
 /// Throws Error{input} if there is no such file, no layer or no polygon, and for another body.
 StandOutlines read_stand_outlines(const std::string& path, const std::string& layer, const Crs& into);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::array kTextEndings = {".csv",    ".tsv",    ".txt",    ".dat",   ".tab",
@@ -29,4 +29,4 @@ std::unique_ptr<TableSource> open_table(const std::string& path, TableFormat for
   return text ? open_csv_table(path) : open_ogr_table(path, layer, type);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// One row of a table, as text.
 struct TableRow {
@@ -56,4 +56,4 @@ std::unique_ptr<TableSource> open_csv_table(const std::string& path);
 std::unique_ptr<TableSource> open_ogr_table(const std::string& path, const std::string& layer,
                                             const std::string& type);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr std::array kCommon = {
@@ -220,4 +220,4 @@ bool names_imply_degrees(const ColumnBindings& bindings) {
   return (x.starts_with("lon") || x.starts_with("lng")) && y.starts_with("lat");
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

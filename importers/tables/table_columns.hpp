@@ -5,7 +5,7 @@
 #include <vector>
 #include "importers/tables/table_expression.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns whether a column can be bound to `name`: a feature or attribute of the types, x, y, z (CRS units,
 /// metres), uid, confidence, counts; standard deviations or variances in metres: position_sd (east and
@@ -28,4 +28,4 @@ ColumnBindings bind_columns(const std::string& text, const TableHeader& table, c
 /// Returns true if the columns bound to x and y are named longitude and latitude.
 bool names_imply_degrees(const ColumnBindings& bindings);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -11,7 +11,7 @@
 #include "importers/tables/table.hpp"
 #include "importers/tables/table_number.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 constexpr GIntBig kMaxBytes = GIntBig{4} << 30;  // bytes of a text table
@@ -199,4 +199,4 @@ std::unique_ptr<TableSource> open_csv_table(const std::string& path) {
   return std::make_unique<CsvTable>(path);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -15,7 +15,7 @@
 #include "core/units.hpp"
 #include "importers/tables/table_number.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Operation = double (*)(double, double);
@@ -272,4 +272,4 @@ std::size_t column_index(const std::vector<std::string>& columns, std::string_vi
                                  : fmt::format("it has {}", fmt::join(columns, ", ")));
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

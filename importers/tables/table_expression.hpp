@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "importers/tables/table.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Arithmetic on the columns of a table: `diam/2`, `sqrt(geom_area/pi)`, `"Diameter (km)"*500`.
 ///   sum = term (+|- term)...   term = power (*|/ power)...   power = [-] value [^ power]
@@ -40,4 +40,4 @@ class TableExpression {
 /// or several.
 std::size_t column_index(const std::vector<std::string>& columns, std::string_view name);
 
-}  // namespace waymark
+}  // namespace waymark::importers

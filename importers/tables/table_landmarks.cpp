@@ -18,7 +18,7 @@
 #include "importers/tables/table_positions.hpp"
 #include "landmarks/uid.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 /// Types of the rows of a table: one type, or the one in their column `type`.
@@ -281,4 +281,4 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

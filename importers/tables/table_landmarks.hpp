@@ -7,7 +7,7 @@
 #include "core/landmark.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 class TableSource;
 
@@ -44,4 +44,4 @@ struct ImportedTable {
 /// of the landmarks.
 ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how);
 
-}  // namespace waymark
+}  // namespace waymark::importers

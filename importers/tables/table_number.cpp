@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::string_view trimmed(std::string_view cell) {
@@ -43,4 +43,4 @@ std::optional<double> to_real(std::string_view cell, bool decimal_comma) {
   return value;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

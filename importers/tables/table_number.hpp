@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include <string_view>
-namespace waymark {
+namespace waymark::importers {
 
 /// Returns whether a cell has no value: empty, NA, N/A, NaN, null, none, - or --, in any case.
 bool is_missing(std::string_view cell);
@@ -11,4 +11,4 @@ bool is_missing(std::string_view cell);
 /// beside 3.5. `std::nullopt` for other text.
 std::optional<double> to_real(std::string_view cell, bool decimal_comma);
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -11,7 +11,7 @@
 #include "importers/tables/table.hpp"
 #include "importers/tables/vector_layer.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 bool has_geometry(OGRLayer& layer) {
@@ -125,4 +125,4 @@ std::unique_ptr<TableSource> open_ogr_table(const std::string& path, const std::
   return std::make_unique<OgrTable>(path, layer, type);
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 Crs crs_of_table(const TableHeader& table, const std::string& given, const std::optional<Crs>& map,
@@ -68,4 +68,4 @@ std::vector<std::string> TablePositions::warnings() const {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

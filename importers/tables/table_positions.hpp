@@ -7,7 +7,7 @@
 #include "core/frames.hpp"
 #include "geo/crs.hpp"
 #include "importers/tables/table.hpp"
-namespace waymark {
+namespace waymark::importers {
 
 /// Transforms the positions of a table to the map.
 class TablePositions {
@@ -33,4 +33,4 @@ class TablePositions {
   std::int64_t positions_ = 0, like_degrees_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::importers

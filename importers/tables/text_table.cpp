@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::vector<std::string> words_of(std::string_view line) {
@@ -76,4 +76,4 @@ double number_at(const TextRow& row, std::size_t index, const std::string& path,
   return value;
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-namespace waymark {
+namespace waymark::importers {
 
 /// A row of a text file as words.
 struct TextRow {
@@ -26,4 +26,4 @@ bool parse_number(std::string_view word, double& value);
 /// Returns the word at `index` as a finite number. Throws Error{input} with the line otherwise.
 double number_at(const TextRow& row, std::size_t index, const std::string& path, const char* name);
 
-}  // namespace waymark
+}  // namespace waymark::importers

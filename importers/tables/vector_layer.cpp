@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 /// Throws Error{input} if an SQLite file has a recursive view: GDAL would read its rows without end.
@@ -72,4 +72,4 @@ std::optional<Crs> crs_of(OGRLayer& layer) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

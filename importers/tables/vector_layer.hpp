@@ -6,7 +6,7 @@
 #include "geo/crs.hpp"
 #include "importers/gdal_session.hpp"
 class OGRLayer;
-namespace waymark {
+namespace waymark::importers {
 
 /// Opens a vector file. Throws Error{input} with "there is no such <thing>" or GDAL's message, and `hint`.
 GdalDataset open_vector(const std::string& path, const std::string& thing, const std::string& hint);
@@ -19,4 +19,4 @@ OGRLayer& layer_named(GDALDataset& dataset, const std::string& path, const std::
 /// similar).
 std::optional<Crs> crs_of(OGRLayer& layer);
 
-}  // namespace waymark
+}  // namespace waymark::importers

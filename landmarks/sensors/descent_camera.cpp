@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 void register_sensor_descent_camera(SensorRegistry& sensors);
 void register_sensor_descent_camera(SensorRegistry& sensors) {
@@ -14,4 +14,4 @@ void register_sensor_descent_camera(SensorRegistry& sensors) {
                            {"tree", "crown_diameter", 1}}});
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

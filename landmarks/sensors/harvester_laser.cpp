@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 void register_sensor_harvester_laser(SensorRegistry& sensors);
 void register_sensor_harvester_laser(SensorRegistry& sensors) {
@@ -9,4 +9,4 @@ void register_sensor_harvester_laser(SensorRegistry& sensors) {
                .weights = {{"tree", "diameter", 1}}});
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

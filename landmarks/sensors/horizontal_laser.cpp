@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "landmarks/sensor_profile.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 void register_sensor_horizontal_laser(SensorRegistry& sensors);
 void register_sensor_horizontal_laser(SensorRegistry& sensors) {
@@ -12,4 +12,4 @@ void register_sensor_horizontal_laser(SensorRegistry& sensors) {
                            {"crater", "radius", 0.2}}});
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 void register_type_crater(TypeRegistry& types);
 void register_type_crater(TypeRegistry& types) {
@@ -23,4 +23,4 @@ void register_type_crater(TypeRegistry& types) {
   });
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

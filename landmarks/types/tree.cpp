@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::inline landmarks {
 
 void register_type_tree(TypeRegistry& types);
 void register_type_tree(TypeRegistry& types) {
@@ -17,4 +17,4 @@ void register_type_tree(TypeRegistry& types) {
   });
 }
 
-}  // namespace waymark
+}  // namespace waymark::inline landmarks

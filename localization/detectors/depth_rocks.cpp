@@ -8,7 +8,7 @@
 
 #include "core/grid.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 struct Square {
@@ -160,4 +160,4 @@ SightingSet sightings_of_rocks(const DepthImage& image, const DepthRockOptions& 
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <vector>
 #include "localization/depth_image.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the rock detector for depth images.
 struct DepthRockOptions {
@@ -33,4 +33,4 @@ std::vector<DepthRock> find_rocks(const DepthImage& image, const DepthRockOption
 /// Detects rocks in a depth image and returns them as sightings.
 SightingSet sightings_of_rocks(const DepthImage& image, const DepthRockOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 
 std::vector<DetectedSummit> find_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options) {
   std::vector<DetectedSummit> summits;
@@ -73,4 +73,4 @@ SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSum
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

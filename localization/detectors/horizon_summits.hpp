@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Elevation of the horizon by direction, of a full turn or a part.
 struct HorizonProfile {
@@ -33,4 +33,4 @@ std::vector<DetectedSummit> find_summits(const HorizonProfile& horizon, const Ho
 /// Finds summits and returns them as sightings without range: the distance of a summit is not measured.
 SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSummitOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

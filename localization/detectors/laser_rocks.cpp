@@ -8,7 +8,7 @@
 
 #include "localization/detectors/scan_segments.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 // range = a + b u + c u^2 over u in [-1, 1] from end to end; c > 0 if the middle is nearer.
@@ -92,4 +92,4 @@ SightingSet sightings_of_rocks(const LaserScan& scan, const LaserRockOptions& op
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <vector>
 #include "localization/laser_scan.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the rock detector for a line scanner close above the ground.
 struct LaserRockOptions {
@@ -38,4 +38,4 @@ std::vector<LaserRock> find_rocks(const LaserScan& scan, const LaserRockOptions&
 /// Detects rocks in a scan and returns them as sightings.
 SightingSet sightings_of_rocks(const LaserScan& scan, const LaserRockOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -8,7 +8,7 @@
 
 #include "localization/detectors/scan_segments.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 // Fits a cylinder of this angular width to some beams.
@@ -121,4 +121,4 @@ SightingSet sightings_of_stems(const LaserScan& scan, const LaserStemOptions& op
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

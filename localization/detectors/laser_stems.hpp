@@ -4,7 +4,7 @@
 #include <vector>
 #include "localization/laser_scan.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the detector of tree stems (or round posts) for a level line scanner.
 struct LaserStemOptions {
@@ -48,4 +48,4 @@ std::vector<Stem> find_stems(const LaserScan& scan, const LaserStemOptions& opti
 /// Detects stems in a scan and returns them as sightings.
 SightingSet sightings_of_stems(const LaserScan& scan, const LaserStemOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include "localization/detectors/laser_rocks.hpp"
 #include "localization/detectors/laser_stems.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 
 void ScanDetectionOptions::describe(OptionVisitor& option) {
   option("scans", find,
@@ -28,4 +28,4 @@ SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types,
   return set;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

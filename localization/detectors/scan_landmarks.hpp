@@ -5,7 +5,7 @@
 #include "core/options.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of landmark detection in laser scans.
 struct ScanDetectionOptions {
@@ -25,4 +25,4 @@ struct ScanTypes {
 SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types,
                               const ScanDetectionOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 
 std::vector<double> bridge_outliers(const LaserScan& scan, double jump) {
   const double far = scan.max_range * 10;
@@ -55,4 +55,4 @@ RangeBearing level_range_bearing(const LaserScan& scan, double range, double bea
   return {level.head<2>().norm(), std::atan2(level.y(), level.x()) - yaw};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

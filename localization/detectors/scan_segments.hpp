@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "localization/laser_scan.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the ranges with ten times max_range where there was no return, and with single outliers
 /// bridged. A beam that differs from both neighbours by `jump`, while these agree to `jump`, takes their
@@ -31,4 +31,4 @@ struct RangeBearing {
 /// Projects a range and bearing of a tilted scanner (scan.roll, scan.pitch) to the map plane.
 RangeBearing level_range_bearing(const LaserScan& scan, double range, double bearing);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kShare = 0.35, kLeast = 0.2;
@@ -40,4 +40,4 @@ PoseEstimate Convergence::inflate_covariance(PoseEstimate estimate) const {
   return estimate;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 #include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
 #include "localization/filters/explained_fraction.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Decides whether a filter without a given start has found the robot. Until then its covariance must cover
 /// every position the robot may have.
@@ -38,4 +38,4 @@ class Convergence {
   bool found_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kFade = 1.0 / 40;  // per set: some 10 s of a scanner
@@ -50,4 +50,4 @@ void ExplainedFraction::add(double fit, double chance) {
   chance_ += fade * (chance - chance_);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <vector>
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_window.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the fraction of a set's sightings with a landmark, among those that could have one. Negative if
 /// there are none.
@@ -31,4 +31,4 @@ class ExplainedFraction {
   int sets_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

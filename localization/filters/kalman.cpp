@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kCertain = 0.999;  // pairings above this need no mixture
@@ -127,4 +127,4 @@ PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
   return {pose_of(estimate.pose.vector() + gain * v), (after + after.transpose()) / 2};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

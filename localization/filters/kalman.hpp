@@ -2,7 +2,7 @@
 #pragma once
 #include "localization/identification/landmark_window.hpp"
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the extended and the unscented Kalman filter.
 struct KalmanOptions {
@@ -96,4 +96,4 @@ class UnscentedKalman final : public KalmanLocalizer {
   Eigen::Matrix3d root_;  ///< lower triangular
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 
 ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, const Eigen::Vector2d& landmark) {
   const double c = std::cos(robot.yaw), s = std::sin(robot.yaw);
@@ -29,4 +29,4 @@ Eigen::Matrix2d sensor_noise(const SeenLandmark& seen) {
       .asDiagonal();
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Predicted measurement of a landmark and its Jacobians. Row 0: range in metres, row 1: bearing in
 /// radians, relative to the sensor.
@@ -22,4 +22,4 @@ Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expe
 /// Returns the covariance of the measurement. A missing range has variance 1; the caller must omit its row.
 Eigen::Matrix2d sensor_noise(const SeenLandmark& seen);
 
-}  // namespace waymark
+}  // namespace waymark::localization

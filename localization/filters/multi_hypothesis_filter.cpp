@@ -7,7 +7,7 @@
 
 #include "localization/filters/kalman.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kJointSightings = 3;  // sightings associated jointly; further ones follow in turn
@@ -225,4 +225,4 @@ bool MultiHypothesisFilter::apply_fix(const Fix& measured, int rows) {
 template bool MultiHypothesisFilter::apply_fix(const GnssFix&, int);
 template bool MultiHypothesisFilter::apply_fix(const HeadingFix&, int);
 
-}  // namespace waymark
+}  // namespace waymark::localization

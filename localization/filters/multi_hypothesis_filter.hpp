@@ -7,7 +7,7 @@
 #include "localization/identification/landmark_window.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the multi-hypothesis filter.
 struct MultiHypothesisOptions {
@@ -88,4 +88,4 @@ class MultiHypothesisFilter final : public Localizer {
   LineOfSight visible_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

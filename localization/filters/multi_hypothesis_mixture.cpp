@@ -6,7 +6,7 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 Eigen::Vector3d off(const Pose2& from, const Pose2& to) {
@@ -98,4 +98,4 @@ PoseEstimate MultiHypothesisFilter::estimate() const {
   return weight > 0.5 ? near : moments(1e12).first;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

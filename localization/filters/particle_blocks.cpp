@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 
 void for_each_block(std::size_t count, std::int64_t threads,
                     const std::function<void(std::size_t, std::size_t)>& work) {
@@ -22,4 +22,4 @@ void for_each_block(std::size_t count, std::int64_t threads,
   tbb::task_arena(static_cast<int>(threads)).execute(all);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -9,7 +9,7 @@
 #include "localization/filters/particle_blocks.hpp"
 #include "localization/filters/resampling.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr int kPatience = 10;  // fixes to ignore while a set of sightings is awaited
@@ -203,4 +203,4 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   return matches;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

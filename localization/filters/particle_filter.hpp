@@ -9,7 +9,7 @@
 #include "localization/identification/landmark_window.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the particle filter.
 struct ParticleOptions {
@@ -95,4 +95,4 @@ class ParticleFilter final : public Localizer {
   LineOfSight visible_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 
 #include "localization/filters/particle_filter.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 
 std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const LandmarkGrid& map,
                                                  Random& random) const {
@@ -56,4 +56,4 @@ void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, st
   weights_.assign(poses_.size(), poses_.empty() ? 0 : 1 / static_cast<double>(poses_.size()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

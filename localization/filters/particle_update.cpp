@@ -8,7 +8,7 @@
 #include "localization/filters/sighting_score.hpp"
 #include "localization/filters/temper_weights.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 using Values = Eigen::Map<const Eigen::ArrayXd>;
@@ -97,4 +97,4 @@ void ParticleFilter::resample_particles(const SightingSet& seen, const LandmarkG
   weights_.assign(poses_.size(), 1 / static_cast<double>(poses_.size()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -58,4 +58,4 @@ std::vector<double> normalise_log_weights(std::span<const double> log_weights) {
   return weights;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

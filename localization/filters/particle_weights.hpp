@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "core/options.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the weights of particles.
 struct WeightOptions {
@@ -33,4 +33,4 @@ std::vector<double> paper_weights(std::span<const double> errors);
 /// Returns exp(log weight), scaled to sum 1. If none is above -infinity all are equal.
 std::vector<double> normalise_log_weights(std::span<const double> log_weights);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr int kWait = 5, kRestartInterval = 20;  // sets between calls of the finder, and between restarts
@@ -74,4 +74,4 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   return inner_->update(seen);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A filter with recovery from localization failure: a kidnapped robot, a wrong association, or the return
 /// from unmapped terrain.
@@ -69,4 +69,4 @@ class RelocalizingFilter final : public Localizer {
   int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kSame = 9.2;     // squared distance of one landmark's sightings: 99 % of chi-square, 2 dof
@@ -60,4 +60,4 @@ void RepeatedSightings::widen(SightingSet& seen, double t) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

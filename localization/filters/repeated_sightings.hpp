@@ -2,7 +2,7 @@
 #pragma once
 #include "localization/body_motion.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Correlation times, s, of a sensor's errors with one landmark (fall to 1/e); 0: independent errors.
 struct ErrorMemory {
@@ -37,4 +37,4 @@ class RepeatedSightings {
   std::vector<Last> last_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

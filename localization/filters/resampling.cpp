@@ -9,7 +9,7 @@
 #include "core/ziggurat.hpp"
 #include "localization/body_motion.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kEverywhere = 1e150;  // m
@@ -140,4 +140,4 @@ PoseEstimate dominant_mode(std::span<const Pose2> poses, std::span<const double>
   return inside > 0.5 ? moments(poses, weights, centre, radius) : all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

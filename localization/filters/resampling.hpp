@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/random.hpp"
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the effective sample size, 1 / sum of squared weights. Weights sum to 1.
 double effective_sample_size(std::span<const double> weights);
@@ -35,4 +35,4 @@ std::size_t occupied_bins(std::span<const Pose2> poses, double metres, double ra
 /// otherwise of all poses. Thus a few outlying particles do not shift the estimate.
 PoseEstimate dominant_mode(std::span<const Pose2> poses, std::span<const double> weights, double radius);
 
-}  // namespace waymark
+}  // namespace waymark::localization

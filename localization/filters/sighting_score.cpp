@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -306,4 +306,4 @@ double SightingScore::operator()(const Pose2& robot) const {
   return options_.temper * sum;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

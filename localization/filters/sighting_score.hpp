@@ -4,7 +4,7 @@
 #include <vector>
 #include "localization/filters/particle_weights.hpp"
 #include "localization/identification/identification.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Log likelihood of one set of sightings at a pose. Constructed once per set, then called for each
 /// particle from any thread. About 60 ns per sighting with a few landmarks inside the gate, whatever the
@@ -110,4 +110,4 @@ class SightingScore {
   std::vector<TypeId> types_;  // types in this set
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 
 #include "localization/filters/sighting_score.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kSlack = 1e-6;     // m: rounding omits no landmark
@@ -65,4 +65,4 @@ void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
   });
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

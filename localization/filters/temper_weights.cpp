@@ -8,7 +8,7 @@
 
 #include "localization/filters/resampling.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 using Values = Eigen::Map<const Eigen::ArrayXd>;
@@ -65,4 +65,4 @@ TemperedWeights temper_weights(std::span<const double> weights, std::span<const 
   return {low, {after.begin(), after.end()}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::localization {
 
 /// Weights after a tempered update, and the exponent used.
 struct TemperedWeights {
@@ -16,4 +16,4 @@ struct TemperedWeights {
 TemperedWeights temper_weights(std::span<const double> weights, std::span<const double> fit, double most,
                                double least);
 
-}  // namespace waymark
+}  // namespace waymark::localization

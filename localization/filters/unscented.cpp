@@ -5,7 +5,7 @@
 
 #include "localization/filters/kalman.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 // Returns lower triangular L with L L' = m m', without forming the product. Modified Gram-Schmidt over the
@@ -139,4 +139,4 @@ void UnscentedKalman::widen(double factor) {
   root_ = clamp_sd(sd * factor).asDiagonal();
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kSample = 400;  // landmarks to estimate how rare a feature is
@@ -182,4 +182,4 @@ std::size_t ConstellationIndex::bytes() const {
          landmarks_.size() * (sizeof(MapLandmark) + sizeof(LandmarkPosition) + 32);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

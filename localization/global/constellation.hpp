@@ -10,7 +10,7 @@
 #include "localization/global/point_cells.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of localization by constellations of landmarks.
 struct ConstellationOptions {
@@ -107,4 +107,4 @@ class ConstellationIndex {
   double length_cell_ = 1, typical_sd_ = 0, area_ = 1;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -8,7 +8,7 @@
 
 #include "localization/global/constellation_search.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kKept = 10;
@@ -207,4 +207,4 @@ ConstellationFix ConstellationSearch::evaluate_fix(const PoseEstimate& e, const 
   return fix;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

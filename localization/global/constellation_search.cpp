@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kMostSightings = 40;  // the nearest ones; more only cost time
@@ -253,4 +253,4 @@ ConstellationAnswer ConstellationIndex::find(const SightingSet& seen) const {
   return ConstellationSearch(*this, seen).find();
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "localization/global/constellation.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the plane that touches the surface at a landmark.
 TangentPlane plane_at(const LandmarkPosition& place);
@@ -81,4 +81,4 @@ class ConstellationSearch {
   std::vector<Guess> guesses_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::localization {
 
 std::vector<HorizonEdge> horizon_ring(const TerrainGrid& ground, const Eigen::Vector2d& at, double eye,
                                       double nearest, int sectors, const SkylineOptions& options) {
@@ -46,4 +46,4 @@ HorizonEdge horizon_at(const TerrainGrid& ground, const Eigen::Vector2d& at, dou
   return {static_cast<float>(best), static_cast<float>(far)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

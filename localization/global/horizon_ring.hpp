@@ -3,7 +3,7 @@
 #include <vector>
 #include "localization/global/skyline.hpp"
 #include "localization/global/terrain_grid.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Horizon in one direction: tangent of its elevation, and its distance, m. `far` 0: no terrain.
 struct HorizonEdge {
@@ -21,4 +21,4 @@ std::vector<HorizonEdge> horizon_ring(const TerrainGrid& ground, const Eigen::Ve
 HorizonEdge horizon_at(const TerrainGrid& ground, const Eigen::Vector2d& at, double eye, double azimuth,
                        const SkylineOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

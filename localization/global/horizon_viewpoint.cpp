@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kSectors = kHorizonSectors;
@@ -117,4 +117,4 @@ std::vector<HorizonGuess> best_headings(std::span<const HorizonViewpoint> viewpo
   return guesses;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

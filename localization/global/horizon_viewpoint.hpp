@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 #include "localization/global/horizon_ring.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 inline constexpr int kHorizonSectors = 180;
 
@@ -35,4 +35,4 @@ std::vector<HorizonGuess> best_headings(std::span<const HorizonViewpoint> viewpo
                                         std::span<const HorizonTop> tops, std::size_t most,
                                         const SkylineOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <bit>
 #include <numeric>
 
-namespace waymark {
+namespace waymark::localization {
 
 PointCells::PointCells(std::span<const Eigen::Vector3d> points, double cell) {
   if (points.empty()) return;
@@ -34,4 +34,4 @@ PointCells::PointCells(std::span<const Eigen::Vector3d> points, double cell) {
   occupied_ = static_cast<std::size_t>(std::ranges::unique(keys).begin() - keys.begin());
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Points in hashed cubes, for maps around a body; a plane is the case z = 0. Immutable.
 class PointCells {
@@ -66,4 +66,4 @@ class PointCells {
   bool flat_ = true;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <Eigen/LU>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kElsewhere = 16.3;    // squared distance of two poses: 99.9 % of chi-square, 3 dof
@@ -18,4 +18,4 @@ bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
   return d.head<2>().norm() > kLeastElsewhere && !(d.dot(both.inverse() * d) < kElsewhere);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

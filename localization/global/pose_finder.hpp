@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Result of a global localization, in the map's frame.
 struct PoseSearchResult {
@@ -22,4 +22,4 @@ using PoseFinder = std::function<PoseSearchResult(const SightingSet&)>;
 /// odometry noise in remembered sightings.
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kMost = 200;
@@ -105,4 +105,4 @@ SightingSet add_bearings(SightingSet remembered, const SightingSet& seen) {
   return remembered;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 #include "localization/body_motion.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "localization/sighting.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Recent sightings of a robot, predicted by odometry to its present frame, as one set. Sightings of one
 /// landmark at different times are merged.
@@ -33,4 +33,4 @@ class SightingMemory {
 /// Adds to remembered sightings those of the current set without range, which are not remembered.
 SightingSet add_bearings(SightingSet remembered, const SightingSet& seen);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -10,7 +10,7 @@
 #include "localization/global/skyline_fit.hpp"
 #include "localization/global/skyline_index.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kKept = 10, kHeadings = 3;
@@ -141,4 +141,4 @@ SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const 
   return SkylineIndex({summits.begin(), summits.end()}, ground, options).find(tops);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/options.hpp"
 #include "localization/terrain_pose.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A mountain top of the map.
 struct SkylineSummit {
@@ -85,4 +85,4 @@ std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops,
                                       const PoseEstimate& start, const TerrainHeight& ground,
                                       const SkylineOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

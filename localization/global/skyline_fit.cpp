@@ -8,7 +8,7 @@
 
 #include "localization/global/skyline_view.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -200,4 +200,4 @@ std::optional<SkylineFix> fit_horizon(const SkylineScene& scene, std::span<const
   return HorizonFit(scene, tops).find(guess, place);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include "localization/global/horizon_viewpoint.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Inputs of a fit beside the tops.
 struct SkylineScene {
@@ -18,4 +18,4 @@ struct SkylineScene {
 std::optional<SkylineFix> fit_horizon(const SkylineScene& scene, std::span<const HorizonTop> tops,
                                       const HorizonGuess& guess, double place);
 
-}  // namespace waymark
+}  // namespace waymark::localization

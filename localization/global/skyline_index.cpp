@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 Eigen::AlignedBox2d bounds(const std::vector<SkylineSummit>& summits) {
@@ -32,4 +32,4 @@ SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, const TerrainHeig
   viewpoints_ = compute_horizons(terrain_, at, options_.step, options_);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

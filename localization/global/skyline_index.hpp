@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "localization/global/horizon_viewpoint.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Horizons at all positions of a grid, computed once for a map. 5 s of one core for 110 km x 80 km, 1 km
 /// apart; 1.5 kB per position and 6 bytes per cell of the DEM.
@@ -23,4 +23,4 @@ class SkylineIndex {
   std::vector<HorizonViewpoint> viewpoints_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include "localization/global/skyline.hpp"
 #include "localization/global/skyline_view.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 
 SummitView view_summit(const SkylineSummit& summit, const Eigen::Vector2d& eye, double eye_height,
                        const SkylineOptions& options) {
@@ -83,4 +83,4 @@ std::optional<PoseEstimate> resection(std::span<const HorizonTop> tops,
   return e;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

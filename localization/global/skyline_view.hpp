@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "localization/global/skyline.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Direction and distance of a summit: azimuth from x (east) towards y (north), elevation above the
 /// horizontal.
@@ -11,4 +11,4 @@ struct SummitView {
 SummitView view_summit(const SkylineSummit& summit, const Eigen::Vector2d& eye, double eye_height,
                        const SkylineOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr int kProbes = 64;
@@ -60,4 +60,4 @@ TerrainGrid::TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, d
   summit_ = static_cast<double>(blocks_.back()(0, 0));
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "localization/terrain_pose.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Terrain heights on a regular grid, with a max pyramid of blocks of 2, 4, 8, ... cells. A distant ray
 /// samples blocks as wide as its sector. 6 bytes per cell.
@@ -57,4 +57,4 @@ class TerrainGrid {
   std::vector<Grid<float>> blocks_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-namespace waymark {
+namespace waymark::localization {
 
 ChosenColumns assign_greedily(const std::vector<std::vector<Choice>>& rows) {
   std::vector<std::tuple<double, std::size_t, std::size_t>> all;
@@ -70,4 +70,4 @@ ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, doub
   return chosen;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include <vector>
-namespace waymark {
+namespace waymark::localization {
 
 /// An entry of a sparse cost table.
 struct Choice {
@@ -20,4 +20,4 @@ ChosenColumns assign_greedily(const std::vector<std::vector<Choice>>& rows);
 /// 1987). Each row has a dummy column at `none_cost`. O(rows^2 (rows + columns)).
 ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, double none_cost);
 
-}  // namespace waymark
+}  // namespace waymark::localization

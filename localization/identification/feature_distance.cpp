@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::localization {
 
 FeatureScales::FeatureScales(const TypeRegistry& types) {
   for (const LandmarkType& type : types) {
@@ -62,4 +62,4 @@ FeatureComparison compare_features(const FeatureScales& scales, TypeId type, con
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <vector>
 #include "landmarks/landmark_type.hpp"
 #include "localization/identification/known_features.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Scale of each feature, by TypeId and index of the feature.
 class FeatureScales {
@@ -44,4 +44,4 @@ struct FeatureComparison {
 FeatureComparison compare_features(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
                                    const KnownFeatures& mapped, double tolerance);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -9,7 +9,7 @@
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 /// Returns quantiles of the gate by degrees of freedom, computed once per gate.
@@ -269,4 +269,4 @@ Identification identify(const SightingSet& seen, const PoseEstimate& robot, cons
   return {assign_individually(all, options), {}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -11,7 +11,7 @@
 #include "localization/identification/feature_distance.hpp"
 #include "localization/identification/joint_evidence.hpp"
 #include "localization/identification/landmark_grid.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of data association.
 struct IdentificationOptions {
@@ -109,4 +109,4 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
 Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map,
                         const FeatureScales& scales, const IdentificationOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <Eigen/LU>
 
-namespace waymark {
+namespace waymark::localization {
 
 JointEvidence& JointEvidence::operator+=(const JointEvidence& more) {
   information += more.information;
@@ -60,4 +60,4 @@ PoseEstimate update_pose(const PoseEstimate& estimate, const JointEvidence& evid
           (after + after.transpose()) / 2};
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

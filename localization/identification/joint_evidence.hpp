@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include "localization/filters/measurement.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Information about the pose from a set of pairings, in information form. Adding a pairing is a sum. Joint
 /// compatibility (Neira & Tardos 2001) and the Kalman update then cost a 3x3 solve, for any number of
@@ -35,4 +35,4 @@ JointDistance joint_distance(const JointEvidence& evidence, const Eigen::Matrix3
 /// Returns the estimate after a Kalman update by all pairings at once.
 PoseEstimate update_pose(const PoseEstimate& estimate, const JointEvidence& evidence);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 
 #include "localization/chi_square.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kLeast = 14;  // ln of 1e6: hypotheses less probable than the best by this are omitted
@@ -171,4 +171,4 @@ std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Can
   return std::move(all.found);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

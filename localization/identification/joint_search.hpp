@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "localization/identification/identification.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A joint association: the candidate of each sighting, or -1.
 using JointChoice = std::vector<int>;
@@ -30,4 +30,4 @@ std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Can
                                                              const Eigen::Matrix3d& pose,
                                                              const IdentificationOptions& options);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -5,7 +5,7 @@
 #include <limits>
 #include "core/feature.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Number of features that localization compares: the first eight, in the order of the type. Built-in types
 /// have at most five.
@@ -27,4 +27,4 @@ struct KnownFeatures {
 /// right for an object that looks different from each side.
 KnownFeatures known_features(const FeatureSet& features);
 
-}  // namespace waymark
+}  // namespace waymark::localization

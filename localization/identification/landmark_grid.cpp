@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 double largest_sd(const MapLandmark& landmark) {
@@ -20,7 +20,7 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
   if (landmarks.empty()) return;
   for (const MapLandmark& landmark : landmarks) {
     bounds_.extend(landmark.at);
-    largest_sd_ = std::max(largest_sd_, waymark::largest_sd(landmark));
+    largest_sd_ = std::max(largest_sd_, localization::largest_sd(landmark));
     min_quality_ = std::min(min_quality_, landmark.quality);
   }
   const Eigen::Vector2d size = bounds_.sizes();
@@ -58,4 +58,4 @@ std::optional<std::uint32_t> LandmarkGrid::find(LandmarkKey key) const {
   return found->second;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

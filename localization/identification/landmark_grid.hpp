@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 #include "localization/identification/map_landmark.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Landmarks in cells of a regular grid, in memory, for the many small queries of a particle filter: about
 /// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 10 M
@@ -69,4 +69,4 @@ class LandmarkGrid {
   std::int64_t columns_ = 0, rows_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-namespace waymark {
+namespace waymark::localization {
 
 LandmarkWindow::LandmarkWindow(LandmarkGrid whole) : grid_(std::move(whole)) {}
 
@@ -25,4 +25,4 @@ const LandmarkGrid& LandmarkWindow::landmarks_near(const Eigen::Vector2d& at, do
   return grid_;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

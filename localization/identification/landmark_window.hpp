@@ -2,7 +2,7 @@
 #pragma once
 #include <functional>
 #include "localization/identification/landmark_grid.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Returns the landmarks inside a box of the map frame, e.g. by a query of a map file.
 using LandmarkSource = std::function<std::vector<MapLandmark>(const Eigen::AlignedBox2d&)>;
@@ -27,4 +27,4 @@ class LandmarkWindow {
   LandmarkGrid grid_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

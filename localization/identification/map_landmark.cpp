@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 // An unknown or unusable covariance must not make a landmark perfect or turn a filter's numbers into NaN.
@@ -63,4 +63,4 @@ std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorPr
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include <vector>
 #include "landmarks/semantic_map.hpp"
 #include "localization/identification/known_features.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Key of a landmark: 64 bits of a hash of its uid.
 using LandmarkKey = std::uint64_t;
@@ -32,4 +32,4 @@ std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorPr
 MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, const LocalFrame& frame,
                          const SensorProfile* sensor = nullptr);
 
-}  // namespace waymark
+}  // namespace waymark::localization

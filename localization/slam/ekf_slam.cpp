@@ -10,7 +10,7 @@
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kRangeMargin =
@@ -306,4 +306,4 @@ std::vector<SlamLandmark> EkfSlam::landmarks() {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

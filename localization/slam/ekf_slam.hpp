@@ -11,7 +11,7 @@
 #include "localization/localizer.hpp"
 #include "localization/slam/slam_relocalization.hpp"
 #include "localization/slam/slam_state.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of EKF SLAM.
 struct SlamOptions {
@@ -125,4 +125,4 @@ class EkfSlam final : public Localizer {
   int restarts_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

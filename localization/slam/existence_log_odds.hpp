@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-namespace waymark {
+namespace waymark::localization {
 
 /// Evidence counters of a landmark's existence as log odds (section 4.4; Thrun, Burgard & Fox 2005,
 /// 10.3.4).
@@ -23,4 +23,4 @@ inline double unseen_evidence(double detection, double most) {
   return std::max(most, std::log(1 - std::clamp(detection, 0.01, 0.99)));
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 
 #include "localization/filters/measurement.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 /// Position relative to a pose, and its derivatives with respect to the pose and to the position.
@@ -114,4 +114,4 @@ std::size_t unknown_count(const PoseGraph& graph) {
   return 3 * (graph.poses.size() - static_cast<std::size_t>(fixed)) + 2 * graph.landmarks.size();
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

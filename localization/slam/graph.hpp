@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "localization/pose2.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// A pose of the robot in a graph.
 struct GraphPose {
@@ -101,4 +101,4 @@ Eigen::Matrix2d information_root(const Eigen::Matrix2d& information);
 std::size_t residual_count(const PoseGraph& graph);
 std::size_t unknown_count(const PoseGraph& graph);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -154,4 +154,4 @@ std::optional<Eigen::Vector2d> intersect_rays(const Pose2& a, const Pose2& b) {
   return a.at() + far * along;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

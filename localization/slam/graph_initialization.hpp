@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Checks that every index is valid, every number finite, and every pose and landmark connected to the
 /// first pose. Throws Error{input} naming the first id that is not, or std::out_of_range.
@@ -29,4 +29,4 @@ std::optional<Pose2> resect_pose(const PoseGraph& graph, const std::vector<std::
 /// at less than 6 degrees or behind a position.
 std::optional<Eigen::Vector2d> intersect_rays(const Pose2& a, const Pose2& b);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -161,4 +161,4 @@ GraphMarginals graph_marginals(const PoseGraph& graph, const std::string& kernel
   return marginals;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

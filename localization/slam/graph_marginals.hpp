@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Marginal covariances of the poses and landmarks of a graph.
 struct GraphMarginals {
@@ -18,4 +18,4 @@ struct GraphMarginals {
 GraphMarginals graph_marginals(const PoseGraph& graph, const std::string& kernel = "none",
                                double kernel_width = 2);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -10,7 +10,7 @@
 #include "localization/slam/graph_initialization.hpp"
 #include "localization/slam/graph_marginals.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 using RowMajor3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
@@ -299,4 +299,4 @@ GraphSolution optimise(PoseGraph graph, const GraphOptions& options) {
   return *std::move(best);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

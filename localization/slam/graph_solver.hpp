@@ -3,7 +3,7 @@
 #include <string>
 #include "core/options.hpp"
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Options of the least-squares optimisation of a graph.
 struct GraphOptions {
@@ -38,4 +38,4 @@ struct GraphSolution {
 /// - Without a prior or a fixed pose the first pose is held constant: its covariance is zero.
 GraphSolution optimise(PoseGraph graph, const GraphOptions& options = {});
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -8,7 +8,7 @@
 
 #include "localization/filters/measurement.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kDisregarded = 1e-4;  // root of the information of a step that is disregarded
@@ -96,4 +96,4 @@ PoseGraph PoseGraphBuilder::graph(std::vector<SlamLandmark>& landmarks) const {
   return graph;
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

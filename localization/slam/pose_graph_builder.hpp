@@ -2,7 +2,7 @@
 #pragma once
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/graph.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Builds a pose graph from a drive. SLAM associates the sightings; every step and sighting becomes an
 /// edge. One pose for the start and one for each set of sightings.
@@ -25,4 +25,4 @@ class PoseGraphBuilder final : public Localizer {
   PoseGraph graph_;  ///< landmarks by the indices of SLAM
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 
 void merge_signature(const FeatureScales& scales, TypeId type, KnownFeatures& known,
                      const KnownFeatures& seen, double tolerance) {
@@ -23,4 +23,4 @@ void merge_signature(const FeatureScales& scales, TypeId type, KnownFeatures& kn
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

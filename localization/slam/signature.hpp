@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "localization/identification/feature_distance.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Merges a sighting into the signature of a landmark (section 4.4), its features with their variances. A
 /// feature seen first is taken over; later ones are averaged by their variances, limited below to
@@ -10,4 +10,4 @@ namespace waymark {
 void merge_signature(const FeatureScales& scales, TypeId type, KnownFeatures& known,
                      const KnownFeatures& seen, double tolerance);
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -7,7 +7,7 @@
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
@@ -105,4 +105,4 @@ void EkfSlam::restart(const PoseEstimate& at) {
   centre_ = at.pose.at();
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

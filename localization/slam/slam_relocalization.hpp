@@ -4,7 +4,7 @@
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Detects and repairs localization failure of SLAM in a map.
 /// - Lost: SLAM finds less than 0.4 of the expected landmarks that it usually finds. Terrain without
@@ -32,4 +32,4 @@ class SlamRelocalization {
   int sets_ = 0, sets_since_query_ = 0, unmatched_sets_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::localization {
 namespace {
 
 using Eigen::Index;
@@ -180,4 +180,4 @@ void SlamState::focus(double radius) {
   theta_ = Eigen::VectorXd::Zero(a);
 }
 
-}  // namespace waymark
+}  // namespace waymark::localization

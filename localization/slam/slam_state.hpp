@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 #include "localization/body_motion.hpp"
-namespace waymark {
+namespace waymark::localization {
 
 /// Robot and landmarks in one Gaussian (compressed filter, Guivant & Nebot 2001). Only the active part A
 /// near the robot is kept up to date. The effect of its measurements on the passive rest B is collected in
@@ -68,4 +68,4 @@ class SlamState {
   Eigen::VectorXd theta_;      // x_B now = x_B then + P_BA theta
 };
 
-}  // namespace waymark
+}  // namespace waymark::localization

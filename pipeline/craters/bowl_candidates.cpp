@@ -4,7 +4,7 @@
 #include "pipeline/craters/bowl_template.hpp"
 #include "pipeline/craters/shape_search.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSearch& search) {
   const auto shapes = [&](double diameter) {
@@ -19,4 +19,4 @@ std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSear
                                   .shapes = shapes});
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include "geo/image_source.hpp"
 #include "pipeline/craters/bowl_template.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct BowlSearch {
   Radians sun_angle;                            ///< towards the sun, from x towards y
@@ -23,4 +23,4 @@ struct BowlSearch {
 /// - Cost: overlap-save FFTs over an octave pyramid, about 0.17 s/Mpx on one core.
 std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSearch& search);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

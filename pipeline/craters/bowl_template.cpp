@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kReach = 1.3;        // side of the template / diameter
@@ -69,4 +69,4 @@ Pixels bowl_template(double diameter, Radians sun_angle, BowlLight light) {
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

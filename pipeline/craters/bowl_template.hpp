@@ -2,7 +2,7 @@
 #pragma once
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Illumination of a bowl template.
 enum class BowlLight {
@@ -16,4 +16,4 @@ enum class BowlLight {
 /// of odd side, 1.3 diameters, centred on the crater, with zero mean and unit norm.
 Pixels bowl_template(double diameter, Radians sun_angle, BowlLight light);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/craters/rim_refinement.hpp"
 #include "pipeline/vision/class_prior.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Tuned on HRSC tile 1_24, which is therefore not a held-out image; a grid of three values each.
@@ -116,4 +116,4 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
   return bowls;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

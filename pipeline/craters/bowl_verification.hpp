@@ -4,7 +4,7 @@
 #include "core/detection.hpp"
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/filled_image.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Candidate with a measured rim.
 struct VerifiedBowl {
@@ -22,4 +22,4 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
                                        const std::vector<CraterCandidate>& candidates,
                                        const CraterModel* model, double min_probability = 0);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 // clang-format off
 #include "pipeline/craters/crater_model.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 const CraterModel& built_in_crater_model() {
   static const CraterModel model = parse_crater_model(
@@ -391,4 +391,4 @@ const CraterModel& built_in_crater_model() {
   return model;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kLanes = 8;
@@ -128,4 +128,4 @@ std::vector<float> evaluate(const ConvolutionNet& net, std::span<const float> im
   return in;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

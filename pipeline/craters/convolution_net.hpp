@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Layer of a convolutional network. The input is a square of `side` samples with `channels` each; the
 /// window covers `kernel` samples and moves by `stride`. `scalars` scalar inputs, the same at every position,
@@ -34,4 +34,4 @@ void convolve(const Convolution& layer, std::span<const float> in, std::span<con
 std::vector<float> evaluate(const ConvolutionNet& net, std::span<const float> image,
                             std::span<const float> scalars);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Computes the gradient by the inputs from that by the sums and adds that by the weights. Layout as in
@@ -111,4 +111,4 @@ void ConvolutionTrainer::step(double rate, double decay, double examples) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

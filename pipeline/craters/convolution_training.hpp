@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/random.hpp"
 #include "pipeline/craters/convolution_net.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Accumulates the gradient of a loss by the weights of a network and updates them with Adam (Kingma & Ba
 /// 2015).
@@ -34,4 +34,4 @@ class ConvolutionTrainer {
   int steps_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 int octave(double diameter) {
@@ -94,4 +94,4 @@ std::vector<CraterCandidate> suppress_overlaps(std::vector<CraterCandidate> cand
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Circle that may be a crater rim. Pixels; (0, 0) is the centre of the first pixel.
 struct CraterCandidate {
@@ -29,4 +29,4 @@ bool same_rim(const CraterCandidate& a, const CraterCandidate& b, double max_ove
 std::vector<CraterCandidate> suppress_overlaps(std::vector<CraterCandidate> candidates,
                                                double max_overlap = 0.25);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/craters/pixel_noise.hpp"
 #include "pipeline/craters/sample.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Patch = std::array<float, kPatchSide * kPatchSide>;
@@ -170,7 +170,7 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
 WidePatch PatchSource::wide_patch(const CraterCandidate& c, double correlation) const {
   WidePatch wide;
   read<kWidePatchSide>(c, kWidePatchReach, false, wide.patch.data());
-  wide.scalars = scalar_inputs(correlation, waymark::normalise(wide.patch), c.diameter);
+  wide.scalars = scalar_inputs(correlation, waymark::pipeline::normalise(wide.patch), c.diameter);
   return wide;
 }
 
@@ -187,4 +187,4 @@ double PatchSource::slope_correlation(const CraterCandidate& c) const {
   return spread > 0 ? (ab - a * b / n) / std::sqrt(spread) : 0;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 inline constexpr int kPatchSide = 20;              ///< samples
 inline constexpr double kPatchReach = 1.6;         ///< radii from the middle to the edge
@@ -67,4 +67,4 @@ class PatchSource {
   double noise_ = 1;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Adds weights x inputs to each output. Several outputs are computed at once for speed; each adds its
@@ -66,4 +66,4 @@ CraterCandidate apply_correction(const CraterCandidate& c, const CraterPredictio
           c.diameter * std::exp(prediction.log_size), c.score};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

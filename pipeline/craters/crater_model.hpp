@@ -6,7 +6,7 @@
 #include <vector>
 #include "pipeline/craters/convolution_net.hpp"
 #include "pipeline/craters/crater_features.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Output of the model for one candidate.
 struct CraterPrediction {
@@ -56,4 +56,4 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where);
 /// Returns the shipped model, made by `waymark train craters` (pipeline/craters/built_in_model.cpp).
 const CraterModel& built_in_crater_model();
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "pipeline/craters/crater_model.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::string_view kFirstLine = "waymark crater model 1";
@@ -190,4 +190,4 @@ CraterModel parse_crater_model(std::string_view text, const std::string& where) 
   return model;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/craters/pixel_noise.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -110,4 +110,4 @@ std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image) {
   return CraterSunAngle{{result}, {sd}, static_cast<int>(count)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "core/random.hpp"
 #include "pipeline/craters/bowl_candidates.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kClear = 0.4;
@@ -181,4 +181,4 @@ CraterModel train_crater_model(std::span<const CraterExample> examples, const Cr
   return model;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

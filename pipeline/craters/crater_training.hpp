@@ -6,7 +6,7 @@
 #include <vector>
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/shaded_scene.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Known crater with the largest intersection over union with a circle; null and 0 if none intersects.
 struct MatchedCrater {
@@ -41,4 +41,4 @@ struct CraterTraining {
 CraterModel train_crater_model(std::span<const CraterExample> examples, const CraterTraining& training,
                                const std::function<void(int round, double loss)>& progress = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

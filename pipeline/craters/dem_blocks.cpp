@@ -9,7 +9,7 @@
 #include "geo/body.hpp"
 #include "pipeline/craters/find_craters_in_dem.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct CellSize {
@@ -92,4 +92,4 @@ std::vector<Observation> survey_craters(const DemSource& dem, const Window& wind
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

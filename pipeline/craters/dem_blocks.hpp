@@ -3,7 +3,7 @@
 #include <vector>
 #include "core/observation.hpp"
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Limits of a crater search in a DEM of any size.
 struct DemSurvey {
@@ -23,4 +23,4 @@ inline constexpr double kMaxDemDiameter = 400;   ///< cells, diameter
 /// at the latitude of each square.
 std::vector<Observation> survey_craters(const DemSource& dem, const Window& window, const DemSurvey& survey);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -11,7 +11,7 @@
 #include "pipeline/craters/harmonic_rim.hpp"
 #include "pipeline/craters/sample.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kAzimuths = 24;
@@ -103,4 +103,4 @@ std::optional<DemRim> measure_dem_rim(const Pixels& heights, const CraterCandida
   return rim;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <optional>
 #include "geo/image_source.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Crater measured in a grid of heights with square cells. Lengths in cells, heights in the unit of the
 /// grid.
@@ -23,4 +23,4 @@ struct DemRim {
 /// - Floor: 20th percentile of the heights within half a radius.
 std::optional<DemRim> measure_dem_rim(const Pixels& heights, const CraterCandidate& candidate);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

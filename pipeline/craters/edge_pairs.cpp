@@ -9,7 +9,7 @@
 
 #include "pipeline/craters/pixel_noise.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Vector = cv::Point2d;
@@ -193,4 +193,4 @@ std::vector<VerifiedBowl> find_craters_by_edges(const FilledImage& image, Radian
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

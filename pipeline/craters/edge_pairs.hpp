@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "pipeline/craters/bowl_verification.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Finds craters from pairs of rim edges (Cheng, Johnson, Matthies & Olson 2003), at octaves from full size
 /// down.
@@ -14,4 +14,4 @@ namespace waymark {
 std::vector<VerifiedBowl> find_craters_by_edges(const FilledImage& image, Radians sun_angle,
                                                 double min_diameter, double max_diameter);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Half-size image of the means of known pixels; NaN where none is known.
@@ -72,4 +72,4 @@ FilledImage fill_holes(const Pixels& image) {
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Image with its holes filled, and a table of the pixels that were known.
 struct FilledImage {
@@ -18,4 +18,4 @@ struct FilledImage {
 
 FilledImage fill_holes(const Pixels& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -11,7 +11,7 @@
 #include "pipeline/craters/bowl_verification.hpp"
 #include "pipeline/craters/edge_pairs.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kMinCorrelation = 0.5;
@@ -100,4 +100,4 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include "core/detection.hpp"
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// How craters are found.
 enum class CraterMethod {
@@ -44,4 +44,4 @@ struct CraterSunAngle {
 /// turn (domes under the opposite sun look the same): craters are assumed to outnumber domes.
 std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -13,7 +13,7 @@
 #include "pipeline/craters/filled_image.hpp"
 #include "pipeline/craters/shape_search.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kShallowest = 0.02;   // depth / diameter
@@ -136,4 +136,4 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <vector>
 #include "core/detection.hpp"
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Parameters of the crater search in a window of a DEM.
 struct DemCraterSearch {
@@ -34,4 +34,4 @@ struct DemCrater {
 /// Error{usage} for sizes out of order.
 std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCraterSearch& search);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Harmonics = Eigen::Matrix<double, 5, 1>;
@@ -66,4 +66,4 @@ RimShape fit_rim(const std::vector<RimPoint>& points, double full_weight) {
   return {shape, std::sqrt(covariance(1, 1) + covariance(2, 2)), std::sqrt(2 * covariance(0, 0))};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

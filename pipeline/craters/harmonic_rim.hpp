@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 #include "core/detection.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Rim position along one azimuth, in radii of the candidate circle.
 struct RimPoint {
@@ -28,4 +28,4 @@ struct RimShape {
 /// capped at `full_weight`.
 RimShape fit_rim(const std::vector<RimPoint>& points, double full_weight);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

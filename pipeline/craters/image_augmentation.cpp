@@ -8,7 +8,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 void blur(cv::Mat1f& image, double deviation) {
@@ -105,4 +105,4 @@ void augment_image(Pixels& pixels, std::uint64_t seed) {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

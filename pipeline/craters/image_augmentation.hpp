@@ -2,10 +2,10 @@
 #pragma once
 #include <cstdint>
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Applies random radiometric changes: blur, uneven brightness, noise, stripes, flat-fielding, equalisation
 /// or stretch, JPEG compression, resampling. Positions do not change. Deterministic for a seed.
 void augment_image(Pixels& image, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

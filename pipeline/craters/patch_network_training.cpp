@@ -12,7 +12,7 @@
 #include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/image_augmentation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kClear = 0.25;  // minimum clarity of a crater that annotators mark
@@ -147,4 +147,4 @@ ConvolutionNet train_patch_network(std::span<const WidePatchExample> examples, i
   return learner.net();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "pipeline/craters/crater_features.hpp"
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/shaded_scene.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Training example of the convolutional networks.
 struct WidePatchExample {
@@ -27,4 +27,4 @@ std::vector<WidePatchExample> make_patch_examples(const LabelledScene& scene, st
 ConvolutionNet train_patch_network(std::span<const WidePatchExample> examples, int rounds, std::uint64_t seed,
                                    const std::function<void(int round, double loss)>& progress = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

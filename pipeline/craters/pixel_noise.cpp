@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Four independent sums at once, for speed.
@@ -43,4 +43,4 @@ double pixel_noise(const float* pixels, int columns, int rows) {
   return std::max(floor, *middle / 0.6745 / 6);  // 6: norm of the weights of the difference
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

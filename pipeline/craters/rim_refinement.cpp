@@ -10,7 +10,7 @@
 #include "pipeline/craters/harmonic_rim.hpp"
 #include "pipeline/craters/sample.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kAzimuths = 36;
@@ -81,4 +81,4 @@ std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candid
   return rim;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

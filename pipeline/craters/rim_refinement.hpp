@@ -5,7 +5,7 @@
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Rim measured in the image.
 struct Rim {
@@ -23,4 +23,4 @@ struct Rim {
 /// - Two passes, the second about the centre of the first. `image` has no NaN.
 std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candidate, Radians sun_angle);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the bilinearly interpolated brightness; beyond the edge that of the nearest pixel. The image is
 /// not empty.
@@ -30,4 +30,4 @@ inline bool is_inside(const Pixels& image, double x, double y, double reach) {
          y + reach < double(image.rows() - 1);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -282,4 +282,4 @@ std::vector<LabelledCrater> add_craters(Grid<float>& heights, Grid<float>& brigh
   return known;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

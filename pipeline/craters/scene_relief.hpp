@@ -4,7 +4,7 @@
 #include "core/grid.hpp"
 #include "core/random.hpp"
 #include "pipeline/craters/shaded_scene.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Height above the plain of craters degraded by topographic diffusion (Soderblom 1970, Fassett & Thomson
 /// 2014), in radii of the fresh rim. `diffusion_length` is the diffusion length in radii: 0 fresh, 0.5 a
@@ -33,4 +33,4 @@ void add_distractors(Grid<float>& heights, Random& random, double strength);
 /// ejected bright material.
 std::vector<LabelledCrater> add_craters(Grid<float>& heights, Grid<float>& bright, Random& random);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

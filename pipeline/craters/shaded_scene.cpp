@@ -8,7 +8,7 @@
 
 #include "pipeline/craters/scene_relief.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 cv::Mat1f as_matrix(Grid<float>& grid) {
@@ -149,4 +149,4 @@ LabelledScene shaded_scene(std::uint64_t seed, int side) {
   return scene;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

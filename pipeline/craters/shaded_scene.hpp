@@ -5,7 +5,7 @@
 #include "core/grid.hpp"
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Crater with a known position in an image.
 struct LabelledCrater {
@@ -32,4 +32,4 @@ struct LabelledScene {
 /// Deterministic for a seed on all machines; about 1 s for 768 pixels.
 LabelledScene shaded_scene(std::uint64_t seed, int side = 768);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/craters/pixel_noise.hpp"
 #include "pipeline/craters/tile_correlation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kSizesPerOctave = 7;
@@ -180,4 +180,4 @@ std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSe
   return candidates;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <vector>
 #include "geo/image_source.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Templates to correlate with a grid over a range of sizes.
 struct ShapeSearch {
@@ -24,4 +24,4 @@ struct ShapeSearch {
 ///   not depend on their order.
 std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSearch& search);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kLanes = 8;
@@ -89,4 +89,4 @@ void normalise(std::span<float> responses, std::span<const float> others, const 
   normalise_body(responses, others, sums, half, margin, floor);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/craters/tile_spectrum.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Summed-area tables of the values of a tile and of their squares: kTileSide + 1 rows and columns, the
 /// first of each zero.
@@ -24,4 +24,4 @@ void take_maximum(std::span<float> values, std::span<const float> others);
 void normalise(std::span<float> responses, std::span<const float> others, const TileSums& sums, int half,
                int margin, double floor);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

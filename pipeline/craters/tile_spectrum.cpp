@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Eight columns (or rows) are transformed at once, one in each lane. Radix 4: decimation in frequency forward
@@ -221,4 +221,4 @@ void inverse_transform_product(const ComplexTile& spectrum, const ComplexTile& k
   product_body(spectrum, kernel, product);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 inline constexpr int kTileSide = 256;
 
@@ -20,4 +20,4 @@ void forward_transform(ComplexTile& tile);
 /// convolutions of a real tile.
 void inverse_transform_product(const ComplexTile& spectrum, const ComplexTile& kernel, ComplexTile& product);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

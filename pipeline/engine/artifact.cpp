@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/artifact.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 Artifact::Value Artifact::value() {
   const std::lock_guard lock(mutex_);
@@ -22,4 +22,4 @@ Artifact::Value Artifact::take() {
   return last;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <utility>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Value that a unit wrote to one port, held in memory or loaded when it is read. Thread-safe.
 class Artifact {
@@ -41,4 +41,4 @@ T move_or_copy(Artifact::Value value) {
   return *held;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Serialization of an artifact of type T. Specialise it next to T; only the stage that writes a T needs it:
 ///   static std::string encode(const T&);        equal values give equal bytes
@@ -29,4 +29,4 @@ const ErasedCodec& erased_codec() {
   return codec;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "pipeline/engine/sha256.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 InputFile hash_plain_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -29,4 +29,4 @@ InputFile hash_plain_file(const std::string& path) {
   return measured;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::string Codec<std::vector<ImageItem>>::encode(const std::vector<ImageItem>& images) {
   ByteWriter write;
@@ -41,4 +41,4 @@ std::string unit_item(const ImageItem& image) {
   return item;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

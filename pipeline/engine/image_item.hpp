@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// One image of a job; an image-scope stage runs once per image.
 struct ImageItem {
@@ -29,4 +29,4 @@ struct Codec<std::vector<ImageItem>> {
 /// Returns "image_" and the name as a folder name: all but letters, digits, '.', '-' and '_' become %XX.
 std::string unit_item(const ImageItem& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -13,7 +13,7 @@
 #include "core/text_file.hpp"
 #include "pipeline/engine/step_options.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -110,4 +110,4 @@ std::string job_as_json(std::string_view name, const Pipeline& pipeline) {
                                                                   Json::error_handler_t::replace);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

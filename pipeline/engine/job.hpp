@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 #include "pipeline/engine/pipeline.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// A pipeline as a file:
 ///   {"name": "alps", "stages": [{"stage": "load_dem", "files": ["a.tif"]}, {"stage": "find_mountain_tops"}]}
@@ -24,4 +24,4 @@ Job parse_job(std::string_view json, const Registry& registry, std::string_view 
 /// Returns the job as indented JSON with every option filled in; running it repeats the run.
 std::string job_as_json(std::string_view name, const Pipeline& pipeline);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/engine/plan/planner.hpp"
 #include "pipeline/engine/step_options.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Steps = std::vector<std::unique_ptr<Step>>;
@@ -164,4 +164,4 @@ void Pipeline::check() const {
   check_listing(*this);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <vector>
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/step.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Ordered list of stages with their options. Later stages read the artifacts of earlier ones.
 class Pipeline {
@@ -53,4 +53,4 @@ class Pipeline {
   std::vector<std::string> warnings_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <vector>
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/tile.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Smallest unit of work: one stage applied to one item.
 struct Unit {
@@ -48,4 +48,4 @@ std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command);
 /// reads.
 std::string plan_as_slurm(const Plan& plan, const PlanCommand& command);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 std::string demangle(std::type_index type) {
@@ -71,4 +71,4 @@ std::string readable_type(std::type_index type) {
   return name;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

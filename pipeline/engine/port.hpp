@@ -3,7 +3,7 @@
 #include <string>
 #include <typeindex>
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Declares an input: an artifact that an earlier stage writes under the same name and type.
 template <class T>
@@ -60,4 +60,4 @@ struct OutputPort {
 /// Returns the readable name of a type without namespaces and allocators: "vector<Landmark>".
 std::string readable_type(std::type_index type);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Progress of a stage. Listeners are called one at a time, at most 20 times a second and at the end of each
 /// stage.
@@ -17,4 +17,4 @@ struct Progress {
 /// Function that receives progress; empty: nobody listens.
 using ProgressListener = std::function<void(const Progress&)>;
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

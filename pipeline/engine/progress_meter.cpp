@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 ProgressMeter::ProgressMeter(const Listener& listener, std::string stage, std::int64_t total)
     : listener_(listener), progress_{.stage = std::move(stage), .done = 0, .total = total, .rate = 0} {
@@ -37,4 +37,4 @@ void UnitProgress::advance_to(double done_fraction) {
   meter_.add(done_fraction - std::exchange(reached_, done_fraction));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

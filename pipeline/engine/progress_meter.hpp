@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 #include "pipeline/engine/progress.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Sums the progress of many threads in one stage and reports it to a listener at intervals.
 class ProgressMeter {
@@ -41,4 +41,4 @@ class UnitProgress {
   double reached_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

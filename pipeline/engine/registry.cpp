@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 bool is_name(std::string_view text) {
@@ -63,4 +63,4 @@ const Step& Registry::at(std::string_view name) const {
               {}, fmt::format("stages: {}", fmt::join(names(), ", ")));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 #include "pipeline/engine/step.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Stages available to jobs by name. It is not a global, so each test can create its own.
 class Registry {
@@ -28,4 +28,4 @@ class Registry {
   std::map<std::string, std::unique_ptr<Step>, std::less<>> steps_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

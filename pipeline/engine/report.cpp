@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -89,4 +89,4 @@ std::ostream& operator<<(std::ostream& stream, const RunReport& report) {
   return stream << report_as_text(report);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

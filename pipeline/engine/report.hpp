@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/error.hpp"
 #include "pipeline/engine/stage_context.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Outcome of one stage: units = made + reused + failed + skipped + waiting.
 struct StageReport {
@@ -49,4 +49,4 @@ std::string report_as_json(const RunReport& report);
 /// Writes report_as_text().
 std::ostream& operator<<(std::ostream& stream, const RunReport& report);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -12,7 +12,7 @@
 
 #include "pipeline/engine/run/run.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Runs `work` with at most that many threads, including the calling one.
@@ -65,4 +65,4 @@ Plan plan(const Pipeline& pipeline, const RunOptions& options) {
   return run.plan();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -14,7 +14,7 @@
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/progress.hpp"
 #include "pipeline/engine/report.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Part of the work done by one process: `index` of `count`, from 1.
 /// Tiles and images are dealt out in turn. A map-scope unit is run by every shard that finds its inputs
@@ -117,4 +117,4 @@ RunResult run(const Pipeline& pipeline, const RunOptions& options = {});
 /// Returns the units of a run. Runs the listing stages.
 Plan plan(const Pipeline& pipeline, const RunOptions& options = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <array>
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 struct Sha256::State {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
@@ -37,4 +37,4 @@ std::string sha256(std::string_view bytes) {
   return Sha256().add(bytes).hex();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Incremental SHA-256 (FIPS 180-4).
 class Sha256 {
@@ -21,4 +21,4 @@ class Sha256 {
 
 std::string sha256(std::string_view bytes);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

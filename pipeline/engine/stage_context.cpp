@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 template <class Ports>
@@ -143,4 +143,4 @@ std::string resolve_path(const std::filesystem::path& folder, const std::string&
   return gdal_name || folder.empty() ? text : (folder / text).string();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -13,7 +13,7 @@
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/stage_spec.hpp"
 #include "pipeline/engine/tile.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Counts of items read, written and rejected. Sums over units and resumed runs.
 struct Counts {
@@ -160,4 +160,4 @@ class StageContext {
 /// Returns `text` if it is absolute or a GDAL name such as "NETCDF:x.nc:z", else the path below `folder`.
 std::string resolve_path(const std::filesystem::path& folder, const std::string& text);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 
 #include "pipeline/engine/step_options.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -134,4 +134,4 @@ std::string stage_as_json(const Step& step) {
       .dump(2);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include "pipeline/engine/step.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Descriptions of a stage generated from its declaration. `step` is Registry::at(name) with default options.
 
@@ -15,4 +15,4 @@ std::string stage_as_schema(const Step& step);
 /// Returns name, summary, version, scope, ports and options as one JSON object.
 std::string stage_as_json(const Step& step);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

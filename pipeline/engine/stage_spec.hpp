@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 #include "pipeline/engine/port.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// How often a stage runs.
 enum class Scope {
@@ -34,4 +34,4 @@ struct StageSpec {
   std::vector<std::string> finds = {};
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include "core/options.hpp"
 #include "pipeline/engine/stage_context.hpp"
 #include "pipeline/engine/stage_spec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Requirements of a stage.
 template <class S>
@@ -61,4 +61,4 @@ class TypedStep final : public Step {
   Options options_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

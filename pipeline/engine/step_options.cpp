@@ -5,7 +5,7 @@
 
 #include "core/options/option_reader.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 DescribeOptions options_of(const Step& step) {
@@ -45,4 +45,4 @@ std::string canonical_options(const Step& step) {
   return canonical_options(option_table(step));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

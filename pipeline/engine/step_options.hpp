@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/options/option_table.hpp"
 #include "pipeline/engine/step.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the options of a step in the order of declaration.
 std::vector<OptionRow> option_table(const Step& step);
@@ -30,4 +30,4 @@ void check_options(const Step& step, std::string_view location);
 /// results.
 std::string canonical_options(const Step& step);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 
 #include "core/json_text.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 Window expand(const Window& window, std::int64_t halo) {
   return {.column = window.column - halo,
@@ -31,4 +31,4 @@ std::vector<Tile> Codec<std::vector<Tile>>::decode(std::string_view bytes) {
   return tiles;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Rectangular part of the grid; a tile-scope stage runs once per tile.
 struct Tile {
@@ -25,4 +25,4 @@ struct Codec<std::vector<Tile>> {
   static std::vector<Tile> decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct Share {
@@ -38,4 +38,4 @@ std::vector<RecallRow> airborne_recall(double dominant_height, double crown_to_h
   return rows;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

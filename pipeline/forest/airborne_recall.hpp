@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "pipeline/forest/stand_volume.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the recall of `waymark trees` from the air by tree height, for stands without a measured recall.
 /// - Source: recalls and standard deviations between synthetic forests of 200 to 1200 stems/ha, conifers,
@@ -14,4 +14,4 @@ namespace waymark {
 /// Empty if an argument is not known.
 std::vector<RecallRow> airborne_recall(double dominant_height, double crown_to_height);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

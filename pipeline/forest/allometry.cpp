@@ -9,7 +9,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kBreastHeight = 1.3;
@@ -166,4 +166,4 @@ std::string allometry_as_csv(std::span<const Allometry> table) {
   return csv;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

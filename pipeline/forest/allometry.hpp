@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Predictors of the stem diameter.
 enum class AllometryForm {
@@ -57,4 +57,4 @@ std::vector<Allometry> parse_allometry(std::string_view csv, std::string_view fi
 /// Returns what parse_allometry() reads.
 std::string allometry_as_csv(std::span<const Allometry> table);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct Pair {
@@ -130,4 +130,4 @@ std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees, const 
   return table;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

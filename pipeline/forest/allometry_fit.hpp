@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/forest/allometry.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Field measurements of a tree.
 struct MeasuredTree {
@@ -28,4 +28,4 @@ struct AllometryFitOptions {
 std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees,
                                      const AllometryFitOptions& how = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

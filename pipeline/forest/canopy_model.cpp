@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kHighest = 150;  // metres; returns above are birds and clouds
@@ -74,4 +74,4 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
   return block;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "pipeline/forest/tin.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Laser points in and around a block of a canopy model; x, y, z in metres.
 struct LaserPoints {
@@ -23,4 +23,4 @@ struct CanopyBlock {
 /// Departure: heights of points are above the ground TIN sampled at the cells, interpolated.
 CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, double spacing);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

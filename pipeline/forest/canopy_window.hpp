@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "geo/canopy_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Cell of a canopy model, in its whole grid.
 struct CanopyCell {
@@ -27,4 +27,4 @@ CanopyWindow smooth_canopy(const CanopyWindow& canopy, double sigma);
 /// Returns the number of cells on either side that smoothing reads.
 std::int64_t smoothing_reach(double sigma, double cell);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 
 #include "pipeline/forest/canopy_window.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kSurroundings = 12;                          // metres
@@ -111,4 +111,4 @@ std::vector<Grid<float>> crown_evidence(const ColourWindow& image) {
   return evidence;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Window of a colour image as fractions of full white, [0, 1]; NaN in all bands where there is no data.
 struct ColourWindow {
@@ -22,4 +22,4 @@ std::vector<Grid<float>> crown_evidence(const ColourWindow& image);
 
 std::int64_t crown_evidence_reach(double cell);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

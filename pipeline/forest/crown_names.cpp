@@ -7,7 +7,7 @@
 
 #include "landmarks/uid_index.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 CrownTable name_crowns(std::span<const CrownTable> drawn, std::span<const Observation> evidence,
                        std::span<const Landmark> trees) {
@@ -42,4 +42,4 @@ CrownTable name_crowns(std::span<const CrownTable> drawn, std::span<const Observ
   return crowns;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

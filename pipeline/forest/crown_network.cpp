@@ -7,7 +7,7 @@
 #include "core/random.hpp"
 #include "pipeline/forest/canopy_window.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kSmoothing = 0.9;  // metres
@@ -82,4 +82,4 @@ void add_crown_examples(NetworkExamples& examples, const ColourWindow& image,
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

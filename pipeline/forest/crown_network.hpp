@@ -2,7 +2,7 @@
 #pragma once
 #include "pipeline/forest/crown_evidence.hpp"
 #include "pipeline/vision/dense_network.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Return the shipped networks, for images with near infrared and for plain colour. Trained by `waymark
 /// train trees` on the NAIP crops of Eureka, California (Ventura et al. 2022, CC BY 4.0).
@@ -27,4 +27,4 @@ struct MarkedTree {
 void add_crown_examples(NetworkExamples& examples, const ColourWindow& image,
                         const std::vector<MarkedTree>& trees, int variants, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 // clang-format off
 #include "pipeline/forest/crown_network.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 const DenseNetwork& crown_network_colour() {
   static const DenseNetwork model = parse_dense_network(
@@ -97,4 +97,4 @@ const DenseNetwork& crown_network_colour() {
   return model;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 // clang-format off
 #include "pipeline/forest/crown_network.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 const DenseNetwork& crown_network_infrared() {
   static const DenseNetwork model = parse_dense_network(
@@ -104,4 +104,4 @@ const DenseNetwork& crown_network_infrared() {
   return model;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

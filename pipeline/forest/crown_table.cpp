@@ -8,7 +8,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Variable-length code: seven bits a byte, the lowest first; small numbers of either sign are short.
@@ -147,4 +147,4 @@ CrownTable Codec<CrownTable>::decode(std::string_view bytes) {
   return crowns;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <vector>
 #include "pipeline/engine/codec.hpp"
 #include "pipeline/forest/find_trees.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Crown of a tree as a polygon on the map. Crowns of one canopy model do not overlap.
 struct CrownShape {
@@ -68,4 +68,4 @@ struct Codec<CrownTable> {
   static CrownTable decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

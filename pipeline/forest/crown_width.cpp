@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Darkness is squared, since lawns are as green as crowns, but brighter. NaN where there is no data.
@@ -46,4 +46,4 @@ double crown_width(const ColourWindow& image, const CanopyCell& top) {
   return kMaxCrownDiameter;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include "pipeline/forest/canopy_window.hpp"
 #include "pipeline/forest/crown_evidence.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 inline constexpr double kMaxCrownDiameter = 14;  ///< metres
 
@@ -12,4 +12,4 @@ inline constexpr double kMaxCrownDiameter = 14;  ///< metres
 /// width of the group.
 double crown_width(const ColourWindow& image, const CanopyCell& top);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 
 #include "pipeline/forest/local_maxima.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Index = std::int32_t;
@@ -221,4 +221,4 @@ std::vector<Crown> find_crowns(const CanopyWindow& smooth, const Window& owned,
   return crowns;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 #include "pipeline/forest/treetops.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Limits of a crown about its top.
 struct CrownRules {
@@ -49,4 +49,4 @@ struct Outline {
 /// Outlines a set of cells; inside(0, 0) is the cell (column, row) of the canopy.
 Outline outline_of(const Grid<std::uint8_t>& inside, std::int64_t column, std::int64_t row);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

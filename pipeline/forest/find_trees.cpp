@@ -7,7 +7,7 @@
 
 #include "pipeline/forest/tree_confidence.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 Window grow_window(const Window& window, std::int64_t by) {
@@ -104,4 +104,4 @@ std::vector<DetectedTree> find_trees(const CanopySource& canopy, const Window& o
   return trees;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/forest/forest_presets.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Parameters of the tree search in a canopy model.
 struct TreeSearch {
@@ -32,4 +32,4 @@ std::vector<DetectedTree> find_trees(const CanopySource& canopy, const Window& o
 /// metres.
 std::int64_t search_halo(const TreeSearch& search, double cell);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

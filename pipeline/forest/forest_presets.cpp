@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 const std::array<ForestPreset, 3>& presets() {
@@ -66,4 +66,4 @@ ForestPreset local_maxima_preset(const ForestPreset& preset) {
   return reference;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <vector>
 #include "pipeline/forest/crowns.hpp"
 #include "pipeline/forest/treetops.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Parameters of tree detection for one forest type.
 struct ForestPreset {
@@ -29,4 +29,4 @@ std::vector<std::string> forest_preset_names();
 /// smoothing, no prominence, window width from tree height and forest type.
 ForestPreset local_maxima_preset(const ForestPreset& preset);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

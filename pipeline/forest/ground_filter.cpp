@@ -11,7 +11,7 @@
 #include <map>
 #include <tuple>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -147,4 +147,4 @@ std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> ret
   return ground;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

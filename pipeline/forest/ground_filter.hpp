@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Parameters of the ground filter. Metres and radians.
 struct GroundRules {
@@ -26,4 +26,4 @@ struct GroundRules {
 std::vector<Eigen::Vector3d> ground_returns(std::span<const Eigen::Vector3d> returns,
                                             const GroundRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

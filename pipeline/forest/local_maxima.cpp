@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::infinity();
@@ -44,4 +44,4 @@ void local_maxima(const Grid<float>& heights, std::int64_t first, std::int64_t r
       is_maximum[static_cast<std::size_t>(i)] = is_maximum_slowly(heights, first + i, row) ? 1 : 0;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

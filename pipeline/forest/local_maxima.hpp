@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct CellStep {
   int column, row;
@@ -19,4 +19,4 @@ inline constexpr std::array<CellStep, 8> kNeighbours{
 void local_maxima(const Grid<float>& heights, std::int64_t first, std::int64_t row,
                   std::span<std::uint8_t> is_maximum);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

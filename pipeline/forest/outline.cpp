@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/forest/crowns.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Marks cells reached from outside through edges; the others are filled. Afterwards no two cells touch at a
@@ -59,4 +59,4 @@ Outline outline_of(const Grid<std::uint8_t>& inside, std::int64_t column, std::i
   return outline;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

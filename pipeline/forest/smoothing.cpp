@@ -5,7 +5,7 @@
 
 #include "pipeline/forest/canopy_window.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kMinSigma = 0.3;  // cells; below, a neighbour weighs less than 0.4 %
@@ -91,4 +91,4 @@ CanopyWindow smooth_canopy(const CanopyWindow& canopy, double sigma) {
   return out;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

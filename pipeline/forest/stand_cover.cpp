@@ -7,7 +7,7 @@
 
 #include "core/grid.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kMaxPoints = 4e6;
@@ -121,4 +121,4 @@ Estimate canopy_cover(std::span<const StandCrown> crowns, const StandPolygon& st
   return {static_cast<double>(covered) / all, std::sqrt(variance)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

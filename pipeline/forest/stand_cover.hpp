@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/forest/stand_inventory.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Projected crown: an outline, or a circle if there is none.
 struct StandCrown {
@@ -23,4 +23,4 @@ struct StandCrown {
 ///   its diameter on the area that it alone covers.
 Estimate canopy_cover(std::span<const StandCrown> crowns, const StandPolygon& stand, double step = 0.5);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <map>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -254,4 +254,4 @@ std::vector<std::size_t> trees_in_stand(std::span<const StandTree> trees, const 
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <vector>
 #include "pipeline/forest/stand_polygon.hpp"
 #include "pipeline/forest/stand_volume.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Tree of an inventory. Metres; an unknown value is NaN, an unknown deviation 0.
 struct StandTree {
@@ -75,4 +75,4 @@ StandAttributes inventory(std::span<const StandTree> trees, const StandPolygon& 
 /// Returns the indices of the trees that inventory() counts in the stand, ascending.
 std::vector<std::size_t> trees_in_stand(std::span<const StandTree> trees, const StandPolygon& stand);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Place = Eigen::Vector2d;
@@ -158,4 +158,4 @@ StandPolygon estimate_sampled_area(const std::vector<Place>& trees) {
   return {{hull}};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Area of a stand: outer rings and holes together, metres. A point is inside if an odd number of rings
 /// surround it, so holes need no marking. Rings may be closed or open, in any orientation.
@@ -34,4 +34,4 @@ StandPolygon clip_polygon(const StandPolygon& stand, const Eigen::AlignedBox2d& 
 /// than four trees or collinear trees.
 StandPolygon estimate_sampled_area(const std::vector<Eigen::Vector2d>& trees);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 std::string lower(std::string_view text) {
@@ -168,4 +168,4 @@ std::vector<RecallRow> parse_recall(std::string_view csv, std::string_view file)
   return rows;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Stem volume and dry mass of a tree from its diameter and height: V = f pi / 4 D^2 H with form factor f,
 /// M = V times mass_per_volume.
@@ -42,4 +42,4 @@ struct RecallRow {
 /// Reads CSV with the columns height_from and recall; sd is optional. Throws Error{input} naming the line.
 std::vector<RecallRow> parse_recall(std::string_view csv, std::string_view file);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -90,4 +90,4 @@ Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFr
   return heights;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

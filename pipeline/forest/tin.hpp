@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Cells whose centres are (x0 + column dx, y0 + row dy); dx > 0, dy < 0.
 struct CellFrame {
@@ -20,4 +20,4 @@ enum class Beyond { nothing, nearest };
 Grid<float> rasterised_tin(std::span<const Eigen::Vector3d> points, const CellFrame& frame,
                            double longest_edge, Beyond beyond);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

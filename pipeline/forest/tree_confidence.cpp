@@ -7,7 +7,7 @@
 #include <limits>
 #include <tuple>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Terms = std::array<double, 6>;
@@ -97,4 +97,4 @@ double tree_confidence(const TopEvidence& evidence, ForestType type) {
   return std::clamp(1 / (1 + std::exp(-odds)), kMinConfidence, kMaxConfidence);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

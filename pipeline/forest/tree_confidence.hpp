@@ -4,7 +4,7 @@
 #include <vector>
 #include "geo/canopy_source.hpp"
 #include "pipeline/forest/treetops.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Evidence that separates a tree from a secondary top of another crown.
 struct TopEvidence {
@@ -34,4 +34,4 @@ double tree_confidence(const TopEvidence& evidence, ForestType type);
 /// 0.02); ln(height).
 std::array<double, 6> regression_terms(const TopEvidence& evidence);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

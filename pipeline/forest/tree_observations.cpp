@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 Observation observation_of(const DetectedTree& tree, const CanopySource& canopy, const LandmarkType& type,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
@@ -35,4 +35,4 @@ Observation observation_of(const DetectedTree& tree, const CanopySource& canopy,
   return seen;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

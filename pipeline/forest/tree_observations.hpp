@@ -7,7 +7,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/forest/allometry.hpp"
 #include "pipeline/forest/find_trees.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Standard deviations of trees measured in a canopy model.
 struct TreeErrors {
@@ -23,4 +23,4 @@ Observation observation_of(const DetectedTree& tree, const CanopySource& canopy,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
                            const TreeErrors& errors = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 
 #include "pipeline/forest/local_maxima.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct Offset {
@@ -114,4 +114,4 @@ std::vector<Treetop> find_treetops(const CanopyWindow& smooth, const Window& own
   return tops;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 #include "pipeline/forest/canopy_window.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Conditions for a local maximum of a canopy to be a treetop: height, isolation and prominence, as for
 /// summits (pipeline/terrain), each limited to a neighbourhood.
@@ -42,4 +42,4 @@ std::vector<Treetop> find_treetops(const CanopyWindow& smooth, const Window& own
 /// directions.
 std::int64_t treetop_reach(const TreetopRules& rules, double cell);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "pipeline/rocks/shadow_shape.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::int64_t kTile = 500;
@@ -167,4 +167,4 @@ std::vector<Detection> find_classic_rocks(const Pixels& image, const RockSearch&
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

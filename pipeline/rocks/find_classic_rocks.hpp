@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/rocks/find_rocks.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Finds rocks by the method `classic`, the reference cited by the paper (Golombek et al. 2008; ROSCO,
 /// nasa-jpl).
@@ -18,4 +18,4 @@ std::vector<Detection> find_classic_rocks(const Pixels& image, const RockSearch&
 /// Bins [0, result] are dark. 0 for an empty histogram.
 int maximum_entropy_threshold(std::span<const double> histogram);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/rocks/find_classic_rocks.hpp"
 #include "pipeline/rocks/find_shadow_rocks.hpp"
 #include "pipeline/vision/sun_angle.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 void check(const RockSearch& search) {
@@ -65,4 +65,4 @@ std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search)
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
 #include "pipeline/rocks/relief_displacement.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// How rocks are found.
 enum class RockMethod {
@@ -43,4 +43,4 @@ struct RockSearch {
 /// 15 Mpx/s on one core.
 std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "pipeline/rocks/shadow_map.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Dark pixels of a map, numbered in row order.
@@ -169,4 +169,4 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
   return segments;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

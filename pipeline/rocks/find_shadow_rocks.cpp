@@ -8,7 +8,7 @@
 #include "pipeline/rocks/rock_network.hpp"
 #include "pipeline/rocks/spot_context.hpp"
 #include "pipeline/vision/class_prior.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr Radians kDefaultElevation = to_radians(Degrees{40});
@@ -267,4 +267,4 @@ std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& 
   return remove_duplicates(std::move(found), light);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

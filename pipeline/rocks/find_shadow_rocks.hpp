@@ -5,7 +5,7 @@
 
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/rock_evidence.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Rock candidate with its evidence, on which the confidence was fitted.
 struct ScoredRock {
@@ -46,4 +46,4 @@ std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSe
 /// Finds rocks by the method `shadow` for a known direction of light.
 std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

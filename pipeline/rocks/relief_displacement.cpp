@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "pipeline/rocks/shadow_shape.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kMinDownward = 0.34;  // sine of 20 degrees
@@ -61,4 +61,4 @@ VisibleShadow visible_shadow(const Eigen::Vector2d& displacement, const LightFra
           .displacement = displacement.norm()};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include "geo/camera.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct LightFrame;
 
@@ -32,4 +32,4 @@ struct VisibleShadow {
 VisibleShadow visible_shadow(const Eigen::Vector2d& displacement, const LightFrame& light,
                              double tan_elevation);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

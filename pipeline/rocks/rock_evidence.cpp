@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Brightness above the ground at a position relative to the rock: `t` away from the sun, `s` across.
@@ -105,4 +105,4 @@ RockEvidence gather_evidence(const ShadowMap& map, const RockCandidate& rock, co
   return evidence;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "pipeline/rocks/rock_table.hpp"
 #include "pipeline/rocks/shadow_shape.hpp"
 #include "pipeline/rocks/spot_context.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Shadow interpreted as that of a rock.
 struct RockCandidate {
@@ -48,4 +48,4 @@ inline double position_unit(double radius) {
   return std::hypot(1.0, 0.5 * radius);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

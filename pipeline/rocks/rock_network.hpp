@@ -3,7 +3,7 @@
 #pragma once
 #include <cstddef>
 // clang-format off
-namespace waymark::rock_network {
+namespace waymark::pipeline::rock_network {
 
 inline constexpr std::size_t kOutputs = 8;
 // Share of rocks among the dark spots it was fitted on.
@@ -268,4 +268,4 @@ inline constexpr float kOut[] = {0.4758F, 0.004381F, 0.04173F, -0.01209F, -0.040
     -0.02242F, 0.007785F, -0.0124F, 0.008715F, 0.0166F, -0.08975F, 0.03755F, 0.0371F, -0.1315F, 0.09535F, 0.02295F, 0.1206F, -0.00921F, 0.4674F, -0.000523F, -0.01137F, 0.002962F, -0.00743F, -0.004725F, 0.003061F, -0.00944F, -0.4418F, -0.00732F, -0.01629F, 0.01276F, 0.02979F, -0.003243F, 0.01079F, 0.008735F, 0.536F, -0.03348F,
     0.00941F, 0.02466F, -0.02898F, -0.001771F, 0.00908F, -0.02271F, 0.4761F, -0.008F, -5.155e-05F, 0.005315F, -0.03682F, -0.007785F, 0.01145F, -0.05065F, 0.539F, -0.01573F, 0.01137F, -0.004855F, -0.00947F, -0.02158F, -0.01033F, -0.01614F, -1.833F, 0.04837F, 0.1983F, 0.04014F, -1.29F, -0.8907F, -0.4576F, -1.048F};
 
-}  // namespace waymark::rock_network
+}  // namespace waymark::pipeline::rock_network

@@ -5,7 +5,7 @@
 
 #include "pipeline/rocks/rock_evidence.hpp"
 #include "pipeline/rocks/rock_network.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 RockPrediction predict_rock(const RockEvidence& evidence) {
   using namespace rock_network;
@@ -37,4 +37,4 @@ RockPrediction predict_rock(const RockEvidence& evidence) {
           .across_sd = sd(7)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

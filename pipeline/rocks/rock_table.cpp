@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "pipeline/rocks/synthetic_rock.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kFirstRadius = 0.45, kRadiusStep = 1.36;  // pixels, factor
@@ -154,4 +154,4 @@ RockSize RockTable::estimate_size(const ShadowShape& shape, double noise, double
   return size;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/rocks/shadow_shape.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Measurements of a rock shadow: natural logarithms of its area (px^2) and extents (standard deviations,
 /// px, pixel and blur included), and the distance from its centroid back to the centre of the rock, px.
@@ -50,4 +50,4 @@ class RockTable {
   std::array<std::array<ShadowMeasure, kHeights>, kRadii> nodes_{};
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

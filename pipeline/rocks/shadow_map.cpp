@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "pipeline/vision/local_background.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr float kDarkest = 1.3F, kBrightest = -1.5F;   // values beyond are noise
@@ -144,4 +144,4 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
   return map;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Fraction of each pixel in full shadow: alpha = (B - I) / (B - S), B the local ground, S the umbra. 0 is
 /// as bright as the surrounding ground, 1 full shadow, below 0 brighter than the ground; clipped to [-1.5,
@@ -52,4 +52,4 @@ struct SegmentLimits {
 /// (y, x). Cost grows with the number of dark pixels.
 std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimits& limits);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr float kOtherShadow =
@@ -86,4 +86,4 @@ ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, c
   return shape;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

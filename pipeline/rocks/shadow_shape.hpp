@@ -4,7 +4,7 @@
 
 #include "core/units.hpp"
 #include "pipeline/rocks/shadow_map.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Image axes along the light: `along` away from the sun, `across` a quarter turn further.
 struct LightFrame {
@@ -31,4 +31,4 @@ struct ShadowShape {
 /// segment. In the ring, pixels of other shadows are excluded and the mean of clipped noise is subtracted.
 ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, const LightFrame& light);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 
 #include "core/grid.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::int64_t kSquare = 96;  // pixels
@@ -59,4 +59,4 @@ std::vector<SpotContext> spot_contexts(std::span<const DarkSpot> spots, std::int
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Dark spot that could be the shadow of a rock.
 struct DarkSpot {
@@ -25,4 +25,4 @@ struct SpotContext {
 std::vector<SpotContext> spot_contexts(std::span<const DarkSpot> spots, std::int64_t columns,
                                        std::int64_t rows);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/rocks/shadow_shape.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Shadow fraction at a point `t` away from the sun and `s` across, from the centre of the rock. Scaled
@@ -96,4 +96,4 @@ Grid<float> render_rock_shadow(const SyntheticRock& rock, std::int64_t columns, 
   return picture;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include "core/grid.hpp"
 #include "core/units.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Single rock on level ground in a vertical view: half an ellipsoid.
 struct SyntheticRock {
@@ -19,4 +19,4 @@ struct SyntheticRock {
 /// least -1.5. Averages over pixels of `columns` x `rows` by supersampling, then blurs.
 Grid<float> render_rock_shadow(const SyntheticRock& rock, std::int64_t columns, std::int64_t rows);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

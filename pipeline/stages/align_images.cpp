@@ -9,7 +9,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct AlignImages {
@@ -68,4 +68,4 @@ void register_stage_align_images(Registry& registry) {
   registry.add<AlignImages>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -11,7 +11,7 @@
 #include "pipeline/vision/sun_angle.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Comparison of the given sun with the shadows of an image.
@@ -104,4 +104,4 @@ void register_stage_check_sun(Registry& registry) {
   registry.add<CheckSun>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

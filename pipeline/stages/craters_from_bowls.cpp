@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/stages/craters_in_image.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct CratersFromBowls : CratersInImage<CraterMethod::bowl> {
@@ -18,4 +18,4 @@ void register_stage_craters_from_bowls(Registry& registry) {
   registry.add<CratersFromBowls>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct CratersFromDem {
@@ -57,4 +57,4 @@ void register_stage_craters_from_dem(Registry& registry) {
   registry.add<CratersFromDem>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

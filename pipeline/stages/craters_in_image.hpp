@@ -7,7 +7,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Stage that detects craters in one image by a given method.
 template <CraterMethod kMethod>
@@ -57,4 +57,4 @@ struct CratersInImage {
   }
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

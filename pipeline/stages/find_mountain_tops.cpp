@@ -4,7 +4,7 @@
 #include "pipeline/terrain/codecs.hpp"
 #include "pipeline/terrain/hidden_ground.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct FindMountainTops {
@@ -50,4 +50,4 @@ void register_stage_find_mountain_tops(Registry& registry) {
   registry.add<FindMountainTops>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/terrain/codecs.hpp"
 #include "pipeline/terrain/merge_trees.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct JoinMountainTops {
@@ -109,4 +109,4 @@ void register_stage_join_mountain_tops(Registry& registry) {
   registry.add<JoinMountainTops>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/stages/mountain_tops_stage.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct MapMountainTops : MountainTopsStage {
@@ -23,4 +23,4 @@ void register_stage_map_mountain_tops(Registry& registry) {
   registry.add<MapMountainTops>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

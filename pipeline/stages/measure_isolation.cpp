@@ -3,7 +3,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/terrain/codecs.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct MeasureIsolation {
@@ -65,4 +65,4 @@ void register_stage_measure_isolation(Registry& registry) {
   registry.add<MeasureIsolation>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

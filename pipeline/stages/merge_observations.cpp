@@ -8,7 +8,7 @@
 #include "pipeline/fusion/cleaning/rejection_counter.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct MergeObservations {
@@ -103,4 +103,4 @@ void register_stage_merge_observations(Registry& registry) {
   registry.add<MergeObservations>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

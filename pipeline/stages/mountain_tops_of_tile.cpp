@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/stages/mountain_tops_stage.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Equivalent of map_mountain_tops, tile by tile, so that not all landmarks are in memory.
@@ -23,4 +23,4 @@ void register_stage_mountain_tops_of_tile(Registry& registry) {
   registry.add<MountainTopsOfTile>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

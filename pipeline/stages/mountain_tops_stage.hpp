@@ -8,7 +8,7 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/terrain/codecs.hpp"
 #include "pipeline/terrain/mountain_tops.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// What the stages that convert summits to landmarks share: all of the map at once, or those of a tile.
 struct MountainTopsStage {
@@ -56,4 +56,4 @@ struct MountainTopsStage {
   }
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -12,7 +12,7 @@
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 #include "pipeline/fusion/projection/image_view_factory.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct ProjectToGround {
@@ -157,4 +157,4 @@ void register_stage_project_to_ground(Registry& registry) {
   registry.add<ProjectToGround>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

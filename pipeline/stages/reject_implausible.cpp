@@ -4,7 +4,7 @@
 #include "pipeline/fusion/cleaning/rejections.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct RejectImplausible {
@@ -54,4 +54,4 @@ void register_stage_reject_implausible(Registry& registry) {
   registry.add<RejectImplausible>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

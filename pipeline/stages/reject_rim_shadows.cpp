@@ -6,7 +6,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Map scope: a crater in a coarse image explains shadows in a fine one that shows only its rim.
@@ -75,4 +75,4 @@ void register_stage_reject_rim_shadows(Registry& registry) {
   registry.add<RejectRimShadows>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct RejectTerrainShadows {
@@ -54,4 +54,4 @@ void register_stage_reject_terrain_shadows(Registry& registry) {
   registry.add<RejectTerrainShadows>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct RocksFromShadows {
@@ -74,4 +74,4 @@ void register_stage_rocks_from_shadows(Registry& registry) {
   registry.add<RocksFromShadows>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

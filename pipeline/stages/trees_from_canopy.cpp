@@ -6,7 +6,7 @@
 #include "pipeline/forest/tree_observations.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct TreesFromCanopy {
@@ -140,4 +140,4 @@ void register_stage_trees_from_canopy(Registry& registry) {
   registry.add<TreesFromCanopy>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Equivalent of merge_observations and value_flights for a single survey, where nothing is merged: tile by
@@ -62,4 +62,4 @@ void register_stage_trees_of_survey(Registry& registry) {
   registry.add<TreesOfSurvey>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

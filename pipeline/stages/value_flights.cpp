@@ -8,7 +8,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // A canopy model is a survey that could have shown a tree wherever the canopy's height is known.
@@ -76,4 +76,4 @@ void register_stage_value_flights(Registry& registry) {
   registry.add<ValueFlights>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

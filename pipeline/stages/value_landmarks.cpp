@@ -8,7 +8,7 @@
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct ValueLandmarks {
@@ -83,4 +83,4 @@ void register_stage_value_landmarks(Registry& registry) {
   registry.add<ValueLandmarks>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Landmarks of a DEM alone: each source detected its own.
@@ -47,4 +47,4 @@ void register_stage_value_surveys(Registry& registry) {
   registry.add<ValueSurveys>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

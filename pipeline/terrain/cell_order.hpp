@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Total order of cells on which prominence is based: higher first, among equals the smaller grid index.
 /// No two cells are equal, so each summit has one key saddle and one parent, independent of tiles, threads
@@ -10,4 +10,4 @@ constexpr bool is_higher(double height_a, std::int64_t cell_a, double height_b, 
   return height_a != height_b ? height_a > height_b : cell_a < cell_b;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Each layout is defined once for both directions: `io` is a ByteWriter or a ByteReader.
@@ -156,4 +156,4 @@ std::vector<Isolation> Codec<std::vector<Isolation>>::decode(std::string_view by
   return isolations;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

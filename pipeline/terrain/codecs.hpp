@@ -8,7 +8,7 @@
 #include "pipeline/terrain/isolation.hpp"
 #include "pipeline/terrain/prominence.hpp"
 #include "pipeline/terrain/relief_pyramid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Serialization of the artifacts of the mountain-top stages: numbers, member by member (core/bytes.hpp).
 
@@ -38,4 +38,4 @@ struct Codec<std::vector<Isolation>> {
   static std::vector<Isolation> decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

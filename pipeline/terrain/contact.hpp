@@ -7,7 +7,7 @@
 #include "geo/dem_source.hpp"
 #include "pipeline/terrain/ground_metric.hpp"
 #include "pipeline/terrain/neighbourhood.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Offers to `nearest` the point nearest to `from` on the contour of `level` around the higher cell (column,
 /// row).
@@ -50,4 +50,4 @@ void offer_contacts(const Metric& metric, const Eigen::Vector3d& from, double le
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

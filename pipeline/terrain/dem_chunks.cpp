@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 const HeightWindow& DemChunks::fetch(std::int64_t column, std::int64_t row) {
   const GridGeometry& grid = dem_.geometry();
@@ -25,4 +25,4 @@ const HeightWindow& DemChunks::fetch(std::int64_t column, std::int64_t row) {
   return *current_;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

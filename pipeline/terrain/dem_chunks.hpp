@@ -5,7 +5,7 @@
 #include <memory>
 #include <unordered_map>
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Random access to the cells of a DEM through a cache of squares of 64 cells; the oldest are dropped. For
 /// one thread.
@@ -40,4 +40,4 @@ class DemChunks {
   std::int64_t current_column_ = -1, current_row_ = -1;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

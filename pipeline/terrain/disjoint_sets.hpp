@@ -2,7 +2,7 @@
 #pragma once
 #include <numeric>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Disjoint sets (union-find). The caller chooses the surviving root; here it is the highest summit of an
 /// island.
@@ -23,4 +23,4 @@ class DisjointSets {
   std::vector<std::size_t> parent_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

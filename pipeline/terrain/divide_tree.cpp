@@ -9,7 +9,7 @@
 #include "pipeline/terrain/cell_order.hpp"
 #include "pipeline/terrain/neighbourhood.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::int32_t kUnlabelled = -1;
@@ -236,4 +236,4 @@ DivideTree build_divide_tree(const HeightWindow& heights, const Window& owned, c
   return TileSurvey(heights, owned, grid, options).survey();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Divide tree of one tile: a maximum spanning forest of the basins of steepest ascent, joined by saddle
 /// cells.
@@ -78,4 +78,4 @@ DivideTree build_divide_tree(const HeightWindow& heights, const Window& owned, c
 /// Used by build_divide_tree; public for tests.
 DivideTree prune(DivideTree tree, double min_prominence);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

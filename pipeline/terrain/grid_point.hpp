@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Position on a grid, in cells; fractions lie between cell centres.
 struct GridPoint {
@@ -8,4 +8,4 @@ struct GridPoint {
   friend bool operator==(const GridPoint&, const GridPoint&) = default;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 double clamp_to(double v, std::int64_t first, std::int64_t end) {
@@ -81,4 +81,4 @@ Eigen::Vector3d GeographicMetric::position(GridPoint p) const {
   return {at.radius * std::cos(longitude), at.radius * std::sin(longitude), at.axis};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

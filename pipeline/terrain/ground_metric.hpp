@@ -8,7 +8,7 @@
 #include "core/units.hpp"
 #include "geo/georeference.hpp"
 #include "pipeline/terrain/grid_point.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Distances between cells of a grid. A search ranks millions of cells by `squared` (a straight line through
 // the body, two table look-ups), skips blocks by `lower_bound`, and calls `distance` only for the remaining
@@ -132,4 +132,4 @@ class ProjectedMetric {
   double cell_diagonal_ = 0;        // metres
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

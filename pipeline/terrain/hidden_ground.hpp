@@ -2,7 +2,7 @@
 #pragma once
 #include <limits>
 #include "geo/dem_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Metres above the datum; a void beside ground above this is taken for a gap, not for the sea.
 inline constexpr double kMaxShore = 100;
@@ -19,4 +19,4 @@ inline double hidden_above(const DemSource& dem) {
                                                            : -std::numeric_limits<double>::infinity();
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

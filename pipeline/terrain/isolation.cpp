@@ -16,7 +16,7 @@
 #include "pipeline/terrain/hidden_ground.hpp"
 #include "pipeline/terrain/nearest_grid_point.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 GridPoint grid_point(std::int64_t column, std::int64_t row) {
@@ -240,4 +240,4 @@ std::vector<Isolation> measure_isolation(std::span<const HighPoint> summits, con
   return measure_all(summits, dem, relief, ProjectedMetric(dem.geometry()), options, done);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include "geo/dem_source.hpp"
 #include "pipeline/terrain/grid_point.hpp"
 #include "pipeline/terrain/relief_pyramid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// End point of the isolation (the paper's "topographical dominance") of a summit.
 enum class IsolationEnd {
@@ -59,4 +59,4 @@ std::vector<Isolation> measure_isolation(std::span<const HighPoint> summits, con
                                          const ReliefPyramid& relief, const IsolationOptions& options,
                                          const std::function<void(std::size_t)>& done = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 
 #include "pipeline/terrain/cell_order.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using TreeParts = std::span<const std::shared_ptr<const DivideTree>>;
@@ -183,4 +183,4 @@ void TreePyramid::add(int level, std::shared_ptr<const DivideTree> tree) {
   add(above, std::move(merged));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 #include "pipeline/terrain/divide_tree.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Merges the divide trees of neighbouring windows into that of `united`, which they fill without gap. The
 /// result is the tree of a tile of that size: portals between the parts are replaced by their summits, border
@@ -41,4 +41,4 @@ class TreePyramid {
   std::shared_ptr<const DivideTree> whole_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "landmarks/uid.hpp"
 #include "pipeline/terrain/visibility.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 AttributeValue known_or_null(double value) {
@@ -216,4 +216,4 @@ MountainTops mountain_tops(std::span<const Summit> summits, std::span<const Isol
   return made;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -11,7 +11,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/terrain/isolation.hpp"
 #include "pipeline/terrain/prominence.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct MountainTopOptions {
   Meters min_isolation{0};  ///< summits nearer than this to higher terrain are left out
@@ -35,4 +35,4 @@ MountainTops mountain_tops(std::span<const Summit> summits, std::span<const Isol
                            const DemSource& dem, const TypeRegistry& types, const MountainTopOptions& options,
                            const Window& window);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 #include "pipeline/terrain/ground_metric.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Candidates for the nearest point to an origin, ranked by straight-line distance until exact distances
 /// decide.
@@ -60,4 +60,4 @@ class NearestGridPoint {
   std::vector<Offer> points_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 bool touch(int a, int b) {
@@ -59,4 +59,4 @@ void higher_neighbours(const double* north, const double* here, const double* so
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

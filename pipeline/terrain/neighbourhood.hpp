@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Step from a cell to one of its neighbours.
 struct NeighbourStep {
@@ -24,4 +24,4 @@ std::uint8_t connected_parts(std::uint8_t mask);
 void higher_neighbours(const double* north, const double* here, const double* south,
                        std::span<std::uint8_t> masks);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

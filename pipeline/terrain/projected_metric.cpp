@@ -5,7 +5,7 @@
 
 #include "pipeline/terrain/ground_metric.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::int64_t kFinestStride = 16;   // cells between lattice nodes
@@ -152,4 +152,4 @@ double ProjectedMetric::distance(GridPoint a, GridPoint b) const {
   return geodesic_.distance(lon_lat(a), lon_lat(b));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

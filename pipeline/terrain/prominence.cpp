@@ -11,7 +11,7 @@
 #include "pipeline/terrain/cell_order.hpp"
 #include "pipeline/terrain/disjoint_sets.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Tiles = std::span<const std::shared_ptr<const DivideTree>>;
@@ -224,4 +224,4 @@ std::vector<Summit> join_divide_trees(Tiles tiles, double min_prominence, BasePo
   return summits;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

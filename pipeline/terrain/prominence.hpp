@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/terrain/divide_tree.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Reference level for the highest summit of a land mass, which has no saddle to higher terrain.
 enum class BasePolicy {
@@ -41,4 +41,4 @@ struct Summit {
 std::vector<Summit> join_divide_trees(std::span<const std::shared_ptr<const DivideTree>> tiles,
                                       double min_prominence, BasePolicy base = BasePolicy::automatic);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -12,7 +12,7 @@
 #include "pipeline/terrain/disjoint_sets.hpp"
 #include "pipeline/terrain/divide_tree.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct Island {
@@ -105,4 +105,4 @@ DivideTree prune(DivideTree tree, double min_prominence) {
   return remove_contracted(tree, saddles, std::move(contracted_into));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 std::int64_t blocks_for(std::int64_t cells) {
@@ -93,4 +93,4 @@ Window ReliefPyramid::cells(const Block& b) const {
   return cells;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "core/grid.hpp"
 #include "geo/dem_source.hpp"
 #include "pipeline/terrain/neighbourhood.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Side of the finest blocks, in cells.
 inline constexpr std::int64_t kReliefBlock = 16;
@@ -79,4 +79,4 @@ class ReliefPyramid {
   std::vector<Grid<std::uint8_t>> voids_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

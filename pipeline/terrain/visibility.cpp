@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 double expected_visibility(Meters prominence, Meters isolation, Meters body_radius, Meters range) {
   const double apart = std::min(isolation.value, range.value);
@@ -18,4 +18,4 @@ double expected_visibility(Meters prominence, Meters isolation, Meters body_radi
   return std::clamp(2 * ratio * ratio * fraction, 0.0, 1.0);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/units.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the expected visibility of a summit: the expected fraction of the terrain within `range` that sees
 /// it, [0, 1]. The paper (3.1) derives it from prominence and isolation without a formula.
@@ -19,4 +19,4 @@ double expected_visibility(Meters prominence, Meters isolation, Meters body_radi
 /// Metres; fitted to ray-cast viewsheds on real tiles, see docs/evaluation/2026-11-21-visibility.md.
 inline constexpr double kSightLength = 40000;
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 double prior_shift(std::span<const double> log_odds, double training_prior) {
   constexpr double kPseudoCount = 4;
@@ -20,4 +20,4 @@ double prior_shift(std::span<const double> log_odds, double training_prior) {
   return odds(prior) - odds(training_prior);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

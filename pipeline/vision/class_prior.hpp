@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the shift of log odds that adapts a classifier from its training prior `training_prior` to the
 /// prior of this image (Saerens, Latinne & Decaestecker 2002).
@@ -12,4 +12,4 @@ namespace waymark {
 /// - O(n), at most 100 rounds.
 double prior_shift(std::span<const double> log_odds, double training_prior);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

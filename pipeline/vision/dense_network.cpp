@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::size_t kBatch = 256;  // examples whose values fit in the L1 cache
@@ -120,4 +120,4 @@ DenseNetwork parse_dense_network(std::string_view text, const std::string& where
   return network;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Small network of dense layers with rectifiers between them and one output: the log odds of the trained
 /// class. Inputs are standardised: (value - centre) / scale.
@@ -54,4 +54,4 @@ struct NetworkTraining {
 DenseNetwork train_network(const NetworkExamples& examples, const NetworkTraining& training,
                            const std::function<void(int round, double loss)>& progress = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

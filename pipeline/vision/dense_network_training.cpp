@@ -7,7 +7,7 @@
 #include "core/random.hpp"
 #include "pipeline/vision/dense_network.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // State of a layer in training: values and gradients by unit, `count` examples each.
@@ -148,4 +148,4 @@ DenseNetwork train_network(const NetworkExamples& examples, const NetworkTrainin
   return network;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<std::string> image_fault(const Pixels& pixels, double saturated) {
   constexpr std::int64_t kMinSide = 16;
@@ -33,4 +33,4 @@ std::optional<std::string> image_fault(const Pixels& pixels, double saturated) {
   return std::nullopt;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

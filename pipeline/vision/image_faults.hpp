@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns why an image yields few or no detections; `std::nullopt` if it is usable. O(pixels).
 /// - It is smaller than 16 pixels.
@@ -11,4 +11,4 @@ namespace waymark {
 /// - More than a twentieth of the pixels are at or above `saturated` (0: unknown).
 std::optional<std::string> image_fault(const Pixels& pixels, double saturated);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

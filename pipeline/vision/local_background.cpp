@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -140,4 +140,4 @@ float noise_sd(const Pixels& image) {
   return kSigmaPerMad * median_in_place(sizes) / 6;  // the mask's weights: sqrt(4 + 4 * 4 + 16) = 6
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Brightness of the local ground and its spread, per tile.
 struct LocalBackground {
@@ -25,4 +25,4 @@ LocalBackground local_background(const Pixels& image, int tile);
 /// 1996, made robust); smooth texture contributes little. 0 for an image below 3 x 3 pixels.
 float noise_sd(const Pixels& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

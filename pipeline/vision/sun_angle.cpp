@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/vision/local_background.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -147,4 +147,4 @@ std::optional<SunAngle> estimate_sun_angle(const Pixels& image, int max_extent) 
   return SunAngle{{centre}, {std::hypot(spread, 0.02) * (fraction > 0.6 ? 1.0 : 2.0)}, count};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

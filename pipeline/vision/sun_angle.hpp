@@ -4,7 +4,7 @@
 
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Direction of the light, estimated from the image.
 struct SunAngle {
@@ -21,4 +21,4 @@ struct SunAngle {
 /// - `max_extent` is the size of the largest spots used, pixels.
 std::optional<SunAngle> estimate_sun_angle(const Pixels& image, int max_extent = 16);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<Radians> sun_angle_in_image(const ImageInfo& image) {
   if (image.image_sun_angle) return to_radians(*image.image_sun_angle);
@@ -29,4 +29,4 @@ std::optional<Radians> sun_angle_in_image(const ImageInfo& image) {
   return Radians{std::atan2(step.y(), step.x())};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

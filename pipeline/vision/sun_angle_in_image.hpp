@@ -3,7 +3,7 @@
 #include <optional>
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the direction towards the sun in the image, from x towards y.
 /// - The given image angle, if there is one.
@@ -12,4 +12,4 @@ namespace waymark {
 /// misses the ground.
 std::optional<Radians> sun_angle_in_image(const ImageInfo& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,12 +9,12 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kSlipLength = 5;  // metres, correlation length of the slip
 
-VehiclePose require_pose(const Terrain& terrain, const Pose2& pose, const Wheels& wheels) {
+VehiclePose require_pose(const Terrain& terrain, const localization::Pose2& pose, const Wheels& wheels) {
   const auto at = vehicle_pose_on(terrain, pose, wheels);
   if (!at)
     throw Error(ErrorCode::usage,
@@ -36,7 +36,7 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
   const double dt = 1 / model.rate, ahead = std::max(1.5, 2 * settings.speed);
 
   const Eigen::Vector2d first = path[std::min<std::size_t>(path.size() - 1, 4)] - path[0];
-  Pose2 pose{path[0].x(), path[0].y(), std::atan2(first.y(), first.x())};
+  localization::Pose2 pose{path[0].x(), path[0].y(), std::atan2(first.y(), first.x())};
   std::vector<DriveStep> steps;
   double driven = 0, waver = 0;
   std::size_t target = 0;
@@ -50,7 +50,7 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
     if (arrived) return steps;
 
     const Eigen::Vector2d to = path[target] - pose.at();
-    const double off = wrap_angle(std::atan2(to.y(), to.x()) - pose.yaw);
+    const double off = localization::wrap_angle(std::atan2(to.y(), to.x()) - pose.yaw);
     const double wheels = settings.speed * std::max(0.25, std::cos(off));
     double turn = 2 * std::sin(off) / to.norm() * wheels;
     if (std::abs(off) > 1.4) turn = std::copysign(0.5, off);
@@ -72,11 +72,11 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
     const double angle = turn * dt, half = angle / 2;
     const double chord = std::abs(half) > 1e-9 ? std::sin(half) / half : 1;
     const double c = std::cos(half) * chord, s = std::sin(half) * chord;
-    pose = pose * Pose2{c * forward - s * sideways, s * forward + c * sideways, angle};
+    pose = pose * localization::Pose2{c * forward - s * sideways, s * forward + c * sideways, angle};
     driven += std::hypot(forward, sideways);
   }
   throw Error(ErrorCode::usage, "the drive does not reach the end of its path", "drive",
               "a slower turn needs more room: fewer waypoints, or more speed");
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

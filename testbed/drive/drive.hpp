@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 #include "testbed/drive/drive_settings.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// State of a simulated drive: true pose, and the odometry reading until the next step.
 struct DriveStep {
@@ -18,4 +18,4 @@ struct DriveStep {
 std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen::Vector2d> path,
                                    const DriveSettings& settings, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -12,7 +12,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 // Reading to be simulated; readings of equal time keep the order in which they were added.
@@ -50,9 +50,10 @@ class LogMaker {
   std::string header() const {
     Random random(world_.seed, "start");
     const DriveSettings& s = world_.settings;
-    const Pose2& start = world_.steps.front().at.plane;
+    const localization::Pose2& start = world_.steps.front().at.plane;
     const double x = start.x + random.normal(0, s.start_sd), y = start.y + random.normal(0, s.start_sd);
-    const double yaw = wrap_angle(start.yaw + random.normal(0, to_radians(s.start_yaw_sd).value));
+    const double yaw =
+        localization::wrap_angle(start.yaw + random.normal(0, to_radians(s.start_yaw_sd).value));
     const bool local = place_.crs == "local";
     return fmt::format(
         "{{\"kind\":\"header\",\"version\":1,\"frame\":\"{}\"{},\"start\":{{\"x\":{:.4f},\"y\":{:.4f},"
@@ -103,12 +104,12 @@ class LogMaker {
       at_times(world_.settings.laser.every, [&](std::size_t i) {
         const Mount mount = mounts[m];
         readings_.push_back({world_.steps[i].t, [this, i, m, mount] {
-                               return laser(i, m, Pose2{mount.x, mount.y, mount.yaw});
+                               return laser(i, m, localization::Pose2{mount.x, mount.y, mount.yaw});
                              }});
       });
   }
 
-  std::string laser(std::size_t i, std::size_t which, const Pose2& mount) const {
+  std::string laser(std::size_t i, std::size_t which, const localization::Pose2& mount) const {
     const DriveStep& step = world_.steps[i];
     const LaserModel& model = world_.settings.laser;
     Random random(named_seed(world_.seed, which == 0 ? "laser" : "laser 2") + i);
@@ -120,7 +121,7 @@ class LogMaker {
         model.levelled ? Eigen::AngleAxisd(step.at.plane.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix()
                        : Eigen::Matrix3d(grid_from_robot.linear());
     const RayFan fan(world_.targets, origin, model.max_range, step.t);
-    const LaserScan scan = sweep(fan, body * turn, model, random);
+    const localization::LaserScan scan = sweep(fan, body * turn, model, random);
     const double tilt = model.perfect ? 0 : to_radians(model.tilt_sd).value;
     const double roll = model.levelled ? 0 : step.at.roll + random.normal(0, tilt);
     const double pitch = model.levelled ? 0 : step.at.pitch + random.normal(0, tilt);
@@ -152,7 +153,7 @@ class LogMaker {
     Random random(named_seed(world_.seed, "stereo") + i);
     const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
     const RayFan fan(world_.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.max_range, step.t);
-    const DepthImage image = depth_image(fan, body.linear(), model, random);
+    const localization::DepthImage image = depth_image(fan, body.linear(), model, random);
     std::string line = fmt::format(
         "{{\"kind\":\"depth\",\"t\":{:.3f},\"mount\":{{\"x\":0.5,\"y\":0}},\"height\":{:g},\"tilt\":{:.6f},"
         "\"roll\":{:.5f},\"pitch\":{:.5f},\"columns\":{},\"rows\":{},\"focal\":{:.4f},\"depths\":[",
@@ -233,13 +234,13 @@ class LogMaker {
     const CraneModel& c = world_.settings.crane;
     for (const FelledTree& f : world_.felled) {
       const auto after = std::ranges::lower_bound(world_.steps, f.t - 1e-9, {}, &DriveStep::t);
-      const Pose2& at = after->at.plane;
+      const localization::Pose2& at = after->at.plane;
       const StandingTree& tree = world_.trees[f.tree];
       Random random(named_seed(world_.seed, "crane") + f.tree);
       const Eigen::Vector2d to = tree.foot.head<2>() - at.at();
       const double range = std::max(0.1, to.norm() + random.normal(0, c.range_sd));
-      const double bearing =
-          wrap_angle(std::atan2(to.y(), to.x()) - at.yaw + random.normal(0, to_radians(c.bearing_sd).value));
+      const double bearing = localization::wrap_angle(std::atan2(to.y(), to.x()) - at.yaw +
+                                                      random.normal(0, to_radians(c.bearing_sd).value));
       const double diameter = std::max(0.01, tree.dbh + random.normal(0, c.diameter_sd));
       const double height = std::max(1.3, tree.height + random.normal(0, c.height_sd));
       readings_.push_back(
@@ -297,4 +298,4 @@ std::string standing_table(const DriveWorld& world, const LogCrs& place) {
   return text;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

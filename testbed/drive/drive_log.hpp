@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include "testbed/drive/drive_world.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Coordinates of the log: metres of the map frame (the CRS itself if it is local), or the CRS in its
 /// units.
@@ -26,4 +26,4 @@ std::string felled_table(const DriveWorld& world, const LogCrs& place);
 /// Returns all trees: type,x,y,z,height,diameter,crown_diameter,felled (s; empty: not felled).
 std::string standing_table(const DriveWorld& world, const LogCrs& place);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

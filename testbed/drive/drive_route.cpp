@@ -6,7 +6,7 @@
 #include <numbers>
 #include <queue>
 
-namespace waymark {
+namespace waymark::testbed {
 
 std::vector<Obstacle> obstacles_of(std::span<const RockSolid> rocks, double height) {
   std::vector<Obstacle> all;
@@ -191,4 +191,4 @@ std::vector<Eigen::Vector2d> automatic_route(const std::string& kind, const Eige
   return corners;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -6,7 +6,7 @@
 #include "core/random.hpp"
 #include "geo/terrain.hpp"
 #include "testbed/drive/laser_targets.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Circular obstacle.
 struct Obstacle {
@@ -54,4 +54,4 @@ std::vector<Eigen::Vector2d> automatic_route(const std::string& kind, const Eige
                                              const Eigen::Vector2d& half_size, double length,
                                              double lane_spacing, Random& random);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

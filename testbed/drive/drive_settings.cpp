@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "testbed/drive/drive_settings.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 void describe_drive(DriveSettings& d, OptionVisitor& field) {
@@ -117,4 +117,4 @@ const std::vector<DrivePart>& drive_parts() {
   return parts;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -11,7 +11,7 @@
 #include "testbed/drive/panorama.hpp"
 #include "testbed/drive/stereo_camera.hpp"
 #include "testbed/drive/vehicle_pose.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Wheel slip and odometry errors.
 struct OdometryModel {
@@ -87,4 +87,4 @@ struct DrivePart {
 };
 const std::vector<DrivePart>& drive_parts();
 
-}  // namespace waymark
+}  // namespace waymark::testbed

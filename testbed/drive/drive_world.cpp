@@ -11,7 +11,7 @@
 #include "core/random.hpp"
 #include "testbed/drive/drive_route.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kSpacing = 0.5;    // metres between points of the path
@@ -216,4 +216,4 @@ std::vector<StandingTree> trees_from_table(std::string_view csv, const std::stri
   return placed;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

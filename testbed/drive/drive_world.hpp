@@ -5,7 +5,7 @@
 #include <vector>
 #include "testbed/drive/drive.hpp"
 #include "testbed/scene.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Tree felled during the drive, and its time.
 struct FelledTree {
@@ -38,4 +38,4 @@ std::vector<StandingTree> trees_from_table(std::string_view csv, const std::stri
                                            const std::string& stand, const Eigen::Vector2d& middle,
                                            const Terrain& terrain);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

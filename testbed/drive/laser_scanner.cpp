@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kRangeResolution = 0.25;  // metres, range resolution of one pulse
@@ -45,10 +45,10 @@ LaserModel LaserModel::ideal_model() const {
   return exact;
 }
 
-LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor, const LaserModel& given,
-                Random& random) {
+localization::LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor,
+                              const LaserModel& given, Random& random) {
   const LaserModel laser = given.perfect ? given.ideal_model() : given;
-  LaserScan scan;
+  localization::LaserScan scan;
   const std::int64_t beams = laser.beams();
   scan.angle_step = to_radians(laser.step).value;
   scan.first_angle = -0.5 * scan.angle_step * static_cast<double>(beams - 1);
@@ -98,4 +98,4 @@ void describe_laser(LaserModel& l, OptionVisitor& field) {
   field("perfect", l.perfect, {.help = "No beam width, noise, dropouts or clutter"});
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

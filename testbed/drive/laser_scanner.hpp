@@ -5,7 +5,7 @@
 #include "core/units.hpp"
 #include "localization/laser_scan.hpp"
 #include "testbed/drive/ray_fan.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Line scanner. Each beam is a fan of rays as wide as its divergence; it returns from the first object
 /// that intercepts enough of it. Edges are therefore hit early, and stems appear too wide.
@@ -34,7 +34,7 @@ void describe_laser(LaserModel& laser, OptionVisitor& field);
 
 /// Simulates one sweep in the x-y plane of the sensor; z up. Only the rotation of `grid_from_sensor` is
 /// used; rays start at the origin of the fan.
-LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor, const LaserModel& laser,
-                Random& random);
+localization::LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor,
+                              const LaserModel& laser, Random& random);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

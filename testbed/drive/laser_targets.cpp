@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 
 double StemSolid::radius(double above) const {
   if (!(above >= 0 && above < height)) return 0;
@@ -88,4 +88,4 @@ ForestSolids forest_solids(std::span<const StandingTree> trees, const ForestClut
   return solids;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -10,7 +10,7 @@
 #include "geo/terrain.hpp"
 #include "testbed/forest/forest.hpp"
 #include "testbed/landing/rock_solid.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Tree stem for ray casting: a leaning cone that exists until it is felled.
 struct StemSolid {
@@ -76,4 +76,4 @@ struct ForestSolids {
 ForestSolids forest_solids(std::span<const StandingTree> trees, const ForestClutter& clutter,
                            const Terrain& terrain, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -8,7 +8,7 @@
 
 #include "localization/pose2.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kPrecision = 1e-5;  // radians, of the horizon
@@ -60,7 +60,7 @@ std::vector<BearingDetection> bearings(const LaserTargets& targets, const RayFan
     const double width = rock ? targets.rocks()[target.index].half_x + targets.rocks()[target.index].half_y
                               : targets.stems()[target.index].dbh;
     const Eigen::Vector3d to = aim - fan.origin();
-    const double range = to.norm(), bearing = wrap_angle(std::atan2(to.y(), to.x()) - yaw);
+    const double range = to.norm(), bearing = localization::wrap_angle(std::atan2(to.y(), to.x()) - yaw);
     if (range > camera.max_range || range < 0.5 || std::abs(bearing) > half ||
         width / range < to_radians(camera.min_size).value)
       continue;
@@ -102,4 +102,4 @@ void describe_bearing(BearingModel& b, OptionVisitor& field) {
   field("perfect", b.perfect, {.help = "No error, misses or false detections"});
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

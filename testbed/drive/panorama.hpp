@@ -4,7 +4,7 @@
 #include "core/options.hpp"
 #include "core/units.hpp"
 #include "testbed/drive/ray_fan.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Rotating camera that measures the skyline.
 struct PanoramaModel {
@@ -48,4 +48,4 @@ struct BearingDetection {
 std::vector<BearingDetection> bearings(const LaserTargets& targets, const RayFan& fan, double yaw,
                                        const BearingModel& camera, double t, Random& random);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <ranges>
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr int kSectors = 720;
@@ -132,4 +132,4 @@ std::optional<FanHit> RayFan::cast_exhaustively(const Eigen::Vector3d& along, Ra
                random, false);
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

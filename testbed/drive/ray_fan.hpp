@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 #include "testbed/drive/laser_targets.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 struct FanHit {
   double range = 0;  ///< metres
@@ -46,4 +46,4 @@ class RayFan {
   std::vector<std::uint32_t> first_, listed_;  // per sector, candidates, nearest first
 };
 
-}  // namespace waymark
+}  // namespace waymark::testbed

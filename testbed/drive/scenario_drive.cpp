@@ -9,7 +9,7 @@
 #include "core/json_text.hpp"
 #include "core/options/option_reader.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,4 +101,4 @@ std::string drive_schema() {
       .dump();
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -4,7 +4,7 @@
 #include <string_view>
 #include "core/options/option_reader.hpp"
 #include "testbed/drive/drive_settings.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Reads the section `drive` of a scenario: its own fields, `waypoints`, and one object per part. Throws
 /// Error{usage} with the JSON path for fields that are unknown, out of range or of the wrong kind. Warns of
@@ -16,4 +16,4 @@ void read_drive(DriveSettings& into, std::string_view json, const std::string& s
 std::string drive_json(const DriveSettings& drive);
 std::string drive_schema();
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 
-DepthImage depth_image(const RayFan& fan, const Eigen::Matrix3d& grid_from_robot, const StereoModel& stereo,
-                       Random& random) {
-  DepthImage image;
+localization::DepthImage depth_image(const RayFan& fan, const Eigen::Matrix3d& grid_from_robot,
+                                     const StereoModel& stereo, Random& random) {
+  localization::DepthImage image;
   image.columns = stereo.columns;
   image.rows = stereo.rows;
   image.height = stereo.height;
@@ -53,4 +53,4 @@ void describe_stereo(StereoModel& s, OptionVisitor& field) {
   field("perfect", s.perfect, {.help = "No noise and no dropouts"});
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

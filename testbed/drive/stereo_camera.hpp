@@ -4,7 +4,7 @@
 #include "core/units.hpp"
 #include "localization/depth_image.hpp"
 #include "testbed/drive/ray_fan.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Depth camera: stereo pair or time of flight.
 struct StereoModel {
@@ -24,7 +24,7 @@ struct StereoModel {
 void describe_stereo(StereoModel& stereo, OptionVisitor& field);
 
 /// Returns depths along the optical axis. The camera looks forward, `tilt` below the robot axes.
-DepthImage depth_image(const RayFan& fan, const Eigen::Matrix3d& grid_from_robot, const StereoModel& stereo,
-                       Random& random);
+localization::DepthImage depth_image(const RayFan& fan, const Eigen::Matrix3d& grid_from_robot,
+                                     const StereoModel& stereo, Random& random);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

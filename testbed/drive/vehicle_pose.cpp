@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 
 Pose<GridFrame, RobotFrame> VehiclePose::grid_from_robot() const {
   Pose<GridFrame, RobotFrame> pose;
@@ -16,12 +16,13 @@ Pose<GridFrame, RobotFrame> VehiclePose::grid_from_robot() const {
   return pose;
 }
 
-std::optional<VehiclePose> vehicle_pose_on(const Terrain& terrain, const Pose2& plane, const Wheels& wheels) {
+std::optional<VehiclePose> vehicle_pose_on(const Terrain& terrain, const localization::Pose2& plane,
+                                           const Wheels& wheels) {
   const double half_base = wheels.base / 2, half_track = wheels.track / 2;
   double mean = 0, forward = 0, left = 0;
   for (const double fore : {-half_base, half_base})
     for (const double side : {-half_track, half_track}) {
-      const Pose2 wheel = plane * Pose2{fore, side, 0};
+      const localization::Pose2 wheel = plane * localization::Pose2{fore, side, 0};
       const auto h = terrain.height(wheel.x, wheel.y);
       if (!h) return std::nullopt;
       mean += *h / 4;
@@ -34,4 +35,4 @@ std::optional<VehiclePose> vehicle_pose_on(const Terrain& terrain, const Pose2& 
   return VehiclePose{plane, mean, roll, pitch};
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

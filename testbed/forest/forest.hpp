@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-namespace waymark {
+namespace waymark::testbed {
 
 /// Standing tree, metres, GridFrame. `species` is an index into ForestModel::species; 0 if there is only one.
 struct StandingTree {
@@ -15,4 +15,4 @@ struct StandingTree {
   friend bool operator==(const StandingTree&, const StandingTree&) = default;
 };
 
-}  // namespace waymark
+}  // namespace waymark::testbed

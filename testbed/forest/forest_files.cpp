@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace waymark {
+namespace waymark::testbed {
 
 using Json = nlohmann::ordered_json;
 
@@ -57,4 +57,4 @@ std::string forest_job(const std::string& name, const ForestModel& law, const st
   return Json{{"name", name}, {"stages", stages}}.dump(2) + "\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

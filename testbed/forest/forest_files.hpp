@@ -4,7 +4,7 @@
 #include <vector>
 #include "geo/crs.hpp"
 #include "testbed/forest/forest_scan.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Truth tables as CSV; coordinates in units of the CRS (`unit` metres each), everything else in metres.
 /// - `trees`: type,x,y,z,height,diameter,crown_diameter,crown_base,species,stand,exposed, as read by
@@ -23,4 +23,4 @@ std::string stands_geojson(const SyntheticForest& forest, const Crs& crs, double
 /// Returns the job that maps the trees of chm.tif in the same folder.
 std::string forest_job(const std::string& name, const ForestModel& law, const std::string& crs);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "testbed/forest/forest.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Allometry and crown shape of a species. Height (Chapman-Richards): H = 1.3 + top (1 - exp(-rate
 /// D))^bend, D in centimetres. Crown diameter: CD = crown_intercept + crown_slope D, D in metres.
@@ -58,4 +58,4 @@ struct SyntheticStand {
 
 inline constexpr double kMinDbh = 0.07;  ///< metres; trees below are understory
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -10,7 +10,7 @@
 #include "core/random.hpp"
 #include "testbed/noise.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -247,4 +247,4 @@ std::vector<double> visible_crown_fraction(const ForestModel& law, const Synthet
   return seen;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

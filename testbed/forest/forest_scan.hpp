@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "testbed/forest/plant_forest.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Return of an airborne laser scanner. Metres, GridFrame.
 struct LaserReturn {
@@ -41,4 +41,4 @@ ForestRasters scan_forest(const ForestModel& law, const SyntheticForest& forest,
 std::vector<double> visible_crown_fraction(const ForestModel& law, const SyntheticForest& forest,
                                            std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

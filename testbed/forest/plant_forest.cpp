@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 using Place = Eigen::Vector2d;
@@ -203,4 +203,4 @@ int stand_index_at(const std::vector<SyntheticStand>& stands, const Place& place
   return -1;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -3,7 +3,7 @@
 #include <vector>
 #include "geo/terrain.hpp"
 #include "testbed/forest/forest_model.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Synthetic forest with its truth.
 struct SyntheticForest {
@@ -25,4 +25,4 @@ SyntheticForest plant_forest(const ForestModel& law, const Terrain& terrain, dou
 /// Returns the index of the stand that contains a position; -1 if none does.
 int stand_index_at(const std::vector<SyntheticStand>& stands, const Eigen::Vector2d& place);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "testbed/scenario_sections.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 
 void describe_forest(Scenario& s, OptionVisitor& field) {
   ForestModel& f = s.forest;
@@ -41,4 +41,4 @@ void describe_forest(Scenario& s, OptionVisitor& field) {
   field("points", f.points, {.help = "Write the point cloud"});
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -9,7 +9,7 @@
 #include "core/random.hpp"
 #include "testbed/landing/crater_profile.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -214,4 +214,4 @@ std::optional<TrueCrater> measure_crater(const Terrain& terrain, const CraterPla
                     .age = crater.age};
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -8,7 +8,7 @@
 #include "testbed/noise.hpp"
 #include "testbed/scene.hpp"
 #include "testbed/site_model.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Crater to be generated.
 struct CraterPlan {
@@ -33,4 +33,4 @@ void excavate(Grid<float>& heights, const NodeGrid& nodes, const CraterPlan& cra
 /// 0.4 radii. `std::nullopt` if its rim leaves the terrain.
 std::optional<TrueCrater> measure_crater(const Terrain& terrain, const CraterPlan& crater);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

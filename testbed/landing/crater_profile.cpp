@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kRim = 0.036;       // diameters
@@ -100,4 +100,4 @@ double CraterProfiles::height(double age, double r) const {
                    std::lerp(heights_[i + 1][j], heights_[i + 1][j + 1], q), p);
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
-namespace waymark {
+namespace waymark::testbed {
 
 /// Height profile of a crater over its radius, from fresh to almost erased.
 /// - Fresh bowl: depth / diameter 0.2, raised rim 0.036, ejecta falling as r^-3 (Pike 1977, Melosh 1989).
@@ -30,4 +30,4 @@ class CraterProfiles {
   std::vector<std::vector<float>> heights_;  ///< per age, kPerDiameter samples per diameter
 };
 
-}  // namespace waymark
+}  // namespace waymark::testbed

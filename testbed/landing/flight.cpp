@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 Eigen::Vector3d random_vector(Random& random, double sd) {
@@ -143,4 +143,4 @@ void check_footprints(const Scene& scene, const std::vector<Shot>& shots) {
     }
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

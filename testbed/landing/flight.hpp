@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "testbed/scenario.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Image to be taken.
 struct Shot {
@@ -22,4 +22,4 @@ SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots);
 /// Throws Error{usage} naming the first image that extends beyond the terrain, with what to change.
 void check_footprints(const Scene& scene, const std::vector<Shot>& shots);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -9,7 +9,7 @@
 #include "core/random.hpp"
 #include "testbed/landing/relief.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 // Height of the shadow surface at each node: the maximum over the terrain towards the sun, lowered by
@@ -146,4 +146,4 @@ SurfaceShading LitTerrain::shading(const Eigen::Vector3d& point, double size) co
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -5,7 +5,7 @@
 #include "geo/sun.hpp"
 #include "testbed/noise.hpp"
 #include "testbed/scene.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Surface properties at a point of the terrain that determine its brightness.
 struct SurfaceShading {
@@ -41,4 +41,4 @@ class LitTerrain {
   double soft_ = 0.01;  ///< metres of height over which the edge of a shadow fades
 };
 
-}  // namespace waymark
+}  // namespace waymark::testbed

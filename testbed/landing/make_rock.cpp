@@ -6,7 +6,7 @@
 
 #include "testbed/landing/rock_field.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -119,4 +119,4 @@ RockSolid make_rock(RockShape shape, double width, double height, Random& random
   return rock;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

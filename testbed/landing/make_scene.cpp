@@ -9,7 +9,7 @@
 #include "testbed/landing/rock_field.hpp"
 #include "testbed/scene.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 void check(const SiteModel& ground) {
@@ -71,4 +71,4 @@ Scene make_scene(const SiteModel& ground, std::uint64_t seed) {
   return scene;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

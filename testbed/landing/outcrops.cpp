@@ -7,7 +7,7 @@
 #include "core/random.hpp"
 #include "testbed/landing/relief.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 
 Grid<float> add_outcrops(Grid<float>& heights, const SiteModel& ground, const NodeGrid& nodes,
                          std::uint64_t seed) {
@@ -52,4 +52,4 @@ Grid<float> add_outcrops(Grid<float>& heights, const SiteModel& ground, const No
   return cover;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

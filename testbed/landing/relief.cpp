@@ -9,7 +9,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 std::uint32_t noise_seed(std::uint64_t seed, std::string_view name) {
@@ -174,4 +174,4 @@ Grid<float> paint_albedo(const SiteModel& ground, const NodeGrid& nodes, const G
   return albedo;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

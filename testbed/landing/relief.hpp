@@ -6,7 +6,7 @@
 #include "testbed/landing/crater_field.hpp"
 #include "testbed/noise.hpp"
 #include "testbed/site_model.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Returns the nodes of the terrain: north-up, centred at (east, north).
 NodeGrid nodes_of(const SiteModel& ground);
@@ -30,4 +30,4 @@ Grid<float> paint_albedo(const SiteModel& ground, const NodeGrid& nodes, const G
                          const Grid<float>& outcrops, const std::vector<CraterPlan>& craters,
                          std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -9,7 +9,7 @@
 #include "testbed/landing/crater_profile.hpp"
 #include "testbed/noise.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -142,4 +142,4 @@ RockField scatter_rocks(const SiteModel& ground, const Terrain& terrain, const G
   return field;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -5,7 +5,7 @@
 #include "core/random.hpp"
 #include "testbed/landing/crater_field.hpp"
 #include "testbed/scene.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Returns the number of rocks wider than `diameter` per square metre (the integral of dF / (pi D^2 / 4) up
 /// to the largest).
@@ -24,4 +24,4 @@ struct RockField {
 RockField scatter_rocks(const SiteModel& ground, const Terrain& terrain, const Grid<float>& dunes,
                         const std::vector<CraterPlan>& craters, std::uint64_t seed);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -109,4 +109,4 @@ bool intersects(const RockSolid& rock, const Eigen::Vector3d& origin, const Eige
   return p.any() && p.leave > 0;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

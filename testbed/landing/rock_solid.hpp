@@ -6,7 +6,7 @@
 #include <vector>
 #include "core/frames.hpp"
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 enum class RockShape : std::uint8_t { ellipsoid, irregular, cylinder };
 
@@ -36,4 +36,4 @@ std::optional<SolidHit> intersect(const RockSolid& rock, const Eigen::Vector3d& 
 /// Returns whether the ray, from its origin on, passes through the rock. Cheaper than intersect().
 bool intersects(const RockSolid& rock, const Eigen::Vector3d& origin, const Eigen::Vector3d& along);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 struct Spot {
@@ -80,4 +80,4 @@ RockTiles bin_rocks(const Scene& scene, const View& view, const Sun& sun, double
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

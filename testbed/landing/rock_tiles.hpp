@@ -4,7 +4,7 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "testbed/render.hpp"
-namespace waymark {
+namespace waymark::testbed {
 
 /// Rocks and rock shadows that may be visible in each square of an image.
 struct RockTiles {
@@ -20,4 +20,4 @@ struct RockTiles {
 /// Discards rocks whose outline is narrower than `smallest` pixels.
 RockTiles bin_rocks(const Scene& scene, const View& view, const Sun& sun, double smallest);
 
-}  // namespace waymark
+}  // namespace waymark::testbed

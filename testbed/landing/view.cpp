@@ -5,7 +5,7 @@
 
 #include "testbed/render.hpp"
 
-namespace waymark {
+namespace waymark::testbed {
 namespace {
 
 constexpr int kSteps = 48;
@@ -98,4 +98,4 @@ double image_sun_angle(const View& view, const Sun& sun) {
   return std::atan2(to->y() - from->y(), to->x() - from->x());
 }
 
-}  // namespace waymark
+}  // namespace waymark::testbed

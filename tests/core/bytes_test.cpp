@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 RC_GTEST_PROP(Bytes, ReadBackWhatWasWritten,
@@ -47,4 +47,4 @@ TEST(Bytes, LeftOverBytesAreNoticed) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

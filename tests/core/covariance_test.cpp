@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 Eigen::Matrix2d symmetric(double xx, double yy, double xy) {
@@ -38,4 +38,4 @@ TEST(Covariance, UnknownNumbersAreNone) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

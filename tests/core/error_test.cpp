@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(Error, SaysWhatWhereAndWhatToDo) {
@@ -36,4 +36,4 @@ TEST(EditDistance, CountsEdits) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -9,7 +9,7 @@
 
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
@@ -93,4 +93,4 @@ RC_GTEST_PROP(MergeFeature, TurningEveryAxisTurnsTheMean, ()) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(Grid, RowsAreContiguousAndColumnsComeFirst) {
@@ -34,4 +34,4 @@ TEST(Window, ContainsItsFirstCellAndNotItsEnd) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 /// Returns "line:column problem" of the fault; empty without one.
@@ -125,4 +125,4 @@ TEST(JsonText, AgreesWithTheParserOnMutations) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST_F(LockedFolders, WithoutAParentThrow) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

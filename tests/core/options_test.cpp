@@ -5,7 +5,7 @@
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -105,4 +105,4 @@ TEST_F(OptionsOfAll, HelpAndSchemaGiveFormerNamesOnce) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

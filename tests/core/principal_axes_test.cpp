@@ -9,7 +9,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(PrincipalAxes, AgreeWithTheGeneralSolver) {
@@ -46,4 +46,4 @@ TEST(PrincipalAxes, HandleDegenerateMatrices) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(Printable, TextStaysText) {
@@ -66,4 +66,4 @@ TEST(Error, MessagesFitAScreenAndHoldNoControls) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 constexpr FeatureValue kRadius{2.0, 0.25, 4};          // s = 0.5
@@ -80,4 +80,4 @@ RC_GTEST_PROP(SpreadConfidence, StaysBetweenZeroAndOne, ()) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

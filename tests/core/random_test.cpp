@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(Random, GivesTheNumbersOfThePublishedGenerator) {
@@ -42,4 +42,4 @@ TEST(Random, DistributionsHaveTheirMoments) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,7 +8,7 @@
 
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(Reorder, PutsEachItemWhereTheOrderSays) {
@@ -25,4 +25,4 @@ TEST(Reorder, PutsEachItemWhereTheOrderSays) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 TEST(TextFile, IsReadToItsLastByte) {
@@ -31,4 +31,4 @@ TEST(TextFile, SaysWhatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

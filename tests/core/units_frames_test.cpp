@@ -4,7 +4,7 @@
 #include "core/frames.hpp"
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 template <class A, class B>
@@ -47,4 +47,4 @@ TEST(Frames, ADirectionIsNotMoved) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

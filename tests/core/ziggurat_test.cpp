@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 // Compares with the normal distribution function. The bound is that of Kolmogorov and Smirnov, exceeded by
@@ -44,4 +44,4 @@ TEST(Ziggurat, HasItsTails) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

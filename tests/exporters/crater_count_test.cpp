@@ -13,7 +13,8 @@
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::content_of;
@@ -23,8 +24,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// Two craters of 2 and 3 km on Mars; one image of 20 x 10 km in an equirectangular map.
-MapContents mars_craters() {
-  MapContents map;
+geodb::MapContents mars_craters() {
+  geodb::MapContents map;
   register_landmark_types(map.types);
   map.crs = Crs::from_text("+proj=eqc +lat_ts=0 +lon_0=0 +a=3396190 +b=3396190 +units=m +no_defs +type=crs");
   const TypeId id = map.types.id("crater");
@@ -38,7 +39,7 @@ MapContents mars_craters() {
     landmark.quality = {1, 1, std::vector<std::optional<double>>(map.types[id].features.size())};
     map.landmarks.push_back(landmark);
   }
-  ImageRecord image;
+  geodb::ImageRecord image;
   image.name = "ctx.tif";
   image.footprint = {{{0, 0}, {20000, 0}, {20000, 10000}, {0, 10000}}};
   map.images = {image};
@@ -59,7 +60,7 @@ class CraterCount : public ::testing::Test {
 };
 
 TEST_F(CraterCount, SccHasAxesOutlineAreaAndPlaces) {
-  write_map(map, mars_craters());
+  geodb::write_map(map, mars_craters());
   const std::string text = exported("mars.scc");
   EXPECT_THAT(text, AllOf(HasSubstr("a_axis_radius = 3396.19 <km>\n"),
                           HasSubstr("unit_boundary = {vertex,sub_area,tag,lon,lat\n"),
@@ -80,7 +81,7 @@ TEST_F(CraterCount, SccHasAxesOutlineAreaAndPlaces) {
 }
 
 TEST_F(CraterCount, DiamHasAreaAndDiameters) {
-  write_map(map, mars_craters());
+  geodb::write_map(map, mars_craters());
   const std::string text = exported("mars.diam");
   EXPECT_THAT(text, AllOf(::testing::StartsWith("area="), HasSubstr("\ncrater={diameter,fraction\n"),
                           ::testing::EndsWith("\n}\n")));
@@ -88,21 +89,21 @@ TEST_F(CraterCount, DiamHasAreaAndDiameters) {
 }
 
 TEST_F(CraterCount, OverlappingFootprintsCountOnce) {
-  MapContents contents = mars_craters();
+  geodb::MapContents contents = mars_craters();
   contents.images.push_back(contents.images[0]);
   contents.images[1].name = "ctx2.tif";
   for (auto& corner : contents.images[1].footprint[0]) corner.x() += 10000;
-  write_map(map, contents);
-  const auto area = counting_area(MapStore::open(map));
+  geodb::write_map(map, contents);
+  const auto area = counting_area(geodb::MapStore::open(map));
   ASSERT_TRUE(area);
   EXPECT_NEAR(area->square_metres / 1e6, 300, 3e-3);
   EXPECT_EQ(area->source, "the footprints of 2 images together");
 }
 
 TEST_F(CraterCount, AreaMustBeKnownOrGiven) {
-  MapContents contents = mars_craters();
+  geodb::MapContents contents = mars_craters();
   contents.images.clear();
-  write_map(map, contents);
+  geodb::write_map(map, contents);
   EXPECT_THAT(
       error_of([&] { exported("mars.scc"); }),
       AllOf(HasSubstr("the area on which the craters were counted is not known"), HasSubstr("--area KM2")));
@@ -115,9 +116,9 @@ TEST_F(CraterCount, AreaMustBeKnownOrGiven) {
 TEST_F(CraterCount, OtherMapsAreRefused) {
   test::write_small_map(map);  // mountain tops
   EXPECT_THAT(error_of([&] { exported("x.diam"); }), HasSubstr("no type 'crater' with a radius to count"));
-  MapContents local = mars_craters();
+  geodb::MapContents local = mars_craters();
   local.crs = Crs::local();
-  write_map(map, local);
+  geodb::write_map(map, local);
   EXPECT_THAT(error_of([&] { exported("x.scc"); }), HasSubstr("the map is on no body"));
   EXPECT_THAT(exported("x.diam"), HasSubstr("area=200.000000000\n"));
 }
@@ -157,4 +158,4 @@ TEST(SizeFrequency, RIsFlatWhereNumbersFallWithTheCube) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

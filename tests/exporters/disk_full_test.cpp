@@ -7,7 +7,8 @@
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::error_of;
@@ -24,12 +25,12 @@ class FullDisk : public ::testing::Test {
     std::filesystem::create_directory(disk);
     mounted = ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=200k") == 0;
     if (!mounted) GTEST_SKIP() << "a small tmpfs can only be mounted by root";
-    MapContents contents = test::three_summits("EPSG:4326", -70, -32, 0.1);
+    geodb::MapContents contents = test::three_summits("EPSG:4326", -70, -32, 0.1);
     for (int i = 0; i < 6000; ++i) {
       contents.landmarks.push_back(contents.landmarks[0]);
       contents.landmarks.back().uid = "mt-" + std::to_string(i);
     }
-    write_map(map, contents);
+    geodb::write_map(map, contents);
   }
   void TearDown() override {
     if (mounted) ::umount2(disk.c_str(), MNT_DETACH);
@@ -56,4 +57,4 @@ TEST_F(FullDisk, ReportSaysSoToo) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,8 @@
 #include "exporters/report/map_view.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using ::testing::ElementsAre;
@@ -64,7 +65,7 @@ TEST(NorthArrow, TurnsWithThePolarMap) {
 }
 
 TEST(DrawMarkers, ForemostComesLastAndLabelled) {
-  const MapContents map = test::three_summits("EPSG:4326", -70, -32, 0.1);
+  const geodb::MapContents map = test::three_summits("EPSG:4326", -70, -32, 0.1);
   const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
   const MapView view = view_of(map.crs, {-70.2, -32.2, -69.8, -31.8});
   const MapMarkers markers = draw_markers(view, {section});
@@ -74,8 +75,8 @@ TEST(DrawMarkers, ForemostComesLastAndLabelled) {
 }
 
 /// Many landmarks of one type in rows of 100 over a kilometre.
-MapContents crowd_of(const std::string& type, std::size_t count) {
-  MapContents map = test::three_summits("EPSG:32719", 0, 0, 1);
+geodb::MapContents crowd_of(const std::string& type, std::size_t count) {
+  geodb::MapContents map = test::three_summits("EPSG:32719", 0, 0, 1);
   const TypeId id = map.types.id(type);
   Landmark one = map.landmarks[0];
   one.type = id;
@@ -91,7 +92,7 @@ MapContents crowd_of(const std::string& type, std::size_t count) {
 }
 
 /// "scale(1.23)" of the last marker.
-double last_scale(const MapContents& map) {
+double last_scale(const geodb::MapContents& map) {
   const MapView view = view_of(map.crs, {0, 0, 1000, 1000});
   const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
   const std::string svg = draw_markers(view, {section}).svg;
@@ -110,4 +111,4 @@ TEST(DrawMarkers, BowlsStayTrueToScale) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

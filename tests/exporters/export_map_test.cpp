@@ -12,7 +12,8 @@
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::content_of;
@@ -60,7 +61,8 @@ TEST_F(ExportMap, GeoJsonFollowsRfc7946) {
 }
 
 TEST_F(ExportMap, GeoJsonOfAProjectedMapIsInDegrees) {
-  write_map(folder / "utm.gpkg", test::three_summits("EPSG:32719", 405277.185502678, 6387062.55179871, 1000));
+  geodb::write_map(folder / "utm.gpkg",
+                   test::three_summits("EPSG:32719", 405277.185502678, 6387062.55179871, 1000));
   export_map(folder / "utm.gpkg", out("tops.geojson"));
   const Json at = Json::parse(content_of(folder / "tops.geojson"))["features"][0]["geometry"]["coordinates"];
   EXPECT_NEAR(at[0].get<double>(), -70.01, 1e-7);  // RFC 7946 output has seven decimals
@@ -68,7 +70,7 @@ TEST_F(ExportMap, GeoJsonOfAProjectedMapIsInDegrees) {
 }
 
 TEST_F(ExportMap, GeoJsonAcrossTheAntimeridianCountsFromMinus180) {
-  write_map(folder / "fiji.gpkg", test::three_summits("EPSG:4326", 180.5, -17, 0.1));
+  geodb::write_map(folder / "fiji.gpkg", test::three_summits("EPSG:4326", 180.5, -17, 0.1));
   export_map(folder / "fiji.gpkg", out("tops.geojson"));
   const Json json = Json::parse(content_of(folder / "tops.geojson"));
   EXPECT_NEAR(json["features"][0]["geometry"]["coordinates"][0].get<double>(), -179.5, 1e-7);
@@ -157,8 +159,8 @@ TEST_F(ExportMap, UnknownTypeSuggestsTheNearest) {
 
 TEST_F(ExportMap, GeoPackageSubsetIsAMapAgain) {
   export_map(two, out("subset.gpkg"), {.types = {"mountain_top"}, .crs = "EPSG:32719"});
-  EXPECT_THAT(validate_map(folder / "subset.gpkg"), IsEmpty());
-  const MapStore map = MapStore::open(folder / "subset.gpkg");
+  EXPECT_THAT(geodb::validate_map(folder / "subset.gpkg"), IsEmpty());
+  const geodb::MapStore map = geodb::MapStore::open(folder / "subset.gpkg");
   EXPECT_THAT(map.types().names(), ElementsAre("mountain_top"));
   EXPECT_EQ(map.crs().id(), "EPSG:32719");
   EXPECT_EQ(map.count(), 3);
@@ -203,9 +205,9 @@ TEST_F(ExportMap, VirtualFilesAreWrittenInPlace) {
 }
 
 TEST_F(ExportMap, PositionsOutsideTheCrsAreCounted) {
-  MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+  geodb::MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   map.landmarks[1].position.xyz.y() = 120;
-  write_map(folder / "odd.gpkg", map);
+  geodb::write_map(folder / "odd.gpkg", map);
   const ExportSummary summary = export_map(folder / "odd.gpkg", out("tops.csv"), {.crs = "EPSG:32719"});
   EXPECT_THAT(summary.warnings,
               ElementsAre("1 of 3 mountain_top landmarks have no position in EPSG:32719 and are left out"));
@@ -221,7 +223,7 @@ TEST_F(ExportMap, EveryFormatOfThisGdalGivesAFileOrAClearError) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test
 
 // A leak of GDAL 3.6 alone: a driver that fails to write forgets its XML parser. Asked by the asan preset.
 extern "C" const char* __lsan_default_suppressions();

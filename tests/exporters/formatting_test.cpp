@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 const FeatureSpec kElevation{.name = "elevation", .unit = "m", .scale = Scale::interval, .summary = {}};
@@ -55,4 +56,4 @@ TEST(Escaped, LeavesNoMarkup) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::content_of;
@@ -44,8 +45,8 @@ std::optional<Rows> sql(const std::filesystem::path& file, const std::string& sc
 /// Returns a map with rows in every table that the report reads, and without triggers, which would refuse
 /// rows.
 std::filesystem::path map_with_all_tables(const test::TemporaryFolder& folder) {
-  MapContents contents = test::three_summits("EPSG:4326", -70.05, -32.65, 0.05);
-  ImageRecord image;
+  geodb::MapContents contents = test::three_summits("EPSG:4326", -70.05, -32.65, 0.05);
+  geodb::ImageRecord image;
   image.name = "a.jpg";
   image.footprint = {{{-70.1, -32.7}, {-70, -32.7}, {-70, -32.6}, {-70.1, -32.6}, {-70.1, -32.7}}};
   image.camera_json = "{}";
@@ -63,7 +64,7 @@ std::filesystem::path map_with_all_tables(const test::TemporaryFolder& folder) {
     contents.observations.push_back(seen);
   }
   const auto map = folder / "whole.gpkg";
-  write_map(map, contents);
+  geodb::write_map(map, contents);
   const auto triggers = sql(map, "SELECT name FROM sqlite_master WHERE type = 'trigger'");
   for (const auto& trigger : triggers.value()) sql(map, "DROP TRIGGER \"" + trigger[0] + "\"");
   return map;
@@ -110,7 +111,7 @@ TEST(HostileMap, ColoursAndUnitsOfAMapAreCheckedByKind) {
   EXPECT_THAT(content_of(page), HasSubstr("&lt;img&gt;"));
   EXPECT_THAT(content_of(page), Not(HasSubstr("<img")));
   std::string found;
-  for (const Finding& finding : validate_map(map)) found += finding.code + " ";
+  for (const geodb::Finding& finding : geodb::validate_map(map)) found += finding.code + " ";
   EXPECT_THAT(found, HasSubstr("type.colour"));
 }
 
@@ -131,7 +132,7 @@ TEST(HostileMap, FormulasInTablesAreText) {
   EXPECT_EQ(csv_text("-2+3"), "'-2+3");
   EXPECT_EQ(csv_text("-2.5e3"), "-2.5e3");
   EXPECT_EQ(csv_text("a=b"), "a=b");
-  ShapeLayer layer;
+  geodb::ShapeLayer layer;
   layer.columns = {{"stand", "", AttributeSpec::Kind::text, ""}};
   layer.rows = {{{}, {std::string("=HYPERLINK(\"http://x\")")}}};
   EXPECT_EQ(layer_to_csv(layer), "stand\n\"'=HYPERLINK(\"\"http://x\"\")\"\n");
@@ -146,4 +147,4 @@ TEST(HostileMap, FormulasInTablesAreText) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

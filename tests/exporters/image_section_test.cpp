@@ -8,7 +8,8 @@
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::content_of;
@@ -47,13 +48,13 @@ class ReportOfImages : public ::testing::Test {
                   [&](const Landmark& l) { return l.position.xyz == contents.observations[3].position.xyz; });
   }
   std::string report(const ReportOptions& options = {}) {
-    write_map(folder / "map.gpkg", contents);
+    geodb::write_map(folder / "map.gpkg", contents);
     write_report(folder / "map.gpkg", folder / "map.html", options);
     return content_of(folder / "map.html");
   }
 
   test::TemporaryFolder folder;
-  MapContents contents;
+  geodb::MapContents contents;
 };
 
 TEST_F(ReportOfImages, ShowsTheImageWithWhatWasUsedAndRejected) {
@@ -98,4 +99,4 @@ TEST_F(ReportOfImages, SameMapGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,7 @@
 
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 constexpr int kNoQgis = 77;
@@ -37,4 +37,4 @@ TEST(QgisRender, KnowsThePlanetaryCrs) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "core/error.hpp"
 #include "exporters/raster/image_file.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 namespace fs = std::filesystem;
@@ -79,4 +80,4 @@ TEST_F(RasterFile, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

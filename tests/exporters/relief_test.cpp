@@ -9,7 +9,8 @@
 #include "small_dem.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 const Crs kDegrees = Crs::from_text("EPSG:4326");
@@ -106,4 +107,4 @@ TEST(Base64, MatchesRfc4648) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 #include "small_dem.hpp"
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::content_of;
@@ -20,14 +21,14 @@ class ReportHtml : public ::testing::Test {
   test::TemporaryFolder folder;
   std::filesystem::path map = folder / "high_andes.gpkg", html = folder / "report.html";
 
-  std::string report_of(const MapContents& contents) {
-    write_map(map, contents);
+  std::string report_of(const geodb::MapContents& contents) {
+    geodb::write_map(map, contents);
     write_report(map, html);
     return content_of(html);
   }
 };
 
-MapContents andes() {
+geodb::MapContents andes() {
   return test::three_summits("EPSG:4326", -70.05, -32.65, 0.05);
 }
 
@@ -64,7 +65,7 @@ TEST_F(ReportHtml, AccountsForTheRun) {
 }
 
 TEST_F(ReportHtml, DrawsTheReliefOfTheInputFiles) {
-  MapContents contents = andes();
+  geodb::MapContents contents = andes();
   test::write_small_dem(folder / "dem.tif", -70.1, -32.55, 0.001);
   contents.run.inputs = {
       {"elsewhere/dem.tif", std::filesystem::file_size(folder / "dem.tif"), ""}};  // beside the map
@@ -79,7 +80,7 @@ TEST_F(ReportHtml, SameMapGivesTheSameBytes) {
 }
 
 TEST_F(ReportHtml, MapWithoutLandmarksOrRunStillHasAReport) {
-  MapContents contents;
+  geodb::MapContents contents;
   register_landmark_types(contents.types);
   contents.crs = Crs::from_text("IAU_2015:49900");
   const std::string report = report_of(contents);
@@ -89,7 +90,7 @@ TEST_F(ReportHtml, MapWithoutLandmarksOrRunStillHasAReport) {
 
 TEST_F(ReportHtml, LocalMapHasAScaleButNoNorth) {
   const std::string report = report_of([] {
-    MapContents contents = test::three_summits("EPSG:4326", 5, 5, 10);
+    geodb::MapContents contents = test::three_summits("EPSG:4326", 5, 5, 10);
     contents.crs = Crs::local();
     return contents;
   }());
@@ -98,16 +99,16 @@ TEST_F(ReportHtml, LocalMapHasAScaleButNoNorth) {
 }
 
 TEST_F(ReportHtml, TitleCannotCarryMarkup) {
-  write_map(map, andes());
+  geodb::write_map(map, andes());
   write_report(map, html, {.title = "<b>& more"});
   EXPECT_THAT(content_of(html), HasSubstr("<h1>&lt;b&gt;&amp; more</h1>"));
 }
 
 TEST_F(ReportHtml, MissingFolderSaysSo) {
-  write_map(map, andes());
+  geodb::write_map(map, andes());
   EXPECT_THAT(error_of([&] { write_report(map, folder / "nowhere/report.html"); }),
               HasSubstr("cannot write report.html: its folder does not exist"));
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -5,14 +5,15 @@
 
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 const Crs kDegrees = Crs::from_text("EPSG:4326");
 const Crs kUtm19S = Crs::from_text("EPSG:32719");
 
 TEST(Reproject, MovesPositionsAndSaddlesAlike) {
-  const MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+  const geodb::MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   const LandmarkType& type = map.types[map.landmarks[0].type];
   const Reprojected there = reproject(map.landmarks, type, kDegrees, kUtm19S);
   const Landmark& one = there.landmarks[0];
@@ -25,13 +26,13 @@ TEST(Reproject, MovesPositionsAndSaddlesAlike) {
 }
 
 TEST(Reproject, ToTheSameCrsChangesNothing) {
-  const MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+  const geodb::MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   const Reprojected there = reproject(map.landmarks, map.types[map.landmarks[0].type], kDegrees, kDegrees);
   EXPECT_EQ(there.landmarks[0].position, map.landmarks[0].position);
 }
 
 TEST(Reproject, CountsPositionsOutsideTheOtherCrs) {
-  MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+  geodb::MapContents map = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   map.landmarks[1].position.xyz.y() = 120;  // no such latitude
   const Reprojected there = reproject(map.landmarks, map.types[map.landmarks[0].type], kDegrees, kUtm19S);
   EXPECT_EQ(there.landmarks.size(), 2u);
@@ -39,4 +40,4 @@ TEST(Reproject, CountsPositionsOutsideTheOtherCrs) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

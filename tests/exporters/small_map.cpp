@@ -9,7 +9,7 @@
 namespace waymark::test {
 namespace {
 
-Landmark summit(const MapContents& map, const std::string& uid, double x, double y, double elevation,
+Landmark summit(const geodb::MapContents& map, const std::string& uid, double x, double y, double elevation,
                 double prominence) {
   const LandmarkType& type = map.types[map.types.id("mountain_top")];
   Landmark landmark;
@@ -28,7 +28,7 @@ Landmark summit(const MapContents& map, const std::string& uid, double x, double
   return landmark;
 }
 
-Landmark crater(const MapContents& map, const std::string& uid, double x, double y, double radius) {
+Landmark crater(const geodb::MapContents& map, const std::string& uid, double x, double y, double radius) {
   const LandmarkType& type = map.types[map.types.id("crater")];
   Landmark landmark;
   landmark.uid = uid;
@@ -51,8 +51,8 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_);
 }
 
-MapContents three_summits(const std::string& crs, double x, double y, double spacing) {
-  MapContents map;
+geodb::MapContents three_summits(const std::string& crs, double x, double y, double spacing) {
+  geodb::MapContents map;
   register_landmark_types(map.types);
   map.crs = Crs::from_text(crs);
   map.landmarks = {summit(map, "mt-one", x, y, 3000, 3000), summit(map, "mt-two", x + spacing, y, 2000, 500),
@@ -71,18 +71,18 @@ MapContents three_summits(const std::string& crs, double x, double y, double spa
 }
 
 void write_small_map(const std::filesystem::path& path) {
-  write_map(path, three_summits("EPSG:4326", -70.01, -32.65, 0.1));
+  geodb::write_map(path, three_summits("EPSG:4326", -70.01, -32.65, 0.1));
 }
 
 void write_mars_map(const std::filesystem::path& path) {
-  write_map(path, three_summits("IAU_2015:49900", 226.2, 18.65, 1));
+  geodb::write_map(path, three_summits("IAU_2015:49900", 226.2, 18.65, 1));
 }
 
 void write_two_type_map(const std::filesystem::path& path) {
-  MapContents map = three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+  geodb::MapContents map = three_summits("EPSG:4326", -70.01, -32.65, 0.1);
   map.landmarks.push_back(crater(map, "cr-one", -70, -32.6, 800));
   map.landmarks.push_back(crater(map, "cr-two", -70.05, -32.6, 3000));
-  write_map(path, map);
+  geodb::write_map(path, map);
 }
 
 std::string content_of(const std::filesystem::path& file) {

@@ -23,7 +23,7 @@ class TemporaryFolder {
 
 /// Returns three summits about (x, y), `spacing` CRS units apart, the first the foremost; and one run. uids:
 /// mt-one, mt-two, mt-three; elevations 3000, 2000, 1000; prominences 3000, 500, 20.
-MapContents three_summits(const std::string& crs, double x, double y, double spacing);
+geodb::MapContents three_summits(const std::string& crs, double x, double y, double spacing);
 
 /// Writes the three summits to `path`, in EPSG:4326 about 70 W 32.5 S.
 void write_small_map(const std::filesystem::path& path);

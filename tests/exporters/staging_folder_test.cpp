@@ -8,7 +8,8 @@
 
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using ::testing::ElementsAre;
@@ -70,4 +71,4 @@ TEST(StagingFolders, OfAKilledRunVanishWithTheNext) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

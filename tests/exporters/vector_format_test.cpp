@@ -5,7 +5,8 @@
 
 #include "small_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace exporters;
 namespace {
 
 using test::error_of;
@@ -100,4 +101,4 @@ TEST(FittingNames, KeepShortEndingsAndStayUnique) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -10,7 +10,7 @@
 #include "geo/distortion_limit.hpp"
 #include "geo/sun.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 Camera camera(const std::array<double, 8>& distortion, Camera::Lens lens = Camera::Lens::brown) {
@@ -203,4 +203,4 @@ TEST(Sun, ShinesFromItsAzimuthAndElevation) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

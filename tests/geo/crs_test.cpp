@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -147,4 +147,4 @@ TEST(GeographicCrs, HasTheSameDatum) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

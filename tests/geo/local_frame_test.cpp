@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 void expect_near(const Eigen::Vector3d& found, const Eigen::Vector3d& wanted, double tolerance) {
@@ -44,4 +44,4 @@ TEST(LocalFrame, HasNoSeamAtTheAntimeridian) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

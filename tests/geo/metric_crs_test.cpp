@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 std::string fitting(const char* crs, double lon, double lat) {
@@ -30,4 +30,4 @@ TEST(FittingMetricCrs, HasNoZonesOffTheEarth) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

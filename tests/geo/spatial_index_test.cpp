@@ -7,7 +7,7 @@
 #include <numeric>
 #include <random>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -82,4 +82,4 @@ TEST(SpatialIndex, InvalidQueriesFindNothing) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -175,4 +175,4 @@ TEST(Terrain, RejectsInvalidGrids) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

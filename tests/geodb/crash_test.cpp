@@ -15,7 +15,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::HasSubstr;
@@ -138,4 +139,4 @@ TEST(DiskFull, LeavesTheOldMapAndReportsIt) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -13,7 +13,8 @@
 #include "geodb/sqlite/sqlite.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 TEST(Geometry, PointsReadBack) {
@@ -100,4 +101,4 @@ TEST(LayerStyle, IsWellFormedForEveryType) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

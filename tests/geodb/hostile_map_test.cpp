@@ -15,7 +15,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::AllOf;
@@ -151,4 +152,4 @@ TEST_F(HostileFile, JournalsOfDeadWritersAreRemoved) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

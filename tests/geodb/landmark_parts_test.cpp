@@ -14,7 +14,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 /// Landmarks divided into `columns` x `columns` squares; records how many are in memory at most.
@@ -202,4 +203,4 @@ TEST(LandmarkParts, TheCacheDoesNotGrow) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::HasSubstr;
@@ -123,4 +124,4 @@ TEST(MapEditor, ReportsWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -15,7 +15,8 @@
 #include "landmarks/sensor_profile.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::HasSubstr;
@@ -226,4 +227,4 @@ TEST(MapQuery, TypingErrorsAreErrors) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

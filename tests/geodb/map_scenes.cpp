@@ -12,7 +12,8 @@
 #include "geodb/sqlite/sqlite.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "waymark-test-XXXXXX").string();
@@ -122,8 +123,7 @@ DemHandle ramp_dem(const Crs& crs, std::int64_t columns, std::int64_t rows) {
   for (std::int64_t r = 0; r < rows; ++r)
     for (std::int64_t c = 0; c < columns; ++c)
       heights(c, r) = c < 5 && r < 5 ? kNoHeight : static_cast<double>(c) + 1000.0 * static_cast<double>(r);
-  return std::make_shared<testing::MemoryDem>(std::move(heights),
-                                              Georeference{crs, 400'015, 5'099'985, 30, -30});
+  return std::make_shared<MemoryDem>(std::move(heights), Georeference{crs, 400'015, 5'099'985, 30, -30});
 }
 
 std::string file_bytes(const std::filesystem::path& path) {
@@ -144,4 +144,4 @@ std::string query_text(const std::filesystem::path& map, const std::string& sql)
   return row.step() ? std::string(row.text(0)) : "";
 }
 
-}  // namespace waymark
+}  // namespace waymark::test

@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 #include "geodb/map_contents.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 
 /// Temporary folder of a test, removed by the destructor.
 class TemporaryFolder {
@@ -47,4 +48,4 @@ std::string file_bytes(const std::filesystem::path& path);
 void execute_sql(const std::filesystem::path& map, const std::string& script);
 std::string query_text(const std::filesystem::path& map, const std::string& sql);
 
-}  // namespace waymark
+}  // namespace waymark::test

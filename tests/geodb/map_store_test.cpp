@@ -16,7 +16,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::HasSubstr;
@@ -197,4 +198,4 @@ TEST(MapStore, VisitsABoxInTheOrderOfRows) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::HasSubstr;
@@ -154,4 +155,4 @@ TEST(OtherReaders, NpmGeopackageReadsTheRows) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

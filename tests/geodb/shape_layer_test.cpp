@@ -11,7 +11,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::ElementsAre;
@@ -197,4 +198,4 @@ TEST(ShapeLayer, RowsOfAWindowAreThoseWhoseBoxesMeetIt) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

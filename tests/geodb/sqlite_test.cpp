@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark::sqlite {
+namespace waymark::test {
+using namespace geodb;
+using namespace geodb::sqlite;
 namespace {
 
 template <class Text>
@@ -21,4 +23,4 @@ TEST(Sqlite, ATemporaryTextCannotBeBound) {
 }
 
 }  // namespace
-}  // namespace waymark::sqlite
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 TEST(ValidateMap, ASoundMapHasNoFindings) {
@@ -144,4 +145,4 @@ TEST(ValidateMap, CountsWhatItDoesNotList) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

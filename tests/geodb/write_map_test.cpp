@@ -11,7 +11,8 @@
 #include "geodb/map_store.hpp"
 #include "tests/geodb/map_scenes.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace geodb;
 namespace {
 
 using ::testing::ElementsAre;
@@ -172,4 +173,4 @@ TEST(WriteMap, NamesTheFolderThatIsMissing) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

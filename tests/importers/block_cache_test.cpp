@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 // Returns a block of 100 bytes that holds its number; counts how often it is decoded.
@@ -52,4 +53,4 @@ TEST_F(BlockCacheTest, ABlockLargerThanTheCacheIsStillServed) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 
 #include "importers/cameras/camera_set.hpp"
 #include "importers/tables/text_table.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 
 /// Returns the path of a real camera file outside the repository.
 inline std::string camera_data(const std::string& name) {
@@ -40,4 +41,4 @@ inline double turn_between(const PosedCamera& a, const PosedCamera& b) {
          kRadiansPerDegree;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

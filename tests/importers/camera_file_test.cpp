@@ -12,7 +12,8 @@
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using nlohmann::json;
@@ -253,4 +254,4 @@ TEST(Similarity, RefusesDegeneratePoints) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

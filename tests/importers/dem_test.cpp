@@ -9,7 +9,8 @@
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::ElementsAre;
@@ -281,4 +282,4 @@ TEST(ImportDem, KeepsItsImportOptions) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

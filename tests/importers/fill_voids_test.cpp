@@ -15,7 +15,8 @@
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 HeightWindow all_of(const DemSource& dem) {
@@ -159,4 +160,4 @@ TEST(FillVoids, EqualsGdalOnTheBerneseAlps) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

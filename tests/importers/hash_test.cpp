@@ -7,7 +7,8 @@
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::AllOf;
@@ -22,9 +23,9 @@ TEST(HashFile, KnowsThePublishedSum) {  // FIPS 180-4, appendix B.1
 
 TEST(HashFile, OfAPlainFileIsThatOfItsBytes) {
   const std::string path = write_text("large.bin", std::string(3'000'000, 'x'));
-  EXPECT_EQ(hash_file(path), hash_plain_file(path));
+  EXPECT_EQ(hash_file(path), pipeline::hash_plain_file(path));
   const std::string raster = write_raster({.path = write_text("a.tif", ""), .cells = dem_art("1 2")});
-  EXPECT_EQ(hash_file(raster), hash_plain_file(raster));
+  EXPECT_EQ(hash_file(raster), pipeline::hash_plain_file(raster));
 }
 
 TEST(HashFile, ReadsVirtualPaths) {
@@ -51,4 +52,4 @@ TEST(HashFile, SaysWhichFileIsMissing) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

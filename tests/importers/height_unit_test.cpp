@@ -3,7 +3,8 @@
 
 #include <gtest/gtest.h>
 
-namespace waymark {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 TEST(HeightUnit, KnowsTheUsualNames) {
@@ -21,4 +22,4 @@ TEST(HeightUnit, ReportsUnknownUnits) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

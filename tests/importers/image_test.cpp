@@ -11,7 +11,8 @@
 #include "importers/images/image_set.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::AllOf;
@@ -201,10 +202,10 @@ TEST(ImageSet, OnDiskIsARecipe) {
                                                             .sun = Sun{Degrees{10}, Degrees{20}},
                                                             .gsd = Meters{0.3},
                                                             .taken_utc = "x"});
-  const std::string bytes = Codec<ImageSet>::encode({image});
-  const ImageSet again = Codec<ImageSet>::decode(bytes);
+  const std::string bytes = pipeline::Codec<ImageSet>::encode({image});
+  const ImageSet again = pipeline::Codec<ImageSet>::decode(bytes);
   ASSERT_EQ(again.size(), 1u);
-  EXPECT_EQ(Codec<ImageSet>::encode(again), bytes);
+  EXPECT_EQ(pipeline::Codec<ImageSet>::encode(again), bytes);
   EXPECT_EQ(again[0]->info().view->camera, image->info().view->camera);
   EXPECT_EQ(again[0]->info().view->covariance, view.covariance);
   EXPECT_EQ(again[0]->info().crs.id(), "EPSG:32633");
@@ -214,7 +215,7 @@ TEST(ImageSet, OnDiskIsARecipe) {
 
 TEST(ImageSet, NoticesAnImageThatHasChanged) {
   const ImageHandle image = import_image(grey("i.tif", GDT_Byte, counted(5, 4)));
-  const ImageSet set = Codec<ImageSet>::decode(Codec<ImageSet>::encode({image}));
+  const ImageSet set = pipeline::Codec<ImageSet>::decode(pipeline::Codec<ImageSet>::encode({image}));
   grey("i.tif", GDT_Byte, counted(6, 4));
   EXPECT_THAT(message_of([&] { set[0]->read({0, 0, 5, 4}); }), HasSubstr("--rerun-from load_images"));
 }
@@ -231,4 +232,4 @@ TEST(LocalProjection, IsTrueToScaleAtItsPlace) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

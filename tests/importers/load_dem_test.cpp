@@ -14,44 +14,46 @@
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const Registry& stages() {
-  static const Registry registry = [] {
-    Registry made;
+const pipeline::Registry& stages() {
+  static const pipeline::Registry registry = [] {
+    pipeline::Registry made;
     register_importer_stages(made);
     return made;
   }();
   return registry;
 }
 
-RunResult load(const std::string& options) {
-  Pipeline pipeline(stages());
+pipeline::RunResult load(const std::string& options) {
+  pipeline::Pipeline pipeline(stages());
   pipeline.add("load_dem", options);
-  return run(pipeline, {.hash_file = hash_file});
+  return pipeline::run(pipeline, {.hash_file = hash_file});
 }
 
 TEST(LoadDem, WritesTheDemAndItsTiles) {
   const auto file = write_raster({.path = "/vsimem/a.tif", .cells = random_terrain(4, 150, 100)});
-  const RunResult result = load(R"({"files": [")" + file + R"("], "tile_cells": 64, "nodata": "unknown"})");
+  const pipeline::RunResult result =
+      load(R"({"files": [")" + file + R"("], "tile_cells": 64, "nodata": "unknown"})");
   const DemHandle& dem = result.artifact<DemHandle>("dem");
   EXPECT_EQ(dem->nodata_policy(), NodataPolicy::unknown);
   EXPECT_EQ(dem->geometry().columns, 150);
-  const auto& tiles = result.artifact<std::vector<Tile>>("tiles");
+  const auto& tiles = result.artifact<std::vector<pipeline::Tile>>("tiles");
   ASSERT_EQ(tiles.size(), 6u);
-  EXPECT_EQ(tiles[5], (Tile{5, 2, 1, {128, 64, 22, 36}}));
+  EXPECT_EQ(tiles[5], (pipeline::Tile{5, 2, 1, {128, 64, 22, 36}}));
   ASSERT_EQ(result.inputs.size(), 1u);
   EXPECT_EQ(result.inputs[0], hash_file(file));
 }
 
 TEST(LoadDem, PassesWarningsOn) {
   const auto file = write_raster({.path = "/vsimem/flat.tif", .cells = Grid<double>(4, 4, 3)});
-  const RunResult result = load(R"({"files": [")" + file + R"("]})");
+  const pipeline::RunResult result = load(R"({"files": [")" + file + R"("]})");
   ASSERT_EQ(result.report.stages.size(), 1u);
   EXPECT_THAT(result.report.stages[0].warnings, ElementsAre(HasSubstr("every cell has the height 3 m")));
 }
@@ -71,23 +73,24 @@ TEST(DemCodec, ReopensTheSameDem) {
       write_raster({.path = "/vsimem/a.tif", .cells = dem_art("1 . 3"), .crs = "", .nodata = -1});
   const DemHandle dem =
       import_dem({.files = {file}, .nodata = NodataPolicy::fill, .crs = "EPSG:32611", .height_sd = 2});
-  const std::string bytes = Codec<DemHandle>::encode(dem);
-  const DemHandle again = Codec<DemHandle>::decode(bytes);
+  const std::string bytes = pipeline::Codec<DemHandle>::encode(dem);
+  const DemHandle again = pipeline::Codec<DemHandle>::decode(bytes);
   EXPECT_EQ(again->read({0, 0, 3, 1}), dem_art("1 2 3"));
   EXPECT_EQ(again->geometry().where.crs.id(), "EPSG:32611");
   EXPECT_EQ(again->height_sd(), 2);
-  EXPECT_EQ(Codec<DemHandle>::encode(again), bytes);
+  EXPECT_EQ(pipeline::Codec<DemHandle>::encode(again), bytes);
 }
 
 TEST(DemCodec, CannotKeepADemThatIsNotOnFiles) {
-  EXPECT_THROW(Codec<DemHandle>::encode(std::make_shared<MemoryDem>(dem_art("1 2"))), std::logic_error);
+  EXPECT_THROW(pipeline::Codec<DemHandle>::encode(std::make_shared<MemoryDem>(dem_art("1 2"))),
+               std::logic_error);
 }
 
 TEST(TilesOf, CoverTheGridOnceRowByRow) {
   for (const std::int64_t side : {1, 3, 64, 100}) {
     Grid<int> times(10, 7);
     std::int64_t index = 0;
-    for (const Tile& tile : tiles_of(10, 7, side)) {
+    for (const pipeline::Tile& tile : tiles_of(10, 7, side)) {
       EXPECT_EQ(tile.index, index++);
       EXPECT_EQ(tile.cells.column, tile.column * side);
       for (std::int64_t row = tile.cells.row; row < tile.cells.end_row(); ++row)
@@ -105,4 +108,4 @@ TEST(NodataPolicy, NamesComeBack) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -13,7 +13,8 @@
 #include "pipeline/engine/runner.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 namespace fs = std::filesystem;
@@ -162,20 +163,20 @@ TEST(ListImages, EmptyInputIsAnError) {
               HasSubstr("there are no images"));
 }
 
-RunResult load(const std::string& options) {
-  Registry registry;
+pipeline::RunResult load(const std::string& options) {
+  pipeline::Registry registry;
   register_importer_stages(registry);
-  Pipeline pipeline(registry);
+  pipeline::Pipeline pipeline(registry);
   pipeline.add("flat_ground", R"({"crs": "local"})").add("load_images", options);
-  return run(pipeline, {.hash_file = hash_file});
+  return pipeline::run(pipeline, {.hash_file = hash_file});
 }
 
 TEST(LoadImages, ListsImagesWithTheirFingerprints) {
   const fs::path folder = folder_of("stage", {"a.pgm", "b.pgm"});
   const std::string options = R"({"cameras": ")" + cameras_in(folder, {"a.pgm", "b.pgm"}) +
                               R"(", "sun_azimuth": 90, "sun_elevation": 40})";
-  const RunResult result = load(options);
-  const auto& items = result.artifact<std::vector<ImageItem>>("images");
+  const pipeline::RunResult result = load(options);
+  const auto& items = result.artifact<std::vector<pipeline::ImageItem>>("images");
   ASSERT_EQ(items.size(), 2u);
   EXPECT_EQ(items[1].index, 1);
   EXPECT_EQ(items[1].file, (folder / "b.pgm").string());
@@ -201,4 +202,4 @@ TEST(HashFile, OfAFolderNoticesANewImage) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "geo/dem_handle.hpp"
 #include "importers/rasters/dem_codec.hpp"
 #include "tests/importers/raster_maker.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::Contains;
@@ -80,7 +81,7 @@ TEST(MetricDem, MetresStayAsTheyAre) {
 
 TEST(MetricDem, IsKeptInAWorkFolderAsSuch) {
   const DemHandle dem = import_dem({.files = {sloping("/vsimem/kept.tif")}, .metric = true});
-  const DemHandle again = Codec<DemHandle>::decode(Codec<DemHandle>::encode(dem));
+  const DemHandle again = pipeline::Codec<DemHandle>::decode(pipeline::Codec<DemHandle>::encode(dem));
   EXPECT_TRUE(again->geometry().where.crs.same_as(dem->geometry().where.crs));
   EXPECT_EQ(again->geometry().columns, dem->geometry().columns);
 }
@@ -97,4 +98,4 @@ TEST(MetricDem, RefusesHalfAPlanet) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

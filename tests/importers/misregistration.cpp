@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 constexpr int kHalf = 12;   // of a patch, pixels
@@ -127,4 +127,4 @@ double common_shift(const std::vector<Eigen::Vector2d>& shifts) {
   return std::hypot(median(east), median(north));
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -5,7 +5,7 @@
 
 #include "geo/image_source.hpp"
 #include "geo/terrain.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// An image in memory with its camera.
 struct Photo {
@@ -26,4 +26,4 @@ double median_length(const std::vector<Eigen::Vector2d>& shifts);
 /// Returns the length of the median shift, metres.
 double common_shift(const std::vector<Eigen::Vector2d>& shifts);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

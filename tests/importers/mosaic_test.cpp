@@ -9,7 +9,8 @@
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::AllOf;
@@ -233,4 +234,4 @@ TEST(Mosaic, ManyThreadsReadTheSame) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

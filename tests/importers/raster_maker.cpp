@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "geo/dem_source.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 void check(CPLErr result) {
@@ -94,4 +94,4 @@ std::string message_of(const std::function<void()>& action) {
   return "nothing was thrown";
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/grid.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 using GeoTransform = std::array<double, 6>;  ///< as in GDAL: about the corner of the first cell
 
@@ -44,4 +44,4 @@ std::string write_text(const std::string& name, const std::string& content);
 /// Returns the message of the Error that `action` throws.
 std::string message_of(const std::function<void()>& action);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "tests/importers/misregistration.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::Contains;
@@ -196,4 +197,4 @@ TEST(SunOfPhotos, NeedsTheTimeZone) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 #include "importers/rasters/dem.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::ElementsAre;
@@ -88,4 +89,4 @@ TEST_F(RealDem, LuxembourgIsRead) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -6,7 +6,8 @@
 #include "importers/images/image_labels.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::HasSubstr;
@@ -74,4 +75,4 @@ TEST(LabelSun, ReadsAnglesOfPlanetaryLabels) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

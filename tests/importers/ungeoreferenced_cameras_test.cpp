@@ -9,7 +9,8 @@
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using ::testing::Contains;
@@ -188,4 +189,4 @@ TEST(CsmIsd, KeepsMirroredImagesMirrored) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

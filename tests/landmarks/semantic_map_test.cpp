@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -149,4 +149,4 @@ TEST(SemanticMap, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

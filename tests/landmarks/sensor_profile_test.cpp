@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -97,4 +97,4 @@ TEST(SensorRegistry, ShippedProfilesNameFeaturesThatExist) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,7 +8,7 @@
 
 #include "landmarks/uid_index.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::MatchesRegex;
@@ -87,4 +87,4 @@ TEST(UidIndex, FindsTheFirstOfEachUid) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -12,7 +12,8 @@
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 /// Squared errors of a consistent filter, four per second, with Gauss-Markov errors of this correlation
@@ -199,4 +200,4 @@ TEST(MrclamConsistency, ExtendedKalmanIsWithinTheBandOfItsOwnModel) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

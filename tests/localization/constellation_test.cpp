@@ -12,7 +12,8 @@
 #include "made_look.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 struct Stars {
@@ -280,4 +281,4 @@ TEST(Constellation, TreesOfMountRainier) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -4,7 +4,8 @@
 
 #include "localization/filters/convergence.hpp"
 #include "made_world.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 TEST(ExplainedFraction, IsTheFractionOnTheMap) {
@@ -85,4 +86,4 @@ TEST(Convergence, CoversTheMapUntilItIsProven) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

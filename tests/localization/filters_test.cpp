@@ -10,7 +10,8 @@
 #include "localization/filters/particle_filter.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 IdentificationOptions identification_options(bool identities) {
@@ -249,4 +250,4 @@ TEST(AllFilters, NumbersThatAreNoneAreRejectedWithAReason) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "localization/global/sighting_memory.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, const LandmarkWindow& map) {
@@ -248,4 +249,4 @@ TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

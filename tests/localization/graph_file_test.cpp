@@ -12,7 +12,8 @@
 #include "localization/slam/graph_solver.hpp"
 #include "made_graph.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 using ::testing::AllOf;
@@ -24,14 +25,15 @@ class GraphFile : public ::testing::Test {
       std::filesystem::temp_directory_path() / ("waymark_graph_" + std::to_string(::getpid()) + ".txt");
   void TearDown() override { std::filesystem::remove(file_); }
 
-  ImportedGraph read(const std::string& text) {
+  importers::ImportedGraph read(const std::string& text) {
     std::ofstream(file_) << text;
-    return import_graph(file_, graph_format(file_));
+    return importers::import_graph(file_, importers::graph_format(file_));
   }
   std::string refusal(const std::string& text, const std::string& format = {}) {
     try {
       std::ofstream(file_) << text;
-      const ImportedGraph g = import_graph(file_, format.empty() ? graph_format(file_) : format);
+      const importers::ImportedGraph g =
+          importers::import_graph(file_, format.empty() ? importers::graph_format(file_) : format);
       optimise(g.graph);
     } catch (const Error& e) {
       return e.what();
@@ -68,14 +70,14 @@ TEST_F(GraphFile, EdgesAloneAreDistinguishedByTheirZeros) {
   EXPECT_EQ(read("EDGE2 0 1 1 0 0 50 0 0 50 0 100\n").format, "isam");
   EXPECT_EQ(read("EDGE2 0 1 1 0 0 50 0 50 100 0 0\n").format, "toro");
   std::ofstream(file_) << R"({"kind":"odometry","t":0,"v":1,"omega":0})" << '\n';
-  EXPECT_EQ(graph_format(file_), "");
+  EXPECT_EQ(importers::graph_format(file_), "");
 }
 
 TEST_F(GraphFile, IsReadAsALogToo) {
   std::ofstream(file_) << "ODOMETRY 0 1 1 0 0.1 10 0 0 10 0 10\nLANDMARK 1 5 3 4 10 0 10\n";
   TypeRegistry types;
   register_landmark_types(types);
-  const RobotLog log = import_log(file_, types);
+  const RobotLog log = importers::import_log(file_, types);
   ASSERT_EQ(log.events.size(), 2u);
   ASSERT_TRUE(log.graph);
   const auto& seen = std::get<SightingSet>(log.events[1].what).sightings.at(0);
@@ -122,4 +124,4 @@ TEST_F(GraphFile, ABearingAloneDoesNotPlaceALandmark) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -15,7 +15,8 @@
 #include "localization/slam/graph_solver.hpp"
 #include "made_graph.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 using ::testing::AllOf;
@@ -220,7 +221,7 @@ TEST(RealGraph, VictoriaParkAndCityTreesReachTheKnownMinimum) {
   for (const auto& [file, target] : {std::pair("victoria_park/isam_victoriaPark.txt", 6184.0),
                                      std::pair("simulated/cityTrees10000.txt", 8669.0)}) {
     if (!std::filesystem::exists(shared(file))) GTEST_SKIP() << shared(file) << " is not on this machine";
-    const GraphSolution s = optimise(import_graph(shared(file), "isam").graph);
+    const GraphSolution s = optimise(importers::import_graph(shared(file), "isam").graph);
     EXPECT_LE(s.chi2, target) << file;
     for (const Eigen::Matrix3d& c : s.pose_covariances) ASSERT_TRUE((c.diagonal().array() >= 0).all());
     for (const Eigen::Matrix2d& c : s.landmark_covariances) ASSERT_GT(c.determinant(), 0);
@@ -228,4 +229,4 @@ TEST(RealGraph, VictoriaParkAndCityTreesReachTheKnownMinimum) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 #include "core/random.hpp"
 #include "localization/global/horizon_viewpoint.hpp"
 #include "localization/global/skyline_index.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -180,4 +181,4 @@ TEST(Skyline, WhatIsNoHorizonIsNotFound) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -15,7 +15,8 @@
 #include "localization/identification/landmark_window.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 TEST(ChiSquare, TablesAgree) {
@@ -371,4 +372,4 @@ TEST(Paper, DistanceIsEquation11) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

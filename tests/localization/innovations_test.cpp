@@ -14,7 +14,8 @@
 #include "localization/track_score.hpp"
 #include "tests/localization/made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 const Eigen::Matrix3d kPrior = Eigen::Vector3d(0.04, 0.02, 1e-4).asDiagonal();
@@ -135,4 +136,4 @@ TEST(Innovations, NoneWhereNothingIsMatched) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

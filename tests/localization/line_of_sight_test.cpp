@@ -9,7 +9,8 @@
 #include "localization/filters/sighting_score.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 /// A wall of 3 m that runs north at x = 5 m, from y = 0 on.
@@ -80,4 +81,4 @@ TEST(LineOfSight, HiddenLandmarksAreNotExpectedByParticles) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

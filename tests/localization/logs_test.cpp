@@ -17,7 +17,8 @@
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +36,7 @@ class WaymarkLog : public ::testing::Test {
  protected:
   RobotLog read(const std::string& text) {
     std::ofstream(file_) << text;
-    return import_log(file_, all_types());
+    return importers::import_log(file_, all_types());
   }
   std::string refusal(const std::string& text) {
     try {
@@ -260,4 +261,4 @@ TEST_F(Mrclam, ParticlesFromNowhereWithoutIdentities) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -4,7 +4,8 @@
 
 #include "core/random.hpp"
 #include "localization/slam/graph.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 
 /// A drive of two rounds with landmarks on both sides, all measurements with errors.
 struct MadeGraph {
@@ -70,4 +71,4 @@ inline double distance(const PoseGraph& a, const PoseGraph& b) {
   return most;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

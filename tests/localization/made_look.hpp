@@ -5,7 +5,8 @@
 
 #include "core/random.hpp"
 #include "localization/global/constellation.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 
 /// Model of a sensor; errors are drawn from the stated standard deviations.
 struct SensorModel {
@@ -68,4 +69,4 @@ struct Tally {
   double seconds = 0, slowest = 0;
 };
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

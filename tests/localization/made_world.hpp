@@ -7,7 +7,8 @@
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/motion_model.hpp"
 #include "localization/sighting.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 
 /// Draws landmarks over a square of `side` metres about the origin, with a known covariance.
 inline std::vector<MapLandmark> scatter_landmarks(std::size_t count, double side, std::uint64_t seed,
@@ -107,4 +108,4 @@ inline MapLandmark landmark_at(double x, double y, LandmarkKey key) {
   return l;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/motion_model.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 // A machine drives slowly through landmarks whose places on the map err by half a metre per axis. Returns the
@@ -73,4 +74,4 @@ TEST(MultiHypothesisFilter, KnowsThatTheMapErrsTheSameWayAgain) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "localization/filters/measurement.hpp"
 #include "localization/motion_model.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 using ::testing::HasSubstr;
@@ -130,4 +131,4 @@ TEST(SquareRoot, OfSemidefiniteCovariances) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,8 @@
 
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 
 /// Real robots with motion-capture truth; the data are not in the repository.
 inline std::filesystem::path mrclam_folder() {
@@ -28,10 +29,10 @@ inline MrclamRobots read_mrclam() {
   register_landmark_types(all.types);
   const TypeId beacon = all.types.id("beacon");
   const SemanticMap map(all.types, Crs::local(),
-                        import_mrclam_landmarks(mrclam_folder(), beacon, all.types[beacon]), {});
+                        importers::import_mrclam_landmarks(mrclam_folder(), beacon, all.types[beacon]), {});
   all.map = to_map_landmarks(map);
   for (int robot = 1; robot <= 5; ++robot) {
-    RobotLog& log = all.logs.emplace_back(import_mrclam_log(mrclam_folder(), robot, all.types));
+    RobotLog& log = all.logs.emplace_back(importers::import_mrclam_log(mrclam_folder(), robot, all.types));
     convert_to_map_frame(log, map.frame());
     PoseEstimate& start = all.start.emplace_back();
     start.pose = *pose_at(log.truth, log.events.front().t, 5);
@@ -40,4 +41,4 @@ inline MrclamRobots read_mrclam() {
   return all;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

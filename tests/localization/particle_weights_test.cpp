@@ -10,7 +10,8 @@
 #include "localization/filters/resampling.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 TEST(Paper, WeightsOfEquation14) {
@@ -149,4 +150,4 @@ TEST(Resampling, KldCountOfFox) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "localization/track_score.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 SightingSet one(double range, double bearing) {
@@ -117,4 +118,4 @@ TEST(RepeatedSightings, AFilterThatKnowsOfThemIsConsistent) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "localization/filters/particle_weights.hpp"
 #include "localization/filters/temper_weights.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 TEST(Resampling, RedrawnParticlesKeepMeanAndCovarianceAndAreNoCopies) {
@@ -87,4 +88,4 @@ TEST(Resampling, HopelessAndEqualFitsNeedNoTempering) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "core/random.hpp"
 #include "importers/rasters/dem.hpp"
 #include "localization/global/skyline_index.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 /// A DEM laid on a plane, metres east and north of its south-west corner.
@@ -79,7 +80,8 @@ struct Country {
 
 Country country(const std::string& dem_file, const std::string& summit_file, double min_prominence,
                 double west, double south) {
-  const auto dem = import_dem({.files = {(dems() / dem_file).string()}, .nodata = NodataPolicy::unknown});
+  const auto dem =
+      importers::import_dem({.files = {(dems() / dem_file).string()}, .nodata = NodataPolicy::unknown});
   const GridGeometry& g = dem->geometry();
   Country c{{Grid<double>(g.columns, g.rows), 0, 0}, {}};
   const auto all = dem->read({0, 0, g.columns, g.rows});
@@ -263,4 +265,4 @@ TEST(Ground, StandsAsTheSurfaceLies) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -9,7 +9,8 @@
 #include "localization/slam/signature.hpp"
 #include "made_world.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 SlamOptions made_drive_options() {
@@ -283,4 +284,4 @@ TEST(EkfSlam, NonsenseIsRefusedAndLeavesItAlone) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

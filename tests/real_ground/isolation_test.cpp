@@ -5,13 +5,13 @@
 
 #include "tests/real_ground/shared_data.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 // Against an independent exact program: the same cell, or one at the same distance, and within 0.5 % of its
 // metres (it measures on a sphere).
-void expect_table(const char* table, const DemSource& dem, double least, const IsolationOptions& options,
-                  const char* x = "lon", const char* y = "lat") {
+void expect_table(const char* table, const DemSource& dem, double least,
+                  const pipeline::IsolationOptions& options, const char* x = "lon", const char* y = "lat") {
   std::map<std::int64_t, std::size_t> index;
   const auto summits = survey(dem, 512, least);
   for (std::size_t i = 0; i < summits.size(); ++i) index[summits[i].cell] = i;
@@ -21,7 +21,7 @@ void expect_table(const char* table, const DemSource& dem, double least, const I
     if (std::stod(row["prom"]) <= 0) continue;
     const auto found = index.find(cell_at(dem.geometry(), std::stod(row[x]), std::stod(row[y])));
     ASSERT_NE(found, index.end()) << row["elev"];
-    const Isolation& ours = isolations[found->second];
+    const pipeline::Isolation& ours = isolations[found->second];
     const double theirs = std::stod(row["iso_m"]);
     ASSERT_EQ(ours.metres.has_value(), theirs >= 0) << row["elev"];
     if (!ours.metres) continue;
@@ -50,7 +50,7 @@ TEST(IsolationTables, AllMaximaOfAconcagua) {
 TEST(IsolationTables, BigTujungaInUtm) {
   SKIP_WITHOUT_DEM_DATA();
   const auto dem = open_dem({"earth/bigtujunga.tif"});
-  expect_table("bigtujunga.csv", *dem, 20, {.distance = DistanceKind::planar});
+  expect_table("bigtujunga.csv", *dem, 20, {.distance = pipeline::DistanceKind::planar});
   expect_table("bigtujunga.csv", *dem, 20, {});
 }
 
@@ -83,4 +83,4 @@ TEST(IsolationTables, HalfAKilometreOnAconcagua) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

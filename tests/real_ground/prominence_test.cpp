@@ -10,7 +10,7 @@
 
 #include "tests/real_ground/shared_data.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 struct Expected {
@@ -34,7 +34,7 @@ TEST_P(ProminenceOfRealGround, HasNoDifferenceFromTheReference) {
     theirs.emplace(std::stod(row.at(2)), std::stod(row.at(5)));
   ASSERT_GT(theirs.size(), 500u);
   const auto dem = open_dem(expected.dems, expected.policy);
-  for (const Summit& s : survey(*dem, 512, 20)) ours.emplace(s.height, s.prominence);
+  for (const pipeline::Summit& s : survey(*dem, 512, 20)) ours.emplace(s.height, s.prominence);
   std::vector<std::pair<double, double>> missing, extra;
   std::ranges::set_difference(theirs, ours, std::back_inserter(missing));
   std::ranges::set_difference(ours, theirs, std::back_inserter(extra));
@@ -59,9 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
-std::map<std::int64_t, Summit> by_cell(const std::vector<Summit>& summits) {
-  std::map<std::int64_t, Summit> map;
-  for (const Summit& s : summits) map[s.cell] = s;
+std::map<std::int64_t, pipeline::Summit> by_cell(const std::vector<pipeline::Summit>& summits) {
+  std::map<std::int64_t, pipeline::Summit> map;
+  for (const pipeline::Summit& s : summits) map[s.cell] = s;
   return map;
 }
 
@@ -75,7 +75,7 @@ void expect_table(const char* table, const DemSource& dem, double least, const c
     if (prominence <= 0) continue;
     const std::int64_t cell = cell_at(dem.geometry(), std::stod(row[x]), std::stod(row[y]));
     ASSERT_TRUE(summits.contains(cell)) << row[y] << " " << row[x] << " elevation " << row["elev"];
-    const Summit& s = summits.at(cell);
+    const pipeline::Summit& s = summits.at(cell);
     EXPECT_EQ(s.height, std::stod(row["elev"]));
     EXPECT_EQ(s.prominence, prominence);
     ASSERT_EQ(s.saddle < 0, row["col_elev"].empty()) << row["elev"];
@@ -132,8 +132,8 @@ TEST(PublishedProminence, LiesInsideTheCertifiedInterval) {
     ++published;
     const double lon = std::stod(row["lon"]), lat = std::stod(row["lat"]);
     const double prominence = std::stod(row["prominence_m"]), elevation = std::stod(row["elevation_m"]);
-    const Summit* best = nullptr;
-    for (const Summit& s : summits) {
+    const pipeline::Summit* best = nullptr;
+    for (const pipeline::Summit& s : summits) {
       const double x = dem->geometry().where.x(static_cast<double>(s.cell % dem->geometry().columns));
       const double y = dem->geometry().where.y(static_cast<double>(s.cell / dem->geometry().columns));
       if (std::abs(y - lat) > 0.006 || std::abs(x - lon) > 0.009) continue;
@@ -164,4 +164,4 @@ TEST(PublishedProminence, LiesInsideTheCertifiedInterval) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -10,7 +10,7 @@
 #include "importers/rasters/dem.hpp"
 #include "pipeline/terrain/isolation.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// Real elevation models with known answers; they stay outside the repository.
 inline std::filesystem::path dem_data() {
@@ -45,16 +45,17 @@ inline std::vector<std::map<std::string, std::string>> read_table(const std::fil
 
 inline std::shared_ptr<const DemSource> open_dem(const std::vector<std::string>& names,
                                                  NodataPolicy policy = NodataPolicy::ocean) {
-  DemImport import{.files = {}, .nodata = policy};
+  importers::DemImport import{.files = {}, .nodata = policy};
   for (const auto& name : names) import.files.push_back((dem_data() / name).string());
-  return import_dem(import);
+  return importers::import_dem(import);
 }
 
-inline std::vector<Isolation> isolation_of(const std::vector<Summit>& summits, const DemSource& dem,
-                                           const IsolationOptions& options = {}) {
-  std::vector<HighPoint> points;
-  for (const Summit& s : summits) points.push_back({s.cell, s.height});
-  return measure_isolation(points, dem, pyramid_of(dem, 512), options);
+inline std::vector<pipeline::Isolation> isolation_of(const std::vector<pipeline::Summit>& summits,
+                                                     const DemSource& dem,
+                                                     const pipeline::IsolationOptions& options = {}) {
+  std::vector<pipeline::HighPoint> points;
+  for (const pipeline::Summit& s : summits) points.push_back({s.cell, s.height});
+  return pipeline::measure_isolation(points, dem, pyramid_of(dem, 512), options);
 }
 
 /// The cell whose centre is nearest to a place in the DEM's CRS.
@@ -62,4 +63,4 @@ inline std::int64_t cell_at(const GridGeometry& grid, double x, double y) {
   return grid.index(std::lround(grid.where.column(x)), std::lround(grid.where.row(y)));
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

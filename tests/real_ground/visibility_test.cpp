@@ -7,7 +7,7 @@
 #include "tests/real_ground/shared_data.hpp"
 #include "tests/support/viewshed.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 struct Sample {
@@ -36,7 +36,7 @@ Sample sample(const std::string& tile, double range) {
     ++count;
     sample.seen.push_back(seen);
     sample.expected.push_back(
-        expected_visibility({summits[i].prominence}, {*isolations[i].metres}, radius, {range}));
+        pipeline::expected_visibility({summits[i].prominence}, {*isolations[i].metres}, radius, {range}));
   }
   return sample;
 }
@@ -69,4 +69,4 @@ TEST(Visibility, AgreesInRankWithViewshedsOnRealGround) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -18,7 +18,7 @@
 #include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,9 +107,9 @@ TEST_F(InventoryCommand, AddsLayersToACopyOrToTheMapItself) {
   for (const char* out : {"copy.gpkg", "trees.gpkg"}) {
     const Told told = waymark(std::string("inventory trees.gpkg --stands stands.geojson -o ") + out);
     ASSERT_EQ(told.code, 0) << told.text;
-    EXPECT_THAT(validate_map(folder / out), ::testing::IsEmpty());
-    EXPECT_EQ(read_shape_layer(folder / out, "stand").rows.size(), 2u);
-    EXPECT_EQ(read_shape_layer(folder / out, "stand_tree").rows.size(), 11u);
+    EXPECT_THAT(geodb::validate_map(folder / out), ::testing::IsEmpty());
+    EXPECT_EQ(geodb::read_shape_layer(folder / out, "stand").rows.size(), 2u);
+    EXPECT_EQ(geodb::read_shape_layer(folder / out, "stand_tree").rows.size(), 11u);
   }
   EXPECT_THAT(waymark("query copy.gpkg --type tree --format csv").text, HasSubstr("far"));
 }
@@ -224,8 +224,8 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
   EXPECT_EQ(las.size(), start + 30 * count) << "as many points as the header says";
   const Told found = waymark("run one/job.json -o found.gpkg");
   ASSERT_EQ(found.code, 0) << found.text;
-  EXPECT_THAT(validate_map(folder / "found.gpkg"), ::testing::IsEmpty());
-  EXPECT_THAT(shape_layers(folder / "found.gpkg"), ::testing::Contains("crown"));
+  EXPECT_THAT(geodb::validate_map(folder / "found.gpkg"), ::testing::IsEmpty());
+  EXPECT_THAT(geodb::shape_layers(folder / "found.gpkg"), ::testing::Contains("crown"));
   const Told counted = waymark("inventory found.gpkg --stands one/stands.geojson -o stands.csv");
   ASSERT_EQ(counted.code, 0) << counted.text;
   EXPECT_EQ(cell("stands.csv", 1, "stand"), "2");
@@ -239,7 +239,7 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
   const auto layers = [&](const std::string& map) {
     std::ostringstream text;
     for (const char* layer : {"stand", "stand_tree"})
-      for (const Shape& row : read_shape_layer(folder / map, layer).rows) {
+      for (const geodb::Shape& row : geodb::read_shape_layer(folder / map, layer).rows) {
         for (const AttributeValue& value : row.values)
           std::visit(
               [&](const auto& v) {
@@ -261,7 +261,7 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
       const Told told = waymark("inventory found.gpkg -o some.gpkg" + some);
       ASSERT_EQ(told.code, 0) << told.text;
       EXPECT_EQ(layers("some.gpkg"), expected) << some;
-      EXPECT_THAT(validate_map(folder / "some.gpkg"), ::testing::IsEmpty());
+      EXPECT_THAT(geodb::validate_map(folder / "some.gpkg"), ::testing::IsEmpty());
       ASSERT_EQ(waymark("inventory found.gpkg -o some.csv" + some).code, 0);
       EXPECT_EQ(read("some.csv"), read("all.csv")) << some;
     }
@@ -272,4 +272,4 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -15,7 +15,7 @@
 
 #include "pipeline/forest/stand_inventory.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 std::filesystem::path forest_data() {
@@ -51,7 +51,7 @@ TEST(RealStands, StemsAndBasalAreaAreThePublishedOnes) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
   struct Plot {
     double width = 0, height = 0, stems = 0, basal_area = 0;
-    std::vector<StandTree> trees;
+    std::vector<pipeline::StandTree> trees;
   };
   std::map<std::string, Plot> plots;
   for (const auto& row : table(path)) {
@@ -68,8 +68,9 @@ TEST(RealStands, StemsAndBasalAreaAreThePublishedOnes) {
   ASSERT_EQ(plots.size(), 66u);
   int complete = 0;
   for (const auto& [name, plot] : plots) {
-    const StandPolygon stand{{{{0, 0}, {plot.width, 0}, {plot.width, plot.height}, {0, plot.height}}}};
-    const StandAttributes f = inventory(plot.trees, stand);
+    const pipeline::StandPolygon stand{
+        {{{0, 0}, {plot.width, 0}, {plot.width, plot.height}, {0, plot.height}}}};
+    const pipeline::StandAttributes f = pipeline::inventory(plot.trees, stand);
     EXPECT_EQ(static_cast<std::size_t>(f.trees), plot.trees.size()) << name;
     // Some lists lack trees the published figures have.
     if (std::abs(static_cast<double>(plot.trees.size()) - plot.stems * f.hectares) > 0.5) continue;
@@ -99,11 +100,13 @@ TEST(RealStands, TheBuiltInFormFactorIsWithinTwoErrorsForPines) {
   double measured = 0, told = 0;
   for (const auto& row : table(path)) {
     measured += std::stod(row.at("V"));
-    told += stem_volume(built_in_volume()[0], std::stod(row.at("DBH")) / 100, std::stod(row.at("H")));
+    told += pipeline::stem_volume(pipeline::built_in_volume()[0], std::stod(row.at("DBH")) / 100,
+                                  std::stod(row.at("H")));
   }
-  EXPECT_NEAR(told / measured, 1,
-              2.2 * built_in_volume()[0].form_factor_sd / built_in_volume()[0].form_factor);
+  EXPECT_NEAR(
+      told / measured, 1,
+      2.2 * pipeline::built_in_volume()[0].form_factor_sd / pipeline::built_in_volume()[0].form_factor);
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,34 +11,34 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
 constexpr double kPi = std::numbers::pi;
 
-StandPolygon square(double x, double y, double side) {
+pipeline::StandPolygon square(double x, double y, double side) {
   return {{{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}}}};
 }
 
-StandTree tree(double x, double y, double height, double dbh) {
-  StandTree t{.position = {x, y}, .height = height, .diameter = dbh};
-  t.volume = stem_volume(built_in_volume()[0], dbh, height);
+pipeline::StandTree tree(double x, double y, double height, double dbh) {
+  pipeline::StandTree t{.position = {x, y}, .height = height, .diameter = dbh};
+  t.volume = pipeline::stem_volume(pipeline::built_in_volume()[0], dbh, height);
   return t;
 }
 
 // Half a hectare with trees of 20, 30 and 40 cm and 15, 25 and 30 m; a fourth stands outside.
-std::vector<StandTree> three_trees() {
+std::vector<pipeline::StandTree> three_trees() {
   return {tree(10, 10, 15, 0.2), tree(20, 30, 25, 0.3), tree(50, 60, 30, 0.4), tree(200, 10, 40, 0.9)};
 }
-StandPolygon half_hectare() {
+pipeline::StandPolygon half_hectare() {
   return {{{{0, 0}, {100, 0}, {100, 50}, {60, 50}, {60, 100}, {40, 100}, {40, 50}, {0, 50}}}};
 }
 
 TEST(StandInventory, IsWhatAHandComputes) {
-  const StandPolygon stand = half_hectare();
-  ASSERT_DOUBLE_EQ(area(stand), 6000);
-  const StandAttributes f = inventory(three_trees(), stand, {});
+  const pipeline::StandPolygon stand = half_hectare();
+  ASSERT_DOUBLE_EQ(pipeline::area(stand), 6000);
+  const pipeline::StandAttributes f = pipeline::inventory(three_trees(), stand, {});
   EXPECT_EQ(f.trees, 3);
   EXPECT_NEAR(f.hectares, 0.6, 1e-12);
   EXPECT_NEAR(f.stems.value, 5.0, 1e-12);  // 3 / 0.6
@@ -52,55 +52,56 @@ TEST(StandInventory, IsWhatAHandComputes) {
   EXPECT_NEAR(f.dominant_height.value, 70.0 / 3, 1e-12);  // 60 wanted, three there
   EXPECT_TRUE(std::isnan(f.mass.value));
   std::vector<double> stems;
-  for (const DiameterClass& c : f.classes) stems.push_back(c.stems.value * 0.6);
+  for (const pipeline::DiameterClass& c : f.classes) stems.push_back(c.stems.value * 0.6);
   // [0,5) ... [40,45): lower edges belong to the class
   EXPECT_THAT(stems, ElementsAre(0, 0, 0, 0, ::testing::DoubleEq(1), 0, ::testing::DoubleEq(1), 0,
                                  ::testing::DoubleEq(1)));
-  for (const Estimate* e : {&f.stems, &f.basal_area, &f.lorey_height, &f.volume, &f.dominant_height})
+  for (const pipeline::Estimate* e :
+       {&f.stems, &f.basal_area, &f.lorey_height, &f.volume, &f.dominant_height})
     EXPECT_EQ(e->se, 0) << "nothing errs";
 }
 
 TEST(StandInventory, DominantHeightTakesAFractionOfTheLastTree) {
   // 0.016 ha: the 1.6 thickest. 30 m whole, 20 m for 0.6.
-  StandPolygon stand{{{{0, 0}, {16, 0}, {16, 10}, {0, 10}}}};
-  const std::vector<StandTree> trees{tree(1, 1, 20, 0.3), tree(2, 2, 30, 0.4), tree(3, 3, 35, 0.1)};
-  EXPECT_NEAR(inventory(trees, stand).dominant_height.value, (30 + 0.6 * 20) / 1.6, 1e-12);
+  pipeline::StandPolygon stand{{{{0, 0}, {16, 0}, {16, 10}, {0, 10}}}};
+  const std::vector<pipeline::StandTree> trees{tree(1, 1, 20, 0.3), tree(2, 2, 30, 0.4), tree(3, 3, 35, 0.1)};
+  EXPECT_NEAR(pipeline::inventory(trees, stand).dominant_height.value, (30 + 0.6 * 20) / 1.6, 1e-12);
 }
 
 TEST(StandInventory, ErrorsOfTreesBecomeErrorsOfFigures) {
-  std::vector<StandTree> trees = three_trees();
-  for (StandTree& t : trees) t.diameter_sd = 0.03, t.height_sd = 1;
-  const StandAttributes f = inventory(trees, half_hectare(), {.form_factor_error = 0.1});
+  std::vector<pipeline::StandTree> trees = three_trees();
+  for (pipeline::StandTree& t : trees) t.diameter_sd = 0.03, t.height_sd = 1;
+  const pipeline::StandAttributes f = pipeline::inventory(trees, half_hectare(), {.form_factor_error = 0.1});
   // d(sum g) = pi / 2 d dd
   EXPECT_NEAR(f.basal_area.se, kPi / 2 * 0.03 * std::sqrt(0.29) / 0.6, 1e-9);
   EXPECT_NEAR(f.mean_height.se, 1 / std::sqrt(3), 1e-12);
   EXPECT_NEAR(f.mean_diameter.se, 0.03 / std::sqrt(3), 1e-12);
   EXPECT_NEAR(f.dominant_height.se, 1 / std::sqrt(3), 1e-12);
   EXPECT_GT(f.volume.se, 0.1 * f.volume.value) << "the form factor errs for all trees alike";
-  for (StandTree& t : trees) t.diameter_sd = 0, t.diameter_bias = 0.03;
-  EXPECT_NEAR(inventory(trees, half_hectare()).mean_diameter.se, 0.03, 1e-12)
+  for (pipeline::StandTree& t : trees) t.diameter_sd = 0, t.diameter_bias = 0.03;
+  EXPECT_NEAR(pipeline::inventory(trees, half_hectare()).mean_diameter.se, 0.03, 1e-12)
       << "a shared error does not average";
 }
 
 TEST(StandInventory, DoubtfulTreesAndEdgesWidenTheErrors) {
-  std::vector<StandTree> trees = three_trees();
-  for (StandTree& t : trees) t.confidence = 0.8;
-  const StandAttributes f = inventory(trees, half_hectare());
+  std::vector<pipeline::StandTree> trees = three_trees();
+  for (pipeline::StandTree& t : trees) t.confidence = 0.8;
+  const pipeline::StandAttributes f = pipeline::inventory(trees, half_hectare());
   EXPECT_NEAR(f.stems.value, 5, 1e-12) << "what is counted is what was found";
   EXPECT_NEAR(f.stems.se, std::sqrt(3 * 0.16) / 0.6, 1e-12);
   // A tree on the edge itself is inside with probability one half, wherever it is counted.
-  std::vector<StandTree> edge{tree(0, 25, 20, 0.3)};
+  std::vector<pipeline::StandTree> edge{tree(0, 25, 20, 0.3)};
   edge[0].position_sd = 0.5;
-  EXPECT_NEAR(inventory(edge, half_hectare()).stems.se, 0.5 / 0.6, 1e-9);
+  EXPECT_NEAR(pipeline::inventory(edge, half_hectare()).stems.se, 0.5 / 0.6, 1e-9);
   edge[0].position.x() = -0.5;  // one deviation outside: 0.1587 inside
-  const StandAttributes out = inventory(edge, half_hectare());
+  const pipeline::StandAttributes out = pipeline::inventory(edge, half_hectare());
   EXPECT_EQ(out.trees, 0);
   EXPECT_NEAR(out.stems.se, std::sqrt(0.158655 * 0.841345) / 0.6, 1e-6);
 }
 
 TEST(StandInventory, RecallCountsTheTreesNobodyFound) {
-  const std::vector<RecallRow> recall{{0, 0.5, 0.1}, {20, 0.8, 0}};
-  const StandAttributes f = inventory(three_trees(), half_hectare(), {.recall = recall});
+  const std::vector<pipeline::RecallRow> recall{{0, 0.5, 0.1}, {20, 0.8, 0}};
+  const pipeline::StandAttributes f = pipeline::inventory(three_trees(), half_hectare(), {.recall = recall});
   EXPECT_NEAR(f.stems.value, (1 / 0.5 + 2 / 0.8) / 0.6, 1e-12);
   EXPECT_NEAR(f.mean_height.value, (15 * 2 + 25 * 1.25 + 30 * 1.25) / 4.5, 1e-12);
   const double binomial = 0.5 / 0.25 + 2 * 0.2 / 0.64, shared = std::pow(2 * 0.1 / 0.5, 2);
@@ -108,37 +109,37 @@ TEST(StandInventory, RecallCountsTheTreesNobodyFound) {
 }
 
 TEST(StandInventory, AnEmptyStandHasNoTreesAndNoHeights) {
-  const StandAttributes f = inventory({}, half_hectare());
+  const pipeline::StandAttributes f = pipeline::inventory({}, half_hectare());
   EXPECT_EQ(f.stems.value, 0);
   EXPECT_EQ(f.basal_area.value, 0);
   EXPECT_TRUE(std::isnan(f.lorey_height.value));
   EXPECT_TRUE(std::isnan(f.dominant_height.value));
-  const StandAttributes nothing = inventory(three_trees(), {});
+  const pipeline::StandAttributes nothing = pipeline::inventory(three_trees(), {});
   EXPECT_TRUE(std::isnan(nothing.stems.value)) << "no area, no density";
 }
 
 TEST(StandInventory, TreesWithoutDiameterCountAsStemsOnly) {
-  std::vector<StandTree> trees = three_trees();
-  trees[2].diameter = trees[2].volume = StandTree::kUnknown;
-  const StandAttributes f = inventory(trees, half_hectare());
+  std::vector<pipeline::StandTree> trees = three_trees();
+  trees[2].diameter = trees[2].volume = pipeline::StandTree::kUnknown;
+  const pipeline::StandAttributes f = pipeline::inventory(trees, half_hectare());
   EXPECT_EQ(f.without_diameter, 1);
   EXPECT_NEAR(f.stems.value, 5, 1e-12);
   EXPECT_NEAR(f.basal_area.value, kPi / 4 * 0.13 / 0.6, 1e-12);
   EXPECT_NEAR(f.lorey_height.value, (0.04 * 15 + 0.09 * 25) / 0.13, 1e-12);
-  for (StandTree& t : trees) t.diameter = t.volume = StandTree::kUnknown;
-  EXPECT_TRUE(std::isnan(inventory(trees, half_hectare()).basal_area.value)) << "unknown, not none";
+  for (pipeline::StandTree& t : trees) t.diameter = t.volume = pipeline::StandTree::kUnknown;
+  EXPECT_TRUE(std::isnan(pipeline::inventory(trees, half_hectare()).basal_area.value)) << "unknown, not none";
 }
 
 TEST(StandPolygon, HolesTakeAwayAndIslandsInThemAdd) {
-  StandPolygon stand = square(0, 0, 100);
+  pipeline::StandPolygon stand = square(0, 0, 100);
   stand.rings.push_back(square(20, 20, 40).rings[0]);
   stand.rings.push_back(square(30, 30, 10).rings[0]);
   std::ranges::reverse(stand.rings[1]);  // the orientation does not matter
-  EXPECT_DOUBLE_EQ(area(stand), 10000 - 1600 + 100);
-  EXPECT_TRUE(inside(stand, {10, 10}));
-  EXPECT_FALSE(inside(stand, {25, 25}));
-  EXPECT_TRUE(inside(stand, {35, 35}));
-  EXPECT_DOUBLE_EQ(distance_to_edge(stand, {25, 40}), 5);
+  EXPECT_DOUBLE_EQ(pipeline::area(stand), 10000 - 1600 + 100);
+  EXPECT_TRUE(pipeline::inside(stand, {10, 10}));
+  EXPECT_FALSE(pipeline::inside(stand, {25, 25}));
+  EXPECT_TRUE(pipeline::inside(stand, {35, 35}));
+  EXPECT_DOUBLE_EQ(pipeline::distance_to_edge(stand, {25, 40}), 5);
 }
 
 TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
@@ -146,27 +147,29 @@ TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
   // Triangles that fan out from a corner, over trees on a lattice that lie on their edges too.
   std::vector<Eigen::Vector2d> rim;
   for (int i = 0; i <= 12; ++i) rim.emplace_back(60 * std::cos(i * kPi / 24), 60 * std::sin(i * kPi / 24));
-  std::vector<StandPolygon> stands;
+  std::vector<pipeline::StandPolygon> stands;
   for (std::size_t i = 0; i + 1 < rim.size(); ++i) stands.push_back({{{{0, 0}, rim[i], rim[i + 1]}}});
-  StandPolygon whole{{{{0, 0}}}};
+  pipeline::StandPolygon whole{{{{0, 0}}}};
   whole.rings[0].insert(whole.rings[0].end(), rim.begin(), rim.end());
   for (int k = 0; k < 3000; ++k) {
     const Eigen::Vector2d at(std::floor(random.uniform(0, 60)), std::floor(random.uniform(0, 60)));
-    const auto in = std::ranges::count_if(stands, [&](const auto& stand) { return inside(stand, at); });
-    EXPECT_EQ(in, inside(whole, at) ? 1 : 0) << at.transpose();
+    const auto in =
+        std::ranges::count_if(stands, [&](const auto& stand) { return pipeline::inside(stand, at); });
+    EXPECT_EQ(in, pipeline::inside(whole, at) ? 1 : 0) << at.transpose();
   }
 }
 
 TEST(StandPolygon, CellsCutOffAtTheEdgeMakeUpTheWhole) {
-  StandPolygon stand{{{{3, 2}, {97, 11}, {60, 50}, {88, 93}, {9, 71}}}};
+  pipeline::StandPolygon stand{{{{3, 2}, {97, 11}, {60, 50}, {88, 93}, {9, 71}}}};
   stand.rings.push_back(square(30, 30, 17).rings[0]);
   double sum = 0;
   for (int i = 0; i < 7; ++i)
     for (int j = 0; j < 7; ++j)
-      sum += area(clip_polygon(
+      sum += pipeline::area(pipeline::clip_polygon(
           stand, {Eigen::Vector2d(15.0 * i, 15.0 * j), Eigen::Vector2d(15.0 * i + 15, 15.0 * j + 15)}));
-  EXPECT_NEAR(sum, area(stand), 1e-9);
-  EXPECT_TRUE(clip_polygon(stand, {Eigen::Vector2d(200, 200), Eigen::Vector2d(300, 300)}).rings.empty());
+  EXPECT_NEAR(sum, pipeline::area(stand), 1e-9);
+  EXPECT_TRUE(
+      pipeline::clip_polygon(stand, {Eigen::Vector2d(200, 200), Eigen::Vector2d(300, 300)}).rings.empty());
 }
 
 TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
@@ -175,21 +178,22 @@ TEST(StandPolygon, TheGroundOfUniformTreesIsAboutTheirs) {
     Random random(seed);
     std::vector<Eigen::Vector2d> trees;
     for (int i = 0; i < 200; ++i) trees.emplace_back(random.uniform(0, 100), random.uniform(0, 100));
-    sum += area(estimate_sampled_area(trees)) / 40;
+    sum += pipeline::area(pipeline::estimate_sampled_area(trees)) / 40;
   }
   EXPECT_NEAR(sum, 10000, 250) << "Ripley and Rasson's estimate is nearly unbiased";
-  EXPECT_TRUE(estimate_sampled_area({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).rings.empty());
-  EXPECT_TRUE(estimate_sampled_area({{0, 0}, {1, 0}, {0, 1}}).rings.empty());
+  EXPECT_TRUE(pipeline::estimate_sampled_area({{0, 0}, {1, 1}, {2, 2}, {3, 3}}).rings.empty());
+  EXPECT_TRUE(pipeline::estimate_sampled_area({{0, 0}, {1, 0}, {0, 1}}).rings.empty());
 }
 
 // Slow twin: every tree against every stand, sums written out.
-StandAttributes by_definition(const std::vector<StandTree>& trees, const StandPolygon& stand) {
-  StandAttributes f;
-  f.hectares = area(stand) / 1e4;
+pipeline::StandAttributes by_definition(const std::vector<pipeline::StandTree>& trees,
+                                        const pipeline::StandPolygon& stand) {
+  pipeline::StandAttributes f;
+  f.hectares = pipeline::area(stand) / 1e4;
   double n = 0, g = 0, gh = 0, v = 0;
   std::vector<std::pair<double, double>> thick;
-  for (const StandTree& t : trees) {
-    if (!inside(stand, t.position)) continue;
+  for (const pipeline::StandTree& t : trees) {
+    if (!pipeline::inside(stand, t.position)) continue;
     ++f.trees, n += 1;
     g += kPi / 4 * t.diameter * t.diameter;
     gh += kPi / 4 * t.diameter * t.diameter * t.height;
@@ -212,16 +216,17 @@ StandAttributes by_definition(const std::vector<StandTree>& trees, const StandPo
 
 TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
   Random random(11);
-  std::vector<StandTree> trees;
+  std::vector<pipeline::StandTree> trees;
   for (int i = 0; i < 400; ++i) {
     trees.push_back(tree(random.uniform(-20, 120), random.uniform(-20, 120), random.uniform(8, 35),
                          random.uniform(0.1, 0.5)));
     trees.back().height_sd = 0.8, trees.back().diameter_sd = 0.04, trees.back().position_sd = 0.7;
     trees.back().confidence = 0.9;
   }
-  StandPolygon stand = square(0, 0, 100);
+  pipeline::StandPolygon stand = square(0, 0, 100);
   stand.rings.push_back(square(30, 30, 20).rings[0]);
-  const StandAttributes told = inventory(trees, stand), twin = by_definition(trees, stand);
+  const pipeline::StandAttributes told = pipeline::inventory(trees, stand),
+                                  twin = by_definition(trees, stand);
   EXPECT_EQ(told.trees, twin.trees);
   EXPECT_NEAR(told.stems.value, twin.stems.value, 1e-9);
   EXPECT_NEAR(told.basal_area.value, twin.basal_area.value, 1e-9);
@@ -233,8 +238,8 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
   const int kDraws = 600;
   double sum[4] = {}, squares[4] = {};
   for (int k = 0; k < kDraws; ++k) {
-    std::vector<StandTree> drawn;
-    for (StandTree t : trees) {
+    std::vector<pipeline::StandTree> drawn;
+    for (pipeline::StandTree t : trees) {
       if (!random.bernoulli(t.confidence)) continue;
       t.position += Eigen::Vector2d(random.normal(0, t.position_sd), random.normal(0, t.position_sd));
       const double height = random.normal(t.height, t.height_sd),
@@ -243,11 +248,11 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
       t.height = height, t.diameter = diameter;
       drawn.push_back(t);
     }
-    const StandAttributes f = by_definition(drawn, stand);
+    const pipeline::StandAttributes f = by_definition(drawn, stand);
     const double values[] = {f.stems.value, f.basal_area.value, f.volume.value, f.lorey_height.value};
     for (int i = 0; i < 4; ++i) sum[i] += values[i] / kDraws, squares[i] += values[i] * values[i] / kDraws;
   }
-  const Estimate estimates[] = {told.stems, told.basal_area, told.volume, told.lorey_height};
+  const pipeline::Estimate estimates[] = {told.stems, told.basal_area, told.volume, told.lorey_height};
   for (int i = 0; i < 4; ++i) {
     const double spread = std::sqrt(squares[i] - sum[i] * sum[i]);
     EXPECT_NEAR(estimates[i].se / spread, 1, 0.12) << i;  // 600 draws estimate a spread to 3 %
@@ -255,4 +260,4 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geo/dem_handle.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// A DEM in memory: the terrain of most tests.
 class MemoryDem final : public DemSource {
@@ -88,4 +88,4 @@ inline Grid<double> random_terrain(unsigned seed, std::int64_t columns, std::int
   return grid;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

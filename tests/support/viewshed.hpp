@@ -10,7 +10,7 @@
 
 #include "core/units.hpp"
 #include "geo/dem_source.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// What a person sees, by ray casting over a small DEM in degrees or metres; curvature included, no
 /// refraction.
@@ -103,4 +103,4 @@ inline double spearman(const std::vector<double>& a, const std::vector<double>& 
   return cov / std::sqrt(va * vb);
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

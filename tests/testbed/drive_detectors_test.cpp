@@ -11,7 +11,8 @@
 #include "localization/harvested_trees.hpp"
 #include "testbed/drive/laser_scanner.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 Terrain flat(double side = 120) {
@@ -59,7 +60,7 @@ bool plainly_visible(const RayFan& fan, const StemSolid& stem, std::uint32_t ind
 StemScore score_stems(double from, double to, const ForestClutter& clutter, std::uint64_t seed) {
   StemScore score;
   LaserModel laser{.field = Degrees{360}, .step = Degrees{0.25}};
-  const LaserStemOptions options = forest_stem_options();
+  const localization::LaserStemOptions options = localization::forest_stem_options();
   for (std::uint64_t k = 0; k < 12; ++k) {
     const auto trees = stand(70, 500, seed + k);
     const Terrain ground = flat();
@@ -68,9 +69,9 @@ StemScore score_stems(double from, double to, const ForestClutter& clutter, std:
     const LaserTargets targets(ground, {}, solids.stems, solids.thickets);
     const RayFan fan(targets, {0, 0, 1.3}, 30);
     Random random(seed + k, "scan");
-    LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
+    localization::LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
     scan.beam_width = to_radians(laser.divergence).value * (1 - 2 * laser.sensitivity);
-    const auto found = find_stems(scan, options);
+    const auto found = localization::find_stems(scan, options);
     std::vector<bool> used(found.size());
     for (std::uint32_t i = 0; i < trees.size(); ++i) {
       const Eigen::Vector2d at = trees[i].foot.head<2>();
@@ -114,35 +115,35 @@ TEST(LaserStems, AreFoundAndMeasuredWithinTwelveMetres) {
 }
 
 TEST(LaserStems, AScanOfMissesHasNone) {
-  LaserScan scan{.robot_from_sensor = {},
-                 .first_angle = -1,
-                 .angle_step = 0.01,
-                 .ranges = std::vector<float>(200, 0.0F)};
-  EXPECT_TRUE(find_stems(scan, forest_stem_options()).empty());
+  localization::LaserScan scan{.robot_from_sensor = {},
+                               .first_angle = -1,
+                               .angle_step = 0.01,
+                               .ranges = std::vector<float>(200, 0.0F)};
+  EXPECT_TRUE(localization::find_stems(scan, localization::forest_stem_options()).empty());
   scan.ranges.clear();
-  EXPECT_TRUE(find_stems(scan, forest_stem_options()).empty());
-  EXPECT_TRUE(find_rocks(scan, {}).empty());
+  EXPECT_TRUE(localization::find_stems(scan, localization::forest_stem_options()).empty());
+  EXPECT_TRUE(localization::find_rocks(scan, {}).empty());
   scan.ranges.assign(200, std::nanf(""));
-  EXPECT_TRUE(find_rocks(scan, {}).empty());
+  EXPECT_TRUE(localization::find_rocks(scan, {}).empty());
 }
 
 TEST(HarvestedTrees, StandWhereTheCraneReaches) {
-  Track track;
+  localization::Track track;
   for (int i = 0; i < 3; ++i) {
-    TrackRow row;
+    localization::TrackRow row;
     row.t = i;
     row.at.pose = {double(i), 0, std::numbers::pi / 2};
     row.at.covariance.diagonal() << 0.04, 0.01, 0;
     track.rows.push_back(row);
   }
-  const std::vector<FelledReading> felled{
+  const std::vector<localization::FelledReading> felled{
       {.t = -1, .range = 5, .bearing = 0},
       {.t = 1.5, .range = 5, .bearing = 0, .range_sd = 0.1, .diameter = 0.3}};
-  const auto trees = harvested_trees(felled, track);
+  const auto trees = localization::harvested_trees(felled, track);
   ASSERT_EQ(trees.size(), 1u) << "nobody knows where the machine stood before the first row";
   EXPECT_NEAR((trees[0].at - Eigen::Vector2d(1, 5)).norm(), 0, 1e-12);
   EXPECT_NEAR(trees[0].covariance(1, 1), 0.01 + 0.01, 1e-9);
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -13,7 +13,8 @@
 #include "testbed/drive/ray_fan.hpp"
 #include "testbed/scenario.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 using ::testing::HasSubstr;
@@ -113,12 +114,12 @@ TEST(LaserScanner, AWideBeamSeesStemsWiderAndTheDetectorKnows) {
                    .mixed = 0};
   laser.step = Degrees{0.05};
   Random random(1);
-  LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
-  LaserStemOptions options;
+  localization::LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), laser, random);
+  localization::LaserStemOptions options;
   options.min_beams = 3;
-  const auto uncorrected = find_stems(scan, options);
+  const auto uncorrected = localization::find_stems(scan, options);
   scan.beam_width = to_radians(laser.divergence).value * (1 - 2 * laser.sensitivity);
-  const auto corrected = find_stems(scan, options);
+  const auto corrected = localization::find_stems(scan, options);
   ASSERT_EQ(uncorrected.size(), 1u);
   ASSERT_EQ(corrected.size(), 1u);
   EXPECT_GT(uncorrected[0].diameter, 0.32);
@@ -143,10 +144,10 @@ TEST(Drive, OdometryWithoutErrorsIsTheTruth) {
   settings.odometry.perfect = true;
   const std::vector<Eigen::Vector2d> path = smooth_path({{-20, -20}, {10, -15}, {20, 20}, {-5, 5}}, 0.5);
   const auto steps = drive_along(flat, path, settings, 1);
-  Pose2 odometry = steps.front().at.plane;
+  localization::Pose2 odometry = steps.front().at.plane;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double dt = steps[i + 1].t - steps[i].t;
-    odometry = odometry * twist_motion(steps[i].speed, 0, steps[i].turn, dt, {}).step;
+    odometry = odometry * localization::twist_motion(steps[i].speed, 0, steps[i].turn, dt, {}).step;
   }
   EXPECT_NEAR((odometry.at() - steps.back().at.plane.at()).norm(), 0, 0.02);
   EXPECT_NEAR((steps.back().at.plane.at() - path.back()).norm(), 0, 2);
@@ -237,4 +238,4 @@ TEST(TreeTable, IsReadWithWhatItHas) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

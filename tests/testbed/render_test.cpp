@@ -12,7 +12,8 @@
 #include "testbed/landing/rock_field.hpp"
 #include "testbed/sensor.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 SiteModel bare_ground() {
@@ -203,4 +204,4 @@ TEST(Outline, TheSunIsTowardsTheLitSideOfTheImage) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -15,7 +15,8 @@
 #include "testbed/drive/stereo_camera.hpp"
 #include "testbed/scene.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 Scene rocky(std::uint64_t seed) {
@@ -70,7 +71,8 @@ std::vector<Eigen::Vector2d> places(const std::vector<Seen>& seen, const Eigen::
 }
 
 /// Of all rays of a scan held level, those that meet rocks within `reach` metres.
-std::map<std::uint32_t, int> rocks_in_scan(const RayFan& fan, const LaserScan& scan, double reach) {
+std::map<std::uint32_t, int> rocks_in_scan(const RayFan& fan, const localization::LaserScan& scan,
+                                           double reach) {
   std::map<std::uint32_t, int> count;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double a = scan.first_angle + double(i) * scan.angle_step;
@@ -80,8 +82,8 @@ std::map<std::uint32_t, int> rocks_in_scan(const RayFan& fan, const LaserScan& s
   return count;
 }
 
-std::map<std::uint32_t, int> rocks_in_image(const RayFan& fan, const DepthImage& image, const Scene& scene,
-                                            double reach) {
+std::map<std::uint32_t, int> rocks_in_image(const RayFan& fan, const localization::DepthImage& image,
+                                            const Scene& scene, double reach) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(image.tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
   std::map<std::uint32_t, int> count;
   for (std::int64_t r = 0; r < image.rows; ++r)
@@ -103,8 +105,10 @@ TEST(LaserRocks, MostOfWhatIsFoundIsThereAndFewAreMissed) {
       const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
       const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 0.35);
       const RayFan fan(targets, eye, 25);
-      const LaserScan scan = sweep(fan, Eigen::Matrix3d::Identity(), {.field = Degrees{359}}, random);
-      tally(scene, places(find_rocks(scan, {}), eye), rocks_in_scan(fan, scan, 24), 5, 0.4, sum);
+      const localization::LaserScan scan =
+          sweep(fan, Eigen::Matrix3d::Identity(), {.field = Degrees{359}}, random);
+      tally(scene, places(localization::find_rocks(scan, {}), eye), rocks_in_scan(fan, scan, 24), 5, 0.4,
+            sum);
     }
   }
   std::printf("laser: %d of %d found are there, %d of %d met by 5 beams and more are found\n", sum.right,
@@ -124,8 +128,9 @@ TEST(DepthRocks, MostOfWhatIsFoundIsThereAndFewAreMissed) {
       const double x = random.uniform(-25, 25), y = random.uniform(-25, 25);
       const Eigen::Vector3d eye(x, y, *scene.terrain.height(x, y) + 1.5);
       const RayFan fan(targets, eye, 18);
-      const DepthImage image = depth_image(fan, Eigen::Matrix3d::Identity(), {}, random);
-      tally(scene, places(find_rocks(image, {}), eye), rocks_in_image(fan, image, scene, 14), 12, 0.5, sum);
+      const localization::DepthImage image = depth_image(fan, Eigen::Matrix3d::Identity(), {}, random);
+      tally(scene, places(localization::find_rocks(image, {}), eye), rocks_in_image(fan, image, scene, 14),
+            12, 0.5, sum);
     }
   }
   std::printf("depth: %d of %d found are there, %d of %d of 12 pixels and more are found\n", sum.right,
@@ -159,11 +164,11 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
       const Eigen::Vector3d eye(at.x(), at.y(), *terrain.height(at.x(), at.y()) + 1.5);
       const PanoramaModel model;
       const std::vector<double> seen = horizon(terrain, eye, 0, model, random);
-      HorizonProfile profile{.first_angle = -std::numbers::pi,
-                             .angle_step = to_radians(model.step).value,
-                             .elevations = {seen.begin(), seen.end()}};
+      localization::HorizonProfile profile{.first_angle = -std::numbers::pi,
+                                           .angle_step = to_radians(model.step).value,
+                                           .elevations = {seen.begin(), seen.end()}};
       profile.elevation_sd = to_radians(model.elevation_sd).value;
-      const auto summits = find_summits(profile, {});
+      const auto summits = localization::find_summits(profile, {});
       found += int(summits.size());
       for (const Eigen::Vector3d& c : cones) {
         const Eigen::Vector2d to = c.head<2>() - at;
@@ -174,22 +179,22 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
         bool free = true;
         for (const Eigen::Vector3d& o : cones) {
           const Eigen::Vector2d other = o.head<2>() - at;
-          const double aside =
-              std::abs(wrap_angle(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
+          const double aside = std::abs(
+              localization::wrap_angle(std::atan2(other.y(), other.x()) - std::atan2(to.y(), to.x())));
           const double wide = std::atan2(o.z() / 0.5, other.norm());
           free = free && (&o == &c || aside > wide + 0.1 ||
                           std::atan2(o.z() - eye.z(), other.norm()) < elevation - 0.1);
         }
-        const bool hit = std::ranges::any_of(summits, [&](const DetectedSummit& s) {
-          return std::abs(wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
+        const bool hit = std::ranges::any_of(summits, [&](const localization::DetectedSummit& s) {
+          return std::abs(localization::wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
         });
         in_view += free;
         recovered += free && hit;
       }
-      for (const DetectedSummit& s : summits)
+      for (const localization::DetectedSummit& s : summits)
         right += std::ranges::any_of(cones, [&](const Eigen::Vector3d& c) {
           const Eigen::Vector2d to = c.head<2>() - at;
-          return std::abs(wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
+          return std::abs(localization::wrap_angle(s.bearing - std::atan2(to.y(), to.x()))) < 0.03;
         });
     }
   }
@@ -202,15 +207,15 @@ TEST(HorizonSummits, OfConesMostOfWhatIsFoundIsThereAndFewAreMissed) {
 }
 
 TEST(HorizonSummits, StandOutOfBothSides) {
-  HorizonProfile horizon{.first_angle = -std::numbers::pi,
-                         .angle_step = 2 * std::numbers::pi / 360,
-                         .elevations = std::vector<float>(360, 0.01F)};
+  localization::HorizonProfile horizon{.first_angle = -std::numbers::pi,
+                                       .angle_step = 2 * std::numbers::pi / 360,
+                                       .elevations = std::vector<float>(360, 0.01F)};
   for (int k = -20; k <= 20; ++k)
     horizon.elevations[static_cast<std::size_t>(200 + k)] += 0.002F * float(20 - std::abs(k));
   horizon.elevations[300] += 0.004F;  // too low to count
   for (int k = -3; k <= 3; ++k)       // across the seam
     horizon.elevations[static_cast<std::size_t>((360 + k) % 360)] += 0.01F * float(4 - std::abs(k));
-  const auto summits = find_summits(horizon, {});
+  const auto summits = localization::find_summits(horizon, {});
   ASSERT_EQ(summits.size(), 2u);
   EXPECT_NEAR(summits[0].bearing, 200 * horizon.angle_step - std::numbers::pi, 1e-3);
   EXPECT_NEAR(std::abs(summits[1].bearing), std::numbers::pi, 1e-3);
@@ -218,4 +223,4 @@ TEST(HorizonSummits, StandOutOfBothSides) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "testbed/landing/flight.hpp"
 #include "testbed/scene_files.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 using ::testing::HasSubstr;
@@ -214,4 +215,4 @@ TEST(SceneFiles, CamerasAreWrittenWithSunAndErrors) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

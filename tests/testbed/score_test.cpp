@@ -8,7 +8,8 @@
 
 #include "testbed/score_match.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 EvaluatedObject thing(double x, double y, double diameter) {
@@ -122,4 +123,4 @@ TEST(Score, NothingAgainstNothing) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

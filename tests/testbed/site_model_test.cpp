@@ -15,7 +15,8 @@
 #include "testbed/noise.hpp"
 #include "testbed/scene.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 SiteModel small_site() {
@@ -226,4 +227,4 @@ TEST(Scene, RefusesSizesThatMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

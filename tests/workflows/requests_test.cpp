@@ -17,7 +17,8 @@
 #include "workflows/registries.hpp"
 #include "workflows/training/train.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace workflows;
 namespace {
 
 using ::testing::Contains;
@@ -37,8 +38,8 @@ std::string usage_error(const Call& call) {
   return {};
 }
 
-Job mountain_top_job() {
-  Pipeline pipeline(all_stages());
+pipeline::Job mountain_top_job() {
+  pipeline::Pipeline pipeline(all_stages());
   add_mountain_top_stages(pipeline, {"no_such_dem.tif"});
   return {"peaks", std::move(pipeline)};
 }
@@ -57,7 +58,7 @@ TEST(MakeMap, NeedsANameOrACheck) {
 
 TEST(MakeMap, PartOfAJobNeedsAWorkFolder) {
   EXPECT_THAT(usage_error([] {
-                make_map(mountain_top_job(), {.shard = Shard{1, 2}});
+                make_map(mountain_top_job(), {.shard = pipeline::Shard{1, 2}});
               }),
               HasSubstr("needs --work DIR"));
 }
@@ -68,7 +69,7 @@ TEST(RenamedOptions, AreReadByTheirFormerNamesWithAWarning) {
     for (const OptionRow& row : option_table(all_stages().at(stage))) {
       if (row.field.formerly.empty()) continue;
       const auto defaults = nlohmann::json::parse(options_as_json({row}));
-      Pipeline pipeline(all_stages());
+      pipeline::Pipeline pipeline(all_stages());
       pipeline.add(stage, nlohmann::json{{row.field.formerly, defaults[row.name]}}.dump());
       pipeline.set(stage + "." + row.field.formerly + "=" + defaults[row.name].dump());
       EXPECT_THAT(pipeline.warnings(),
@@ -81,7 +82,7 @@ TEST(RenamedOptions, AreReadByTheirFormerNamesWithAWarning) {
 }
 
 TEST(MakeMap, WarnsOfFormerNames) {
-  Job job = mountain_top_job();
+  pipeline::Job job = mountain_top_job();
   job.pipeline.add("check_sun", R"({"most_pixels": 100})");
   std::vector<std::string> warnings;
   const Callbacks callbacks{.message = [&](const Message& message) {
@@ -92,7 +93,7 @@ TEST(MakeMap, WarnsOfFormerNames) {
 }
 
 TEST(TreeStages, CanopyIsRastersOrPoints) {
-  Pipeline pipeline(all_stages());
+  pipeline::Pipeline pipeline(all_stages());
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {}); }), HasSubstr("no canopy is given"));
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {.chm = {"a.tif"}, .las = {"a.las"}}); }),
               HasSubstr("--las is given together with rasters"));
@@ -131,11 +132,11 @@ TEST(Train, CratersTakeNoImages) {
 
 TEST(Box, CrossesTheAntimeridian) {
   const Crs degrees = Crs::from_text("EPSG:4326");
-  const MapQuery::Box box{170, -10, -170, 10};
+  const geodb::MapQuery::Box box{170, -10, -170, 10};
   EXPECT_TRUE(inside(box, {{180, 0, 0}}, degrees));
   EXPECT_TRUE(inside(box, {{-175, 0, 0}}, degrees));
   EXPECT_FALSE(inside(box, {{160, 0, 0}}, degrees));
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -8,7 +8,7 @@
 #include "importers/images/image.hpp"
 #include "workflows/detection/image_canopy.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr double kCell = 0.6;  // metres: of the images that the networks are trained on
@@ -58,14 +58,14 @@ ColourImage::ColourImage(const ImageInfo& image, double metres, int max_bands)
   if (bands < 3)
     throw Error(ErrorCode::input, "not a colour image: it has fewer than three bands", image.path);
   for (int band = 1; band <= bands; ++band)
-    bands_.push_back(import_image(image.path, {.georeference = false, .band = band}));
+    bands_.push_back(importers::import_image(image.path, {.georeference = false, .band = band}));
   white_ = white_level(bands_, image);
 }
 
 ColourImage::~ColourImage() = default;
 
-ColourWindow ColourImage::read(const Window& cells) const {
-  ColourWindow window{cells, cell_, {}};
+pipeline::ColourWindow ColourImage::read(const Window& cells) const {
+  pipeline::ColourWindow window{cells, cell_, {}};
   for (const auto& band : bands_)
     window.bands.push_back(average_squares(band->read({cells.column * across_, cells.row * across_,
                                                        cells.columns * across_, cells.rows * across_}),
@@ -79,4 +79,4 @@ ColourWindow ColourImage::read(const Window& cells) const {
   return window;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -3,7 +3,7 @@
 #include <memory>
 #include "geo/image_source.hpp"
 #include "pipeline/forest/crown_evidence.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Colour image (red, green, blue, near infrared from a fourth band) in cells of about 0.6 m. Finer pixels
 /// are averaged in squares. Safe to read from many threads.
@@ -23,7 +23,7 @@ class ColourImage {
     return (static_cast<double>(cell) + 0.5) * static_cast<double>(across_) - 0.5;
   }
   /// Reads cells; NaN outside the image and where it has no data.
-  ColourWindow read(const Window& cells) const;
+  pipeline::ColourWindow read(const Window& cells) const;
 
  private:
   std::vector<std::shared_ptr<const ImageSource>> bands_;
@@ -32,4 +32,4 @@ class ColourImage {
   float white_ = 255;
 };
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -12,7 +12,7 @@
 #include "pipeline/forest/crown_width.hpp"
 #include "pipeline/forest/find_trees.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr std::int64_t kSide = 768;       // cells worked on at once: 30 planes of them are in memory
@@ -22,7 +22,8 @@ constexpr double kIsolation = 3;          // metres
 /// Probability of crowns in the role of a canopy.
 class CrownCanopy final : public CanopySource {
  public:
-  CrownCanopy(const ColourImage& image, const DenseNetwork& network) : image_(image), network_(network) {
+  CrownCanopy(const ColourImage& image, const pipeline::DenseNetwork& network)
+      : image_(image), network_(network) {
     grid_.columns = image.columns(), grid_.rows = image.rows();
     grid_.where = {Crs::local(), 0, 0, image.cell(), -image.cell()};
   }
@@ -31,10 +32,10 @@ class CrownCanopy final : public CanopySource {
   double ground_elevation(std::int64_t, std::int64_t) const override { return std::nan(""); }
   Grid<std::uint8_t> forest_types(const Window&) const override { return {}; }
   Grid<float> read(const Window& window) const override {
-    const std::int64_t reach = crown_probability_reach(image_.cell());
-    const ColourWindow seen = image_.read(
+    const std::int64_t reach = pipeline::crown_probability_reach(image_.cell());
+    const pipeline::ColourWindow seen = image_.read(
         {window.column - reach, window.row - reach, window.columns + 2 * reach, window.rows + 2 * reach});
-    Grid<float> canopy = crown_probability(seen, window, network_);
+    Grid<float> canopy = pipeline::crown_probability(seen, window, network_);
     for (float& value : canopy.cells())
       if (std::isnan(value)) value = kNoCanopy;
     return canopy;
@@ -42,13 +43,13 @@ class CrownCanopy final : public CanopySource {
 
  private:
   const ColourImage& image_;
-  const DenseNetwork& network_;
+  const pipeline::DenseNetwork& network_;
   GridGeometry grid_;
   std::string name_ = "crowns";
 };
 
-TreeSearch crown_search() {
-  TreeSearch search;
+pipeline::TreeSearch crown_search() {
+  pipeline::TreeSearch search;
   search.forest.name = "imagery";
   search.forest.smoothing = 0;  // the probability is smooth
   search.forest.tops = {
@@ -66,23 +67,23 @@ double calibrated(double probability) {
 
 }  // namespace
 
-std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const DenseNetwork& network, int threads,
-                                         const ProgressMeter::Listener& progress) {
+std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const pipeline::DenseNetwork& network,
+                                         int threads, const pipeline::ProgressMeter::Listener& progress) {
   const CrownCanopy canopy(image, network);
-  const TreeSearch search = crown_search();
-  const std::vector<Tile> tiles = tiles_of(image.columns(), image.rows(), kSide);
+  const pipeline::TreeSearch search = crown_search();
+  const std::vector<pipeline::Tile> tiles = importers::tiles_of(image.columns(), image.rows(), kSide);
   std::vector<std::vector<DetectedCrown>> parts(tiles.size());
-  const auto reach = static_cast<std::int64_t>(std::ceil(kMaxCrownDiameter / image.cell())) + 1;
-  ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
+  const auto reach = static_cast<std::int64_t>(std::ceil(pipeline::kMaxCrownDiameter / image.cell())) + 1;
+  pipeline::ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-      const std::vector<DetectedTree> found = find_trees(canopy, tiles[i].cells, search);
-      ColourWindow seen;
-      if (!found.empty()) seen = image.read(expand(tiles[i].cells, reach));
-      for (const DetectedTree& tree : found)
+      const std::vector<pipeline::DetectedTree> found = pipeline::find_trees(canopy, tiles[i].cells, search);
+      pipeline::ColourWindow seen;
+      if (!found.empty()) seen = image.read(pipeline::expand(tiles[i].cells, reach));
+      for (const pipeline::DetectedTree& tree : found)
         parts[i].push_back({image.pixel(tree.top.column), image.pixel(tree.top.row),
-                            crown_width(seen, tree.top), calibrated(tree.height)});
+                            pipeline::crown_width(seen, tree.top), calibrated(tree.height)});
       meter.add(1);
     });
   });
@@ -92,4 +93,4 @@ std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const DenseNe
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

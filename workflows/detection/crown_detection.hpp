@@ -4,7 +4,7 @@
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/vision/dense_network.hpp"
 #include "workflows/detection/colour_image.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// A crown in a colour image.
 struct DetectedCrown {
@@ -16,7 +16,7 @@ struct DetectedCrown {
 /// Returns the crowns of an image in row order: local maxima within 3 m of the probability that a network of
 /// pipeline/forest/crown_network gives. `progress` counts pieces of the image. The result does not depend on
 /// `threads`.
-std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const DenseNetwork& network, int threads,
-                                         const ProgressMeter::Listener& progress = {});
+std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const pipeline::DenseNetwork& network,
+                                         int threads, const pipeline::ProgressMeter::Listener& progress = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -9,7 +9,7 @@
 #include "workflows/detection/run_detection.hpp"
 #include "workflows/detection/write_detections.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   const DetectionPlan plan = plan_detection(request);
@@ -28,4 +28,4 @@ DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -6,7 +6,7 @@
 #include <vector>
 #include "exporters/vector/detections.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// One image and what to look for in it. Numbers that are not given are NaN.
 struct DetectRequest {
@@ -31,7 +31,7 @@ struct DetectRequest {
 
 /// Detections in an image.
 struct DetectResult {
-  ImageDetections detections;
+  exporters::ImageDetections detections;
   std::string light;  ///< estimated direction of the light, for people; empty: it was given
   std::vector<std::string> warnings;
 };
@@ -41,4 +41,4 @@ struct DetectResult {
 /// conflict, Error{input} for a missing or damaged image, Error{output} before any work is done.
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

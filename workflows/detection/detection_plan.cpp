@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr double kMinCrater = 6, kMinRock = 1, kMinTree = 0.1;  // pixels
@@ -88,9 +88,9 @@ void check_numbers(const DetectRequest& request, const Kind& kind) {
 
 std::shared_ptr<const ImageSource> open_image(const DetectRequest& request,
                                               std::vector<std::string>& warnings) {
-  ImageImport how{.crs = request.crs, .band = static_cast<int>(request.band)};
+  importers::ImageImport how{.crs = request.crs, .band = static_cast<int>(request.band)};
   const auto opened = [&] {
-    auto image = import_image(request.image, how);
+    auto image = importers::import_image(request.image, how);
     for (const std::string& warning : image->warnings()) warnings.push_back(warning);
     return image;
   };
@@ -182,4 +182,4 @@ DetectionPlan plan_detection(const DetectRequest& request) {
   return plan;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -8,7 +8,7 @@
 #include "geo/image_source.hpp"
 #include "workflows/detection/detect.hpp"
 #include "workflows/detection/search_image.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// A checked request with its image opened and the sun's direction turned into the image.
 struct DetectionPlan {
@@ -29,4 +29,4 @@ struct DetectionPlan {
 /// used (degrees, rotated) is searched in pixels, with a warning that names the remedy.
 DetectionPlan plan_detection(const DetectRequest& request);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

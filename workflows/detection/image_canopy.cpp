@@ -9,7 +9,7 @@
 #include "importers/gdal_session.hpp"
 #include "importers/images/image.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr float kHighest = 150;  // metres
@@ -21,7 +21,7 @@ class ImageCanopy final : public CanopySource {
     grid_.where = {Crs::local(), 0, 0, metres, -metres};
     const int bands = sign == CanopySign::height ? 1 : 3;
     for (int band = 1; band <= bands; ++band)
-      bands_.push_back(import_image(image.path, {.georeference = false, .band = band}));
+      bands_.push_back(importers::import_image(image.path, {.georeference = false, .band = band}));
     full_ = image.saturated > 0 ? static_cast<float>(image.saturated) : 255.0F;
   }
 
@@ -58,7 +58,7 @@ class ImageCanopy final : public CanopySource {
   GridGeometry grid_;
   std::string name_;
   CanopySign sign_;
-  std::vector<std::shared_ptr<const ImportedImage>> bands_;
+  std::vector<std::shared_ptr<const importers::ImportedImage>> bands_;
   float full_ = 255;
 };
 
@@ -86,9 +86,9 @@ std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopyS
 }
 
 int band_count(const std::string& path) {
-  const auto file = open_raster(path);
+  const auto file = importers::open_raster(path);
   const int bands = file->GetRasterCount();
   return bands > 1 && is_transparency(*file->GetRasterBand(bands)) ? bands - 1 : bands;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

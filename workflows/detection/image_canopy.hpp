@@ -2,7 +2,7 @@
 #pragma once
 #include "geo/canopy_source.hpp"
 #include "geo/image_source.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Property of an image that stands for canopy height.
 enum class CanopySign {
@@ -18,4 +18,4 @@ std::unique_ptr<const CanopySource> image_canopy(const ImageInfo& image, CanopyS
 /// Returns the number of bands of an image file without a trailing transparency band. Throws Error{input}.
 int band_count(const std::string& path);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

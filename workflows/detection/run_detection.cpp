@@ -12,7 +12,7 @@
 #include "workflows/detection/tree_detection.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr std::int64_t kSample = 1536;    // side of the pieces the light is estimated from, pixels
@@ -27,11 +27,11 @@ struct Light {
 
 std::optional<Light> estimate_light(const Pixels& pixels, const std::string& type) {
   if (type == "crater") {
-    const auto seen = estimate_crater_sun_angle(pixels);
+    const auto seen = pipeline::estimate_crater_sun_angle(pixels);
     if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->craters};
     return {};
   }
-  const auto seen = estimate_sun_angle(pixels);
+  const auto seen = pipeline::estimate_sun_angle(pixels);
   if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
   return {};
 }
@@ -72,8 +72,8 @@ std::string reason_for_no_detections(const ImageSource& image, std::vector<std::
 ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Radians> sun) {
   if (plan.type == "crater")
     return [=, &plan](const Pixels& pixels, double min, double max) {
-      CraterSearch search;
-      search.method = plan.method == "edges" ? CraterMethod::edges : CraterMethod::bowl;
+      pipeline::CraterSearch search;
+      search.method = plan.method == "edges" ? pipeline::CraterMethod::edges : pipeline::CraterMethod::bowl;
       search.type = type;
       search.sun_angle = sun;
       search.min_diameter = min;
@@ -82,18 +82,18 @@ ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Ra
       const double largest = 0.6 * static_cast<double>(std::min(pixels.columns(), pixels.rows()));
       if (std::min(pixels.columns(), pixels.rows()) < kMinSide || largest <= min)
         return std::vector<Detection>{};
-      return find_craters(pixels, search);
+      return pipeline::find_craters(pixels, search);
     };
   return [=, &plan](const Pixels& pixels, double min, double max) {
-    RockSearch search;
-    search.method = plan.method == "classic" ? RockMethod::classic : RockMethod::shadow;
+    pipeline::RockSearch search;
+    search.method = plan.method == "classic" ? pipeline::RockMethod::classic : pipeline::RockMethod::shadow;
     search.type = type;
     search.sun_angle = sun;
     if (plan.sun_elevation) search.sun_elevation = to_radians(*plan.sun_elevation);
     search.min_diameter = min;
     search.max_diameter = max;
     search.min_confidence = plan.min_confidence;
-    return find_rocks(pixels, search);
+    return pipeline::find_rocks(pixels, search);
   };
 }
 
@@ -125,7 +125,7 @@ std::optional<Radians> choose_light(const DetectionPlan& plan, DetectResult& fou
 
 }  // namespace
 
-ImageDetections empty_detections(const DetectionPlan& plan, TypeId type) {
+exporters::ImageDetections empty_detections(const DetectionPlan& plan, TypeId type) {
   const ImageInfo& info = plan.image->info();
   return {.type = type,
           .image = info.name,
@@ -138,7 +138,8 @@ ImageDetections empty_detections(const DetectionPlan& plan, TypeId type) {
           .sun_azimuth = plan.sun_azimuth};
 }
 
-DetectResult run_detection(const DetectionPlan& plan, int threads, const ProgressMeter::Listener& progress) {
+DetectResult run_detection(const DetectionPlan& plan, int threads,
+                           const pipeline::ProgressMeter::Listener& progress) {
   if (plan.type == "tree") return detect_trees(plan, threads, progress);
   const ImageInfo& info = plan.image->info();
   const TypeId type = all_types().id(plan.type);
@@ -158,4 +159,4 @@ DetectResult run_detection(const DetectionPlan& plan, int threads, const Progres
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

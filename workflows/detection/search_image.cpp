@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 /// Window that is read, and the part of it whose objects are kept.
@@ -162,8 +162,8 @@ std::vector<Detection> search_image(const ImageSource& image, const ImageSearch&
   const std::int64_t factor = (std::max(info.columns, info.rows) + search.piece - 1) / search.piece;
   const double smallest = std::max({fits, search.min_diameter, 8.0 * static_cast<double>(factor)});
   const bool reduce = !whole && search.reduce_for_large && asked > 1.5 * fits && smallest < asked;
-  ProgressMeter meter(search.progress, "search_image",
-                      static_cast<std::int64_t>(pieces.size()) + (reduce ? 1 : 0));
+  pipeline::ProgressMeter meter(search.progress, "search_image",
+                                static_cast<std::int64_t>(pieces.size()) + (reduce ? 1 : 0));
   tbb::task_arena arena(search.threads > 0 ? search.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
@@ -210,4 +210,4 @@ Brightness measure_brightness(const ImageSource& image) {
   return all;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -5,7 +5,7 @@
 #include "core/detection.hpp"
 #include "geo/image_source.hpp"
 #include "pipeline/engine/progress_meter.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Options of a search of an image of any size.
 struct ImageSearch {
@@ -14,7 +14,7 @@ struct ImageSearch {
   std::int64_t piece = 8192;     ///< longest side of a piece, pixels, >= 256
   bool reduce_for_large = true;  ///< false: objects larger than a sixteenth of a piece are not searched
   int threads = 0;               ///< 0: one per processor
-  ProgressMeter::Listener progress = {};  ///< counts finished pieces
+  pipeline::ProgressMeter::Listener progress = {};  ///< counts finished pieces
 };
 
 /// Finds objects of one kind between two diameters, in pixels.
@@ -39,4 +39,4 @@ struct Brightness {
 /// Reads the image strip by strip.
 Brightness measure_brightness(const ImageSource& image);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -17,7 +17,7 @@
 #include "workflows/detection/image_canopy.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr double kUsualPixel = 0.6;  // metres: of public orthophotos
@@ -29,8 +29,8 @@ constexpr double kPositionSd = 1.5;  // metres, of marked trees about detections
 constexpr double kCrownError = 0.4;  // fraction of a crown's diameter in colour images
 
 // For fine colour images without infrared (docs/methods/trees.md).
-TreeSearch imagery_search() {
-  TreeSearch search;
+pipeline::TreeSearch imagery_search() {
+  pipeline::TreeSearch search;
   search.forest.name = "imagery";
   search.forest.smoothing = 0.9;
   search.forest.tops = {
@@ -43,9 +43,9 @@ TreeSearch imagery_search() {
   return search;
 }
 
-TreeSearch height_search(const std::string& method) {
-  TreeSearch search;
-  if (method == "lmf") search.forest = local_maxima_preset(search.forest);
+pipeline::TreeSearch height_search(const std::string& method) {
+  pipeline::TreeSearch search;
+  if (method == "lmf") search.forest = pipeline::local_maxima_preset(search.forest);
   return search;
 }
 
@@ -65,34 +65,35 @@ double pixel_metres(const DetectionPlan& plan, DetectResult& found) {
   return kUsualPixel;
 }
 
-std::vector<DetectedTree> search_tiles(const CanopySource& canopy, const TreeSearch& search,
-                                       std::int64_t side, int threads,
-                                       const ProgressMeter::Listener& progress) {
+std::vector<pipeline::DetectedTree> search_tiles(const CanopySource& canopy,
+                                                 const pipeline::TreeSearch& search, std::int64_t side,
+                                                 int threads,
+                                                 const pipeline::ProgressMeter::Listener& progress) {
   const GridGeometry& grid = canopy.geometry();
-  const std::vector<Tile> tiles = tiles_of(grid.columns, grid.rows, side);
-  std::vector<std::vector<DetectedTree>> parts(tiles.size());
-  ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
+  const std::vector<pipeline::Tile> tiles = importers::tiles_of(grid.columns, grid.rows, side);
+  std::vector<std::vector<pipeline::DetectedTree>> parts(tiles.size());
+  pipeline::ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
-      parts[i] = find_trees(canopy, tiles[i].cells, search);
+      parts[i] = pipeline::find_trees(canopy, tiles[i].cells, search);
       meter.add(1);
     });
   });
   meter.finish();
-  std::vector<DetectedTree> all;
+  std::vector<pipeline::DetectedTree> all;
   for (auto& part : parts)
     all.insert(all.end(), std::make_move_iterator(part.begin()), std::make_move_iterator(part.end()));
   return all;
 }
 
-Detection detection_of(const DetectedTree& tree, TypeId type, double metres, bool imagery) {
+Detection detection_of(const pipeline::DetectedTree& tree, TypeId type, double metres, bool imagery) {
   Detection one;
   one.type = type;
   const double diameter = std::max(tree.crown_diameter / metres, 1.0);
   one.outline = {static_cast<double>(tree.top.column), static_cast<double>(tree.top.row), diameter, diameter,
                  0};
-  const TreeErrors errors;
+  const pipeline::TreeErrors errors;
   const double sd = imagery ? kPositionSd : errors.position_base + errors.position_slope * tree.height;
   one.covariance = Eigen::Matrix2d::Identity() * (sd * sd / (metres * metres) + 1.0 / 12);
   one.diameter_sd = errors.crown_relative * diameter;
@@ -108,17 +109,19 @@ struct TreeCandidate {
 /// Finds tops of a canopy: of heights, or of greenness and darkness in a colour image.
 std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double metres,
                                             const std::string& method, TypeId type, int threads,
-                                            const ProgressMeter::Listener& progress) {
+                                            const pipeline::ProgressMeter::Listener& progress) {
   const bool imagery = method == "imagery";
   const LandmarkType& tree_type = all_types()[type];
   const auto canopy =
       image_canopy(plan.image->info(), imagery ? CanopySign::greenness : CanopySign::height, metres);
-  const TreeSearch search = imagery ? imagery_search() : height_search(method);
+  const pipeline::TreeSearch search = imagery ? imagery_search() : height_search(method);
   std::vector<TreeCandidate> kept;
-  for (const DetectedTree& tree :
+  for (const pipeline::DetectedTree& tree :
        search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads, progress)) {
     TreeCandidate one{detection_of(tree, type, metres, imagery), {}};
-    one.features = observation_of(tree, *canopy, tree_type, type, built_in_allometry(), "mixed").features;
+    one.features =
+        pipeline::observation_of(tree, *canopy, tree_type, type, pipeline::built_in_allometry(), "mixed")
+            .features;
     if (imagery)
       one.features[feature_index(tree_type, "height")] =
           one.features[feature_index(tree_type, "diameter")] = {};
@@ -129,10 +132,11 @@ std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double me
 
 /// Finds crowns of a colour image with a trained network.
 std::vector<TreeCandidate> detect_by_network(const ImageInfo& info, double metres, TypeId type, int threads,
-                                             const ProgressMeter::Listener& progress) {
+                                             const pipeline::ProgressMeter::Listener& progress) {
   const ColourImage image(info, metres);
   const LandmarkType& tree_type = all_types()[type];
-  const DenseNetwork& network = image.infrared() ? crown_network_infrared() : crown_network_colour();
+  const pipeline::DenseNetwork& network =
+      image.infrared() ? pipeline::crown_network_infrared() : pipeline::crown_network_colour();
   std::vector<TreeCandidate> kept;
   for (const DetectedCrown& crown : detect_crowns(image, network, threads, progress)) {
     TreeCandidate one;
@@ -152,7 +156,8 @@ std::vector<TreeCandidate> detect_by_network(const ImageInfo& info, double metre
 
 }  // namespace
 
-DetectResult detect_trees(const DetectionPlan& plan, int threads, const ProgressMeter::Listener& progress) {
+DetectResult detect_trees(const DetectionPlan& plan, int threads,
+                          const pipeline::ProgressMeter::Listener& progress) {
   const ImageInfo& info = plan.image->info();
   const int bands = band_count(info.path);
   const std::string method = !plan.method.empty() ? plan.method : bands >= 3 ? "imagery" : "peaks";
@@ -190,4 +195,4 @@ DetectResult detect_trees(const DetectionPlan& plan, int threads, const Progress
   return found;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -13,21 +13,21 @@
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 namespace fs = std::filesystem;
 
 void write_text(const std::string& output, const std::string& text) {
-  if (!output.starts_with("/vsi")) return write_file(output, text);
+  if (!output.starts_with("/vsi")) return exporters::write_file(output, text);
   VSILFILE* file = VSIFOpenL(output.c_str(), "wb");
-  if (file == nullptr) fail_output(output, "GDAL cannot write there");
+  if (file == nullptr) exporters::fail_output(output, "GDAL cannot write there");
   const bool written = VSIFWriteL(text.data(), 1, text.size(), file) == text.size();
-  if (VSIFCloseL(file) != 0 || !written) fail_output(output, "GDAL could not write all of it");
+  if (VSIFCloseL(file) != 0 || !written) exporters::fail_output(output, "GDAL could not write all of it");
 }
 
-RunRecord run_record(const ImageDetections& found, const DetectionOutput& output) {
-  StageReport stage;
+geodb::RunRecord run_record(const exporters::ImageDetections& found, const DetectionOutput& output) {
+  pipeline::StageReport stage;
   stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
   stage.units = stage.made = 1;
   stage.counts.in = stage.counts.out = static_cast<std::int64_t>(found.detections.size());
@@ -54,17 +54,17 @@ void check_detection_output(const std::string& output) {
                 "name a file in it: -o " + (path / "detections.csv").string());
 }
 
-void write_detections(const ImageDetections& found, const DetectionOutput& output,
+void write_detections(const exporters::ImageDetections& found, const DetectionOutput& output,
                       const Callbacks& callbacks) {
   const LandmarkType& type = all_types()[found.type];
   const std::string extension = fs::path(output.path).extension().string();
-  if (extension == ".csv") return write_text(output.path, detections_to_csv(found, type));
-  if (extension != ".gpkg") return write_text(output.path, detections_to_geojson(found, type));
+  if (extension == ".csv") return write_text(output.path, exporters::detections_to_csv(found, type));
+  if (extension != ".gpkg") return write_text(output.path, exporters::detections_to_geojson(found, type));
   if (!found.georeference && !found.gsd)
     callbacks.warning("the size of a pixel is not known: in the map a pixel counts as a metre; pass --gsd");
-  MapContents contents = detections_to_map(found, all_types());
+  geodb::MapContents contents = exporters::detections_to_map(found, all_types());
   contents.run = run_record(found, output);
-  write_map(output.path, contents, {.empty_tables = {type.name}});
+  geodb::write_map(output.path, contents, {.empty_tables = {type.name}});
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

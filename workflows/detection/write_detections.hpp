@@ -4,7 +4,7 @@
 #include <string>
 #include "exporters/vector/detections.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Throws Error for an output whose name ends in none of .csv, .geojson, .json, .gpkg, or whose folder cannot
 /// be written. Call it before any work is done.
@@ -19,7 +19,7 @@ struct DetectionOutput {
 };
 
 /// Writes detections in the format of the output's extension; a GeoPackage with the record of this run.
-void write_detections(const ImageDetections& found, const DetectionOutput& output,
+void write_detections(const exporters::ImageDetections& found, const DetectionOutput& output,
                       const Callbacks& callbacks = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -19,12 +19,12 @@
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 struct Truth {
-  std::vector<StampedPose> poses;
-  std::vector<FelledReading> felled;
+  std::vector<localization::StampedPose> poses;
+  std::vector<localization::FelledReading> felled;
   bool headings = true;
 };
 
@@ -32,20 +32,21 @@ Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   const std::string& file = request.truth;
   if (file.ends_with(".csv")) {
     Truth truth;
-    for (const TrackRow& row : read_track_csv(file).rows) truth.poses.push_back({row.t, row.at.pose});
+    for (const localization::TrackRow& row : exporters::read_track_csv(file).rows)
+      truth.poses.push_back({row.t, row.at.pose});
     return truth;
   }
-  RobotLog log = import_log(file, all_types(), request.log_format);
-  if (frame) convert_to_map_frame(log, *frame);
+  localization::RobotLog log = importers::import_log(file, all_types(), request.log_format);
+  if (frame) localization::convert_to_map_frame(log, *frame);
   Truth truth{log.truth, log.felled, false};
-  for (const StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
+  for (const localization::StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
   return truth;
 }
 
 // Colours of the types' own symbols, paler so that tracks stand out.
-std::vector<PictureDot> map_dots(OpenedMap& opened) {
-  std::vector<PictureDot> dots;
-  for (const MapLandmark& l : opened.window.landmarks_near({0, 0}, 0).landmarks()) {
+std::vector<exporters::PictureDot> map_dots(OpenedMap& opened) {
+  std::vector<exporters::PictureDot> dots;
+  for (const localization::MapLandmark& l : opened.window.landmarks_near({0, 0}, 0).landmarks()) {
     const std::string type = opened.map.types()[l.type].name;
     const bool radius = type == "rock" || type == "crater";
     const double size = radius && l.features.known(0)           ? l.features.value[0]
@@ -57,33 +58,34 @@ std::vector<PictureDot> map_dots(OpenedMap& opened) {
   return dots;
 }
 
-void draw(const TrackEvaluation& request, const Track& track, const Truth& truth, OpenedMap* opened) {
+void draw(const TrackEvaluation& request, const localization::Track& track, const Truth& truth,
+          OpenedMap* opened) {
   if (!request.picture.ends_with(".svg"))
     throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", request.picture);
-  TrackPicture picture{.title = std::filesystem::path(request.track).stem(),
-                       .map = {},
-                       .truth = truth.poses,
-                       .tracks = {},
-                       .mapped = {}};
+  exporters::TrackPicture picture{.title = std::filesystem::path(request.track).stem(),
+                                  .map = {},
+                                  .truth = truth.poses,
+                                  .tracks = {},
+                                  .mapped = {}};
   if (opened) picture.map = map_dots(*opened);
   for (const std::string& more : request.also) {
     const std::size_t equals = more.find('=');
     if (equals == std::string::npos || equals == 0)
       throw Error(ErrorCode::usage, "--also takes NAME=TRACK.csv, is '" + more + "'", "",
                   "e.g. --also ekf=ekf.csv");
-    picture.tracks.push_back({more.substr(0, equals), read_track_csv(more.substr(equals + 1))});
+    picture.tracks.push_back({more.substr(0, equals), exporters::read_track_csv(more.substr(equals + 1))});
   }
   picture.tracks.push_back({std::filesystem::path(request.track).stem(), track});
-  for (const HarvestedTree& tree : harvested_trees(truth.felled, track))
+  for (const localization::HarvestedTree& tree : localization::harvested_trees(truth.felled, track))
     picture.mapped.push_back({tree.at, tree.diameter / 2, "#b22222"});
-  write_file(request.picture, track_picture(picture));
+  exporters::write_file(request.picture, exporters::track_picture(picture));
 }
 
 ScoredTables read_truth(const LandmarkEvaluation& request) {
   ScoredTables truth = read_scored_things(request.truth, request.type, request.min_pixels);
   if (request.ignore.empty()) return truth;
   for (auto& [type, things] : read_scored_things(request.ignore, request.type, 0))
-    for (EvaluatedObject& thing : things) {
+    for (testbed::EvaluatedObject& thing : things) {
       thing.ignored = true;
       truth[type].push_back(thing);
     }
@@ -91,8 +93,8 @@ ScoredTables read_truth(const LandmarkEvaluation& request) {
 }
 
 /// Throws why no row of the track has a true pose: other times, or a truth too coarse to interpolate.
-[[noreturn]] void refuse_times(const TrackEvaluation& request, const Track& track,
-                               const std::vector<StampedPose>& truth) {
+[[noreturn]] void refuse_times(const TrackEvaluation& request, const localization::Track& track,
+                               const std::vector<localization::StampedPose>& truth) {
   if (track.rows.empty())
     throw Error(ErrorCode::input, "the track has no rows", request.track,
                 "waymark localize writes one per event");
@@ -113,14 +115,14 @@ ScoredTables read_truth(const LandmarkEvaluation& request) {
 }
 
 /// Warns about types of which nothing was matched, and says why that may be.
-void warn_unmatched(const std::string& type, const std::vector<EvaluatedObject>& found,
-                    const std::vector<EvaluatedObject>& truth, const Score& result,
+void warn_unmatched(const std::string& type, const std::vector<testbed::EvaluatedObject>& found,
+                    const std::vector<testbed::EvaluatedObject>& truth, const testbed::Score& result,
                     const Callbacks& callbacks) {
   if (result.all.matched > 0 || truth.empty()) return;
   if (found.empty()) return callbacks.warning("the result has no " + type + ": nothing can match");
-  const auto extent = [](const std::vector<EvaluatedObject>& things) {
+  const auto extent = [](const std::vector<testbed::EvaluatedObject>& things) {
     Eigen::AlignedBox2d box;
-    for (const EvaluatedObject& thing : things) box.extend(thing.at);
+    for (const testbed::EvaluatedObject& thing : things) box.extend(thing.at);
     return box;
   };
   const Eigen::AlignedBox2d a = extent(found), b = extent(truth);
@@ -135,16 +137,18 @@ void warn_unmatched(const std::string& type, const std::vector<EvaluatedObject>&
 
 }  // namespace
 
-std::map<std::string, Score> evaluate(const LandmarkEvaluation& request, const Callbacks& callbacks) {
+std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request,
+                                               const Callbacks& callbacks) {
   if (!(request.max_distance >= 0) || !(request.always_allowed_distance >= 0) || !(request.min_diameter >= 0))
     throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
   const ScoredTables found = read_scored_things(request.result, request.type, 0);
   const ScoredTables truth = read_truth(request);
-  MatchRules rules{.by = request.match_by == "overlap" ? MatchRules::By::overlap : MatchRules::By::distance,
-                   .distance_fraction = request.max_distance,
-                   .min_distance = request.always_allowed_distance,
-                   .min_diameter = request.min_diameter};
-  std::map<std::string, Score> scores;
+  testbed::MatchRules rules{.by = request.match_by == "overlap" ? testbed::MatchRules::By::overlap
+                                                                : testbed::MatchRules::By::distance,
+                            .distance_fraction = request.max_distance,
+                            .min_distance = request.always_allowed_distance,
+                            .min_diameter = request.min_diameter};
+  std::map<std::string, testbed::Score> scores;
   for (const auto& [type, things] : pair_by_type(found, truth, request.type)) {
     rules.scales.clear();
     if (const LandmarkType* known = all_types().find(type))
@@ -155,37 +159,38 @@ std::map<std::string, Score> evaluate(const LandmarkEvaluation& request, const C
   return scores;
 }
 
-TrackScore evaluate(const TrackEvaluation& request) {
-  const Track track = read_track_csv(request.track);
+localization::TrackScore evaluate(const TrackEvaluation& request) {
+  const localization::Track track = exporters::read_track_csv(request.track);
   std::optional<OpenedMap> opened;
   if (!request.map.empty()) opened = open_robot_map(request.map, nullptr);
   const Truth truth = read_truth(request, opened ? &opened->map.frame : nullptr);
   if (truth.poses.empty())
     throw Error(ErrorCode::input, "the truth has no poses", request.truth, "is it a log without true poses?");
-  const TrackAlignment alignment = request.align == "se2"    ? TrackAlignment::se2
-                                   : request.align == "sim2" ? TrackAlignment::sim2
-                                                             : TrackAlignment::none;
-  TrackScore s = score(track, truth.poses, alignment, truth.headings, 1, request.max_gap);
+  const localization::TrackAlignment alignment = request.align == "se2" ? localization::TrackAlignment::se2
+                                                 : request.align == "sim2"
+                                                     ? localization::TrackAlignment::sim2
+                                                     : localization::TrackAlignment::none;
+  localization::TrackScore s = score(track, truth.poses, alignment, truth.headings, 1, request.max_gap);
   if (s.poses == 0) refuse_times(request, track, truth.poses);
   if (!request.picture.empty()) draw(request, track, truth, opened ? &*opened : nullptr);
   return s;
 }
 
-std::vector<QualityCheck> check_quality(const std::string& map, const std::string& truth) {
+std::vector<exporters::QualityCheck> check_quality(const std::string& map, const std::string& truth) {
   const auto pairs = pair_by_type(read_scored_things(map, "", 0),
                                   read_scored_things(truth, "", LandmarkEvaluation{}.min_pixels), "");
-  std::vector<QualityCheck> checks;
+  std::vector<exporters::QualityCheck> checks;
   for (const auto& [type, things] : pairs) {
-    const Score result = score(things.first, things.second, {});
+    const testbed::Score result = score(things.first, things.second, {});
     for (const auto& [claim, bins, error] :
          {std::tuple{"confidence", result.by_confidence, result.confidence_error},
           {"quality", result.by_quality, result.quality_error}}) {
-      QualityCheck check{.type = type, .claim = claim, .bins = {}, .expected_error = error};
-      for (const CalibrationBin& bin : bins) check.bins.push_back({bin.mean, bin.found, bin.right});
+      exporters::QualityCheck check{.type = type, .claim = claim, .bins = {}, .expected_error = error};
+      for (const testbed::CalibrationBin& bin : bins) check.bins.push_back({bin.mean, bin.found, bin.right});
       checks.push_back(std::move(check));
     }
   }
   return checks;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

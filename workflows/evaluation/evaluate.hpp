@@ -8,7 +8,7 @@
 #include "localization/track_score.hpp"
 #include "testbed/score.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// A map or table of landmarks and the truth to compare it with, in one coordinate system.
 struct LandmarkEvaluation {
@@ -25,24 +25,25 @@ struct LandmarkEvaluation {
 
 /// Returns scores by landmark type; warns about types without a match. Throws Error{usage} for negative sizes
 /// or types that cannot be paired, Error{input} for a table without positions.
-std::map<std::string, Score> evaluate(const LandmarkEvaluation& request, const Callbacks& callbacks = {});
+std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request,
+                                               const Callbacks& callbacks = {});
 
 /// A track and the truth to compare it with.
 struct TrackEvaluation {
-  std::string track, truth;            ///< track.csv; a log with true poses or another track
-  std::string align = "none";          ///< "none", "se2" or "sim2"
-  LogImport log_format = {};           ///< of a truth that is a log
-  double max_gap = 0.5;                ///< s between two true poses that may be interpolated
-  std::string picture = {};            ///< .svg to draw; empty: none
-  std::string map = {};                ///< map that is drawn and whose frame the truth is put in
-  std::vector<std::string> also = {};  ///< NAME=TRACK.csv: more tracks of the picture
+  std::string track, truth;              ///< track.csv; a log with true poses or another track
+  std::string align = "none";            ///< "none", "se2" or "sim2"
+  importers::LogImport log_format = {};  ///< of a truth that is a log
+  double max_gap = 0.5;                  ///< s between two true poses that may be interpolated
+  std::string picture = {};              ///< .svg to draw; empty: none
+  std::string map = {};                  ///< map that is drawn and whose frame the truth is put in
+  std::vector<std::string> also = {};    ///< NAME=TRACK.csv: more tracks of the picture
 };
 
 /// Returns errors and consistency of a track, and draws the picture. Throws Error{input} if the truth has no
 /// poses or no time in common with the track.
-TrackScore evaluate(const TrackEvaluation& request);
+localization::TrackScore evaluate(const TrackEvaluation& request);
 
 /// Returns how far the confidence and quality of a map's landmarks agree with the truth, for a report.
-std::vector<QualityCheck> check_quality(const std::string& map, const std::string& truth);
+std::vector<exporters::QualityCheck> check_quality(const std::string& map, const std::string& truth);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -12,7 +12,7 @@
 #include "importers/tables/table_number.hpp"
 #include "landmarks/sensor_profile.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 std::string lower(std::string text) {
@@ -47,12 +47,12 @@ double diameter_of(const std::map<std::string, double>& values) {
   return std::sqrt(value({"major_axis", "major"}) * value({"minor_axis", "minor"}));
 }
 
-EvaluatedObject thing_of(const std::map<std::string, double>& values, double min_pixels) {
+testbed::EvaluatedObject thing_of(const std::map<std::string, double>& values, double min_pixels) {
   const auto value = [&](const char* name) -> std::optional<double> {
     const auto found = values.find(name);
     return found == values.end() ? std::nullopt : std::optional(found->second);
   };
-  EvaluatedObject thing;
+  testbed::EvaluatedObject thing;
   for (const char* x : {"x", "x_px", "geom_x"})
     if (const auto v = value(x)) thing.at.x() = *v;
   for (const char* y : {"y", "y_px", "geom_y"})
@@ -67,19 +67,19 @@ EvaluatedObject thing_of(const std::map<std::string, double>& values, double min
   return thing;
 }
 
-ScoredTables from_map(const MapStore& map, const std::string& only) {
+ScoredTables from_map(const geodb::MapStore& map, const std::string& only) {
   ScoredTables tables;
   for (const LandmarkType& type : map.types()) {
     if (!only.empty() && type.name != only) continue;
     auto& things = tables[type.name];
-    MapQuery query;
+    geodb::MapQuery query;
     query.types = {type.name};
     for (const Landmark& landmark : map.query(query)) {
       std::map<std::string, double> values{{"x", landmark.position.xyz.x()},
                                            {"y", landmark.position.xyz.y()}};
       for (std::size_t f = 0; f < type.features.size(); ++f)
         if (landmark.features[f].known()) values[type.features[f].name] = landmark.features[f].value;
-      EvaluatedObject thing = thing_of(values, 0);
+      testbed::EvaluatedObject thing = thing_of(values, 0);
       thing.covariance = landmark.covariance.topLeftCorner<2, 2>();
       thing.confidence = landmark.confidence;
       thing.quality = quality_of(type, landmark);
@@ -90,7 +90,7 @@ ScoredTables from_map(const MapStore& map, const std::string& only) {
 }
 
 // "c1, c2, c3" of a table without a header.
-std::vector<std::string> column_names(const TableHeader& header) {
+std::vector<std::string> column_names(const importers::TableHeader& header) {
   std::vector<std::string> names = header.columns;
   for (std::string& name : names) name = lower(name);
   const char* const plain[] = {"x", "y", "diameter"};
@@ -99,7 +99,7 @@ std::vector<std::string> column_names(const TableHeader& header) {
   return names;
 }
 
-ScoredTables from_table(TableSource& table, const std::string& only, double min_pixels) {
+ScoredTables from_table(importers::TableSource& table, const std::string& only, double min_pixels) {
   const std::vector<std::string> names = column_names(table.header());
   const auto has = [&](std::initializer_list<const char*> any) {
     return std::any_of(any.begin(), any.end(), [&](const char* name) {
@@ -110,13 +110,13 @@ ScoredTables from_table(TableSource& table, const std::string& only, double min_
     throw Error(ErrorCode::input, "the table has no columns x and y", table.header().path,
                 "rename its columns, or make a map of it with `waymark import`");
   ScoredTables tables;
-  for (TableRow row; table.next(row);) {
+  for (importers::TableRow row; table.next(row);) {
     std::map<std::string, double> values;
     std::string type;
     for (std::size_t i = 0; i < names.size() && i < row.cells.size(); ++i) {
       if (names[i] == "type") type = row.cells[i];
-      if (is_missing(row.cells[i])) continue;
-      if (const auto number = to_real(row.cells[i], table.header().decimal_comma))
+      if (importers::is_missing(row.cells[i])) continue;
+      if (const auto number = importers::to_real(row.cells[i], table.header().decimal_comma))
         values[names[i]] = *number;
       else if (is_metadata(names[i]) && names[i] != "type" && names[i] != "shape" && names[i] != "uid")
         throw Error(ErrorCode::input, fmt::format("'{}' is no number (column {})", row.cells[i], names[i]),
@@ -135,12 +135,13 @@ bool is_map(const std::string& path) {
 }  // namespace
 
 ScoredTables read_scored_things(const std::string& path, const std::string& type, double min_pixels) {
-  if (is_map(path)) return from_map(MapStore::open(path), type);
-  return from_table(*open_table(path, TableFormat::by_name, "", type), type, min_pixels);
+  if (is_map(path)) return from_map(geodb::MapStore::open(path), type);
+  return from_table(*importers::open_table(path, importers::TableFormat::by_name, "", type), type,
+                    min_pixels);
 }
 
-std::map<std::string, std::pair<std::vector<EvaluatedObject>, std::vector<EvaluatedObject>>> pair_by_type(
-    const ScoredTables& found, const ScoredTables& truth, const std::string& type) {
+std::map<std::string, std::pair<std::vector<testbed::EvaluatedObject>, std::vector<testbed::EvaluatedObject>>>
+pair_by_type(const ScoredTables& found, const ScoredTables& truth, const std::string& type) {
   const auto only_type = [&](const ScoredTables& tables) {
     if (!type.empty()) return type;
     std::vector<std::string> named;
@@ -151,7 +152,9 @@ std::map<std::string, std::pair<std::vector<EvaluatedObject>, std::vector<Evalua
                   fmt::format("types: {}", fmt::join(named, ", ")), "name the type to compare: --type");
     return named.empty() ? std::string("landmarks") : named.front();
   };
-  std::map<std::string, std::pair<std::vector<EvaluatedObject>, std::vector<EvaluatedObject>>> pairs;
+  std::map<std::string,
+           std::pair<std::vector<testbed::EvaluatedObject>, std::vector<testbed::EvaluatedObject>>>
+      pairs;
   for (const auto& [name, things] : truth) {
     auto& pair = pairs[name.empty() ? only_type(found) : name];
     pair.second.insert(pair.second.end(), things.begin(), things.end());
@@ -165,4 +168,4 @@ std::map<std::string, std::pair<std::vector<EvaluatedObject>, std::vector<Evalua
   return pairs;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

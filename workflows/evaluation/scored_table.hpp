@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 #include "testbed/score.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Objects by landmark type; "" for a table without types.
-using ScoredTables = std::map<std::string, std::vector<EvaluatedObject>>;
+using ScoredTables = std::map<std::string, std::vector<testbed::EvaluatedObject>>;
 
 /// Reads a map (*.gpkg made by Waymark: all types, covariances, quality), a CSV or any layer of points.
 /// Columns are found by name, see `waymark evaluate --help`; a table without a header has x, y, diameter.
@@ -18,7 +18,7 @@ ScoredTables read_scored_things(const std::string& path, const std::string& type
 
 /// Pairs found and true objects by type. Objects without a type are compared with the other side's only type,
 /// or with `type`. Throws Error{usage} if that is ambiguous.
-std::map<std::string, std::pair<std::vector<EvaluatedObject>, std::vector<EvaluatedObject>>> pair_by_type(
-    const ScoredTables& found, const ScoredTables& truth, const std::string& type);
+std::map<std::string, std::pair<std::vector<testbed::EvaluatedObject>, std::vector<testbed::EvaluatedObject>>>
+pair_by_type(const ScoredTables& found, const ScoredTables& truth, const std::string& type);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

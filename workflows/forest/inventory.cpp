@@ -16,7 +16,7 @@
 #include "workflows/forest/stand_figures.hpp"
 #include "workflows/output_path.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,9 +43,10 @@ StandTables read_tables(const InventoryRequest& request) {
   tables.diameters_file = request.allometry;
   tables.volumes_file = request.volume;
   if (!request.allometry.empty())
-    tables.diameters = parse_allometry(read_text(request.allometry, "this table"), request.allometry);
+    tables.diameters =
+        pipeline::parse_allometry(read_text(request.allometry, "this table"), request.allometry);
   if (!request.volume.empty())
-    tables.volumes = parse_volume(read_text(request.volume, "this table"), request.volume);
+    tables.volumes = pipeline::parse_volume(read_text(request.volume, "this table"), request.volume);
   return tables;
 }
 
@@ -68,9 +69,9 @@ std::vector<std::string> stand_warnings(const std::vector<StandResult>& results,
 }
 
 /// Returns the layer with every n-th of its rows, for a picture.
-ShapeLayer thinned(ShapeLayer layer, std::size_t every) {
+geodb::ShapeLayer thinned(geodb::ShapeLayer layer, std::size_t every) {
   std::size_t row = 0;
-  layer.generator([&](const Shape& shape) {
+  layer.generator([&](const geodb::Shape& shape) {
     if (row++ % every == 0) layer.rows.push_back(shape);
   });
   layer.generator = {};
@@ -78,28 +79,30 @@ ShapeLayer thinned(ShapeLayer layer, std::size_t every) {
 }
 
 /// Writes stands as CSV, or stands and trees as layers of a copy of the map or of the map itself.
-void write_output(const InventoryRequest& request, const ShapeLayer& stands, const ShapeLayer& trees) {
-  if (fs::path(request.output).extension() == ".csv") return write_file(request.output, layer_to_csv(stands));
-  check_before_copy(request.map);
+void write_output(const InventoryRequest& request, const geodb::ShapeLayer& stands,
+                  const geodb::ShapeLayer& trees) {
+  if (fs::path(request.output).extension() == ".csv")
+    return exporters::write_file(request.output, exporters::layer_to_csv(stands));
+  geodb::check_before_copy(request.map);
   const std::vector layers{stands, trees};
   std::error_code other;
-  if (fs::equivalent(request.map, request.output, other)) return write_layers(request.output, layers);
-  AtomicFile copy(request.output);
+  if (fs::equivalent(request.map, request.output, other)) return geodb::write_layers(request.output, layers);
+  geodb::AtomicFile copy(request.output);
   fs::copy_file(request.map, copy.path(), fs::copy_options::overwrite_existing);
-  write_layers(copy.path(), layers, MapAccess::exclusive);
+  geodb::write_layers(copy.path(), layers, geodb::MapAccess::exclusive);
   copy.commit();
 }
 
 void write_report_page(const InventoryRequest& request, const InventoryResult& result,
-                       const ShapeLayer& stands, const ShapeLayer& trees, const Crs& crs) {
-  const std::size_t every = 1 + result.trees / InventoryPage::kMaxTrees;
-  write_inventory_report(request.report, {.title = fs::path(request.map).filename().string(),
-                                          .crs = crs.id(),
-                                          .stands = stands,
-                                          .trees = thinned(trees, every),
-                                          .tree_count = result.trees,
-                                          .warnings = result.warnings,
-                                          .failed = result.failed});
+                       const geodb::ShapeLayer& stands, const geodb::ShapeLayer& trees, const Crs& crs) {
+  const std::size_t every = 1 + result.trees / exporters::InventoryPage::kMaxTrees;
+  exporters::write_inventory_report(request.report, {.title = fs::path(request.map).filename().string(),
+                                                     .crs = crs.id(),
+                                                     .stands = stands,
+                                                     .trees = thinned(trees, every),
+                                                     .tree_count = result.trees,
+                                                     .warnings = result.warnings,
+                                                     .failed = result.failed});
 }
 
 }  // namespace
@@ -111,7 +114,7 @@ InventoryResult inventory(const InventoryRequest& request, const Callbacks& call
     callbacks.warning(warning);
     result.warnings.push_back(warning);
   };
-  const MapStore map = MapStore::open(request.map);
+  const geodb::MapStore map = geodb::MapStore::open(request.map);
   const TreeReader reader(map);
   if (reader.count() == 0) warn("the map has no trees: every figure is 0 or empty");
   StandAreas areas = read_stand_areas({request.stands, request.stands_layer, request.grid}, map, reader);
@@ -119,19 +122,19 @@ InventoryResult inventory(const InventoryRequest& request, const Callbacks& call
   result.failed = std::move(areas.failed);
   const StandBatches stands(reader, std::move(areas.stands), request.max_trees);
   const StandTables tables = read_tables(request);
-  InventoryOptions options{.class_width = request.class_width / 100};
+  pipeline::InventoryOptions options{.class_width = request.class_width / 100};
   if (!request.recall.empty())
-    options.recall = parse_recall(read_text(request.recall, "this table"), request.recall);
+    options.recall = pipeline::parse_recall(read_text(request.recall, "this table"), request.recall);
   stands.visit([&](const MapTrees& trees, const NamedStand& stand) {
     result.stands.push_back(compute_stand_figures(trees, stand, tables, options));
   });
   for (const std::string& warning : stand_warnings(result.stands, !request.stands.empty())) warn(warning);
   for (const StandResult& stand : result.stands)
     result.trees += static_cast<std::size_t>(stand.figures.trees);
-  const ShapeLayer stand_rows = stand_layer(result.stands), tree_rows = tree_layer(stands, tables);
+  const geodb::ShapeLayer stand_rows = stand_layer(result.stands), tree_rows = tree_layer(stands, tables);
   if (!request.output.empty()) write_output(request, stand_rows, tree_rows);
   if (!request.report.empty()) write_report_page(request, result, stand_rows, tree_rows, map.crs());
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

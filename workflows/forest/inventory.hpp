@@ -7,7 +7,7 @@
 #include "core/options/memory_option.hpp"
 #include "workflows/callbacks.hpp"
 #include "workflows/forest/stand_result.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Returns the number of trees that the memory holds, 1 kB each.
 inline std::int64_t trees_in_memory(const MemoryOption& memory) {
@@ -42,4 +42,4 @@ struct InventoryResult {
 /// range or in conflict, Error{input} for a map without trees' type or a table without the species.
 InventoryResult inventory(const InventoryRequest& request, const Callbacks& callbacks = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -8,17 +8,17 @@
 #include "core/error.hpp"
 #include "importers/tables/stand_outlines.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-StandPolygon in_metres(const std::vector<ShapePart>& outline, double unit) {
-  StandPolygon polygon;
+pipeline::StandPolygon in_metres(const std::vector<geodb::ShapePart>& outline, double unit) {
+  pipeline::StandPolygon polygon;
   const auto add = [&](const std::vector<Eigen::Vector2d>& ring) {
     auto& corners = polygon.rings.emplace_back();
     for (const auto& corner : ring) corners.push_back(corner * unit);
     if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
   };
-  for (const ShapePart& part : outline) {
+  for (const geodb::ShapePart& part : outline) {
     add(part.outer);
     for (const auto& hole : part.holes) add(hole);
   }
@@ -26,31 +26,32 @@ StandPolygon in_metres(const std::vector<ShapePart>& outline, double unit) {
 }
 
 /// Returns the whole map as one stand.
-NamedStand whole_map(const MapStore& map, const TreeReader& trees, std::vector<std::string>& warnings) {
+NamedStand whole_map(const geodb::MapStore& map, const TreeReader& trees,
+                     std::vector<std::string>& warnings) {
   NamedStand whole{.name = "all", .species = {}, .polygon = {}, .outline = {}};
-  for (const std::string& layer : shape_layers(map.path()))
+  for (const std::string& layer : geodb::shape_layers(map.path()))
     if (layer == "survey")
-      for (const Shape& row : read_shape_layer(map.path(), layer).rows)
+      for (const geodb::Shape& row : geodb::read_shape_layer(map.path(), layer).rows)
         whole.outline.insert(whole.outline.end(), row.parts.begin(), row.parts.end());
   whole.polygon = in_metres(whole.outline, trees.unit());
   if (!whole.polygon.rings.empty()) return whole;
-  whole.polygon = estimate_sampled_area(trees.positions());
+  whole.polygon = pipeline::estimate_sampled_area(trees.positions());
   if (whole.polygon.rings.empty())
     throw Error(ErrorCode::input, "the map's trees span no area, so the size of the stand is unknown",
                 map.path().string(), "give its outline: --stands POLYGONS");
-  ShapePart part;
+  geodb::ShapePart part;
   for (const auto& corner : whole.polygon.rings[0]) part.outer.push_back(corner / trees.unit());
   whole.outline = {part};
   warnings.push_back(
       fmt::format("the map does not say which area was surveyed: taken to be the hull of its trees, widened "
                   "to {:.2f} ha; --stands gives it exactly",
-                  area(whole.polygon) / 1e4));
+                  pipeline::area(whole.polygon) / 1e4));
   return whole;
 }
 
 /// Returns cells at whole multiples of their side, clipped to the area.
 std::vector<NamedStand> grid_cells(const NamedStand& whole, double grid, double unit) {
-  const Eigen::AlignedBox2d box = bounds(whole.polygon);
+  const Eigen::AlignedBox2d box = pipeline::bounds(whole.polygon);
   const Eigen::Array2d cells_across = box.sizes().array() / grid + 1;
   if (!(cells_across.prod() < 1e6))
     throw Error(ErrorCode::usage,
@@ -67,9 +68,9 @@ std::vector<NamedStand> grid_cells(const NamedStand& whole, double grid, double 
     for (std::int64_t i = 0; i < columns; ++i) {
       const double x = static_cast<double>(first(box.min().x()) + i) * grid,
                    y = static_cast<double>(first(box.min().y()) + j) * grid;
-      const StandPolygon part =
-          clip_polygon(whole.polygon, {Eigen::Vector2d(x, y), Eigen::Vector2d(x + grid, y + grid)});
-      if (!(area(part) > 1)) continue;
+      const pipeline::StandPolygon part =
+          pipeline::clip_polygon(whole.polygon, {Eigen::Vector2d(x, y), Eigen::Vector2d(x + grid, y + grid)});
+      if (!(pipeline::area(part) > 1)) continue;
       NamedStand cell{
           .name = fmt::format("{:.0f}_{:.0f}", x, y), .species = {}, .polygon = part, .outline = {}};
       for (const auto& ring : part.rings) {
@@ -86,13 +87,13 @@ std::vector<NamedStand> grid_cells(const NamedStand& whole, double grid, double 
 }
 
 /// Reads the polygons of a layer.
-StandAreas read_outlines(const StandSource& source, const MapStore& map, double unit) {
-  StandOutlines read = read_stand_outlines(source.file, source.layer, map.crs());
+StandAreas read_outlines(const StandSource& source, const geodb::MapStore& map, double unit) {
+  importers::StandOutlines read = importers::read_stand_outlines(source.file, source.layer, map.crs());
   StandAreas areas{.stands = {}, .warnings = std::move(read.warnings), .failed = std::move(read.failed)};
-  for (StandOutline& outline : read.stands) {
+  for (importers::StandOutline& outline : read.stands) {
     NamedStand stand{.name = outline.name, .species = outline.species, .polygon = {}, .outline = {}};
     for (auto& rings : outline.polygons) {
-      ShapePart part{.outer = rings[0]};
+      geodb::ShapePart part{.outer = rings[0]};
       part.holes.assign(rings.begin() + 1, rings.end());
       stand.outline.push_back(std::move(part));
     }
@@ -104,7 +105,7 @@ StandAreas read_outlines(const StandSource& source, const MapStore& map, double 
 
 }  // namespace
 
-StandAreas read_stand_areas(const StandSource& source, const MapStore& map, const TreeReader& trees) {
+StandAreas read_stand_areas(const StandSource& source, const geodb::MapStore& map, const TreeReader& trees) {
   if (!source.file.empty()) return read_outlines(source, map, trees.unit());
   StandAreas areas;
   const NamedStand whole = whole_map(map, trees, areas.warnings);
@@ -115,4 +116,4 @@ StandAreas read_stand_areas(const StandSource& source, const MapStore& map, cons
   return areas;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 #include "workflows/forest/stand_batches.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Where the stands of an inventory come from.
 struct StandSource {
@@ -21,6 +21,6 @@ struct StandAreas {
 /// Reads or makes the stands of a map. The area of a whole map is its layer `survey`, else the hull of its
 /// trees with a warning. Throws Error{input} if that hull has no area, Error{usage} for more than 100,000
 /// cells.
-StandAreas read_stand_areas(const StandSource& source, const MapStore& map, const TreeReader& trees);
+StandAreas read_stand_areas(const StandSource& source, const geodb::MapStore& map, const TreeReader& trees);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

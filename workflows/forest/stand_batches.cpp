@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 double area_of(const Eigen::AlignedBox2d& box) {
@@ -23,7 +23,7 @@ void StandBatches::make_batches(std::int64_t max_trees) {
       static_cast<double>(max_trees) / static_cast<double>(std::max<std::int64_t>(1, reader_->count()));
   const double largest = fraction * area_of(reader_->extent());
   for (std::size_t i = 0; i < stands_.size(); ++i) {
-    Eigen::AlignedBox2d box = bounds(stands_[i].polygon);
+    Eigen::AlignedBox2d box = pipeline::bounds(stands_[i].polygon);
     if (!box.isEmpty()) {
       const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reader_->max_influence_radius());
       box = Eigen::AlignedBox2d(box.min() - reach, box.max() + reach);
@@ -47,4 +47,4 @@ void StandBatches::visit(const Visitor& visitor) const {
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -6,7 +6,7 @@
 #include <vector>
 #include "workflows/forest/stand_result.hpp"
 #include "workflows/forest/tree_reader.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Visits stands with the trees near them, batch by batch, so that a map may be larger than memory. A batch
 /// is a run of stands that together hold about `max_trees` trees, or one larger stand.
@@ -34,4 +34,4 @@ class StandBatches {
   mutable std::optional<MapTrees> cached_;  ///< trees of the only batch
 };
 
-}  // namespace waymark
+}  // namespace waymark::workflows

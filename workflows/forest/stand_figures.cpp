@@ -9,12 +9,13 @@
 #include "core/error.hpp"
 #include "pipeline/forest/airborne_recall.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 /// Returns mean crown diameter over height of the tall trees of a stand, whose crowns hide others; NaN if
 /// unknown.
-double crown_ratio(std::span<const StandTree> trees, std::span<const StandCrown> crowns, double dominant) {
+double crown_ratio(std::span<const pipeline::StandTree> trees, std::span<const pipeline::StandCrown> crowns,
+                   double dominant) {
   constexpr double kTall = 0.8;
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < trees.size(); ++i)
@@ -23,16 +24,16 @@ double crown_ratio(std::span<const StandTree> trees, std::span<const StandCrown>
   return sum / count;
 }
 
-const Allometry& diameter_row(const StandTables& tables, const std::string& species) {
-  const auto& table = tables.diameters.empty() ? built_in_allometry() : tables.diameters;
-  if (const Allometry* row = allometry_of(table, species)) return *row;
+const pipeline::Allometry& diameter_row(const StandTables& tables, const std::string& species) {
+  const auto& table = tables.diameters.empty() ? pipeline::built_in_allometry() : tables.diameters;
+  if (const pipeline::Allometry* row = pipeline::allometry_of(table, species)) return *row;
   throw Error(ErrorCode::input,
               fmt::format("the allometry has no row for species '{}' and none for all", species),
               tables.diameters_file, "add a row with species all");
 }
 
-const VolumeRow& volume_row(const StandTables& tables, const std::string& species) {
-  if (const VolumeRow* row = volume_of(tables.volumes, species)) return *row;
+const pipeline::VolumeRow& volume_row(const StandTables& tables, const std::string& species) {
+  if (const pipeline::VolumeRow* row = pipeline::volume_of(tables.volumes, species)) return *row;
   throw Error(ErrorCode::input,
               fmt::format("the volume table has no row for species '{}' and none for all", species),
               tables.volumes_file, "add a row with species all");
@@ -42,22 +43,22 @@ const VolumeRow& volume_row(const StandTables& tables, const std::string& specie
 
 StandStems stand_stems(const MapTrees& map, const NamedStand& stand, const StandTables& tables) {
   StandStems stems;
-  const Allometry& diameters = diameter_row(tables, stand.species);
-  const VolumeRow& volumes = volume_row(tables, stand.species);
-  const Eigen::AlignedBox2d box = bounds(stand.polygon);
+  const pipeline::Allometry& diameters = diameter_row(tables, stand.species);
+  const pipeline::VolumeRow& volumes = volume_row(tables, stand.species);
+  const Eigen::AlignedBox2d box = pipeline::bounds(stand.polygon);
   for (std::size_t i = 0; i < map.trees.size(); ++i) {
     const double reach = influence_radius(map.trees[i], map.crowns[i]);
     if (box.squaredExteriorDistance(map.trees[i].position) > reach * reach) continue;
-    StandTree tree = map.trees[i];
+    pipeline::StandTree tree = map.trees[i];
     if (!tables.diameters.empty() || std::isnan(tree.diameter)) {
-      const auto stem = stem_diameter(diameters, tree.height, tree.height_sd, map.crowns[i].diameter,
-                                      map.crowns[i].diameter_sd);
-      tree.diameter = stem ? stem->metres : StandTree::kUnknown;
+      const auto stem = pipeline::stem_diameter(diameters, tree.height, tree.height_sd,
+                                                map.crowns[i].diameter, map.crowns[i].diameter_sd);
+      tree.diameter = stem ? stem->metres : pipeline::StandTree::kUnknown;
       tree.diameter_sd = stem ? stem->sd : 0;
       const double bias = diameters.held_out_bias / 100;
       tree.diameter_bias = stem && !std::isnan(bias) ? std::abs(bias) : 0;
     }
-    tree.volume = stem_volume(volumes, tree.diameter, tree.height);
+    tree.volume = pipeline::stem_volume(volumes, tree.diameter, tree.height);
     tree.mass = tree.volume * volumes.mass_per_volume;
     stems.near.push_back(i);
     stems.trees.push_back(tree);
@@ -66,27 +67,27 @@ StandStems stand_stems(const MapTrees& map, const NamedStand& stand, const Stand
 }
 
 StandResult compute_stand_figures(const MapTrees& map, NamedStand stand, const StandTables& tables,
-                                  const InventoryOptions& options) {
+                                  const pipeline::InventoryOptions& options) {
   StandResult result;
   result.stand = std::move(stand);
-  const StandPolygon& polygon = result.stand.polygon;
+  const pipeline::StandPolygon& polygon = result.stand.polygon;
   const auto [near, trees] = stand_stems(map, result.stand, tables);
   const bool all_near = near.size() == map.trees.size();  // their outlines are not copied
-  std::vector<StandCrown> crowns;
+  std::vector<pipeline::StandCrown> crowns;
   for (std::size_t i = 0; !all_near && i < near.size(); ++i) crowns.push_back(map.crowns[near[i]]);
-  const std::span<const StandCrown> shades = all_near ? map.crowns : crowns;
-  const VolumeRow& volumes = volume_row(tables, result.stand.species);
-  InventoryOptions all = options;
+  const std::span<const pipeline::StandCrown> shades = all_near ? map.crowns : crowns;
+  const pipeline::VolumeRow& volumes = volume_row(tables, result.stand.species);
+  pipeline::InventoryOptions all = options;
   all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
   result.figures = result.complete = inventory(trees, polygon, all);
   if (map.from_air && all.recall.empty()) {
     const double dominant = result.figures.dominant_height.value;
-    all.recall = airborne_recall(dominant, crown_ratio(trees, shades, dominant));
+    all.recall = pipeline::airborne_recall(dominant, crown_ratio(trees, shades, dominant));
     all.recall_errors_correlated = true;
     result.complete = inventory(trees, polygon, all);
   }
-  result.cover = canopy_cover(shades, polygon);
+  result.cover = pipeline::canopy_cover(shades, polygon);
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

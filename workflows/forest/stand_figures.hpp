@@ -8,20 +8,20 @@
 #include "pipeline/forest/stand_volume.hpp"
 #include "workflows/forest/stand_batches.hpp"
 #include "workflows/forest/stand_result.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Tables for diameters and volumes.
 struct StandTables {
   /// Empty: the diameters of the map, and the built-in table for trees without one.
-  std::vector<Allometry> diameters;
-  std::vector<VolumeRow> volumes = built_in_volume();
+  std::vector<pipeline::Allometry> diameters;
+  std::vector<pipeline::VolumeRow> volumes = pipeline::built_in_volume();
   std::string diameters_file, volumes_file;  ///< for messages
 };
 
 /// Trees in or near a stand, with the diameters and volumes of its species.
 struct StandStems {
-  std::vector<std::size_t> near;  ///< indices of MapTrees
-  std::vector<StandTree> trees;   ///< these
+  std::vector<std::size_t> near;           ///< indices of MapTrees
+  std::vector<pipeline::StandTree> trees;  ///< these
 };
 
 /// Throws Error{input} if a table has no row for the stand's species and none for "all".
@@ -29,14 +29,14 @@ StandStems stand_stems(const MapTrees& map, const NamedStand& stand, const Stand
 
 /// `map` holds the trees near the stand and may hold others. Throws as stand_stems().
 StandResult compute_stand_figures(const MapTrees& map, NamedStand stand, const StandTables& tables,
-                                  const InventoryOptions& options);
+                                  const pipeline::InventoryOptions& options);
 
 /// Returns layer `stand`: a row per stand with its figures, standard errors in columns <name>_se, and stems
 /// of each diameter class. Every row has the classes of all.
-ShapeLayer stand_layer(const std::vector<StandResult>& results);
+geodb::ShapeLayer stand_layer(const std::vector<StandResult>& results);
 
 /// Returns layer `stand_tree`: a row for each stand that a tree is counted in. Rows are made while they are
 /// written, so both arguments must outlive the layer.
-ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables);
+geodb::ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -6,7 +6,7 @@
 
 #include "workflows/forest/stand_figures.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 using Kind = AttributeSpec::Kind;
@@ -19,7 +19,7 @@ AttributeValue number(double value) {
 struct FigureColumn {
   const char *name, *unit, *summary;
   double factor;
-  Estimate (*of)(const StandResult&);
+  pipeline::Estimate (*of)(const StandResult&);
 };
 
 constexpr FigureColumn kFigures[] = {
@@ -55,12 +55,12 @@ constexpr FigureColumn kComplete[] = {
      [](const StandResult& r) { return r.complete.lorey_height; }},
 };
 
-std::string class_name(const DiameterClass& c) {
+std::string class_name(const pipeline::DiameterClass& c) {
   return fmt::format("stems_per_ha_d{:03.0f}", 100 * c.from);
 }
 
-std::vector<DiameterClass> all_classes(const std::vector<StandResult>& results) {
-  std::vector<DiameterClass> all;
+std::vector<pipeline::DiameterClass> all_classes(const std::vector<StandResult>& results) {
+  std::vector<pipeline::DiameterClass> all;
   for (const StandResult& result : results)
     if (result.figures.classes.size() > all.size()) all = result.figures.classes;
   return all;
@@ -80,18 +80,18 @@ std::vector<double> class_bounds(std::vector<double> values) {
   return bounds.size() > 1 ? bounds : std::vector<double>();
 }
 
-void push(Shape& row, const Estimate& estimate, double factor) {
+void push(geodb::Shape& row, const pipeline::Estimate& estimate, double factor) {
   row.values.push_back(number(estimate.value * factor));
   row.values.push_back(number(estimate.se * factor));
 }
 
 }  // namespace
 
-ShapeLayer stand_layer(const std::vector<StandResult>& results) {
-  ShapeLayer layer{
+geodb::ShapeLayer stand_layer(const std::vector<StandResult>& results) {
+  geodb::ShapeLayer layer{
       .name = "stand",
       .summary = "Stands with the figures of their trees",
-      .kind = ShapeKind::polygon,
+      .kind = geodb::ShapeKind::polygon,
       .columns = {{"stand", "", Kind::text, "Name"},
                   {"species", "", Kind::text, "As the stands give it"},
                   {"area_ha", "ha", Kind::real, "Area"},
@@ -108,8 +108,8 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
     layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
                              "Standard error of " + std::string(figure.name)});
   }
-  const std::vector<DiameterClass> classes = all_classes(results);
-  for (const DiameterClass& c : classes) {
+  const std::vector<pipeline::DiameterClass> classes = all_classes(results);
+  for (const pipeline::DiameterClass& c : classes) {
     layer.columns.push_back(
         {class_name(c), "1/ha", Kind::real,
          fmt::format("Trees per hectare of {:.0f} to {:.0f} cm", 100 * c.from, 100 * c.to)});
@@ -117,14 +117,14 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
         {class_name(c) + "_se", "1/ha", Kind::real, "Standard error of " + class_name(c)});
   }
   for (const StandResult& r : results) {
-    Shape row{.parts = r.stand.outline, .values = {}};
+    geodb::Shape row{.parts = r.stand.outline, .values = {}};
     row.values = {r.stand.name, r.stand.species.empty() ? AttributeValue() : AttributeValue(r.stand.species),
                   number(r.figures.hectares), std::int64_t{r.figures.trees},
                   std::int64_t{r.figures.without_diameter}};
     for (const FigureColumn& figure : kFigures) push(row, figure.of(r), figure.factor);
     for (const FigureColumn& figure : kComplete) push(row, figure.of(r), figure.factor);
     for (std::size_t i = 0; i < classes.size(); ++i)
-      push(row, i < r.figures.classes.size() ? r.figures.classes[i].stems : Estimate{0, 0}, 1);
+      push(row, i < r.figures.classes.size() ? r.figures.classes[i].stems : pipeline::Estimate{0, 0}, 1);
     layer.rows.push_back(std::move(row));
   }
   std::vector<double> volumes;
@@ -134,11 +134,11 @@ ShapeLayer stand_layer(const std::vector<StandResult>& results) {
   return layer;
 }
 
-ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables) {
-  ShapeLayer layer{
+geodb::ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables) {
+  geodb::ShapeLayer layer{
       .name = "stand_tree",
       .summary = "Trees of the stands: a row for each stand a tree is counted in",
-      .kind = ShapeKind::point,
+      .kind = geodb::ShapeKind::point,
       .columns = {{"stand", "", Kind::text, "Name of the stand"},
                   {"uid", "", Kind::text, "The tree in layer tree"},
                   {"height_m", "m", Kind::real, "Height"},
@@ -153,8 +153,8 @@ ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables) {
   layer.generator = [&](const auto& take) {
     stands.visit([&](const MapTrees& map, const NamedStand& stand) {
       const StandStems stems = stand_stems(map, stand, tables);
-      for (const std::size_t member : trees_in_stand(stems.trees, stand.polygon)) {
-        const StandTree& t = stems.trees[member];
+      for (const std::size_t member : pipeline::trees_in_stand(stems.trees, stand.polygon)) {
+        const pipeline::StandTree& t = stems.trees[member];
         const std::size_t i = stems.near[member];
         const double crown = map.crowns[i].diameter;
         take({{{.outer = {t.position / map.unit}}},
@@ -169,4 +169,4 @@ ShapeLayer tree_layer(const StandBatches& stands, const StandTables& tables) {
   return layer;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -11,11 +11,11 @@
 #include "core/error.hpp"
 #include "geodb/shape_layer.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 double known(const FeatureValue& value) {
-  return value.known() ? value.value : StandTree::kUnknown;
+  return value.known() ? value.value : pipeline::StandTree::kUnknown;
 }
 
 double deviation(const FeatureValue& value) {
@@ -27,7 +27,7 @@ double position_sd(const Landmark& landmark) {
   return variance > 0 ? std::sqrt(variance) : 0;
 }
 
-double metres_per_unit(const MapStore& map) {
+double metres_per_unit(const geodb::MapStore& map) {
   if (map.crs().kind() == CrsKind::geographic)
     throw Error(
         ErrorCode::input,
@@ -69,7 +69,7 @@ class ErrorSums {
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const Sum& sum = sums_[i];
       if (sum.count == 0) continue;
-      StandTree& tree = trees.trees[i];
+      pipeline::StandTree& tree = trees.trees[i];
       double& crown_sd = trees.crowns[i].diameter_sd;
       tree.height_sd = std::max(tree.height_sd / std::sqrt(sum.count), std::sqrt(sum.height) / sum.count);
       tree.diameter_sd = std::max(tree.diameter_sd, std::sqrt(sum.diameter / sum.count));
@@ -88,16 +88,16 @@ class ErrorSums {
 };
 
 /// Outlines of layer `crown`; the first where several surveys drew one.
-void read_outlines(const MapStore& map, const TreeIndex& places, const std::optional<MapQuery::Box>& window,
-                   MapTrees& trees) {
+void read_outlines(const geodb::MapStore& map, const TreeIndex& places,
+                   const std::optional<geodb::MapQuery::Box>& window, MapTrees& trees) {
   std::size_t uid = 0;
-  visit_shape_layer(
+  geodb::visit_shape_layer(
       map.path(), "crown",
-      [&](const ShapeLayer& layer) {
+      [&](const geodb::ShapeLayer& layer) {
         uid = static_cast<std::size_t>(std::ranges::find(layer.columns, "uid", &AttributeSpec::name) -
                                        layer.columns.begin());
       },
-      [&](Shape&& row) {
+      [&](geodb::Shape&& row) {
         if (uid >= row.values.size() || row.parts.empty()) return;
         const auto* name = std::get_if<std::string>(&row.values[uid]);
         const auto place = name ? places.find(*name) : places.end();
@@ -113,11 +113,11 @@ void read_outlines(const MapStore& map, const TreeIndex& places, const std::opti
 
 }  // namespace
 
-double influence_radius(const StandTree& tree, const StandCrown& crown) {
+double influence_radius(const pipeline::StandTree& tree, const pipeline::StandCrown& crown) {
   return std::max({5 * tree.position_sd, 2 * crown.diameter, 5.0});
 }
 
-TreeReader::TreeReader(const MapStore& map) : map_(&map), unit_(metres_per_unit(map)) {
+TreeReader::TreeReader(const geodb::MapStore& map) : map_(&map), unit_(metres_per_unit(map)) {
   const LandmarkType* type = map.types().find("tree");
   if (type == nullptr)
     throw Error(
@@ -127,7 +127,7 @@ TreeReader::TreeReader(const MapStore& map) : map_(&map), unit_(metres_per_unit(
   features_ = {.height = feature_index(*type, "height"),
                .diameter = feature_index(*type, "diameter"),
                .crown = feature_index(*type, "crown_diameter")};
-  from_air_ = count_shapes(map.path(), "crown") > 0;
+  from_air_ = geodb::count_shapes(map.path(), "crown") > 0;
   map.visit("tree", [&](Landmark&& landmark) {
     MapTrees one = none();
     add(one, std::move(landmark));
@@ -149,7 +149,7 @@ void TreeReader::add(MapTrees& to, Landmark&& landmark) const {
   const FeatureValue &height = landmark.features[features_.height],
                      &diameter = landmark.features[features_.diameter],
                      &crown = landmark.features[features_.crown];
-  StandTree tree;
+  pipeline::StandTree tree;
   tree.position = landmark.position.xyz.head<2>() * unit_;
   tree.position_sd = position_sd(landmark);
   tree.height = known(height);
@@ -185,7 +185,7 @@ MapTrees TreeReader::read(const Eigen::AlignedBox2d& box) const {
   const auto window = [&](double margin) {
     const Eigen::Vector2d low = (box.min().array() - margin) / unit_,
                           high = (box.max().array() + margin) / unit_;
-    return MapQuery::Box{low.x(), low.y(), high.x(), high.y()};
+    return geodb::MapQuery::Box{low.x(), low.y(), high.x(), high.y()};
   };
   map_->visit("tree", window(0), [&](Landmark&& landmark) { add(trees, std::move(landmark)); });
   const TreeIndex places = index_trees(trees);
@@ -196,4 +196,4 @@ MapTrees TreeReader::read(const Eigen::AlignedBox2d& box) const {
   return trees;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

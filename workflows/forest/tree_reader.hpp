@@ -6,15 +6,15 @@
 #include <vector>
 #include "geodb/map_store.hpp"
 #include "pipeline/forest/stand_cover.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Trees of a map, metres, in the order of its rows; uids[i] names trees[i].
 struct MapTrees {
   std::vector<std::string> uids;
-  std::vector<StandTree> trees;
-  std::vector<StandCrown> crowns;  ///< crowns[i] of trees[i]; diameter 0 if unknown
-  double unit = 1;                 ///< metres per unit of the map's CRS
-  bool from_air = false;           ///< found in a canopy model: suppressed trees are missing
+  std::vector<pipeline::StandTree> trees;
+  std::vector<pipeline::StandCrown> crowns;  ///< crowns[i] of trees[i]; diameter 0 if unknown
+  double unit = 1;                           ///< metres per unit of the map's CRS
+  bool from_air = false;                     ///< found in a canopy model: suppressed trees are missing
 };
 
 /// Indices of a tree's features among those of its type.
@@ -23,7 +23,7 @@ struct TreeFeatures {
 };
 
 /// Returns how far from its stem a tree may matter, metres: by position error or by an irregular crown.
-double influence_radius(const StandTree& tree, const StandCrown& crown);
+double influence_radius(const pipeline::StandTree& tree, const pipeline::StandCrown& crown);
 
 /// Reads a map's trees, all or those of a box, with errors from their observations and outlines of layer
 /// `crown`, or circles without it. A tree takes 1 kB.
@@ -31,7 +31,7 @@ class TreeReader {
  public:
   /// Reads every tree once; `map` must outlive the reader. Throws Error{input} if the map has no type `tree`
   /// or its CRS is in degrees.
-  explicit TreeReader(const MapStore& map);
+  explicit TreeReader(const geodb::MapStore& map);
 
   double unit() const { return unit_; }  ///< metres per unit of the map's CRS
   std::int64_t count() const { return count_; }
@@ -49,7 +49,7 @@ class TreeReader {
     return {.uids = {}, .trees = {}, .crowns = {}, .unit = unit_, .from_air = from_air_};
   }
 
-  const MapStore* map_;
+  const geodb::MapStore* map_;
   double unit_ = 1;
   TreeFeatures features_;
   std::int64_t count_ = 0;
@@ -58,4 +58,4 @@ class TreeReader {
   bool from_air_ = false;
 };
 
-}  // namespace waymark
+}  // namespace waymark::workflows

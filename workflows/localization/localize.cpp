@@ -17,7 +17,7 @@
 #include "workflows/parse_number.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 void check_output(const std::string& output) {
@@ -46,7 +46,7 @@ std::string body_name(const Crs& crs) {
 }
 
 /// Throws if log and map are of different bodies or, for coordinates in a CRS, of different CRSs.
-void check_crs(const RobotLog& log, const RobotMap& map, const std::string& log_file) {
+void check_crs(const localization::RobotLog& log, const RobotMap& map, const std::string& log_file) {
   if (log.crs.empty()) return;
   const Crs log_crs = Crs::from_text(log.crs);
   if (log_crs.body().name != map.crs().body().name)
@@ -59,7 +59,8 @@ void check_crs(const RobotLog& log, const RobotMap& map, const std::string& log_
                 log_file, "use a map in that CRS: waymark export MAP OUT --crs ...");
 }
 
-void check_distance(const PoseEstimate& start, const RobotMap& map, const std::string& log_file) {
+void check_distance(const localization::PoseEstimate& start, const RobotMap& map,
+                    const std::string& log_file) {
   if (map.bounds.isEmpty()) return;
   const double away = map.bounds.exteriorDistance(start.pose.at());
   if (away > std::max(1000.0, map.bounds.diagonal().norm()))
@@ -70,7 +71,7 @@ void check_distance(const PoseEstimate& start, const RobotMap& map, const std::s
 }
 
 /// Parses "X,Y,YAW".
-Pose2 parse_start(const std::string& text) {
+localization::Pose2 parse_start(const std::string& text) {
   std::vector<double> words;
   std::size_t from = 0;
   while (from <= text.size()) {
@@ -84,15 +85,17 @@ Pose2 parse_start(const std::string& text) {
   if (!(std::abs(words[2]) <= 12.6))
     throw Error(ErrorCode::usage, fmt::format("the yaw of --start is {}: angles are radians", words[2]),
                 "--start " + text, "e.g. 1.57 for north");
-  return {words[0], words[1], wrap_angle(words[2])};
+  return {words[0], words[1], localization::wrap_angle(words[2])};
 }
 
 Eigen::Matrix3d start_covariance(double sd, double yaw_sd) {
   return Eigen::Vector3d(sd * sd, sd * sd, yaw_sd * yaw_sd).asDiagonal();
 }
 
-std::optional<PoseEstimate> choose_start(const LocalizeRequest& request, const LocalizeSettings& settings,
-                                         const RobotLog& log, StartPolicy policy) {
+std::optional<localization::PoseEstimate> choose_start(const LocalizeRequest& request,
+                                                       const LocalizeSettings& settings,
+                                                       const localization::RobotLog& log,
+                                                       StartPolicy policy) {
   if (policy == StartPolicy::ignored) return {};
   if (request.start == "none") {
     if (policy == StartPolicy::required)
@@ -100,13 +103,13 @@ std::optional<PoseEstimate> choose_start(const LocalizeRequest& request, const L
                   "--start none", "give --start X,Y,YAW, or use --method pf");
     return {};
   }
-  PoseEstimate start{{}, start_covariance(settings.start_sd, settings.start_yaw_sd)};
+  localization::PoseEstimate start{{}, start_covariance(settings.start_sd, settings.start_yaw_sd)};
   if (!request.start.empty() && request.start != "truth") {
     start.pose = parse_start(request.start);
     return start;
   }
   if (!log.truth.empty()) {
-    const auto known = pose_at(log.truth, log.events.front().t, 5);
+    const auto known = localization::pose_at(log.truth, log.events.front().t, 5);
     start.pose = known ? *known : log.truth.front().pose;
     return start;
   }
@@ -122,10 +125,11 @@ std::optional<PoseEstimate> choose_start(const LocalizeRequest& request, const L
               "give --start X,Y,YAW (metres and radians), or use --method pf");
 }
 
-RobotLog read_log(const LocalizeRequest& request, const RobotMap& map, const Callbacks& callbacks) {
-  RobotLog log = import_log(request.log, map.types(), request.log_format);
+localization::RobotLog read_log(const LocalizeRequest& request, const RobotMap& map,
+                                const Callbacks& callbacks) {
+  localization::RobotLog log = importers::import_log(request.log, map.types(), request.log_format);
   check_crs(log, map, request.log);
-  convert_to_map_frame(log, map.frame);
+  localization::convert_to_map_frame(log, map.frame);
   if (map.unsound_covariances)
     callbacks.warning(
         fmt::format("{} landmarks have a covariance that is not positive definite; it is repaired: {}",
@@ -137,14 +141,14 @@ RobotLog read_log(const LocalizeRequest& request, const RobotMap& map, const Cal
   return log;
 }
 
-void write_track(const LocalizeRequest& request, const Track& track, const RobotMap& map) {
-  TrackOutput form{
+void write_track(const LocalizeRequest& request, const localization::Track& track, const RobotMap& map) {
+  exporters::TrackOutput form{
       .frame = request.in_map_crs ? &map.frame : nullptr, .crs = &map.crs(), .timing = request.timing};
   if (std::filesystem::path(request.output).extension() == ".gpkg") {
     form.frame = &map.frame;
-    write_track_geopackage(request.output, track, form);
+    exporters::write_track_geopackage(request.output, track, form);
   } else {
-    write_track_csv(request.output, track, form);
+    exporters::write_track_csv(request.output, track, form);
   }
 }
 
@@ -185,8 +189,9 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
           ? make_empty_robot_map()
           : open_robot_map(request.map, sensor, !method.requires_map(), request.min_confidence);
   const RobotMap map = opened.map;
-  RobotLog log = read_log(request, map, callbacks);
-  const std::optional<PoseEstimate> start = choose_start(request, settings, log, method.start());
+  localization::RobotLog log = read_log(request, map, callbacks);
+  const std::optional<localization::PoseEstimate> start =
+      choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);
   LocalizeTask task{
       .map_file = request.map,
@@ -206,7 +211,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   if (request.live != 0 && (request.layers.empty() || !(request.live > 0)))
     throw Error(ErrorCode::usage, "--live takes the seconds between two writings of --layers", "--live",
                 "e.g. --layers MAP.gpkg --live 10");
-  if (!request.layers.empty()) check_before_copy(request.layers);
+  if (!request.layers.empty()) geodb::check_before_copy(request.layers);
   if (request.live > 0) task.watch = LiveLayers(request.layers, log, map.frame, request.live);
   LocalizeResult result{.track = method.run(task), .settings = options_as_text(option_table(options))};
   if (!request.output.empty()) write_track(request, result.track, map);
@@ -236,4 +241,4 @@ std::string describe_localize_methods() {
   return method_table().summaries();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

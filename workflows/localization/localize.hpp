@@ -6,7 +6,7 @@
 #include "importers/logs/import_log.hpp"
 #include "localization/track.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// A robot's log, the map to localize it in, and how.
 struct LocalizeRequest {
@@ -16,7 +16,7 @@ struct LocalizeRequest {
   std::string method = "ekf";  ///< a name of localize_methods()
   double min_confidence = 0;   ///< landmarks less probable than this are not used
   std::string sensor = {};     ///< profile that weighs landmark quality (eq. 8); empty: the map's confidence
-  LogImport log_format = {};
+  importers::LogImport log_format = {};
   bool use_identities = true;         ///< identities in the log are used for data association
   std::string start = {};             ///< "X,Y,YAW" (m, rad), "truth" or "none"; empty: the log decides
   std::vector<std::string> set = {};  ///< OPTION=VALUE, settings of the method
@@ -34,8 +34,8 @@ struct LocalizeRequest {
 
 /// Track of a robot.
 struct LocalizeResult {
-  Track track;           ///< map frame
-  std::string settings;  ///< every setting of the method with its value and effect, a line each
+  localization::Track track;  ///< map frame
+  std::string settings;       ///< every setting of the method with its value and effect, a line each
 };
 
 /// Follows a robot through a map by its log and writes the track. Throws Error{usage} for unknown methods and
@@ -52,4 +52,4 @@ std::vector<std::string> localize_methods();
 /// Returns "odometry: ...; ekf: ..." for a help text.
 std::string describe_localize_methods();
 
-}  // namespace waymark
+}  // namespace waymark::workflows

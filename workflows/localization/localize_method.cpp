@@ -9,24 +9,26 @@
 #include "core/error.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 
-Track run_localizer(const LocalizeTask& task, Localizer& localizer) {
+localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
   const TypeRegistry& types = task.map.map.types();
   const auto type = [&](const char* name) {
     return types.find(name) ? std::optional<TypeId>(types.id(name)) : std::nullopt;
   };
-  const ScanTypes seen{type("tree"), type("rock")};
-  return replay(
+  const localization::ScanTypes seen{type("tree"), type("rock")};
+  return localization::replay(
       task.log, localizer, task.settings.play,
-      [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, task.settings.scans); },
+      [&](const localization::LaserScan& scan) {
+        return localization::sightings_of_scan(scan, seen, task.settings.scans);
+      },
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       },
       task.ground, task.watch);
 }
 
-Track FilterMethod::run(LocalizeTask& task) {
+localization::Track FilterMethod::run(LocalizeTask& task) {
   const auto localizer = make(task);
   return run_localizer(task, *localizer);
 }
@@ -50,4 +52,4 @@ LocalizeMethod& MethodTable::find(std::string_view name) const {
               fmt::format("methods: {}", fmt::join(names(), ", ")));
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

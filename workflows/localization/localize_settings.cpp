@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 void LocalizeSettings::describe(OptionVisitor& option) {
   identification.describe(option);
   kalman.describe(option);
@@ -47,4 +47,4 @@ std::vector<std::string> set_option(const DescribeOptions& describe, const std::
                     {.owner = "localize", .where = "--set " + setting});
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

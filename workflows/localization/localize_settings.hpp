@@ -8,17 +8,17 @@
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
 #include "localization/replay_log.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Settings that all methods share (--set of `waymark localize`).
 struct LocalizeSettings {
-  IdentificationOptions identification;
-  KalmanOptions kalman;
-  MultiHypothesisOptions hypotheses;
-  ParticleOptions particles;
-  ReplayOptions play;
-  ScanDetectionOptions scans;
-  LineOfSightOptions sight;
+  localization::IdentificationOptions identification;
+  localization::KalmanOptions kalman;
+  localization::MultiHypothesisOptions hypotheses;
+  localization::ParticleOptions particles;
+  localization::ReplayOptions play;
+  localization::ScanDetectionOptions scans;
+  localization::LineOfSightOptions sight;
   double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: standard deviations of the start
 
   void describe(OptionVisitor& option);
@@ -32,4 +32,4 @@ struct LocalizeSettings {
 [[nodiscard]] std::vector<std::string> set_option(const DescribeOptions& describe,
                                                   const std::string& setting);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

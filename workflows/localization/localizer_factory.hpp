@@ -6,12 +6,12 @@
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/skyline.hpp"
 #include "workflows/localization/localize_method.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Options of global localization: how a lost robot is found in the map.
 struct SearchOptions {
-  ConstellationOptions constellations;
-  SkylineOptions skyline;
+  localization::ConstellationOptions constellations;
+  localization::SkylineOptions skyline;
   void describe(OptionVisitor& option) {
     constellations.describe(option);
     skyline.describe(option);
@@ -20,20 +20,19 @@ struct SearchOptions {
 
 /// Returns a finder of poses by constellations of landmarks in the whole map, and with a DEM by skylines. The
 /// map is read at the first call.
-PoseFinder make_pose_finder(const LocalizeTask& task, const SearchOptions& search);
+localization::PoseFinder make_pose_finder(const LocalizeTask& task, const SearchOptions& search);
 
 /// Returns a particle filter that relocalizes with that finder. Without a start it begins with global
 /// localization. Moves the landmark window out of the task.
-std::unique_ptr<Localizer> make_particle_localizer(LocalizeTask& task,
-                                                   const std::optional<PoseEstimate>& start,
-                                                   const SearchOptions& search);
+std::unique_ptr<localization::Localizer> make_particle_localizer(
+    LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search);
 
 /// Returns an extended or unscented Kalman filter that relocalizes with that finder; without identities a sum
 /// of Gaussians. Moves the landmark window out of the task.
-std::unique_ptr<Localizer> make_kalman_localizer(LocalizeTask& task, const SearchOptions& search,
-                                                 bool unscented);
+std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& task,
+                                                               const SearchOptions& search, bool unscented);
 
 /// Returns the visibility over the DEM; everything is visible without one.
-LineOfSight line_of_sight(const LocalizeTask& task);
+localization::LineOfSight line_of_sight(const LocalizeTask& task);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -15,13 +15,13 @@
 #include "importers/rasters/dem.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr std::int64_t kMaxReadAtOnce = 200000;
 constexpr double kMargin = 25;  // m: a window of some hundred landmarks is read in well under 1 ms
 
-Point<MapCrs> frame_origin(const MapStore& store) {
+Point<MapCrs> frame_origin(const geodb::MapStore& store) {
   if (store.crs().kind() == CrsKind::local) return {};
   const std::vector<Landmark> some = store.query({.limit = 1000});
   Point<MapCrs> origin;
@@ -31,16 +31,18 @@ Point<MapCrs> frame_origin(const MapStore& store) {
   return origin;
 }
 
-std::vector<MapLandmark> map_landmarks(const std::vector<Landmark>& landmarks, const TypeRegistry& types,
-                                       const LocalFrame& frame, const SensorProfile* sensor) {
-  std::vector<MapLandmark> all;
-  for (const Landmark& l : landmarks) all.push_back(map_landmark(l, types[l.type], frame, sensor));
+std::vector<localization::MapLandmark> map_landmarks(const std::vector<Landmark>& landmarks,
+                                                     const TypeRegistry& types, const LocalFrame& frame,
+                                                     const SensorProfile* sensor) {
+  std::vector<localization::MapLandmark> all;
+  for (const Landmark& l : landmarks)
+    all.push_back(localization::map_landmark(l, types[l.type], frame, sensor));
   return all;
 }
 
-MapQuery::Box box_in_crs(const Eigen::AlignedBox2d& box, const LocalFrame& frame) {
+geodb::MapQuery::Box box_in_crs(const Eigen::AlignedBox2d& box, const LocalFrame& frame) {
   const auto low = frame.crs_from_map_frame({{box.min().x(), box.min().y(), 0}}).xyz;
-  MapQuery::Box all{low.x(), low.y(), low.x(), low.y()};
+  geodb::MapQuery::Box all{low.x(), low.y(), low.x(), low.y()};
   for (const double x : {box.min().x(), box.max().x()})
     for (const double y : {box.min().y(), box.max().y()}) {
       const auto corner = frame.crs_from_map_frame({{x, y, 0}}).xyz;
@@ -106,22 +108,22 @@ class DemTiles {
 
 }  // namespace
 
-TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files) {
+localization::TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files) {
   std::vector<std::string> files = dem_files;
   if (files.empty()) {
     if (!map.store->has_dem_coverage()) return {};
     files = {"GPKG:" + map.store->path().string() + ":dem"};
   }
-  const auto dem = import_dem({.files = files,
-                               .nodata = NodataPolicy::unknown,
-                               .crs = map.crs().kind() == CrsKind::local ? "local" : "",
-                               .inspect = false});
+  const auto dem = importers::import_dem({.files = files,
+                                          .nodata = NodataPolicy::unknown,
+                                          .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                          .inspect = false});
   const auto tiles = std::make_shared<DemTiles>(dem, map.frame, map.crs());
   return [tiles](const Eigen::Vector2d& place) { return (*tiles)(place); };
 }
 
-std::vector<MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor,
-                                       std::int64_t max_count) {
+std::vector<localization::MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor,
+                                                     std::int64_t max_count) {
   if (map.landmarks > max_count) return {};
   return map_landmarks(map.store->query({.min_confidence = map.min_confidence}), map.types(), map.frame,
                        sensor);
@@ -131,9 +133,9 @@ OpenedMap make_empty_robot_map() try {
   const LockedFolder folder(std::filesystem::temp_directory_path(),
                             "waymark-");  // the open file outlives it
   const std::filesystem::path file = folder.path() / "none.gpkg";
-  MapContents contents;
+  geodb::MapContents contents;
   contents.types = all_types();
-  write_map(file, contents);
+  geodb::write_map(file, contents);
   return open_robot_map(file.string(), nullptr, true);
 } catch (const std::filesystem::filesystem_error& e) {
   throw Error(ErrorCode::environment, "cannot make a folder for an empty map: " + e.code().message(),
@@ -142,7 +144,7 @@ OpenedMap make_empty_robot_map() try {
 
 OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, bool may_be_empty,
                          double min_confidence) {
-  const auto store = std::make_shared<const MapStore>(MapStore::open(file));
+  const auto store = std::make_shared<const geodb::MapStore>(geodb::MapStore::open(file));
   RobotMap map{.store = store,
                .frame = LocalFrame(store->crs(), frame_origin(*store)),
                .landmarks = store->count(),
@@ -160,16 +162,17 @@ OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, b
                   "lower --min-confidence");
     map.unsound_covariances =
         std::ranges::count_if(all, [](const Landmark& l) { return !is_sound_or_unknown(l.covariance); });
-    LandmarkGrid grid(map_landmarks(all, store->types(), map.frame, sensor));
+    localization::LandmarkGrid grid(map_landmarks(all, store->types(), map.frame, sensor));
     map.bounds = grid.bounds();
-    return {map, LandmarkWindow(std::move(grid))};
+    return {map, localization::LandmarkWindow(std::move(grid))};
   }
   const LocalFrame frame = map.frame;
-  LandmarkSource source = [store, frame, sensor, min_confidence](const Eigen::AlignedBox2d& box) {
+  localization::LandmarkSource source = [store, frame, sensor,
+                                         min_confidence](const Eigen::AlignedBox2d& box) {
     return map_landmarks(store->query({.box = box_in_crs(box, frame), .min_confidence = min_confidence}),
                          store->types(), frame, sensor);
   };
-  return {map, LandmarkWindow(std::move(source), kMargin)};
+  return {map, localization::LandmarkWindow(std::move(source), kMargin)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -5,11 +5,11 @@
 #include "geodb/map_store.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/terrain_pose.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Map file as a robot uses it.
 struct RobotMap {
-  std::shared_ptr<const MapStore> store;
+  std::shared_ptr<const geodb::MapStore> store;
   LocalFrame frame;  ///< about the middle of the map; in a local CRS about its origin, so that both agree
   std::int64_t landmarks = 0;
   double min_confidence = 0;             ///< less probable landmarks are not read
@@ -21,17 +21,17 @@ struct RobotMap {
 };
 
 /// Returns all landmarks for global localization; none above `max_count`, as they would not fit into memory.
-std::vector<MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor,
-                                       std::int64_t max_count = 3000000);
+std::vector<localization::MapLandmark> all_landmarks(const RobotMap& map, const SensorProfile* sensor,
+                                                     std::int64_t max_count = 3000000);
 
 struct OpenedMap {
   RobotMap map;
-  LandmarkWindow window;
+  localization::LandmarkWindow window;
 };
 
 /// Returns terrain heights under the map from DEM files or, without files, from the map's own coverage; empty
 /// if there is none. Bilinear between cells. Throws Error if the DEM is of another body.
-TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files);
+localization::TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files);
 
 /// Opens a map for a robot. Up to 200,000 landmarks are read at once; larger maps are read by windows around
 /// the robot if the CRS is projected or local. `sensor` weighs quality; null: the confidence. Throws
@@ -42,4 +42,4 @@ OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, b
 /// Returns a map without landmarks, with all types, in a local CRS. Its file is already deleted.
 OpenedMap make_empty_robot_map();
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -22,23 +22,23 @@
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns mean and spread of one feature over the observations of a landmark.
-FeatureValue merged_feature(const SlamLandmark& l, std::size_t i, Scale scale) {
+FeatureValue merged_feature(const localization::SlamLandmark& l, std::size_t i, Scale scale) {
   std::vector<WeightedValue> values;
-  for (const KnownFeatures& look : l.feature_samples)
+  for (const localization::KnownFeatures& look : l.feature_samples)
     if (look.known(i)) values.push_back({look.value[i], 1});
   return values.empty() ? FeatureValue{} : merge(values, scale);
 }
 
-void add_features(const SlamLandmark& seen, const LandmarkType& type, Landmark& into) {
+void add_features(const localization::SlamLandmark& seen, const LandmarkType& type, Landmark& into) {
   into.features.resize(type.features.size());
   into.quality.feature_confidences.resize(type.features.size());
-  for (std::size_t i = 0; i < std::min(type.features.size(), kMaxFeatures); ++i) {
+  for (std::size_t i = 0; i < std::min(type.features.size(), localization::kMaxFeatures); ++i) {
     if (into.features[i].known()) continue;
     const FeatureSpec& spec = type.features[i];
     const FeatureValue value = merged_feature(seen, i, spec.scale);
@@ -48,7 +48,8 @@ void add_features(const SlamLandmark& seen, const LandmarkType& type, Landmark& 
   }
 }
 
-void set_position(const SlamLandmark& seen, const LocalFrame& frame, Landmark& into, bool is_new) {
+void set_position(const localization::SlamLandmark& seen, const LocalFrame& frame, Landmark& into,
+                  bool is_new) {
   const double height = frame.map_frame_from_crs(into.position).xyz.z();
   const double kept = into.position.xyz.z();
   into.position = frame.crs_from_map_frame({{seen.at.x(), seen.at.y(), is_new ? 0 : height}});
@@ -57,7 +58,8 @@ void set_position(const SlamLandmark& seen, const LocalFrame& frame, Landmark& i
   if (is_new) into.covariance(2, 2) = kUnknown;
 }
 
-Observation make_evidence(const Landmark& l, const SlamLandmark& seen, const std::string& source) {
+Observation make_evidence(const Landmark& l, const localization::SlamLandmark& seen,
+                          const std::string& source) {
   Observation o;
   o.type = l.type;
   o.landmark_uid = l.uid;
@@ -65,22 +67,22 @@ Observation make_evidence(const Landmark& l, const SlamLandmark& seen, const std
   o.position = l.position;
   o.covariance = l.covariance;
   o.covariance(2, 2) = kUnknown;
-  o.confidence = std::clamp(probability_from_log_odds(seen.log_odds), 1e-3, 1.0);
+  o.confidence = std::clamp(localization::probability_from_log_odds(seen.log_odds), 1e-3, 1.0);
   o.features.resize(l.features.size());
-  for (std::size_t i = 0; i < std::min(o.features.size(), kMaxFeatures); ++i)
+  for (std::size_t i = 0; i < std::min(o.features.size(), localization::kMaxFeatures); ++i)
     if (seen.features.known(i) && !seen.feature_samples.empty())
       o.features[i] = {seen.features.value[i], seen.features.variance[i], 1};
   return o;
 }
 
-void add_counts(const SlamLandmark& seen, Landmark& into) {
-  into.confidence = probability_from_log_odds(seen.log_odds);
+void add_counts(const localization::SlamLandmark& seen, Landmark& into) {
+  into.confidence = localization::probability_from_log_odds(seen.log_odds);
   into.quality.seen += static_cast<int>(seen.matches);
   into.quality.visible += static_cast<int>(std::max(seen.expected, seen.matches));
 }
 
-RunRecord run_record(const LocalizeTask& task, const SlamUpdate& update, std::string_view method) {
-  RunRecord run = make_run_record(task.command_line, std::chrono::system_clock::now());
+geodb::RunRecord run_record(const LocalizeTask& task, const SlamUpdate& update, std::string_view method) {
+  geodb::RunRecord run = make_run_record(task.command_line, std::chrono::system_clock::now());
   using Json = nlohmann::ordered_json;
   run.job_json = Json{{"method", method},
                       {"log", task.log_file},
@@ -93,54 +95,57 @@ RunRecord run_record(const LocalizeTask& task, const SlamUpdate& update, std::st
       {"left_out_untyped",
        update.untyped}}.dump();
   for (const std::string& file : {task.map_file, task.log_file})
-    if (std::filesystem::is_regular_file(file)) run.inputs.push_back(hash_file(file));
+    if (std::filesystem::is_regular_file(file)) run.inputs.push_back(importers::hash_file(file));
   return run;
 }
 
 }  // namespace
 
-SlamSetup slam_setup(const LocalizeTask& task, const SlamOptions& options) {
+SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& options) {
   if (!task.start && task.map.map.landmarks > 0)
     throw Error(ErrorCode::usage, "SLAM must know where the robot starts in a map with landmarks",
                 task.log_file, "give --start X,Y,YAW (metres and radians), or the map none");
-  SlamSetup setup{.options = options,
-                  .play = task.settings.play,
-                  .start = task.start.value_or(PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-9})};
+  SlamSetup setup{
+      .options = options,
+      .play = task.settings.play,
+      .start = task.start.value_or(localization::PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-9})};
   setup.options.identification = task.settings.identification;
   return setup;
 }
 
-Track run_slam(const LocalizeTask& task, const SlamSetup& setup, Localizer& localizer) {
+localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
+                             localization::Localizer& localizer) {
   const TypeRegistry& types = task.map.map.types();
   const auto type = [&](const char* name) {
     return types.find(name) ? std::optional<TypeId>(types.id(name)) : std::nullopt;
   };
-  const ScanTypes seen{type("tree"), type("rock")};
-  ScanDetectionOptions scans = task.settings.scans;
+  const localization::ScanTypes seen{type("tree"), type("rock")};
+  localization::ScanDetectionOptions scans = task.settings.scans;
   // A map without landmarks has all types, so the log decides: that of a park has odometry. Its beams are so
   // far apart that a stem is one or two wide: diameters mislead (ATE 1.9 m with, 1.2 m without).
   if (scans.find == "auto" && task.log.odometry) scans = {.find = "stems", .features = false};
-  return replay(
+  return localization::replay(
       task.log, localizer, setup.play,
-      [&](const LaserScan& scan) { return sightings_of_scan(scan, seen, scans); },
+      [&](const localization::LaserScan& scan) { return localization::sightings_of_scan(scan, seen, scans); },
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       });
 }
 
-SlamUpdate make_slam_update(std::span<const SlamLandmark> landmarks, const RobotMap& map,
-                            const LandmarkNames& names, const std::string& source, double confirmed) {
+SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmarks, const RobotMap& map,
+                            const localization::LandmarkNames& names, const std::string& source,
+                            double confirmed) {
   SlamUpdate update;
   const TypeRegistry& types = map.types();
-  std::unordered_map<LandmarkKey, Landmark> of_map;
-  for (Landmark& l : map.store->query({})) of_map.emplace(landmark_key(l.uid), std::move(l));
-  std::vector<const SlamLandmark*> seen_of;
+  std::unordered_map<localization::LandmarkKey, Landmark> of_map;
+  for (Landmark& l : map.store->query({})) of_map.emplace(localization::landmark_key(l.uid), std::move(l));
+  std::vector<const localization::SlamLandmark*> seen_of;
   std::optional<TypeId> fallback;
   if (types.find("beacon"))
     fallback = types.id("beacon");
   else if (types.size() == 1)
     fallback = TypeId{0};
-  for (const SlamLandmark& l : landmarks) {
+  for (const localization::SlamLandmark& l : landmarks) {
     if (l.was_mapped) {
       const auto known = of_map.find(l.key.value_or(0));
       if (known == of_map.end() || l.expected == 0) continue;
@@ -175,31 +180,31 @@ SlamUpdate make_slam_update(std::span<const SlamLandmark> landmarks, const Robot
     Landmark& added = update.added[i];
     const auto name = names.find(seen_of[i]->key.value_or(0));
     if (seen_of[i]->key && name != names.end()) added.uid = name->second;
-    while (of_map.contains(landmark_key(added.uid))) added.uid += "-s";
+    while (of_map.contains(localization::landmark_key(added.uid))) added.uid += "-s";
     update.evidence.push_back(make_evidence(added, *seen_of[i], source));
   }
   return update;
 }
 
-void write_updated_map(const LocalizeTask& task, std::span<const SlamLandmark> landmarks, double confirmed,
-                       std::string_view method) {
+void write_updated_map(const LocalizeTask& task, std::span<const localization::SlamLandmark> landmarks,
+                       double confirmed, std::string_view method) {
   if (task.write_map.empty() && !task.update_map) return;
   const RobotMap& map = task.map.map;
   std::filesystem::path log(task.log_file);
   if (!log.has_filename()) log = log.parent_path();
   const SlamUpdate update =
       make_slam_update(landmarks, map, task.log.names, log.filename().string(), confirmed);
-  const RunRecord run = run_record(task, update, method);
+  const geodb::RunRecord run = run_record(task, update, method);
   const std::filesystem::path result = task.update_map ? task.map_file : task.write_map;
   if (task.map_file == "none") {
-    MapContents contents;
+    geodb::MapContents contents;
     contents.types = map.types();
     contents.landmarks = update.added;
     contents.observations = update.evidence;
     contents.run = run;
-    write_map(result, contents);
+    geodb::write_map(result, contents);
   } else {
-    update_map(task.map_file, result, [&](MapEditor& editor) {
+    geodb::update_map(task.map_file, result, [&](geodb::MapEditor& editor) {
       for (const Landmark& l : update.changed) editor.update(l);
       for (Landmark l : update.added) {
         l.observations = 0;  // counted as the evidence comes
@@ -216,4 +221,4 @@ void write_updated_map(const LocalizeTask& task, std::span<const SlamLandmark> l
                                      update.changed.size(), update.added.size()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

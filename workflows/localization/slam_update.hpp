@@ -5,7 +5,7 @@
 #include "geodb/map_contents.hpp"
 #include "localization/slam/ekf_slam.hpp"
 #include "workflows/localization/localize_method.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Changes that a drive makes to a map.
 struct SlamUpdate {
@@ -20,26 +20,28 @@ struct SlamUpdate {
 /// - New landmarks whose log odds reach `confirmed`, of the observed type, else `beacon` or the map's only
 ///   type. A landmark with an identity gets it as uid; heights are unknown.
 /// - One observation per observed landmark, from `source`.
-SlamUpdate make_slam_update(std::span<const SlamLandmark> landmarks, const RobotMap& map,
-                            const LandmarkNames& names, const std::string& source, double confirmed);
+SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmarks, const RobotMap& map,
+                            const localization::LandmarkNames& names, const std::string& source,
+                            double confirmed);
 
 /// Options, start and odometry noise of SLAM for a task.
 struct SlamSetup {
-  SlamOptions options;
-  ReplayOptions play;
-  PoseEstimate start;
+  localization::SlamOptions options;
+  localization::ReplayOptions play;
+  localization::PoseEstimate start;
 };
 /// Throws Error{usage} if the map has landmarks and the start is unknown.
-SlamSetup slam_setup(const LocalizeTask& task, const SlamOptions& options);
+SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& options);
 
 inline constexpr double kSlamRadius = 5000;  ///< m around the start, in a map too large to be read at once
 
 /// Plays the task's log to a SLAM localizer, with stems found in its scans.
-Track run_slam(const LocalizeTask& task, const SlamSetup& setup, Localizer& localizer);
+localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
+                             localization::Localizer& localizer);
 
 /// Carries out the task's `update_map` or `write_map`, if any, and sends a summary. The record of the run has
 /// the method, the log and all settings.
-void write_updated_map(const LocalizeTask& task, std::span<const SlamLandmark> landmarks, double confirmed,
-                       std::string_view method);
+void write_updated_map(const LocalizeTask& task, std::span<const localization::SlamLandmark> landmarks,
+                       double confirmed, std::string_view method);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -18,17 +18,17 @@
 #include "workflows/mapping/crown_layer.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-ImageRecord image_record(const ImageView& image) {
-  ImageRecord record{.name = image.name,
-                     .footprint = image.footprint,
-                     .camera_json = camera_json(image),
-                     .taken_utc = image.taken_utc,
-                     .sun_azimuth = {},
-                     .sun_elevation = {},
-                     .gsd = {}};
+geodb::ImageRecord image_record(const pipeline::ImageView& image) {
+  geodb::ImageRecord record{.name = image.name,
+                            .footprint = image.footprint,
+                            .camera_json = pipeline::camera_json(image),
+                            .taken_utc = image.taken_utc,
+                            .sun_azimuth = {},
+                            .sun_elevation = {},
+                            .gsd = {}};
   if (image.sun) record.sun_azimuth = image.sun->azimuth;
   if (image.sun) record.sun_elevation = image.sun->elevation;
   if (std::isfinite(image.gsd)) record.gsd = Meters{image.gsd};
@@ -61,13 +61,13 @@ double known_fraction(const CanopySource& canopy) {
 }
 
 /// Returns the area that was searched for trees if it is a full rectangle. An inventory of the map needs it.
-std::optional<ShapeLayer> survey_layer(const Canopies& canopies) {
+std::optional<geodb::ShapeLayer> survey_layer(const Canopies& canopies) {
   constexpr double kMinKnown = 0.995;
-  ShapeLayer layer{.name = "survey",
-                   .summary = "Ground that was searched for trees",
-                   .kind = ShapeKind::polygon,
-                   .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy model"}},
-                   .style = {.colour = "#546e7a", .width = 0.4}};
+  geodb::ShapeLayer layer{.name = "survey",
+                          .summary = "Ground that was searched for trees",
+                          .kind = geodb::ShapeKind::polygon,
+                          .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy model"}},
+                          .style = {.colour = "#546e7a", .width = 0.4}};
   if (canopies.size() != 1 || known_fraction(*canopies[0]) < kMinKnown) return {};
   const GridGeometry& grid = canopies[0]->geometry();
   const double left = grid.where.x(-0.5), right = grid.where.x(static_cast<double>(grid.columns) - 0.5),
@@ -110,8 +110,8 @@ void visit_parents(const TypeRegistry& types, std::span<const Landmark> landmark
 
 /// Returns the layers `saddle` and `parent_line` of summits; those without a row are left out. They read
 /// `landmarks` when they are written.
-std::vector<ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const Landmark> landmarks) {
-  std::vector<ShapeLayer> layers;
+std::vector<geodb::ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const Landmark> landmarks) {
+  std::vector<geodb::ShapeLayer> layers;
   std::int64_t saddles = 0, parents = 0;
   visit_saddles(types, landmarks, [&](const Landmark&, const Eigen::Vector2d&) { ++saddles; });
   if (saddles > 0) visit_parents(types, landmarks, [&](const Landmark&, const Landmark&) { ++parents; });
@@ -119,7 +119,7 @@ std::vector<ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const
     layers.push_back(
         {.name = "saddle",
          .summary = "Key saddles: the lowest point on the highest path from a summit to higher terrain",
-         .kind = ShapeKind::point,
+         .kind = geodb::ShapeKind::point,
          .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
                      {"elevation", "m", AttributeSpec::Kind::real, "Elevation of the saddle"}},
          .style = {.colour = "#8d6e63"},
@@ -133,7 +133,7 @@ std::vector<ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const
   if (parents > 0)
     layers.push_back({.name = "parent_line",
                       .summary = "Lines from summits to their parents, the summits beyond their key saddles",
-                      .kind = ShapeKind::line,
+                      .kind = geodb::ShapeKind::line,
                       .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
                                   {"parent_uid", "", AttributeSpec::Kind::text, "Its parent"}},
                       .style = {.colour = "#a1887f", .width = 0.15},
@@ -160,7 +160,7 @@ std::vector<T> concatenate(std::vector<std::vector<T>> parts) {
 }
 
 /// Returns readers of the tiles' results, which stay where the engine keeps them.
-LandmarkParts tile_parts(RunResult& result) {
+geodb::LandmarkParts tile_parts(pipeline::RunResult& result) {
   const auto landmarks = result.take_readers<std::vector<Landmark>>("landmarks");
   const auto evidence = result.take_readers<std::vector<Observation>>("evidence");
   return {.count = landmarks.size(),
@@ -174,11 +174,11 @@ LandmarkParts tile_parts(RunResult& result) {
 
 }  // namespace
 
-bool has_all_landmarks(const Pipeline& pipeline, const RunResult& result) {
-  const auto writes_landmarks = [](const std::unique_ptr<Step>& step) {
-    return std::ranges::count(step->spec().outputs, "landmarks", &OutputPort::name) > 0;
+bool has_all_landmarks(const pipeline::Pipeline& pipeline, const pipeline::RunResult& result) {
+  const auto writes_landmarks = [](const std::unique_ptr<pipeline::Step>& step) {
+    return std::ranges::count(step->spec().outputs, "landmarks", &pipeline::OutputPort::name) > 0;
   };
-  return std::ranges::all_of(pipeline.steps(), [&](const std::unique_ptr<Step>& step) {
+  return std::ranges::all_of(pipeline.steps(), [&](const std::unique_ptr<pipeline::Step>& step) {
     return !writes_landmarks(step) || result.is_complete(step->spec().name, "landmarks");
   });
 }
@@ -187,9 +187,9 @@ std::vector<std::string> map_artifacts() {
   return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views"};
 }
 
-MapContents assemble_map(RunResult& result, RunRecord run, bool with_dem) {
+geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord run, bool with_dem) {
   const auto& dem = result.artifact<DemHandle>("dem");
-  MapContents contents;
+  geodb::MapContents contents;
   contents.types = all_types();
   contents.crs = dem->geometry().where.crs;
   contents.run = std::move(run);
@@ -197,22 +197,24 @@ MapContents assemble_map(RunResult& result, RunRecord run, bool with_dem) {
   contents.parts = tile_parts(result);
   contents.landmarks = concatenate(result.take<std::vector<Landmark>>("landmarks"));
   contents.observations = concatenate(result.take<std::vector<Observation>>("evidence"));
-  auto tables = result.take_readers<CrownTable>("crowns");
-  for (CrownTable& table : result.take<CrownTable>("crowns"))
-    tables.push_back([held = std::make_shared<const CrownTable>(std::move(table))] { return held; });
+  auto tables = result.take_readers<pipeline::CrownTable>("crowns");
+  for (pipeline::CrownTable& table : result.take<pipeline::CrownTable>("crowns"))
+    tables.push_back(
+        [held = std::make_shared<const pipeline::CrownTable>(std::move(table))] { return held; });
   for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
     if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
-    for (const auto& canopy : *surveys) contents.images.push_back(image_record(canopy_view(*canopy)));
+    for (const auto& canopy : *surveys)
+      contents.images.push_back(image_record(pipeline::canopy_view(*canopy)));
   }
   if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
-  for (ShapeLayer& layer : summit_layers(all_types(), contents.landmarks))
+  for (geodb::ShapeLayer& layer : summit_layers(all_types(), contents.landmarks))
     contents.layers.push_back(std::move(layer));
-  for (const auto& made : result.artifacts<std::vector<ImageView>>("image_views"))
-    for (const ImageView& image : *made) contents.images.push_back(image_record(image));
+  for (const auto& made : result.artifacts<std::vector<pipeline::ImageView>>("image_views"))
+    for (const pipeline::ImageView& image : *made) contents.images.push_back(image_record(image));
   return contents;
 }
 
-std::vector<std::string> detected_types(const Pipeline& pipeline) {
+std::vector<std::string> detected_types(const pipeline::Pipeline& pipeline) {
   std::vector<std::string> types;
   for (const auto& step : pipeline.steps())
     types.insert(types.end(), step->spec().finds.begin(), step->spec().finds.end());
@@ -221,7 +223,7 @@ std::vector<std::string> detected_types(const Pipeline& pipeline) {
   return types;
 }
 
-std::string summarize_run(const RunResult& result, const MapContents& contents,
+std::string summarize_run(const pipeline::RunResult& result, const geodb::MapContents& contents,
                           const std::map<std::string, std::int64_t>& written, const std::string& map) {
   auto cells = static_cast<double>(result.artifact<DemHandle>("dem")->geometry().cells());
   const auto canopies = result.artifacts<Canopies>("canopies");
@@ -235,10 +237,10 @@ std::string summarize_run(const RunResult& result, const MapContents& contents,
   }
   text += fmt::format("{}, {:.2f} s", cell_count(cells), result.report.seconds);
   std::int64_t reused = 0;
-  for (const StageReport& stage : result.report.stages) reused += stage.reused;
+  for (const pipeline::StageReport& stage : result.report.stages) reused += stage.reused;
   if (reused == 0 && result.report.seconds > 0)
     text += fmt::format(", {:.2g} M cells/s", cells / 1e6 / result.report.seconds);
   return text + "\n";
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -7,37 +7,39 @@
 
 #include "geodb/hilbert_ranges.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-using Tables = std::vector<RunResult::Reader<CrownTable>>;
+using Tables = std::vector<pipeline::RunResult::Reader<pipeline::CrownTable>>;
 constexpr std::size_t kAtOnce = 100'000;
 
-Shape shape_of(CrownShape crown) {
+geodb::Shape shape_of(pipeline::CrownShape crown) {
   return {.parts = {{.outer = std::move(crown.ring)}},
           .values = {crown.uid.empty() ? AttributeValue() : AttributeValue(crown.uid), crown.source,
                      crown.height, crown.area, crown.diameter}};
 }
 
-void make_shapes(const Tables& tables, const std::function<void(const Shape&)>& take) {
+void make_shapes(const Tables& tables, const std::function<void(const geodb::Shape&)>& take) {
   const auto places = [&](std::size_t table, const auto& look) {
     const auto crowns = tables[table]();
     for (std::size_t row = 0; row < crowns->size(); ++row) look(crowns->top(row));
   };
-  Envelope extent;
+  geodb::Envelope extent;
   for (std::size_t table = 0; table < tables.size(); ++table)
     places(table, [&](const Eigen::Vector2d& top) { extent.add(top.x(), top.y()); });
   struct Place {
     std::uint32_t along = 0;
     std::size_t row = 0;
-    std::shared_ptr<const CrownTable> table;
+    std::shared_ptr<const pipeline::CrownTable> table;
   };
-  for (const HilbertRange& range : divide_hilbert_curve(tables.size(), places, extent, kAtOnce)) {
+  for (const geodb::HilbertRange& range :
+       geodb::divide_hilbert_curve(tables.size(), places, extent, kAtOnce)) {
     std::vector<Place> order;
     for (const std::uint32_t table : range.parts) {
       const auto crowns = tables[table]();
       for (std::size_t row = 0; row < crowns->size(); ++row)
-        if (const std::uint32_t along = hilbert_position(crowns->top(row), extent); range.contains(along))
+        if (const std::uint32_t along = geodb::hilbert_position(crowns->top(row), extent);
+            range.contains(along))
           order.push_back({along, row, crowns});
     }
     std::ranges::sort(order, [](const Place& a, const Place& b) {
@@ -49,11 +51,11 @@ void make_shapes(const Tables& tables, const std::function<void(const Shape&)>& 
 
 }  // namespace
 
-ShapeLayer crown_layer(Tables tables) {
+geodb::ShapeLayer crown_layer(Tables tables) {
   using Kind = AttributeSpec::Kind;
   return {.name = "crown",
           .summary = "Crowns of the trees, seen from above",
-          .kind = ShapeKind::polygon,
+          .kind = geodb::ShapeKind::polygon,
           .columns = {{"uid", "", Kind::text, "The tree in layer tree; empty where it was not kept"},
                       {"source", "", Kind::text, "Canopy model it was drawn on"},
                       {"height", "m", Kind::real, "Height of the tree"},
@@ -65,4 +67,4 @@ ShapeLayer crown_layer(Tables tables) {
           }};
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -4,10 +4,10 @@
 #include "geodb/shape_layer.hpp"
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/forest/crown_table.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Returns the layer `crown`: the crowns of all tables, ordered along a Hilbert curve through their tops. The
 /// order does not depend on the tables. Crowns are unpacked one by one, and few tables are in memory.
-ShapeLayer crown_layer(std::vector<RunResult::Reader<CrownTable>> tables);
+geodb::ShapeLayer crown_layer(std::vector<pipeline::RunResult::Reader<pipeline::CrownTable>> tables);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

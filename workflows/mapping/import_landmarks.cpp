@@ -15,30 +15,30 @@
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-ImportedTable read_table(const ImportRequest& request) {
-  const TableFormat format = request.format == "csv"   ? TableFormat::csv
-                             : request.format == "ogr" ? TableFormat::ogr
-                                                       : TableFormat::by_name;
-  const auto source = open_table(request.table, format, request.layer, request.options.type);
-  return import_table(*source, all_types(), request.options);
+importers::ImportedTable read_table(const ImportRequest& request) {
+  const importers::TableFormat format = request.format == "csv"   ? importers::TableFormat::csv
+                                        : request.format == "ogr" ? importers::TableFormat::ogr
+                                                                  : importers::TableFormat::by_name;
+  const auto source = importers::open_table(request.table, format, request.layer, request.options.type);
+  return importers::import_table(*source, all_types(), request.options);
 }
 
 /// Reads Landmark_Groundtruth.dat: numbered posts in a local CRS.
-ImportedTable read_mrclam_table(const std::string& file, const std::string& type) {
-  ImportedTable table;
-  table.landmarks = import_mrclam_landmarks(file, all_types().id(type), *all_types().find(type));
+importers::ImportedTable read_mrclam_table(const std::string& file, const std::string& type) {
+  importers::ImportedTable table;
+  table.landmarks = importers::import_mrclam_landmarks(file, all_types().id(type), *all_types().find(type));
   table.rows = static_cast<std::int64_t>(table.landmarks.size());
   table.types = {type};
   table.bindings = {"uid: subject", "x", "y", "covariance: deviations of x and y"};
   return table;
 }
 
-RunRecord run_record(const ImportedTable& table, const std::string& file, const std::string& command_line,
-                     std::chrono::system_clock::time_point started) {
-  StageReport stage;
+geodb::RunRecord run_record(const importers::ImportedTable& table, const std::string& file,
+                            const std::string& command_line, std::chrono::system_clock::time_point started) {
+  pipeline::StageReport stage;
   stage.stage = "import_table";
   stage.units = stage.made = 1;
   stage.counts.in = table.rows;
@@ -48,7 +48,7 @@ RunRecord run_record(const ImportedTable& table, const std::string& file, const 
   return make_single_step_record(std::move(stage), file, command_line, started);
 }
 
-void send_counts(const ImportedTable& table, const Callbacks& callbacks) {
+void send_counts(const importers::ImportedTable& table, const Callbacks& callbacks) {
   callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, ", ")));
   for (const std::string& warning : table.warnings) callbacks.warning(warning);
   const auto kept = static_cast<std::int64_t>(table.landmarks.size());
@@ -61,11 +61,11 @@ void send_counts(const ImportedTable& table, const Callbacks& callbacks) {
 
 }  // namespace
 
-ImportedTable import_landmarks(const ImportRequest& request, const Callbacks& callbacks) {
+importers::ImportedTable import_landmarks(const ImportRequest& request, const Callbacks& callbacks) {
   check_map_output(request.map);
   const auto started = std::chrono::system_clock::now();
   std::string file = request.table;
-  ImportedTable table;
+  importers::ImportedTable table;
   if (request.format == "mrclam") {
     if (std::filesystem::is_directory(file))
       file = (std::filesystem::path(file) / "Landmark_Groundtruth.dat").string();
@@ -73,17 +73,17 @@ ImportedTable import_landmarks(const ImportRequest& request, const Callbacks& ca
   } else {
     table = read_table(request);
   }
-  MapContents contents;
+  geodb::MapContents contents;
   contents.types = all_types();
   contents.crs = table.crs;
   contents.run = run_record(table, file, request.command_line, started);
   send_counts(table, callbacks);
   contents.landmarks = std::move(table.landmarks);
   contents.observations = std::move(table.rejected);
-  write_map(request.map, contents, {.empty_tables = table.types});
+  geodb::write_map(request.map, contents, {.empty_tables = table.types});
   callbacks.summary(
       fmt::format("{}: {} landmarks in {}\n", request.map, contents.landmarks.size(), contents.crs.id()));
   return table;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

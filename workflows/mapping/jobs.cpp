@@ -6,7 +6,7 @@
 #include "core/error.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 void check_files(const CanopyFiles& canopy) {
@@ -29,20 +29,21 @@ void check_files(const CanopyFiles& canopy) {
 
 }  // namespace
 
-void add_mountain_top_stages(Pipeline& pipeline, const std::vector<std::string>& dem) {
+void add_mountain_top_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem) {
   pipeline.add("load_dem", nlohmann::json{{"files", dem}}.dump());
   for (const char* stage :
        {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "mountain_tops_of_tile"})
     pipeline.add(stage);
 }
 
-void add_crater_stages(Pipeline& pipeline, const std::vector<std::string>& dem) {
-  pipeline.add("load_dem",
-               nlohmann::json{{"files", dem}, {"nodata", "unknown"}, {"tile_cells", kDemCore}}.dump());
+void add_crater_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem) {
+  pipeline.add(
+      "load_dem",
+      nlohmann::json{{"files", dem}, {"nodata", "unknown"}, {"tile_cells", pipeline::kDemCore}}.dump());
   for (const char* stage : {"craters_from_dem", "merge_observations", "value_surveys"}) pipeline.add(stage);
 }
 
-void add_tree_stages(Pipeline& pipeline, const CanopyFiles& canopy) {
+void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy) {
   check_files(canopy);
   pipeline.add("load_canopy", nlohmann::json{{"chm", canopy.chm},
                                              {"dsm", canopy.dsm},
@@ -59,4 +60,4 @@ void add_tree_stages(Pipeline& pipeline, const CanopyFiles& canopy) {
   pipeline.add("value_flights");
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -3,13 +3,13 @@
 #include <string>
 #include <vector>
 #include "pipeline/engine/pipeline.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Appends the stages that find the mountain tops of a DEM. Files that touch or overlap are one DEM.
-void add_mountain_top_stages(Pipeline& pipeline, const std::vector<std::string>& dem);
+void add_mountain_top_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem);
 
 /// Appends the stages that find the craters of a DEM.
-void add_crater_stages(Pipeline& pipeline, const std::vector<std::string>& dem);
+void add_crater_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem);
 
 /// Files of a canopy: canopy height models, or surface and terrain models, or laser points.
 struct CanopyFiles {
@@ -19,6 +19,6 @@ struct CanopyFiles {
 };
 
 /// Appends the stages that find the trees of a canopy. Throws Error{usage} where the files make no canopy.
-void add_tree_stages(Pipeline& pipeline, const CanopyFiles& canopy);
+void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

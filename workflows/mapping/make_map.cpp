@@ -14,10 +14,10 @@
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-void check_request(const Job& job, const MapRequest& request) {
+void check_request(const pipeline::Job& job, const MapRequest& request) {
   const bool partial = request.shard || !request.unit.empty();
   if (partial && request.work.empty())
     throw Error(ErrorCode::usage, "a part of a job needs --work DIR, which all parts use");
@@ -33,30 +33,30 @@ void check_request(const Job& job, const MapRequest& request) {
   check_map_output(request.map);
 }
 
-RunRecord run_record(const Job& job, const RunResult& result, const std::string& command_line,
-                     std::chrono::system_clock::time_point started) {
-  RunRecord run = make_run_record(command_line, started);
-  run.job_json = job_as_json(job.name, job.pipeline);
+geodb::RunRecord run_record(const pipeline::Job& job, const pipeline::RunResult& result,
+                            const std::string& command_line, std::chrono::system_clock::time_point started) {
+  geodb::RunRecord run = make_run_record(command_line, started);
+  run.job_json = pipeline::job_as_json(job.name, job.pipeline);
   record_report(run, result.report);
   run.inputs = result.inputs;
   return run;
 }
 
-void check_job(const Job& job, const RunOptions& options, const Callbacks& callbacks) {
-  const Plan units = plan(job.pipeline, options);
-  const auto done = std::ranges::count(units.units, true, &Unit::done);
+void check_job(const pipeline::Job& job, const pipeline::RunOptions& options, const Callbacks& callbacks) {
+  const pipeline::Plan units = pipeline::plan(job.pipeline, options);
+  const auto done = std::ranges::count(units.units, true, &pipeline::Unit::done);
   callbacks.summary(fmt::format("the job is sound: {} stages, {} units of work, {} of them done\n",
                                 job.pipeline.steps().size(), units.units.size(), done));
 }
 
-void send_report(const RunReport& report, const Callbacks& callbacks) {
-  callbacks.summary(report_as_text(report));
-  for (const Failure& failure : report.failures)
+void send_report(const pipeline::RunReport& report, const Callbacks& callbacks) {
+  callbacks.summary(pipeline::report_as_text(report));
+  for (const pipeline::Failure& failure : report.failures)
     callbacks.send(MessageKind::failure, failure.unit + ": " + failure.message);
 }
 
 /// Requests a DEM in metres where the job loads images as well: images are placed on terrain in metres.
-void require_metric_dem(Pipeline& pipeline) {
+void require_metric_dem(pipeline::Pipeline& pipeline) {
   const auto has = [&](const char* name) {
     return std::ranges::any_of(pipeline.steps(), [&](const auto& step) { return step->spec().name == name; });
   };
@@ -65,11 +65,11 @@ void require_metric_dem(Pipeline& pipeline) {
 
 }  // namespace
 
-RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
-  RunOptions options;
+pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
+  pipeline::RunOptions options;
   options.threads = request.threads;
   options.progress = callbacks.progress;
-  options.hash_file = hash_file;
+  options.hash_file = importers::hash_file;
   options.shard = request.shard;
   options.unit = request.unit;
   options.work = request.work;
@@ -77,15 +77,15 @@ RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
   return options;
 }
 
-Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings) {
-  Job job = read_job(file, all_stages());
+pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+  pipeline::Job job = pipeline::read_job(file, all_stages());
   require_metric_dem(job.pipeline);
   for (const std::string& setting : settings) job.pipeline.set(setting);
   return job;
 }
 
-MapResult make_map(const Job& job, const MapRequest& request, const Callbacks& callbacks) {
-  RunOptions options = run_options(request, callbacks);
+MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Callbacks& callbacks) {
+  pipeline::RunOptions options = run_options(request, callbacks);
   options.results = map_artifacts();
   options.scratch = std::filesystem::path(request.map).parent_path();
   if (options.scratch.empty()) options.scratch = ".";
@@ -97,7 +97,7 @@ MapResult make_map(const Job& job, const MapRequest& request, const Callbacks& c
     return made;
   }
   const auto started = std::chrono::system_clock::now();
-  RunResult result = run(job.pipeline, options);
+  pipeline::RunResult result = pipeline::run(job.pipeline, options);
   made.report = result.report;
   made.inputs = result.inputs;
   for (const InputFile& input : result.inputs)
@@ -108,12 +108,12 @@ MapResult make_map(const Job& job, const MapRequest& request, const Callbacks& c
     callbacks.summary(request.map + " is not written: some units of work are missing\n");
     return made;
   }
-  const MapContents contents =
+  const geodb::MapContents contents =
       assemble_map(result, run_record(job, result, request.command_line, started), request.with_dem);
-  made.landmarks = write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
+  made.landmarks = geodb::write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
   made.written = true;
   callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));
   return made;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

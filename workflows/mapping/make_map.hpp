@@ -9,24 +9,24 @@
 #include "pipeline/engine/job.hpp"
 #include "pipeline/engine/runner.hpp"
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// How a job is run and where its map is written.
 struct MapRequest {
-  std::string map = {};             ///< output; empty: none, only the work folder grows
-  std::string work = {};            ///< folder of finished work; empty: everything in memory
-  std::string rerun_from = {};      ///< stage to re-run with its dependents; empty: finished work is kept
-  std::optional<Shard> shard = {};  ///< part of the job to run; needs `work`
-  std::string unit = {};            ///< single unit of work to run; needs `work`
-  bool check = false;               ///< check options, wiring and files only
-  bool with_dem = false;            ///< store the DEM in the map
-  int threads = 0;                  ///< 0: one per processor
-  std::string command_line = {};    ///< recorded in the map
+  std::string map = {};         ///< output; empty: none, only the work folder grows
+  std::string work = {};        ///< folder of finished work; empty: everything in memory
+  std::string rerun_from = {};  ///< stage to re-run with its dependents; empty: finished work is kept
+  std::optional<pipeline::Shard> shard = {};  ///< part of the job to run; needs `work`
+  std::string unit = {};                      ///< single unit of work to run; needs `work`
+  bool check = false;                         ///< check options, wiring and files only
+  bool with_dem = false;                      ///< store the DEM in the map
+  int threads = 0;                            ///< 0: one per processor
+  std::string command_line = {};              ///< recorded in the map
 };
 
 /// What a job did.
 struct MapResult {
-  RunReport report;                               ///< empty for a check
+  pipeline::RunReport report;                     ///< empty for a check
   std::vector<InputFile> inputs;                  ///< files that the stages read, with hashes
   std::map<std::string, std::int64_t> landmarks;  ///< written, by type
   bool written = false;                           ///< false for a check, a shard or missing units
@@ -39,13 +39,13 @@ struct MapResult {
 /// cannot be made is not written, and an older one is kept. Throws Error{usage} or Error{output} before any
 /// work is done for an output that cannot be written.
 /// Messages: a detail per input file, the table of the run and its failures, a summary of the map.
-MapResult make_map(const Job& job, const MapRequest& request, const Callbacks& callbacks = {});
+MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Callbacks& callbacks = {});
 
 /// Returns the engine's options for a request: threads, progress, hashes of any GDAL path, work folder.
-RunOptions run_options(const MapRequest& request, const Callbacks& callbacks = {});
+pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks = {});
 
 /// Reads a job file with all built-in stages and applies `settings` (STAGE.OPTION=VALUE). A DEM that images
 /// are placed on is requested in metres. Throws Error{usage} as read_job().
-Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
+pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

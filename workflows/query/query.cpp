@@ -12,7 +12,7 @@
 #include "workflows/query/query_area.hpp"
 #include "workflows/registries.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 double check_not_negative(const std::string& what, double value) {
@@ -47,7 +47,7 @@ std::pair<std::string, double> parse_bound(const std::string& option, const std:
 }
 
 CrsTransform::XY in_map(const std::string& option, const std::vector<double>& point, const Crs& from,
-                        const MapStore& map) {
+                        const geodb::MapStore& map) {
   check_degrees(option, point[0], point[1], from);
   if (from.same_as(map.crs())) return {point[0], point[1]};
   const CrsTransform::XY at = CrsTransform(from, map.crs())(point[0], point[1]);
@@ -61,7 +61,7 @@ CrsTransform::XY in_map(const std::string& option, const std::vector<double>& po
 
 }  // namespace
 
-PreparedQuery::PreparedQuery(const QueryRequest& request, const MapStore& map)
+PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore& map)
     : crs_(request.crs.empty() ? map.crs() : Crs::from_text(request.crs)),
       limit_(static_cast<std::size_t>(check_not_negative("--limit", static_cast<double>(request.limit)))) {
   for (const std::string& type : request.types)
@@ -89,24 +89,24 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const MapStore& map)
   }
 }
 
-void PreparedQuery::set_centre(const QueryRequest& request, const MapStore& map) {
+void PreparedQuery::set_centre(const QueryRequest& request, const geodb::MapStore& map) {
   if (!request.near.empty()) {
     const auto centre = in_map("--near", request.near, crs_, map);
-    query_.near =
-        MapQuery::Near{centre.x, centre.y, Meters{check_not_negative("RADIUS of --near", request.near[2])}};
+    query_.near = geodb::MapQuery::Near{centre.x, centre.y,
+                                        Meters{check_not_negative("RADIUS of --near", request.near[2])}};
   }
   if (!request.nearest.empty()) {
     const auto centre = in_map("--nearest", request.nearest, crs_, map);
     const double count = check_not_negative("COUNT of --nearest", request.nearest[2]);
-    query_.nearest = MapQuery::NearestK{centre.x, centre.y, static_cast<std::int64_t>(count)};
+    query_.nearest = geodb::MapQuery::NearestK{centre.x, centre.y, static_cast<std::int64_t>(count)};
   }
 }
 
-void PreparedQuery::set_box(const QueryRequest& request, const MapStore& map) {
+void PreparedQuery::set_box(const QueryRequest& request, const geodb::MapStore& map) {
   if (request.bbox.empty()) return;
   check_degrees("--bbox", request.bbox[0], request.bbox[1], crs_);
   check_degrees("--bbox", request.bbox[2], request.bbox[3], crs_);
-  const MapQuery::Box box{request.bbox[0], request.bbox[1], request.bbox[2], request.bbox[3]};
+  const geodb::MapQuery::Box box{request.bbox[0], request.bbox[1], request.bbox[2], request.bbox[3]};
   if (box.min_y > box.max_y || (box.min_x > box.max_x && crs_.kind() != CrsKind::geographic))
     throw Error(ErrorCode::usage,
                 "--bbox takes the lower left and the upper right corner: X0 <= X1, Y0 <= Y1");
@@ -116,7 +116,7 @@ void PreparedQuery::set_box(const QueryRequest& request, const MapStore& map) {
   query_.box = covering_box(box, crs_, map.crs());
 }
 
-std::vector<Landmark> PreparedQuery::run(const MapStore& map) const {
+std::vector<Landmark> PreparedQuery::run(const geodb::MapStore& map) const {
   std::vector<Landmark> found = map.query(query_);
   if (!outline_) return found;
   const CrsTransform transform(map.crs(), crs_);
@@ -128,18 +128,19 @@ std::vector<Landmark> PreparedQuery::run(const MapStore& map) const {
   return found;
 }
 
-double PreparedQuery::distance(const MapStore& map, const Landmark& landmark) const {
+double PreparedQuery::distance(const geodb::MapStore& map, const Landmark& landmark) const {
   if (query_.near) return map.distance(landmark, query_.near->x, query_.near->y);
   return map.distance(landmark, query_.nearest->x, query_.nearest->y);
 }
 
 QueryResult query(const std::filesystem::path& file, const QueryRequest& request) {
-  static const VectorFormat kGeoJson{.driver = "GeoJSON", .earth_only = true, .only_wgs84 = true};
-  const MapStore map = MapStore::open(file);
+  static const exporters::VectorFormat kGeoJson{.driver = "GeoJSON", .earth_only = true, .only_wgs84 = true};
+  const geodb::MapStore map = geodb::MapStore::open(file);
   const PreparedQuery prepared(request, map);
-  QueryResult result{.types = map.types(),
-                     .crs = request.wgs84 ? output_crs(kGeoJson, map.crs(), "", file) : prepared.crs(),
-                     .sensor = prepared.sensor()};
+  QueryResult result{
+      .types = map.types(),
+      .crs = request.wgs84 ? exporters::output_crs(kGeoJson, map.crs(), "", file) : prepared.crs(),
+      .sensor = prepared.sensor()};
   const std::vector<Landmark> found = prepared.run(map);
   if (prepared.from_point())
     for (const Landmark& landmark : found) result.distances[landmark.uid] = prepared.distance(map, landmark);
@@ -147,4 +148,4 @@ QueryResult query(const std::filesystem::path& file, const QueryRequest& request
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -9,7 +9,7 @@
 #include <vector>
 #include "geo/crs.hpp"
 #include "geodb/map_store.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Conditions on the landmarks of a map. Coordinates are in `crs`.
 struct QueryRequest {
@@ -42,25 +42,25 @@ QueryResult query(const std::filesystem::path& file, const QueryRequest& request
 class PreparedQuery {
  public:
   /// Throws Error{usage}: unknown CRS, sensor or type, a box with swapped corners, a radius below 0.
-  PreparedQuery(const QueryRequest& request, const MapStore& map);
+  PreparedQuery(const QueryRequest& request, const geodb::MapStore& map);
 
   const Crs& crs() const { return crs_; }  ///< of the request; the map's if it names none
   const SensorProfile* sensor() const { return query_.sensor; }
   /// Returns landmarks in the map's CRS.
-  std::vector<Landmark> run(const MapStore& map) const;
+  std::vector<Landmark> run(const geodb::MapStore& map) const;
   /// Returns true if the result is sorted by the distance from a point.
   bool from_point() const { return query_.near || query_.nearest; }
   /// Returns metres from that point to a landmark of the result.
-  double distance(const MapStore& map, const Landmark& landmark) const;
+  double distance(const geodb::MapStore& map, const Landmark& landmark) const;
 
  private:
-  void set_centre(const QueryRequest& request, const MapStore& map);
-  void set_box(const QueryRequest& request, const MapStore& map);
+  void set_centre(const QueryRequest& request, const geodb::MapStore& map);
+  void set_box(const QueryRequest& request, const geodb::MapStore& map);
 
   Crs crs_;
-  MapQuery query_;
-  std::optional<MapQuery::Box> outline_ = {};  ///< in crs_, if that is not the map's
+  geodb::MapQuery query_;
+  std::optional<geodb::MapQuery::Box> outline_ = {};  ///< in crs_, if that is not the map's
   std::size_t limit_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::workflows

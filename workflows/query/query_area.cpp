@@ -7,22 +7,22 @@
 #include "core/error.hpp"
 #include "exporters/vector/reproject.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-double east_of(const MapQuery::Box& box, const Crs& crs) {
+double east_of(const geodb::MapQuery::Box& box, const Crs& crs) {
   const bool over_antimeridian = crs.kind() == CrsKind::geographic && box.min_x > box.max_x;
   return over_antimeridian ? box.max_x + 360 : box.max_x;
 }
 
 }  // namespace
 
-MapQuery::Box covering_box(const MapQuery::Box& box, const Crs& from, const Crs& map) {
+geodb::MapQuery::Box covering_box(const geodb::MapQuery::Box& box, const Crs& from, const Crs& map) {
   constexpr int kSteps = 32;
   constexpr double kMargin = 0.01;
   const CrsTransform transform(from, map);
   const double width = east_of(box, from) - box.min_x, height = box.max_y - box.min_y;
-  MapQuery::Box cover{INFINITY, INFINITY, -INFINITY, -INFINITY};
+  geodb::MapQuery::Box cover{INFINITY, INFINITY, -INFINITY, -INFINITY};
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; j <= kSteps; ++j) {
       const auto at = transform(box.min_x + width * i / kSteps, box.min_y + height * j / kSteps);
@@ -37,7 +37,7 @@ MapQuery::Box covering_box(const MapQuery::Box& box, const Crs& from, const Crs&
   return {cover.min_x - x, cover.min_y - y, cover.max_x + x, cover.max_y + y};
 }
 
-bool inside(const MapQuery::Box& box, const Point<MapCrs>& point, const Crs& crs) {
+bool inside(const geodb::MapQuery::Box& box, const Point<MapCrs>& point, const Crs& crs) {
   const double east = east_of(box, crs);
   double x = point.xyz.x();
   if (crs.kind() == CrsKind::geographic) x = box.min_x + std::fmod(std::fmod(x - box.min_x, 360) + 360, 360);
@@ -50,7 +50,7 @@ std::vector<Landmark> transform_landmarks(const std::vector<Landmark>& landmarks
   std::vector<std::vector<Landmark>> of_type(types.size());
   for (const Landmark& landmark : landmarks) of_type[landmark.type].push_back(landmark);
   for (TypeId type = 0; type < types.size(); ++type)
-    of_type[type] = reproject(std::move(of_type[type]), types[type], from, to).landmarks;
+    of_type[type] = exporters::reproject(std::move(of_type[type]), types[type], from, to).landmarks;
   std::vector<Landmark> result;
   std::vector<std::size_t> next(types.size(), 0);
   for (const Landmark& landmark : landmarks) {
@@ -61,4 +61,4 @@ std::vector<Landmark> transform_landmarks(const std::vector<Landmark>& landmarks
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

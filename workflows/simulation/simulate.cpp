@@ -17,14 +17,15 @@
 #include "workflows/simulation/write_drive.hpp"
 #include "workflows/simulation/write_forest.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 namespace fs = std::filesystem;
 
-Scenario load_scenario(const SimulateRequest& request, const Callbacks& callbacks) {
-  Scenario scenario = read_scenario(read_text(request.scenario, "the scenario"), request.scenario,
-                                    [&](const std::string& warning) { callbacks.warning(warning); });
+testbed::Scenario load_scenario(const SimulateRequest& request, const Callbacks& callbacks) {
+  testbed::Scenario scenario =
+      testbed::read_scenario(read_text(request.scenario, "the scenario"), request.scenario,
+                             [&](const std::string& warning) { callbacks.warning(warning); });
   scenario.seed = request.seed.value_or(scenario.seed);
   scenario.drive.seed = request.drive_seed.value_or(scenario.drive.seed);
   if ((request.drive_only || request.drive_seed) && !scenario.drive.on)
@@ -33,7 +34,7 @@ Scenario load_scenario(const SimulateRequest& request, const Callbacks& callback
   return scenario;
 }
 
-Crs scenario_crs(const Scenario& scenario, const std::string& file) {
+Crs scenario_crs(const testbed::Scenario& scenario, const std::string& file) {
   const Crs crs = scenario.crs == "local" ? Crs::local() : Crs::from_text(scenario.crs);
   if (crs.kind() == CrsKind::geographic)
     throw Error(ErrorCode::usage, fmt::format("crs {} is geographic: its units are degrees", scenario.crs),
@@ -44,51 +45,51 @@ Crs scenario_crs(const Scenario& scenario, const std::string& file) {
 void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) fail_output(folder, failed.message());
+  if (failed) exporters::fail_output(folder, failed.message());
 }
 
 /// Throws if the folder has images of an older scene, which would be taken for images of this one.
-void check_other_images(const fs::path& images, const std::vector<Shot>& shots) {
+void check_other_images(const fs::path& images, const std::vector<testbed::Shot>& shots) {
   for (const auto& entry : fs::directory_iterator(images)) {
     const std::string name = entry.path().filename();
-    if (std::ranges::none_of(shots, [&](const Shot& shot) { return shot.name == name; }))
+    if (std::ranges::none_of(shots, [&](const testbed::Shot& shot) { return shot.name == name; }))
       throw Error(ErrorCode::output, fmt::format("{} is not an image of this scene", name), images,
                   "write to another folder, or remove the older images");
   }
 }
 
-void write_site(const fs::path& folder, const Scenario& scenario, const Scene& scene,
-                const std::vector<Shot>& shots, const Crs& crs) {
+void write_site(const fs::path& folder, const testbed::Scenario& scenario, const testbed::Scene& scene,
+                const std::vector<testbed::Shot>& shots, const Crs& crs) {
   for (const char* part : {"images", "truth"}) make_folder(folder / part);
   check_other_images(folder / "images", shots);
-  const SimulatedDem dem = simulate_dem(scenario, scene);
+  const testbed::SimulatedDem dem = testbed::simulate_dem(scenario, scene);
   const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
-  write_raster(folder / "dem.tif", dem.heights,
-               {crs, dem.x0 / unit, dem.y0 / unit, dem.cell / unit, -dem.cell / unit});
-  const LitTerrain ground(scene, scenario.exposure.sun);
+  exporters::write_raster(folder / "dem.tif", dem.heights,
+                          {crs, dem.x0 / unit, dem.y0 / unit, dem.cell / unit, -dem.cell / unit});
+  const testbed::LitTerrain ground(scene, scenario.exposure.sun);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
-  for (const Shot& shot : shots) {
-    const Pixels image =
-        render_view(scene, ground, camera_view(shot.view), scenario.exposure, named_seed(seed, shot.name));
-    write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
+  for (const testbed::Shot& shot : shots) {
+    const Pixels image = testbed::render_view(scene, ground, testbed::camera_view(shot.view),
+                                              scenario.exposure, named_seed(seed, shot.name));
+    exporters::write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
   }
-  const TruthTables truth = truth_tables(scenario, scene, shots);
-  write_file(folder / "cameras.json", camera_file(scenario, shots, false));
-  write_file(folder / "job.json", job_file(scenario));
-  write_file(folder / "scenario.json", scenario_json(scenario));
-  write_file(folder / "truth/cameras.json", camera_file(scenario, shots, true));
-  write_file(folder / "truth/landmarks.csv", truth.landmarks);
-  write_file(folder / "truth/ignored.csv", truth.ignored);
-  write_file(folder / "truth/detections.csv", truth.detections);
+  const testbed::TruthTables truth = testbed::truth_tables(scenario, scene, shots);
+  exporters::write_file(folder / "cameras.json", testbed::camera_file(scenario, shots, false));
+  exporters::write_file(folder / "job.json", testbed::job_file(scenario));
+  exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+  exporters::write_file(folder / "truth/cameras.json", testbed::camera_file(scenario, shots, true));
+  exporters::write_file(folder / "truth/landmarks.csv", truth.landmarks);
+  exporters::write_file(folder / "truth/ignored.csv", truth.ignored);
+  exporters::write_file(folder / "truth/detections.csv", truth.detections);
 }
 
-SimulateResult simulate_forest(const SimulateRequest& request, const Scenario& scenario, const Crs& crs,
-                               const Callbacks& callbacks) {
+SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Scenario& scenario,
+                               const Crs& crs, const Callbacks& callbacks) {
   const fs::path folder = request.folder;
   make_folder(folder / "truth");
-  const Scene scene = make_forest_terrain(scenario);
+  const testbed::Scene scene = make_forest_terrain(scenario);
   const WrittenForest forest = write_forest(folder, scenario, scene, crs);
-  write_file(folder / "scenario.json", scenario_json(scenario));
+  exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
   if (scenario.drive.on)
     callbacks.summary(write_drive(folder, scenario, scene, forest.trees, request.scenario) + "\n");
   callbacks.summary(fmt::format("{}: {}\n", request.folder, forest.summary));
@@ -98,19 +99,20 @@ SimulateResult simulate_forest(const SimulateRequest& request, const Scenario& s
 }  // namespace
 
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks) {
-  Scenario scenario = load_scenario(request, callbacks);
+  testbed::Scenario scenario = load_scenario(request, callbacks);
   const Crs crs = scenario_crs(scenario, request.scenario);
   if (scenario.forest.on) return simulate_forest(request, scenario, crs, callbacks);
-  const std::vector<Shot> shots = plan_shots(scenario);
-  scenario.ground = size_site(scenario, shots);
-  const Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
-  check_footprints(scene, shots);
+  const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
+  scenario.ground = testbed::size_site(scenario, shots);
+  const testbed::Scene scene =
+      testbed::make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
+  testbed::check_footprints(scene, shots);
 
   const fs::path folder = request.folder;
   if (request.drive_only) {
     make_folder(folder);
     const std::string drive = write_drive(folder, scenario, scene, {}, request.scenario);
-    write_file(folder / "scenario.json", scenario_json(scenario));
+    exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
     callbacks.summary(fmt::format("{}: {}\n", request.folder, drive));
     return {.rocks = scene.rocks.size(), .craters = scene.craters.size()};
   }
@@ -122,4 +124,4 @@ SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbac
   return {.images = shots.size(), .rocks = scene.rocks.size(), .craters = scene.craters.size()};
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// A scenario and where its files are written.
 struct SimulateRequest {
@@ -27,4 +27,4 @@ struct SimulateResult {
 /// Messages: a summary of the drive, then of the site.
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

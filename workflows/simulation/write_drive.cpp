@@ -7,29 +7,30 @@
 #include "exporters/staging_folder.hpp"
 #include "geo/crs.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 
-std::string write_drive(const std::filesystem::path& folder, const Scenario& scenario, const Scene& scene,
-                        std::vector<StandingTree> trees, const std::filesystem::path& scenario_file) {
-  const DriveSettings& drive = scenario.drive;
+std::string write_drive(const std::filesystem::path& folder, const testbed::Scenario& scenario,
+                        const testbed::Scene& scene, std::vector<testbed::StandingTree> trees,
+                        const std::filesystem::path& scenario_file) {
+  const testbed::DriveSettings& drive = scenario.drive;
   if (!drive.trees.empty()) {
     const std::filesystem::path table = scenario_file.parent_path() / drive.trees;
     const std::string text =
         read_text(table, "the table of trees", ErrorCode::input, "see drive.trees of the scenario");
-    trees =
-        trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north}, scene.terrain);
+    trees = testbed::trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north},
+                                      scene.terrain);
   }
-  const DriveWorld world = make_drive(drive, scene, std::move(trees), scene.seed);
-  const LogCrs place{scenario.crs,
-                     scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
+  const testbed::DriveWorld world = testbed::make_drive(drive, scene, std::move(trees), scene.seed);
+  const testbed::LogCrs place{scenario.crs,
+                              scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
   std::error_code failed;
   std::filesystem::create_directories(folder / "truth", failed);
-  if (failed) fail_output(folder / "truth", failed.message());
-  write_file(folder / "log.jsonl", drive_log(world, place));
-  write_file(folder / "truth/track.csv", true_track(world, place));
+  if (failed) exporters::fail_output(folder / "truth", failed.message());
+  exporters::write_file(folder / "log.jsonl", testbed::drive_log(world, place));
+  exporters::write_file(folder / "truth/track.csv", testbed::true_track(world, place));
   if (!world.trees.empty()) {
-    write_file(folder / "truth/trees.csv", standing_table(world, place));
-    write_file(folder / "truth/felled.csv", felled_table(world, place));
+    exporters::write_file(folder / "truth/trees.csv", testbed::standing_table(world, place));
+    exporters::write_file(folder / "truth/felled.csv", testbed::felled_table(world, place));
   }
   return fmt::format("drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().distance,
                      world.steps.back().t,
@@ -38,4 +39,4 @@ std::string write_drive(const std::filesystem::path& folder, const Scenario& sce
                          : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

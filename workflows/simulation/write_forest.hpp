@@ -7,20 +7,20 @@
 #include "testbed/forest/forest.hpp"
 #include "testbed/scenario.hpp"
 #include "testbed/scene.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Returns the terrain of a scenario's forest: its relief without craters, rocks, dunes and outcrops, some
 /// metres wider than the forest.
-Scene make_forest_terrain(const Scenario& scenario);
+testbed::Scene make_forest_terrain(const testbed::Scenario& scenario);
 
 struct WrittenForest {
-  std::vector<StandingTree> trees;
+  std::vector<testbed::StandingTree> trees;
   std::string summary;  ///< for people, without \n
 };
 
 /// Plants the scenario's forest on the terrain, scans it from the air, and writes dtm.tif, dsm.tif, chm.tif,
 /// points.las, stands.geojson, job.json and the truth tables into an existing folder.
-WrittenForest write_forest(const std::filesystem::path& folder, const Scenario& scenario, const Scene& scene,
-                           const Crs& crs);
+WrittenForest write_forest(const std::filesystem::path& folder, const testbed::Scenario& scenario,
+                           const testbed::Scene& scene, const Crs& crs);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

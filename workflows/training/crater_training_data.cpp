@@ -9,11 +9,11 @@
 #include "pipeline/craters/crater_features.hpp"
 #include "testbed/render.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
-SiteModel draw_ground(Random& random, double gsd, double width) {
-  SiteModel ground;
+testbed::SiteModel draw_ground(Random& random, double gsd, double width) {
+  testbed::SiteModel ground;
   ground.width = ground.height = 1.15 * width;
   ground.cell = random.uniform(1, 1.6) * gsd;
   ground.relief.longest = width * random.log_uniform(0.2, 1.5);
@@ -51,13 +51,13 @@ SiteModel draw_ground(Random& random, double gsd, double width) {
   return ground;
 }
 
-Exposure draw_exposure(Random& random) {
-  Exposure exposure;
+testbed::Exposure draw_exposure(Random& random) {
+  testbed::Exposure exposure;
   exposure.sun = {Degrees{random.uniform(0, 360)}, Degrees{random.uniform(12, 60)}, Degrees{0.5}};
   const auto kind = random.uniform_index(3);
-  exposure.photometry = kind == 0   ? Photometry::lambert
-                        : kind == 1 ? Photometry::lommel_seeliger
-                                    : Photometry::lunar_lambert;
+  exposure.photometry = kind == 0   ? testbed::Photometry::lambert
+                        : kind == 1 ? testbed::Photometry::lommel_seeliger
+                                    : testbed::Photometry::lunar_lambert;
   exposure.skylight = random.uniform(0.01, 0.25);
   exposure.haze = random.uniform(0, 0.2);
   exposure.psf_sd = random.uniform(0.4, 1.1);
@@ -69,27 +69,27 @@ Exposure draw_exposure(Random& random) {
 
 }  // namespace
 
-LabelledScene make_testbed_scene(std::uint64_t seed, int side) {
+pipeline::LabelledScene make_testbed_scene(std::uint64_t seed, int side) {
   Random random(seed, "testbed lesson on craters");
   const double gsd = random.log_uniform(0.2, 5);
-  const Scene scene = make_scene(draw_ground(random, gsd, gsd * side), seed);
-  const Exposure exposure = draw_exposure(random);
-  const View view = map_view(scene, gsd, side, side);
-  LabelledScene known_scene;
-  known_scene.image = render_view(scene, view, exposure, seed);
+  const testbed::Scene scene = testbed::make_scene(draw_ground(random, gsd, gsd * side), seed);
+  const testbed::Exposure exposure = draw_exposure(random);
+  const testbed::View view = testbed::map_view(scene, gsd, side, side);
+  pipeline::LabelledScene known_scene;
+  known_scene.image = testbed::render_view(scene, view, exposure, seed);
   for (float& value : known_scene.image.cells()) value = std::round(255 * std::clamp(value, 0.0F, 1.0F));
-  known_scene.sun_angle = {image_sun_angle(view, exposure.sun)};
-  const PatchSource patches(known_scene.image, known_scene.sun_angle);
-  for (const TrueCrater& crater : scene.craters) {
-    const auto outline = image_outline(view, crater);
-    LabelledCrater known{(crater.position.x() - view.x0) / gsd, (view.y0 - crater.position.y()) / gsd,
-                         crater.diameter() / gsd, 0};
+  known_scene.sun_angle = {testbed::image_sun_angle(view, exposure.sun)};
+  const pipeline::PatchSource patches(known_scene.image, known_scene.sun_angle);
+  for (const testbed::TrueCrater& crater : scene.craters) {
+    const auto outline = testbed::image_outline(view, crater);
+    pipeline::LabelledCrater known{(crater.position.x() - view.x0) / gsd,
+                                   (view.y0 - crater.position.y()) / gsd, crater.diameter() / gsd, 0};
     if (known.diameter < 5) continue;
-    if (outline && crater.preserved_fraction() >= kErased)
+    if (outline && crater.preserved_fraction() >= testbed::kErased)
       known.clarity = std::clamp(patches.slope_correlation({known.x, known.y, known.diameter, 0}), 0.0, 1.0);
     known_scene.craters.push_back(known);
   }
   return known_scene;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

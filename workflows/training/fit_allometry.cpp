@@ -9,7 +9,7 @@
 #include "exporters/staging_folder.hpp"
 #include "pipeline/forest/allometry_fit.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 void check_output(const std::string& output) {
@@ -25,7 +25,8 @@ void check_output(const std::string& output) {
     throw Error(ErrorCode::output, "the output is a folder", output, "name a file in it");
 }
 
-std::vector<Allometry> fit_table(const MeasuredTrees& read, const AllometryRequest& request) {
+std::vector<pipeline::Allometry> fit_table(const importers::MeasuredTrees& read,
+                                           const AllometryRequest& request) {
   try {
     return fit_allometry(read.trees, {.min_trees = static_cast<int>(request.min_trees)});
   } catch (const Error& error) {
@@ -35,23 +36,23 @@ std::vector<Allometry> fit_table(const MeasuredTrees& read, const AllometryReque
 
 }  // namespace
 
-std::vector<Allometry> fit_allometry(const AllometryRequest& request, const Callbacks& callbacks) {
+std::vector<pipeline::Allometry> fit_allometry(const AllometryRequest& request, const Callbacks& callbacks) {
   if (!request.output.empty()) check_output(request.output);
   if (request.min_trees < 5)
     throw Error(ErrorCode::usage, fmt::format("--min-trees is {}, below 5", request.min_trees), "",
                 "leave it out for the usual 20");
-  const MeasuredTrees read = read_measured_trees(request.input, request.columns);
+  const importers::MeasuredTrees read = importers::read_measured_trees(request.input, request.columns);
   callbacks.summary(fmt::format(
       "{} trees; {}{}\n", read.trees.size(), read.columns,
       read.skipped_rows ? fmt::format("; {} rows without them left out", read.skipped_rows) : ""));
   const auto table = fit_table(read, request);
-  for (const Allometry& row : table)
-    callbacks.summary(
-        fmt::format("{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n",
-                    row.species, to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
+  for (const pipeline::Allometry& row : table)
+    callbacks.summary(fmt::format(
+        "{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n", row.species,
+        pipeline::to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
   if (request.output.empty()) return table;
-  write_file(request.output, allometry_as_csv(table));
+  exporters::write_file(request.output, pipeline::allometry_as_csv(table));
   return table;
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -7,7 +7,7 @@
 
 #include "exporters/staging_folder.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 std::string model_as_source(const std::string& text, const ModelSource& source) {
   std::string code = fmt::format(
       "// SPDX-License-Identifier: Apache-2.0\n"
@@ -29,7 +29,7 @@ std::string model_as_source(const std::string& text, const ModelSource& source) 
 }
 
 void write_model(const std::string& path, const std::string& text, const ModelSource& source) {
-  write_file(path, path.ends_with(".cpp") ? model_as_source(text, source) : text);
+  exporters::write_file(path, path.ends_with(".cpp") ? model_as_source(text, source) : text);
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

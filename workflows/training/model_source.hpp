@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <string>
-namespace waymark {
+namespace waymark::workflows {
 
 /// Names in the source file that a trained model is written as.
 struct ModelSource {
@@ -21,4 +21,4 @@ std::string model_as_source(const std::string& text, const ModelSource& source);
 /// Writes a model, as source if the name ends in .cpp. Throws Error{output}.
 void write_model(const std::string& path, const std::string& text, const ModelSource& source);
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -11,7 +11,7 @@
 #include "workflows/training/model_source.hpp"
 #include "workflows/training/tree_training_data.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr int kSide = 640;              // pixels of a scene of craters
@@ -19,8 +19,8 @@ constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at lea
 constexpr int kParts = 3;               // of the images, left out in turn
 
 struct CraterExamples {
-  std::vector<CraterExample> bowls;
-  std::vector<WidePatchExample> patch_examples;
+  std::vector<pipeline::CraterExample> bowls;
+  std::vector<pipeline::WidePatchExample> patch_examples;
 };
 
 CraterExamples make_crater_examples(std::int64_t scenes, const Callbacks& callbacks) {
@@ -28,10 +28,11 @@ CraterExamples make_crater_examples(std::int64_t scenes, const Callbacks& callba
   for (std::int64_t i = 0; i < scenes; ++i) {
     // In turn plain shading of relief that no testbed makes, and renderings of the testbed.
     const auto index = static_cast<std::uint64_t>(i / 2);
-    const LabelledScene scene = i % 2 == 0 ? shaded_scene(index, kSide) : make_testbed_scene(index, kSide);
+    const pipeline::LabelledScene scene =
+        i % 2 == 0 ? pipeline::shaded_scene(index, kSide) : make_testbed_scene(index, kSide);
     const auto bowls = make_crater_examples(scene, index);
     examples.bowls.insert(examples.bowls.end(), bowls.begin(), bowls.end());
-    const auto patches = make_patch_examples(scene, static_cast<std::uint64_t>(i));
+    const auto patches = pipeline::make_patch_examples(scene, static_cast<std::uint64_t>(i));
     examples.patch_examples.insert(examples.patch_examples.end(), patches.begin(), patches.end());
     if ((i + 1) % 20 == 0)
       callbacks.summary(fmt::format("{} of {} scenes, {} examples\n", i + 1, scenes, examples.bowls.size()));
@@ -48,13 +49,14 @@ void write_crater_model(const TrainRequest& request, const std::string& text) {
 
 TrainResult train_craters(const TrainRequest& request, const Callbacks& callbacks) {
   const CraterExamples examples = make_crater_examples(request.scenes, callbacks);
-  CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  pipeline::CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
   if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
-  CraterModel model = train_crater_model(examples.bowls, training, [&](int round, double loss) {
-    callbacks.summary(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
-  });
+  pipeline::CraterModel model =
+      pipeline::train_crater_model(examples.bowls, training, [&](int round, double loss) {
+        callbacks.summary(fmt::format("round {}: loss {:.4f}\n", round + 1, loss));
+      });
   for (std::uint64_t net = 0; net < kNetworks; ++net)
-    model.convolution_nets.push_back(train_patch_network(
+    model.convolution_nets.push_back(pipeline::train_patch_network(
         examples.patch_examples, training.rounds, training.seed + net, [&](int round, double loss) {
           callbacks.summary(fmt::format("looks, network {} of {}, round {}: loss {:.4f}\n", net + 1,
                                         kNetworks, round + 1, loss));
@@ -62,7 +64,7 @@ TrainResult train_craters(const TrainRequest& request, const Callbacks& callback
   model.trained_on =
       fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
                   request.scenes - 1, kSide, examples.bowls.size(), training.rounds, request.seed);
-  TrainResult result{as_text(model)};
+  TrainResult result{pipeline::as_text(model)};
   if (!request.output.empty()) write_crater_model(request, result.model);
   return result;
 }
@@ -84,25 +86,26 @@ TrainResult train_trees(const TrainRequest& request, const Callbacks& callbacks)
     images.push_back(read_training_image(image, !request.colour));
     trees += images.back().trees.size();
   }
-  NetworkTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  pipeline::NetworkTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
   if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
   const bool validate = images.size() >= kParts;
-  ProgressMeter meter(callbacks.progress, "train trees", training.rounds * (validate ? kParts + 1 : 1));
+  pipeline::ProgressMeter meter(callbacks.progress, "train trees",
+                                training.rounds * (validate ? kParts + 1 : 1));
   std::string held_out;
   if (validate) {
-    const Score score = cross_validate(images, kParts, training, request.threads, meter);
+    const testbed::Score score = cross_validate(images, kParts, training, request.threads, meter);
     held_out = fmt::format("; left out in turn, {} parts: precision {:.3f}, recall {:.3f}, F1 {:.3f}", kParts,
                            score.all.precision(), score.all.recall(), score.all.f1());
-    for (const CalibrationBin& bin : score.by_confidence)
+    for (const testbed::CalibrationBin& bin : score.by_confidence)
       callbacks.summary(fmt::format("confidence {:.2f} to {:.2f}: {} of {} are trees\n", bin.from, bin.to,
                                     bin.right, bin.found));
   }
-  DenseNetwork network = train_crown_network(images, training, meter);
+  pipeline::DenseNetwork network = train_crown_network(images, training, meter);
   meter.finish();
   network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", images.size(), trees,
                                    training.rounds, request.seed, held_out);
   callbacks.summary(network.trained_on + "\n");
-  TrainResult result{as_text(network)};
+  TrainResult result{pipeline::as_text(network)};
   if (!request.output.empty()) write_tree_model(request, result.model);
   return result;
 }
@@ -119,4 +122,4 @@ TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
   return train_craters(request, callbacks);
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "workflows/callbacks.hpp"
-namespace waymark {
+namespace waymark::workflows {
 
 /// Options of a training. The same scenes, images and seed give the same model.
 struct TrainRequest {
@@ -28,4 +28,4 @@ struct TrainResult {
 /// Messages: summaries of the rounds, and for trees the cross-validated score.
 TrainResult train(const TrainRequest& request, const Callbacks& callbacks = {});
 
-}  // namespace waymark
+}  // namespace waymark::workflows

@@ -10,26 +10,26 @@
 #include "workflows/detection/crown_detection.hpp"
 #include "workflows/evaluation/scored_table.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 constexpr double kMaxError = 6;   // metres
 constexpr double kSpacing = 1e6;  // metres: images are scored together, and must not meet
 constexpr int kVariants = 2;      // in other light
 
-NetworkExamples examples_of(const std::vector<const TreeTrainingImage*>& images) {
-  NetworkExamples examples;
+pipeline::NetworkExamples examples_of(const std::vector<const TreeTrainingImage*>& images) {
+  pipeline::NetworkExamples examples;
   for (std::size_t i = 0; i < images.size(); ++i) {
     const ColourImage& image = *images[i]->image;
-    add_crown_examples(examples, image.read({0, 0, image.columns(), image.rows()}), images[i]->trees,
-                       kVariants, i);
+    pipeline::add_crown_examples(examples, image.read({0, 0, image.columns(), image.rows()}),
+                                 images[i]->trees, kVariants, i);
   }
   return examples;
 }
 
-DenseNetwork train(const std::vector<const TreeTrainingImage*>& images, const NetworkTraining& training,
-                   ProgressMeter& meter) {
-  return train_network(examples_of(images), training, [&meter](int, double) { meter.add(1); });
+pipeline::DenseNetwork train(const std::vector<const TreeTrainingImage*>& images,
+                             const pipeline::NetworkTraining& training, pipeline::ProgressMeter& meter) {
+  return pipeline::train_network(examples_of(images), training, [&meter](int, double) { meter.add(1); });
 }
 
 /// Returns true for a table without rows, as of an image without trees.
@@ -44,7 +44,7 @@ bool is_empty_table(const std::filesystem::path& table) {
 }  // namespace
 
 TreeTrainingImage read_training_image(const std::string& path, bool infrared) {
-  const ImageInfo info = import_image(path)->info();
+  const ImageInfo info = importers::import_image(path)->info();
   if (!info.ortho || info.ortho->crs.kind() == CrsKind::local)
     throw Error(ErrorCode::input, "a training image must be an orthophoto in metres", path);
   const double metres = std::sqrt(-info.ortho->dx * info.ortho->dy) * info.ortho->crs.metres_per_unit();
@@ -57,31 +57,33 @@ TreeTrainingImage read_training_image(const std::string& path, bool infrared) {
   const auto table = std::filesystem::path(path).replace_extension(".csv");
   if (is_empty_table(table)) return marked;
   for (const auto& [type, things] : read_scored_things(table.string(), "", 0))
-    for (const EvaluatedObject& tree : things)
+    for (const testbed::EvaluatedObject& tree : things)
       marked.trees.push_back({(tree.at.x() + 0.5) / across - 0.5, (tree.at.y() + 0.5) / across - 0.5});
   return marked;
 }
 
-DenseNetwork train_crown_network(const std::vector<TreeTrainingImage>& images,
-                                 const NetworkTraining& training, ProgressMeter& meter) {
+pipeline::DenseNetwork train_crown_network(const std::vector<TreeTrainingImage>& images,
+                                           const pipeline::NetworkTraining& training,
+                                           pipeline::ProgressMeter& meter) {
   std::vector<const TreeTrainingImage*> all;
   for (const TreeTrainingImage& marked : images) all.push_back(&marked);
   return train(all, training, meter);
 }
 
-Score cross_validate(const std::vector<TreeTrainingImage>& images, int parts, const NetworkTraining& training,
-                     int threads, ProgressMeter& meter) {
-  std::vector<EvaluatedObject> found, truth;
+testbed::Score cross_validate(const std::vector<TreeTrainingImage>& images, int parts,
+                              const pipeline::NetworkTraining& training, int threads,
+                              pipeline::ProgressMeter& meter) {
+  std::vector<testbed::EvaluatedObject> found, truth;
   const auto count = static_cast<std::size_t>(parts);
   for (std::size_t part = 0; part < count; ++part) {
     std::vector<const TreeTrainingImage*> others;
     for (std::size_t i = 0; i < images.size(); ++i)
       if (i % count != part) others.push_back(&images[i]);
-    const DenseNetwork network = train(others, training, meter);
+    const pipeline::DenseNetwork network = train(others, training, meter);
     for (std::size_t i = part; i < images.size(); i += count) {
       const ColourImage& image = *images[i].image;
       const auto metres = [&, i](double x, double y) {
-        EvaluatedObject thing;
+        testbed::EvaluatedObject thing;
         thing.at << x * image.cell() + kSpacing * double(i), y * image.cell();
         return thing;
       };
@@ -91,12 +93,12 @@ Score cross_validate(const std::vector<TreeTrainingImage>& images, int parts, co
         found.push_back(metres((crown.x + 0.5) / across - 0.5, (crown.y + 0.5) / across - 0.5));
         found.back().confidence = crown.confidence;
       }
-      for (const MarkedTree& tree : images[i].trees) truth.push_back(metres(tree.x, tree.y));
+      for (const pipeline::MarkedTree& tree : images[i].trees) truth.push_back(metres(tree.x, tree.y));
     }
   }
-  MatchRules rules;
+  testbed::MatchRules rules;
   rules.distance_fraction = 0, rules.min_distance = kMaxError, rules.size_ratio = 0;
-  return score(found, truth, rules);
+  return testbed::score(found, truth, rules);
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

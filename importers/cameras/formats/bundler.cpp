@@ -12,7 +12,7 @@
 #include "importers/cameras/camera_file.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 std::vector<std::string> names_of(const CameraSource& source) {
@@ -93,4 +93,4 @@ void register_camera_format_bundler(CameraFormats& formats) {
                .read = read_bundler});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

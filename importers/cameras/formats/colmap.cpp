@@ -15,7 +15,7 @@
 #include "importers/json_value.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 namespace fs = std::filesystem;
@@ -242,4 +242,4 @@ void register_camera_format_colmap(CameraFormats& formats) {
                .read = read_colmap});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -20,7 +20,7 @@
 #include "importers/cameras/fit_lens.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // Returns the index of the time nearest to the middle of the exposure.
@@ -224,4 +224,4 @@ void register_camera_format_csm_isd(CameraFormats& formats) {
                .read = read_csm_isd});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

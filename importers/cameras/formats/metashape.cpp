@@ -19,7 +19,7 @@
 #include "importers/json_value.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 using Node = const CPLXMLNode*;
@@ -224,4 +224,4 @@ void register_camera_format_metashape(CameraFormats& formats) {
                .read = [](const CameraSource& s) { return MetashapeReader(s).read(); }});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -14,7 +14,7 @@
 #include "importers/cameras/interior_orientation.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 // Returns the zone if the positions agree with it within a metre; else camera_crs or the map's CRS applies.
@@ -94,4 +94,4 @@ void register_camera_format_odm_shots(CameraFormats& formats) {
                .read = read_odm_shots});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

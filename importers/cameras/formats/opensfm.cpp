@@ -16,7 +16,7 @@
 #include "importers/cameras/interior_orientation.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 Eigen::Isometry3d world_from_shot(const JsonValue& shot) {
@@ -87,4 +87,4 @@ void register_camera_format_opensfm(CameraFormats& formats) {
                .read = read_opensfm});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -18,7 +18,7 @@
 #include "importers/json_value.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 struct Columns {
@@ -136,4 +136,4 @@ void register_camera_format_opk(CameraFormats& formats) {
                .read = read_opk});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

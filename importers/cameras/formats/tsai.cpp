@@ -16,7 +16,7 @@
 #include "importers/cameras/camera_file.hpp"
 #include "importers/tables/text_table.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 struct Tsai {
@@ -135,4 +135,4 @@ void register_camera_format_tsai(CameraFormats& formats) {
                .read = [](const CameraSource& s) { return TsaiReader(parse(s.path), s.path).read(); }});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -11,7 +11,7 @@
 #include "importers/images/sun_position.hpp"
 #include "importers/json_value.hpp"
 
-namespace waymark {
+namespace waymark::importers {
 namespace {
 
 CameraWorld world_of(const JsonValue& frame) {
@@ -167,4 +167,4 @@ void register_camera_format_waymark(CameraFormats& formats) {
        .read = read_waymark});
 }
 
-}  // namespace waymark
+}  // namespace waymark::importers

@@ -8,7 +8,7 @@
 
 #include "pipeline/engine/plan.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Returns the text quoted as one argument of a POSIX shell.
@@ -100,4 +100,4 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
   return script;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/engine/sha256.hpp"
 #include "pipeline/engine/step_options.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Returns the indices of all units that a unit reads, ascending.
@@ -107,4 +107,4 @@ std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& ste
   return sha256(key.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).substr(0, 32);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 #include "core/input_file.hpp"
 #include "pipeline/engine/pipeline.hpp"
 #include "pipeline/engine/plan.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Connection from a writing stage to an input of a reading stage.
 struct Wire {
@@ -42,4 +42,4 @@ void append_units(Plan& plan, const Pipeline& pipeline, const Items& items);
 std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
                              const std::vector<InputFile>& files);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

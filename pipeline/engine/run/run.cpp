@@ -10,7 +10,7 @@
 
 #include "pipeline/engine/run/work_division.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Status = UnitState::Status;
@@ -210,4 +210,4 @@ RunResult Run::result() const {
   return result;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

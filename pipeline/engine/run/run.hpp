@@ -10,7 +10,7 @@
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/store/artifact_store.hpp"
 #include "pipeline/engine/store/scratch_file.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// One run, from plan to result. Stages run in order, the units of a stage in parallel.
 /// Each unit changes only its own state, so no lock is needed and results do not depend on the order.
@@ -65,4 +65,4 @@ class Run {
   std::vector<std::shared_ptr<ScratchFile>> scratch_;  ///< per stage
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 
 #include "pipeline/engine/runner.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 Artifact::Value RunResult::find_one(std::string_view name, std::type_index type) const {
   const auto found = std::ranges::find(artifacts_, name, &StoredOutput::name);
@@ -57,4 +57,4 @@ std::vector<Artifact::Value> RunResult::find_all(std::string_view name, std::typ
   return values;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 /// Collects warnings; equal warnings of several tiles are listed once, with the number of tiles.
@@ -56,4 +56,4 @@ StageReport stage_report(const Plan& plan, const std::vector<UnitState>& states,
   return report;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

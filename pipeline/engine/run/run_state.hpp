@@ -5,7 +5,7 @@
 #include "pipeline/engine/pipeline.hpp"
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/report.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// How a run treats a unit.
 enum class UnitAssignment {
@@ -31,4 +31,4 @@ struct UnitState {
 /// Returns the report of one stage, in the order of its units.
 StageReport stage_report(const Plan& plan, const std::vector<UnitState>& states, std::size_t stage);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/engine/run/run.hpp"
 #include "pipeline/engine/run/work_division.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 using Status = UnitState::Status;
 
@@ -163,4 +163,4 @@ UnitInputs Run::unit_inputs(std::size_t stage, std::size_t unit) const {
   return inputs;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

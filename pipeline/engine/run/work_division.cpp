@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 [[noreturn]] void refuse(std::string problem, std::string hint) {
@@ -61,4 +61,4 @@ void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitSt
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

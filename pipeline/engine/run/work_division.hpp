@@ -3,7 +3,7 @@
 #include <vector>
 #include "pipeline/engine/run/run_state.hpp"
 #include "pipeline/engine/runner.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Throws Error{usage} if options contradict each other or name something that the pipeline lacks.
 void check_run_options(const RunOptions& options, const Pipeline& pipeline);
@@ -12,4 +12,4 @@ void check_run_options(const RunOptions& options, const Pipeline& pipeline);
 /// Listing stages have already run and keep theirs. Throws Error{usage} if --unit names no unit.
 void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitState>& states);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/engine/sha256.hpp"
 #include "pipeline/engine/store/atomic_file.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ void ArtifactStore::save_failure(const Unit& unit, std::string_view message) con
   fs::rename(temporary, failure_file(unit), ignored);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/stage_context.hpp"
 #include "pipeline/engine/stage_spec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Result of a unit as found on disk. Artifacts are decoded when first read.
 struct StoredUnit {
@@ -51,4 +51,4 @@ class ArtifactStore {
   std::filesystem::path folder_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -15,7 +15,7 @@
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr std::string_view kPrefix = ".part-";
@@ -70,4 +70,4 @@ std::string read_file(const std::filesystem::path& path) {
   return read_text(path, "from the work folder", ErrorCode::input, "run again: missing results are computed");
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns a path in `folder` that no other thread, process or machine uses, for a file to be renamed later.
 /// The name identifies the process, so that files left by killed processes are recognised.
@@ -16,4 +16,4 @@ void remove_stale_files(const std::filesystem::path& folder);
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 std::string read_file(const std::filesystem::path& path);  ///< throws Error{input}
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 [[noreturn]] void cannot_write(const std::filesystem::path& folder, int cause) {
@@ -76,4 +76,4 @@ std::function<std::string()> ScratchFile::put(std::string bytes) {
   };
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <functional>
 #include <mutex>
 #include <string>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Temporary storage for results of a run without a work folder. Thread-safe.
 /// The first `in_memory` bytes stay in memory; the rest goes to a nameless file that disappears with the
@@ -32,4 +32,4 @@ class ScratchFile {
   std::uint64_t end_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

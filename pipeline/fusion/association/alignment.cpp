@@ -14,7 +14,7 @@
 #include "pipeline/fusion/projection/local_ground_plane.hpp"
 #include "pipeline/fusion/projection/position_covariance.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Index = std::uint32_t;
@@ -292,4 +292,4 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
   return aligned;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

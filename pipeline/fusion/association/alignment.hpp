@@ -8,7 +8,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/association/observed_object.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct AlignmentRules {
   AssociationRules association;
@@ -46,4 +46,4 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
                        const Terrain& terrain, const TypeRegistry& types, const Crs& crs,
                        const AlignmentRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

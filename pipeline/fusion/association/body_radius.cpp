@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<BodySize> body_size(const LandmarkType& type) {
   if (type.size_feature == "radius") return BodySize{feature_index(type, "radius"), 1};
@@ -19,4 +19,4 @@ std::optional<BodyRadius> body_radius(const std::optional<BodySize>& size, const
   return BodyRadius{f.value * size->radius_per_value, variance / (f.value * f.value)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <optional>
 #include "core/feature.hpp"
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Feature that holds the horizontal size of a type: a size feature called "radius", or one whose name ends
 /// in "diameter".
@@ -20,4 +20,4 @@ struct BodyRadius {
 };
 std::optional<BodyRadius> body_radius(const std::optional<BodySize>& size, const FeatureSet& features);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include <queue>
 #include <tuple>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Index = std::uint32_t;
@@ -176,4 +176,4 @@ std::vector<std::uint32_t> cluster(std::span<const ObservedObject> objects, cons
   return thing;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <vector>
 #include "pipeline/fusion/association/neighbour_pairs.hpp"
 #include "pipeline/fusion/association/observed_object.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns per object the index of the first object of the same landmark.
 /// - Agglomerative clustering by likelihood: the pair of clusters with the lowest cost (association_cost) is
@@ -23,4 +23,4 @@ std::vector<std::uint32_t> cluster(std::span<const ObservedObject> objects, cons
 std::vector<IndexPair> candidate_pairs(std::span<const ObservedObject> objects, const MapPlane& plane,
                                        const AssociationRules& rules);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 void write(ByteWriter& out, const AttributeValue& value) {
@@ -82,4 +82,4 @@ std::vector<Landmark> Codec<std::vector<Landmark>>::decode(std::string_view byte
   return landmarks;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -5,7 +5,7 @@
 #include <vector>
 #include "core/landmark.hpp"
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Landmarks between stages, all members, bit by bit.
 template <>
@@ -14,4 +14,4 @@ struct Codec<std::vector<Landmark>> {
   static std::vector<Landmark> decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

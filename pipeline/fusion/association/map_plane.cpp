@@ -6,7 +6,7 @@
 
 #include "core/units.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 MapPlane::MapPlane(const Crs& crs) {
   geographic_ = crs.kind() == CrsKind::geographic;
@@ -39,4 +39,4 @@ Eigen::Vector3d MapPlane::to_cartesian(const Eigen::Vector2d& position) const {
           n * (1 - eccentricity2_) * s};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include "geo/body.hpp"
 #include "geo/crs.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Converts between CRS units and metres for neighbouring points of a map, by a plane tangent to the
 /// ellipsoid between them.
@@ -40,4 +40,4 @@ class MapPlane {
   double radius_ = 0, eccentricity2_ = 0;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

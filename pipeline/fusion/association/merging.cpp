@@ -16,7 +16,7 @@
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/association/clustering.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Index = std::uint32_t;
@@ -237,4 +237,4 @@ MergedObservations merge_observations(std::vector<Observation> observations, con
   return merged;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

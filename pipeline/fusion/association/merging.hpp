@@ -5,7 +5,7 @@
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/association/observed_object.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Weight of an observation in a merged feature.
 enum class FeatureWeights {
@@ -47,4 +47,4 @@ MergedObservations merge_observations(std::vector<Observation> observations, con
 /// equal.
 bool comes_before(const Observation& a, const Observation& b);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <map>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct CellKey {
@@ -129,4 +129,4 @@ std::vector<IndexPair> find_neighbour_pairs(std::span<const Eigen::Vector3d> poi
   return pairs;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

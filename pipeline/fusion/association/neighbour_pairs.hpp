@@ -6,7 +6,7 @@
 #include <functional>
 #include <span>
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Indices of two items, first < second.
 struct IndexPair {
@@ -23,4 +23,4 @@ std::vector<IndexPair> find_neighbour_pairs(std::span<const Eigen::Vector3d> poi
                                             std::span<const double> reach,
                                             const std::function<bool(std::uint32_t, std::uint32_t)>& wanted);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

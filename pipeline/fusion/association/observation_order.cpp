@@ -3,7 +3,7 @@
 
 #include "pipeline/fusion/association/merging.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Maps doubles to integers of the same total order, NaN included.
@@ -51,4 +51,4 @@ bool comes_before(const Observation& a, const Observation& b) {
   return std::tie(a.rejected, a.landmark_uid) < std::tie(b.rejected, b.landmark_uid);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

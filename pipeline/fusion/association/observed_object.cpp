@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 double largest_eigenvalue(const Eigen::Matrix2d& m) {
@@ -71,4 +71,4 @@ ObservedObject fuse(const ObservedObject& a, const ObservedObject& b, const MapP
   return both;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

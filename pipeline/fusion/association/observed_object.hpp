@@ -6,7 +6,7 @@
 #include <optional>
 #include "core/observation.hpp"
 #include "pipeline/fusion/association/map_plane.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Position and size of a body, from one observation or several: the attributes by which bodies of one type
 /// are associated.
@@ -56,4 +56,4 @@ std::optional<double> association_cost(const ObservedObject& a, const ObservedOb
 /// Returns the information-weighted mean of position and size, with type and source of `a`.
 ObservedObject fuse(const ObservedObject& a, const ObservedObject& b, const MapPlane& plane);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

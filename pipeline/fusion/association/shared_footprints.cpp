@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::vector<double> shared_footprints(std::span<const ImageView> images) {
   std::vector<Eigen::AlignedBox2d> boxes(images.size());
@@ -18,4 +18,4 @@ std::vector<double> shared_footprints(std::span<const ImageView> images) {
   return shared;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include "pipeline/fusion/cleaning/rejections.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 const FeatureValue* known(const Observation& o, const LandmarkType& type, std::string_view name) {
@@ -39,4 +39,4 @@ void reject_implausible(std::span<Observation> observations, const TypeRegistry&
     if (o.rejected.empty()) o.rejected = fault(o, types[o.type], rules);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

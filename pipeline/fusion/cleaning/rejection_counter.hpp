@@ -4,7 +4,7 @@
 #include <vector>
 #include "core/observation.hpp"
 #include "pipeline/engine/stage_context.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Counts the observations of a cleaning stage: unmarked inputs are kept or rejected.
 class RejectionCounter {
@@ -32,4 +32,4 @@ class RejectionCounter {
   std::vector<bool> was_accepted_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

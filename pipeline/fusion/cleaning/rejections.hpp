@@ -9,7 +9,7 @@
 #include "geo/terrain.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Cleaning (Rossmann et al. 3.2). Each function marks observations with a reason and skips marked ones.
 
@@ -52,4 +52,4 @@ void reject_rim_shadows(std::span<Observation> observations, std::span<const Obs
                         const TypeRegistry& types, const std::map<std::string, Sun>& sun_of_image,
                         const Crs& crs, const RimShadowRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -7,7 +7,7 @@
 
 #include "pipeline/fusion/projection/rim_profile.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kMinCells = 3;
@@ -91,4 +91,4 @@ void update_crater_confidences(std::span<Observation> observations, const TypeRe
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

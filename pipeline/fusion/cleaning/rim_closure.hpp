@@ -6,7 +6,7 @@
 #include "geo/terrain.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the height of a rim above its floor, in diameters, that most azimuths reach: the 15th percentile
 /// of the crest over 36 azimuths (0.9 to 1.2 radii) minus the lowest fifth of the floor.
@@ -22,4 +22,4 @@ std::optional<double> rim_closure(const Terrain& terrain, const GroundOutline& o
 void update_crater_confidences(std::span<Observation> observations, const TypeRegistry& types,
                                const Terrain& terrain, double metres_per_unit);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -9,7 +9,7 @@
 #include "pipeline/fusion/association/neighbour_pairs.hpp"
 #include "pipeline/fusion/cleaning/rejections.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 struct Rim {
@@ -85,4 +85,4 @@ void reject_rim_shadows(std::span<Observation> observations, std::span<const Obs
     rocks[pair.first]->rejected = "shadow of a crater's rim";
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

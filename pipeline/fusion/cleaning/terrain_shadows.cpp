@@ -5,7 +5,7 @@
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/cleaning/rejections.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 void reject_terrain_shadows(std::span<Observation> observations, const TypeRegistry& types,
                             const ImageView& image, const Terrain& terrain, double metres_per_unit,
@@ -41,4 +41,4 @@ void reject_terrain_shadows(std::span<Observation> observations, const TypeRegis
   }
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

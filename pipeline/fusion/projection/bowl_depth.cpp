@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kAzimuths = 36;
@@ -52,4 +52,4 @@ std::optional<BowlDepth> bowl_depth(const Terrain& terrain, const GroundOutline&
                    std::hypot(terrain.height_sd(), uneven)};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

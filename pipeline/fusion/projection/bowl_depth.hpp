@@ -3,7 +3,7 @@
 #include <optional>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Heights of a crater measured in the terrain.
 struct BowlDepth {
@@ -16,4 +16,4 @@ struct BowlDepth {
 /// it.
 std::optional<BowlDepth> bowl_depth(const Terrain& terrain, const GroundOutline& outline);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 ImageView canopy_view(const CanopySource& canopy) {
   const GridGeometry& grid = canopy.geometry();
@@ -22,4 +22,4 @@ ImageView canopy_view(const CanopySource& canopy) {
   return view;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

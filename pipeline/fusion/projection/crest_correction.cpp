@@ -7,7 +7,7 @@
 #include "pipeline/fusion/projection/degradation_profiles.hpp"
 #include "pipeline/fusion/projection/rim_profile.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Profile = Eigen::Vector<double, kRimRings>;
@@ -96,4 +96,4 @@ std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const Gr
   return CrestCorrection{mean, std::hypot(kLawSd, std::sqrt(std::max(squares - mean * mean, 0.0)))};
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <optional>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Distance of a crater's crest outside its outline in an image.
 struct CrestCorrection {
@@ -21,4 +21,4 @@ struct CrestCorrection {
 std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const GroundOutline& outline,
                                                 double outline_edge_fraction);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

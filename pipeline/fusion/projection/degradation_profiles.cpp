@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kStep = 0.02;  // radii
@@ -76,4 +76,4 @@ double DegradationProfiles::height(double blur, double r) const {
   return std::lerp(sampled(heights_[i - 1], r), sampled(heights_[i], r), part);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Radial profiles of craters from fresh to almost erased.
 /// Fresh: depth / diameter 0.2, rim height 0.036 diameters, ejecta falling as r^-3 (Pike 1977, Melosh 1989).
@@ -33,4 +33,4 @@ class DegradationProfiles {
   std::vector<State> states_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -13,7 +13,7 @@
 #include "pipeline/fusion/projection/position_covariance.hpp"
 #include "pipeline/fusion/projection/shaded_relief.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr int kParts = 3;  // regressors of brightness: light, its square, height
@@ -272,4 +272,4 @@ std::optional<PoseConstraint> register_to_dem(const Pixels& pixels, const ImageV
   return estimate.tie;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

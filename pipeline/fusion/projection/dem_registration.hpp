@@ -4,7 +4,7 @@
 #include "geo/image_source.hpp"
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 struct DemRegistrationRules {
   int fine_radius = 6;     ///< cells of the high-pass filter: window of 2 fine_radius + 1
@@ -34,4 +34,4 @@ std::optional<PoseConstraint> register_to_dem(const Pixels& pixels, const ImageV
                                               const Terrain& terrain, double metres_per_unit,
                                               const DemRegistrationRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "geo/metric_crs.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 std::string name_of(const DemSource& dem) {
@@ -60,4 +60,4 @@ Terrain load_terrain(const DemHandle& dem, std::int64_t max_cells) {
   return last->terrain;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include "geo/dem_handle.hpp"
 #include "geo/terrain.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Throws Error for a DEM in degrees, on which images cannot be projected; the hint is a command to warp it.
 void check_metric(const DemSource& dem);
@@ -16,4 +16,4 @@ Terrain read_terrain(const DemSource& dem, const Window& window);
 /// Throws Error with the size above `max_cells` cells.
 Terrain load_terrain(const DemHandle& dem, std::int64_t max_cells = 400'000'000);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Each layout is defined once for both directions: `io` is a ByteWriter or a ByteReader.
@@ -103,4 +103,4 @@ std::vector<Observation> Codec<std::vector<Observation>>::decode(std::string_vie
   return observations;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

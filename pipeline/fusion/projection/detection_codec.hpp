@@ -6,7 +6,7 @@
 #include "core/detection.hpp"
 #include "core/observation.hpp"
 #include "pipeline/engine/codec.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Detections and observations between stages, all members, bit by bit.
 
@@ -23,4 +23,4 @@ struct Codec<std::vector<Observation>> {
   static std::vector<Observation> decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

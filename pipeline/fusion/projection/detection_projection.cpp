@@ -13,7 +13,7 @@
 #include "pipeline/fusion/projection/position_covariance.hpp"
 #include "pipeline/fusion/projection/rock_height.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 Observation reject(Observation observation, const char* reason) {
@@ -138,4 +138,4 @@ Observation project_detection(const Detection& detection, const ImageView& image
   return observation;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

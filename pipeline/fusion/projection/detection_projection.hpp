@@ -5,7 +5,7 @@
 #include "geo/terrain.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Parameters that images and terrain do not provide.
 struct ProjectionRules {
@@ -36,4 +36,4 @@ struct ProjectionRules {
 Observation project_detection(const Detection& detection, const ImageView& image, const Terrain& terrain,
                               const LandmarkType& type, const ProjectionRules& rules);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

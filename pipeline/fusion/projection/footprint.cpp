@@ -8,7 +8,7 @@
 #include "pipeline/fusion/projection/lattice_rings.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Seen = std::optional<Eigen::Vector3d>;
@@ -86,4 +86,4 @@ bool inside(const ImageView::Ring& ring, const Eigen::Vector2d& point) {
   return in;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

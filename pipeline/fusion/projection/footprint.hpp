@@ -3,7 +3,7 @@
 #include <vector>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Ground shown by an image.
 struct Footprint {
@@ -23,4 +23,4 @@ Footprint footprint(const ImageView& image, const Terrain& terrain, int cells = 
 /// Returns whether the point lies in the ring (closed or not), by the even-odd rule.
 bool inside(const ImageView::Ring& ring, const Eigen::Vector2d& point);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

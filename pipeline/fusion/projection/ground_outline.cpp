@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 Eigen::Vector2d outline_point(const PixelEllipse& outline, double t) {
   const double along = outline.major / 2 * std::cos(t), across = outline.minor / 2 * std::sin(t);
@@ -47,4 +47,4 @@ std::optional<GroundOutline> project_outline(const ImageView& image, const Pixel
   return ellipse_from_conjugate_axes(centre, a, b);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

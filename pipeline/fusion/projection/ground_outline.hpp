@@ -4,7 +4,7 @@
 #include <optional>
 #include "core/detection.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Ellipse on the ground; axes in horizontal projection.
 struct GroundOutline {
@@ -28,4 +28,4 @@ GroundOutline ellipse_from_conjugate_axes(const Eigen::Vector3d& centre, const E
 /// Returns the point of the outline at phase t; t = 0 on the major axis.
 Eigen::Vector2d outline_point(const PixelEllipse& outline, double t);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

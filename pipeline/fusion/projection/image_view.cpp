@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 nlohmann::json as_json(const PosedCamera& view) {
@@ -37,4 +37,4 @@ std::string camera_json(const ImageView& image) {
   return "{}";
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include <vector>
 #include "geo/camera.hpp"
 #include "geo/sun.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Grid of an orthophoto: centre of pixel (0, 0) and steps, metres in the grid frame.
 /// step_x > 0; step_y < 0 if rows run south.
@@ -50,4 +50,4 @@ struct ImageView {
 /// layer `image`.
 std::string camera_json(const ImageView& image);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 
 #include "core/bytes.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Each layout is defined once for both directions: `io` is a ByteWriter or a ByteReader.
@@ -117,4 +117,4 @@ std::vector<ImageView> Codec<std::vector<ImageView>>::decode(std::string_view by
   return images;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

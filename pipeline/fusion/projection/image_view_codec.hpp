@@ -5,7 +5,7 @@
 #include <vector>
 #include "pipeline/engine/codec.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 // Image views between stages, all members, bit by bit.
 
@@ -20,4 +20,4 @@ struct Codec<std::vector<ImageView>> {
   static std::vector<ImageView> decode(std::string_view bytes);
 };
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

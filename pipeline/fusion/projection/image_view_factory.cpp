@@ -7,7 +7,7 @@
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/footprint.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 ImageView make_image_view(const ImageInfo& info) {
   ImageView image;
@@ -46,4 +46,4 @@ void compute_footprint(ImageView& image, const Terrain& terrain, double metres_p
   if (ground.gsd > 0) image.gsd = ground.gsd;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -2,7 +2,7 @@
 #pragma once
 #include "geo/image_source.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the view described by an image header, without footprint, area and ground sample distance.
 /// Throws Error{input} for an image without pose and georeference, with a geographic CRS, or with a camera of
@@ -12,4 +12,4 @@ ImageView make_image_view(const ImageInfo& info);
 /// Computes footprint, area and ground sample distance; footprints in units of a CRS of `metres_per_unit`.
 void compute_footprint(ImageView& image, const class Terrain& terrain, double metres_per_unit);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

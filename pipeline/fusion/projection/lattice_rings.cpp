@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 using Cells = Grid<std::uint8_t>;
@@ -105,4 +105,4 @@ std::vector<std::vector<LatticeCorner>> lattice_rings(const Grid<std::uint8_t>& 
   return rings;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 #include "core/grid.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Corner of a lattice cell: cell (c, r) has corners c..c+1, r..r+1.
 struct LatticeCorner {
@@ -15,4 +15,4 @@ struct LatticeCorner {
 /// Cells that touch only at a corner are separate parts. Parts with holes are cut in two until none has any.
 std::vector<std::vector<LatticeCorner>> lattice_rings(const Grid<std::uint8_t>& marked);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

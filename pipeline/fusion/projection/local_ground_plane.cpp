@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<GroundPlane> fit_plane(std::span<const Eigen::Vector3d> points) {
   if (points.size() < 3) return std::nullopt;
@@ -39,4 +39,4 @@ std::optional<GroundPlane> local_ground_plane(const Terrain& terrain, double x, 
   return plane;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <span>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Fits a plane to the terrain: least squares through heights at the centre and on a ring of `radius` metres
 /// (at least one cell). Level if fewer than three heights are known.
@@ -15,4 +15,4 @@ std::optional<GroundPlane> local_ground_plane(const Terrain& terrain, double x, 
 /// points.
 std::optional<GroundPlane> fit_plane(std::span<const Eigen::Vector3d> points);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

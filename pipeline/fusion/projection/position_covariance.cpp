@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 // Returns a horizontal shift with the rise of the ground along it.
@@ -73,4 +73,4 @@ Eigen::Matrix3d position_covariance(const Detection& detection, const ImageView&
   return (total + total.transpose()) / 2;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include "core/detection.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Position errors other than those of image and pose; standard deviations in metres.
 struct PositionErrors {
@@ -29,4 +29,4 @@ Eigen::Matrix<double, 3, 6> pose_jacobian(const ImageView& image, const Ray<Grid
 /// Returns the relative error of lengths due to the distance from camera to ground; 0 for an orthophoto.
 double relative_range_sd(const ImageView& image, const Ray<GridFrame>& line, double range);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

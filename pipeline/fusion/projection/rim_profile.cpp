@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<RimHeights> rim_heights(const Terrain& terrain, const GroundOutline& outline) {
   constexpr int kFirstOutside = 7;  // 1.05 half axes
@@ -37,4 +37,4 @@ std::optional<RimHeights> rim_heights(const Terrain& terrain, const GroundOutlin
   return heights;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

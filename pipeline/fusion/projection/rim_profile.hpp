@@ -4,7 +4,7 @@
 #include <optional>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 inline constexpr int kRimRings = 13, kRimAzimuths = 36;
 
@@ -20,4 +20,4 @@ using RimHeights = Eigen::Matrix<double, kRimRings, kRimAzimuths>;
 /// `std::nullopt` if a height is unknown.
 std::optional<RimHeights> rim_heights(const Terrain& terrain, const GroundOutline& outline);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 std::optional<MeasuredValue> height_from_shadow(const MeasuredValue& reach_px, const ImageView& image,
                                                 const GroundPlane& ground, const Sun& sun, double slope_sd,
@@ -40,4 +40,4 @@ double log_shadow_shortening(const GroundPlane& ground, const Sun& sun) {
   return std::log(std::clamp(1 + rise * level / light.z(), 0.5, 2.0));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include "core/detection.hpp"
 #include "geo/sun.hpp"
 #include "pipeline/fusion/projection/viewing_ray.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the height of an object from the length of its shadow on sloping ground:
 ///   H = L (tan e + f g)
@@ -26,4 +26,4 @@ std::optional<MeasuredValue> height_from_shadow(const MeasuredValue& reach_px, c
 /// 0 for a sun in the zenith or not above the level horizon.
 double log_shadow_shortening(const GroundPlane& ground, const Sun& sun);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

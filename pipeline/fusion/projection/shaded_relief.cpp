@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kGrazing = 0.03;
@@ -122,4 +122,4 @@ Pixels downsample(const Pixels& pixels, int factor) {
   return small;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -8,7 +8,7 @@
 #include "geo/sun.hpp"
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Part of a terrain, averaged to coarser cells, with its shading.
 struct ShadedRelief {
@@ -35,4 +35,4 @@ Grid<float> high_pass(const Grid<float>& values, int radius);
 /// Returns means of `factor` x `factor` pixels; NaN if one of them is NaN.
 Pixels downsample(const Pixels& pixels, int factor);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

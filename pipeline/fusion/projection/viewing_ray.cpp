@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kAboveAll = 1e5;  // metres: above the ground of any body
@@ -40,4 +40,4 @@ std::optional<Eigen::Vector3d> intersect(const Ray<GridFrame>& ray, const Ground
   return ray.origin.xyz + range * ray.direction.unit;
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <optional>
 #include "core/frames.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Returns the line of sight of a pixel: from the camera, or vertical for an orthophoto. `std::nullopt`
 /// outside the lens model.
@@ -29,4 +29,4 @@ struct GroundPlane {
 /// of the origin.
 std::optional<Eigen::Vector3d> intersect(const Ray<GridFrame>& ray, const GroundPlane& plane);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

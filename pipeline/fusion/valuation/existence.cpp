@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace waymark {
+namespace waymark::pipeline {
 
 ExistenceRules existence_rules(std::string_view type) {
   if (type == "rock")
@@ -27,4 +27,4 @@ double existence_probability(std::span<const double> confidences, int missed, co
   return 1 / (1 + std::exp(-logit));
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

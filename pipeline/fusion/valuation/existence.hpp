@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 #include <string_view>
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Weights of evidence for the existence of a landmark, in log odds.
 /// Causes of false detections (light, shape, albedo) are common to images, so further detections count less
@@ -27,4 +27,4 @@ ExistenceRules existence_rules(std::string_view type);
 double existence_probability(std::span<const double> confidences, int missed,
                              const ExistenceRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -6,7 +6,7 @@
 
 #include "pipeline/fusion/projection/viewing_ray.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 bool is_occluded(const ImageView& image, const Terrain& terrain, const VisibilityTarget& thing) {
@@ -50,4 +50,4 @@ std::optional<double> visible_gsd(const ImageView& image, const Terrain* terrain
   return 1 / std::sqrt(pixels_per_square_metre);
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -4,7 +4,7 @@
 #include <optional>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Object whose visibility in an image is tested.
 struct VisibilityTarget {
@@ -25,4 +25,4 @@ struct CoverageRules {
 std::optional<double> visible_gsd(const ImageView& image, const Terrain* terrain,
                                   const VisibilityTarget& thing, const CoverageRules& rules = {});
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

@@ -12,7 +12,7 @@
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/projection/footprint.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 namespace {
 
 constexpr double kGsdTolerance = 1.1;
@@ -168,4 +168,4 @@ std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Obs
   return static_cast<std::int64_t>(none.size());
 }
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

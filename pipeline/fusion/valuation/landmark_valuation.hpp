@@ -9,7 +9,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/valuation/existence.hpp"
 #include "pipeline/fusion/valuation/image_coverage.hpp"
-namespace waymark {
+namespace waymark::pipeline {
 
 /// Meaning of "the image covers L" and "at least the resolution of i_0" in eqs. 4 and 5.
 enum class CoverRule {
@@ -45,4 +45,4 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
 std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Observation>& evidence,
                                const TypeRegistry& types);
 
-}  // namespace waymark
+}  // namespace waymark::pipeline

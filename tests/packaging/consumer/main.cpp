@@ -4,31 +4,31 @@
 #include <waymark/map.hpp>
 #include <waymark/mapping.hpp>
 
-namespace waymark {
-void register_consumer_types(TypeRegistry& types);
+namespace consumer {
+void register_consumer_types(waymark::TypeRegistry& types);
 }
 
 int main(int, char** argv) {
   using namespace waymark;
-  Registry stages;
-  register_importer_stages(stages);
-  register_pipeline_stages(stages);
-  Pipeline mapping(stages);
+  pipeline::Registry stages;
+  importers::register_importer_stages(stages);
+  pipeline::register_pipeline_stages(stages);
+  pipeline::Pipeline mapping(stages);
   mapping.add("load_dem", R"({"files": [")" + std::string(argv[1]) + R"("]})")
       .add("find_mountain_tops", R"({"min_prominence": 300})")
       .add("join_mountain_tops")
       .add("measure_isolation")
       .add("map_mountain_tops");
 
-  MapContents map;
+  geodb::MapContents map;
   register_landmark_types(map.types);
-  register_consumer_types(map.types);
-  const RunResult result = run(mapping);
+  consumer::register_consumer_types(map.types);
+  const pipeline::RunResult result = pipeline::run(mapping);
   map.crs = result.artifact<DemHandle>("dem")->geometry().where.crs;
   map.landmarks = result.artifact<std::vector<Landmark>>("landmarks");
-  write_map("consumer.gpkg", map, {.empty_tables = {"boulder_field"}});
+  geodb::write_map("consumer.gpkg", map, {.empty_tables = {"boulder_field"}});
 
-  const MapStore store = MapStore::open("consumer.gpkg");
+  const geodb::MapStore store = geodb::MapStore::open("consumer.gpkg");
   std::cout << store.count("mountain_top") << " summits, " << store.count("boulder_field")
             << " boulder fields\n";
   return store.count("mountain_top") > 0 ? 0 : 1;

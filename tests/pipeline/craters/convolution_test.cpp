@@ -11,7 +11,8 @@
 #include "pipeline/craters/image_augmentation.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::HasSubstr;
@@ -209,4 +210,4 @@ TEST(AugmentImage, SameForTheSameSeedAndNothingMoves) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -17,7 +17,8 @@
 #include "pipeline/craters/shape_search.hpp"
 #include "tests/pipeline/craters/score_circles.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::HasSubstr;
@@ -268,4 +269,4 @@ TEST(FindCraters, MadeUpScenesNotTrainedOn) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

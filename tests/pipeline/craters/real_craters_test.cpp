@@ -15,7 +15,8 @@
 #include "pipeline/craters/find_craters.hpp"
 #include "tests/pipeline/craters/score_circles.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 std::filesystem::path crater_data() {
@@ -39,7 +40,7 @@ std::vector<std::vector<double>> numbers_of(const std::filesystem::path& path, b
 }
 
 Pixels pixels_of(const std::filesystem::path& path) {
-  const auto image = import_image(path.string());
+  const auto image = importers::import_image(path.string());
   return image->read({0, 0, image->info().columns, image->info().rows});
 }
 
@@ -107,9 +108,9 @@ TEST(RealCraters, LunarImages) {
 
 TEST(RealCraters, LunarHighlandHeights) {
   SKIP_WITHOUT_CRATER_DATA();
-  DemImport import;
+  importers::DemImport import;
   import.files = {(crater_data() / "gld100/highland_e160_200.tif").string()};
-  const auto dem = import_dem(import);
+  const auto dem = importers::import_dem(import);
   const auto& grid = dem->geometry();
   std::vector<CraterCandidate> found, truth;
   const std::int64_t half = grid.columns / 2;  // the western half set the constants
@@ -123,4 +124,4 @@ TEST(RealCraters, LunarHighlandHeights) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 #include <cmath>
 #include <optional>
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Quality of the match, higher is better; `std::nullopt` for different craters.
@@ -75,4 +76,4 @@ CircleScore score_circles(std::vector<CraterCandidate> found, const std::vector<
   return score;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "pipeline/craters/crater_candidate.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Criterion by which a detected and a true circle are the same crater.
 enum class Match {
@@ -27,4 +28,4 @@ struct CircleScore {
 CircleScore score_circles(std::vector<CraterCandidate> found, const std::vector<CraterCandidate>& truth,
                           double smallest, double largest = 1e9, Match match = Match::overlap);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -9,7 +9,8 @@
 #include "pipeline/craters/sample.hpp"
 #include "pipeline/craters/tile_correlation.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 std::size_t cell(int x, int y) {
@@ -106,4 +107,4 @@ TEST(Sample, InsideTheSame) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

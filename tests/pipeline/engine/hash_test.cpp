@@ -5,7 +5,8 @@
 #include "pipeline/engine/sha256.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // FIPS 180-4 examples.
@@ -33,4 +34,4 @@ TEST(HashPlainFile, SaysWhatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -3,7 +3,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using testing::ElementsAre;
@@ -202,4 +203,4 @@ TEST_F(ImageScope, NeedsAStageThatListsImages) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -5,7 +5,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 const Registry kRegistry = toy::registry();
@@ -82,4 +83,4 @@ TEST(Job, WritesItselfWithEveryOption) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -13,7 +13,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +134,4 @@ TEST_F(KilledRun, TwoProcessesFinishTheSameFolder) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

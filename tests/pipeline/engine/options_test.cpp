@@ -7,7 +7,8 @@
 #include "pipeline/engine/step_options.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using SquareStep = TypedStep<toy::SquareNumber>;
@@ -145,4 +146,4 @@ TEST(OptionTable, KeepsTheOrderOfDeclaration) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

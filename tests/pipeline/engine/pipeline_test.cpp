@@ -4,7 +4,8 @@
 #include "pipeline/engine/step_options.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 /// Reads "square" as another type than square_number writes.
@@ -136,4 +137,4 @@ TEST_F(PipelineTest, SetsOneOption) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

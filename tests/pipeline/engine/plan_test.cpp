@@ -8,7 +8,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using testing::HasSubstr;
@@ -88,4 +89,4 @@ TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 /// Stage whose spec is set by the test.
@@ -69,4 +70,4 @@ TEST(ReadableType, LeavesNamespacesAndAllocatorsOut) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 RunReport sample() {
@@ -71,4 +72,4 @@ TEST(RunReport, IsCompleteWhenEveryUnitHasAResult) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -9,7 +9,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 namespace fs = std::filesystem;
@@ -210,4 +211,4 @@ TEST_F(ResumeTest, AFullDiskStopsTheRun) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

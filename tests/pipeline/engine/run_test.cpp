@@ -8,7 +8,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using testing::ElementsAre;
@@ -247,4 +248,4 @@ TEST_F(RunTest, RefusesOptionsThatContradict) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "pipeline/engine/store/scratch_file.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Counts its instances in memory, now and at most.
 struct Heavy {
@@ -25,13 +26,22 @@ struct Heavy {
   std::int64_t number = 0;
   static inline std::atomic<int> living = 0, most = 0;
 };
+}  // namespace waymark::test
+
+namespace waymark::pipeline {
+
 template <>
-struct Codec<Heavy> {
-  static std::string encode(const Heavy& heavy) {
+struct Codec<test::Heavy> {
+  static std::string encode(const test::Heavy& heavy) {
     return std::to_string(heavy.number) + std::string(1000, ' ');
   }
-  static Heavy decode(std::string_view text) { return Heavy(std::stoll(std::string(text))); }
+  static test::Heavy decode(std::string_view text) { return test::Heavy(std::stoll(std::string(text))); }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::test {
+using namespace pipeline;
 
 namespace {
 
@@ -157,4 +167,4 @@ TEST(ScratchFile, GivesBackWhatItTook) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

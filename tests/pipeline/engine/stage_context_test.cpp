@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using testing::HasSubstr;
@@ -115,4 +116,4 @@ TEST(Tile, ListsSurviveTheDisk) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

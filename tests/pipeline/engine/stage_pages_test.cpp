@@ -5,7 +5,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 const TypedStep<toy::SquareNumber> kSquare;
@@ -80,4 +81,4 @@ TEST(StagePages, Json) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -5,7 +5,8 @@
 
 #include "tests/pipeline/engine/toy_test.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Counts how often it was copied.
 struct Parcel {
@@ -16,15 +17,24 @@ struct Parcel {
   Parcel& operator=(Parcel&&) = default;
   int copies = 0;
 };
+}  // namespace waymark::test
+
+namespace waymark::pipeline {
+
 template <>
-struct Codec<Parcel> {
-  static std::string encode(const Parcel& parcel) { return std::to_string(parcel.copies); }
-  static Parcel decode(std::string_view text) {
-    Parcel parcel;
+struct Codec<test::Parcel> {
+  static std::string encode(const test::Parcel& parcel) { return std::to_string(parcel.copies); }
+  static test::Parcel decode(std::string_view text) {
+    test::Parcel parcel;
     parcel.copies = std::stoi(std::string(text));
     return parcel;
   }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::test {
+using namespace pipeline;
 
 namespace {
 
@@ -117,4 +127,4 @@ TEST_F(TakeTest, TheCallerTakesWithoutACopy) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

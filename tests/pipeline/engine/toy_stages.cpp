@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace toy {
 
 Watch& watch() {
@@ -106,4 +107,4 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,17 +8,27 @@
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 
 /// A whole number as an artifact.
 struct Number {
   std::int64_t value = 0;
 };
+}  // namespace waymark::test
+
+namespace waymark::pipeline {
+
 template <>
-struct Codec<Number> {
-  static std::string encode(const Number& number) { return std::to_string(number.value); }
-  static Number decode(std::string_view text) { return {std::stoll(std::string(text))}; }
+struct Codec<test::Number> {
+  static std::string encode(const test::Number& number) { return std::to_string(number.value); }
+  static test::Number decode(std::string_view text) { return {std::stoll(std::string(text))}; }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::test {
+using namespace pipeline;
 
 namespace toy {
 
@@ -75,11 +85,20 @@ Registry registry();
 
 }  // namespace toy
 
+}  // namespace waymark::test
+
+namespace waymark::pipeline {
+
 template <>
 struct Codec<std::string> {
   static std::string encode(const std::string& text) { return text; }
   static std::string decode(std::string_view text) { return std::string(text); }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::test {
+using namespace pipeline;
 
 /// Returns list_numbers, square_number, sum_squares with default options.
 Pipeline toy_pipeline(const Registry& registry);
@@ -96,4 +115,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace waymark
+}  // namespace waymark::test

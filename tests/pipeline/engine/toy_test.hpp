@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/engine/toy_stages.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Fixture with the toy pipeline, a reset watch and a work folder.
 class ToyTest : public testing::Test {
@@ -43,4 +44,4 @@ std::string message_of(auto action) {
   return {};
 }
 
-}  // namespace waymark
+}  // namespace waymark::test

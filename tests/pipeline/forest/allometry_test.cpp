@@ -9,7 +9,8 @@
 #include "pipeline/forest/allometry_fit.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::AllOf;
@@ -85,19 +86,19 @@ TEST(AllometryFit, TakesCrownsWhereTheyTellMore) {
 TEST(MeasuredTrees, AreFoundByTheNamesInUse) {
   const auto file = write_text(
       "t.csv", "plotID,taxonID,DBH,H\n1,PIAB,24.7,21.9\n1,PIAB,NA,20\n2,FASY,0,10\n2,FASY,31,25\n");
-  const MeasuredTrees read = read_measured_trees(file, {});
+  const importers::MeasuredTrees read = importers::read_measured_trees(file, {});
   ASSERT_EQ(read.trees.size(), 2U);
   EXPECT_EQ(read.skipped_rows, 2);
   EXPECT_EQ(read.trees[1].species, "FASY");
   EXPECT_DOUBLE_EQ(read.trees[0].diameter, 24.7);
   const auto metres = write_text("m.csv", "height,dbh\n21.9,0.247\n25,0.31\n");
-  EXPECT_NEAR(read_measured_trees(metres, {}).trees[0].diameter, 24.7, 1e-9);
-  EXPECT_THAT(message_of([&] { read_measured_trees(file, {.height = "hoehe"}); }),
+  EXPECT_NEAR(importers::read_measured_trees(metres, {}).trees[0].diameter, 24.7, 1e-9);
+  EXPECT_THAT(message_of([&] { importers::read_measured_trees(file, {.height = "hoehe"}); }),
               HasSubstr("no column 'hoehe'"));
   const auto none = write_text("n.csv", "a,b\n1,2\n");
-  EXPECT_THAT(message_of([&] { read_measured_trees(none, {}); }),
+  EXPECT_THAT(message_of([&] { importers::read_measured_trees(none, {}); }),
               AllOf(HasSubstr("no column of the table is a height"), HasSubstr("--height")));
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

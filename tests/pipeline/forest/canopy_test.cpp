@@ -7,7 +7,8 @@
 #include "importers/points/canopy_codec.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::AllOf;
@@ -24,14 +25,14 @@ RasterFile raster(const std::string& name, const std::function<double(double, do
   return file;
 }
 
-std::string refusal(const CanopyImport& import) {
-  return message_of([&] { import_canopy(import); });
+std::string refusal(const importers::CanopyImport& import) {
+  return message_of([&] { importers::import_canopy(import); });
 }
 
 TEST(Canopy, IsSurfaceLessTerrain) {
   const auto dsm = write_raster(raster("dsm", [](double x, double y) { return 500 + x + 0.5 * y + 12; }));
   const auto dtm = write_raster(raster("dtm", [](double x, double y) { return 500 + x + 0.5 * y; }));
-  const auto canopy = import_canopy({.dsm = {dsm}, .dtm = {dtm}});
+  const auto canopy = importers::import_canopy({.dsm = {dsm}, .dtm = {dtm}});
   const Grid<float> heights = canopy->read({-1, 0, 42, 40});
   EXPECT_EQ(heights(0, 5), kNoCanopy);
   EXPECT_NEAR(heights(11, 5), 12, 1e-3);
@@ -45,7 +46,7 @@ TEST(Canopy, TerrainOnAnotherGridIsInterpolated) {
       "fine", [](double x, double y) { return 500 + x + 0.5 * y + 12; }, 40, 0.5));
   const auto dtm = write_raster(raster(
       "coarse", [](double x, double y) { return 500 + x + 0.5 * y; }, 20, 3));
-  const auto canopy = import_canopy({.dsm = {dsm}, .dtm = {dtm}});
+  const auto canopy = importers::import_canopy({.dsm = {dsm}, .dtm = {dtm}});
   EXPECT_THAT(canopy->warnings(), Contains(HasSubstr("the terrain is interpolated")));
   EXPECT_NEAR(canopy->read({20, 20, 1, 1})(0, 0), 12, 1e-3);
 }
@@ -54,7 +55,7 @@ TEST(Canopy, NegativeHeightsCountAsZeroAndHolesAsUnknown) {
   RasterFile chm = raster("chm", [](double x, double) { return x < 4 ? -3 : x > 36 ? 400 : 10; });
   chm.nodata = -9999;
   for (std::int64_t r = 0; r < 40; ++r) chm.cells(20, r) = chm.cells(21, r) = chm.cells(22, r) = kNoHeight;
-  const auto canopy = import_canopy({.chm = {write_raster(chm)}});
+  const auto canopy = importers::import_canopy({.chm = {write_raster(chm)}});
   const Grid<float> heights = canopy->read({0, 0, 40, 1});
   EXPECT_EQ(heights(0, 0), 0);
   EXPECT_EQ(heights(20, 0), kNoCanopy);
@@ -93,17 +94,17 @@ TEST(Canopy, DegreesAreRefused) {
 TEST(Canopy, FeetBecomeMetres) {
   RasterFile feet = raster("feet", [](double x, double) { return x < 5 ? 0 : 60; });
   feet.crs = "EPSG:2264";  // North Carolina, US survey feet
-  const auto canopy = import_canopy({.chm = {write_raster(feet)}});
+  const auto canopy = importers::import_canopy({.chm = {write_raster(feet)}});
   EXPECT_NEAR(canopy->read({20, 20, 1, 1})(0, 0), 60 * 0.3048006, 1e-3);
   EXPECT_THAT(canopy->warnings(), Contains(HasSubstr("heights are taken to be in the same unit")));
   feet.path = "/vsimem/told.tif", feet.unit = "m";
-  EXPECT_NEAR(import_canopy({.chm = {write_raster(feet)}})->read({20, 20, 1, 1})(0, 0), 60, 1e-4);
+  EXPECT_NEAR(importers::import_canopy({.chm = {write_raster(feet)}})->read({20, 20, 1, 1})(0, 0), 60, 1e-4);
 }
 
 TEST(Canopy, WithoutCrsIsMetres) {
   RasterFile plain = raster("plain", [](double, double) { return 10; });
   plain.crs = "";
-  const auto canopy = import_canopy({.chm = {write_raster(plain)}});
+  const auto canopy = importers::import_canopy({.chm = {write_raster(plain)}});
   EXPECT_EQ(canopy->geometry().where.crs.kind(), CrsKind::local);
   EXPECT_THAT(canopy->warnings(), Contains(HasSubstr("taken as metres")));
 }
@@ -114,7 +115,7 @@ TEST(Canopy, ForestTypesComeFromASecondRaster) {
       "types", [](double x, double) { return x < 20   ? 1
                                              : x < 40 ? 2
                                                       : 9; }, 10, 6));
-  const auto canopy = import_canopy({.chm = {chm}, .forest_type = types});
+  const auto canopy = importers::import_canopy({.chm = {chm}, .forest_type = types});
   const Grid<std::uint8_t> at = canopy->forest_types({0, 0, 40, 1});
   EXPECT_EQ(at(2, 0), 1);
   EXPECT_EQ(at(30, 0), 2);
@@ -122,7 +123,7 @@ TEST(Canopy, ForestTypesComeFromASecondRaster) {
 
 TEST(Canopy, AreKeptAsRecipes) {
   const auto chm = write_raster(raster("chm3", [](double x, double) { return x / 4; }));
-  const Canopies canopies{import_canopy({.chm = {chm}})};
+  const Canopies canopies{importers::import_canopy({.chm = {chm}})};
   const Canopies again = Codec<Canopies>::decode(Codec<Canopies>::encode(canopies));
   ASSERT_EQ(again.size(), 1U);
   EXPECT_EQ(again[0]->read({0, 0, 40, 40}), canopies[0]->read({0, 0, 40, 40}));
@@ -130,7 +131,7 @@ TEST(Canopy, AreKeptAsRecipes) {
 
 TEST(Canopy, KeepsTheNameItIsGiven) {
   const auto chm = write_raster(raster("chm4", [](double x, double) { return x / 4; }));
-  const Canopies canopies{import_canopy({.chm = {chm}, .name = "2019/chm.tif"})};
+  const Canopies canopies{importers::import_canopy({.chm = {chm}, .name = "2019/chm.tif"})};
   EXPECT_EQ(Codec<Canopies>::decode(Codec<Canopies>::encode(canopies))[0]->name(), "2019/chm.tif");
 }
 
@@ -139,8 +140,8 @@ TEST(CommonGrid, PartsOfTilesCoverEverySurveyOnce) {
       "second", [](double, double) { return 10; }, 31, 0.7);
   second.transform = GeoTransform{499990.3, 0.7, 0, 5000004.1, 0, -0.7};
   const Canopies surveys{
-      import_canopy({.chm = {write_raster(raster("first", [](double, double) { return 10; }))}}),
-      import_canopy({.chm = {write_raster(second)}})};
+      importers::import_canopy({.chm = {write_raster(raster("first", [](double, double) { return 10; }))}}),
+      importers::import_canopy({.chm = {write_raster(second)}})};
   const GridGeometry common = common_grid(surveys);
   EXPECT_LE(common.where.x(-0.5), 499990.3 + 1e-6);
   for (const auto& survey : surveys) {
@@ -158,4 +159,4 @@ TEST(CommonGrid, PartsOfTilesCoverEverySurveyOnce) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

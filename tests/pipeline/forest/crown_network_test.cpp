@@ -8,7 +8,8 @@
 #include "core/random.hpp"
 #include "pipeline/forest/crown_width.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr double kCell = 0.6;
@@ -107,4 +108,4 @@ TEST(CrownExamples, LearnTheMiddleOfCrowns) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -5,7 +5,8 @@
 
 #include "synthetic_canopy.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 /// What a crown is on the map, straight from the tree.
@@ -82,4 +83,4 @@ TEST(CrownTable, DamagedBytesAreRefused) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

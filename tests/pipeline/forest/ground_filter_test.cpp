@@ -13,21 +13,22 @@
 #include "testbed/forest/forest_scan.hpp"
 #include "testbed/scene.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 struct SyntheticCloud {
-  Scene scene;
+  testbed::Scene scene;
   std::vector<Eigen::Vector3d> returns;
 };
 
 SyntheticCloud cloud(double density, double conifers, double rms, std::uint64_t seed) {
-  ForestModel law;
+  testbed::ForestModel law;
   law.width = law.height = 120;
   law.density = density;
   law.conifers = conifers;
   law.pulses = 8;
-  SiteModel ground;
+  testbed::SiteModel ground;
   ground.width = ground.height = 200;
   ground.cell = 1;
   ground.relief = {.rms = rms, .longest = 120, .roughness = 0.5};
@@ -35,11 +36,12 @@ SyntheticCloud cloud(double density, double conifers, double rms, std::uint64_t 
   ground.craters.clusters = 0;
   ground.rocks.k = 0;
   ground.dunes.cover = 0;
-  SyntheticCloud made{make_scene(ground, seed), {}};
-  const SyntheticForest forest = plant_forest(law, made.scene.terrain, 0, 0, seed);
-  scan_forest(law, forest, made.scene.terrain, 0, 0, seed, [&](std::span<const LaserReturn> row) {
-    for (const LaserReturn& r : row) made.returns.emplace_back(r.x, r.y, r.z);
-  });
+  SyntheticCloud made{testbed::make_scene(ground, seed), {}};
+  const testbed::SyntheticForest forest = testbed::plant_forest(law, made.scene.terrain, 0, 0, seed);
+  testbed::scan_forest(law, forest, made.scene.terrain, 0, 0, seed,
+                       [&](std::span<const testbed::LaserReturn> row) {
+                         for (const testbed::LaserReturn& r : row) made.returns.emplace_back(r.x, r.y, r.z);
+                       });
   return made;
 }
 
@@ -99,4 +101,4 @@ TEST(GroundReturns, OfTooFewAreNone) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "pipeline/forest/find_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::AllOf;
@@ -21,7 +22,7 @@ using ::testing::HasSubstr;
 struct LasFile {
   std::string name = "points.las";
   int minor = 2, format = 1, length = 28;
-  std::vector<LasPoint> points;
+  std::vector<importers::LasPoint> points;
   int epsg = 32633, vertical_unit = 0;
   bool legacy_zero = false, compressed = false;
   std::uint64_t promised = 0;  ///< number of points in the header, if larger than the actual one
@@ -56,7 +57,7 @@ std::string written(const LasFile& las) {
   put(bytes, 155, 500000.0), put(bytes, 163, 5000000.0);
   if (las.minor >= 4) put(bytes, 247, count);
   bytes += record + keys;
-  for (const LasPoint& p : las.points) {
+  for (const importers::LasPoint& p : las.points) {
     std::string one(static_cast<std::size_t>(las.length), '\0');
     put(one, 0, static_cast<std::int32_t>(std::lround((p.x - 500000) * 1000)));
     put(one, 4, static_cast<std::int32_t>(std::lround((p.y - 5000000) * 1000)));
@@ -72,10 +73,10 @@ std::string written(const LasFile& las) {
 
 std::string refusal(const LasFile& las) {
   const std::string path = written(las);
-  return message_of([&] { import_canopy({.las = {path}}); });
+  return message_of([&] { importers::import_canopy({.las = {path}}); });
 }
 
-std::vector<LasPoint> some_points() {
+std::vector<importers::LasPoint> some_points() {
   return {{500001.5, 5000002.25, 310.125, 2, 1, false},
           {500003, 5000004, 322, 5, 2, false},
           {500004, 5000001, 999, 18, 1, false},
@@ -90,11 +91,11 @@ TEST(Las, EveryPointFormatIsRead) {
                 .length = kLength[format] + format % 3,
                 .points = some_points()};
     las.legacy_zero = format >= 6;
-    const LasHeader header = read_las_header(written(las));
+    const importers::LasHeader header = importers::read_las_header(written(las));
     ASSERT_EQ(header.points, 4U) << format;
     ASSERT_TRUE(header.crs);
     EXPECT_EQ(header.crs->code(), "32633");
-    const auto points = read_las_points(header, 0, 4);
+    const auto points = importers::read_las_points(header, 0, 4);
     EXPECT_NEAR(points[0].x, 500001.5, 1e-6);
     EXPECT_NEAR(points[0].z, 310.125, 1e-6);
     EXPECT_EQ(points[0].classification, 2);
@@ -120,16 +121,19 @@ TEST(Las, SaysWhatIsWrong) {
   las = good, las.minor = 5;
   EXPECT_THAT(refusal(las), HasSubstr("LAS 1.5 is not known"));
   las = good;
-  for (LasPoint& p : las.points) p.classification = 1;
+  for (importers::LasPoint& p : las.points) p.classification = 1;
   EXPECT_THAT(refusal(las),
               AllOf(HasSubstr("no point is classified as ground (class 2)"), HasSubstr("classify it first")));
   las = good, las.points.clear();
   EXPECT_THAT(refusal(las), HasSubstr("no points"));
   const auto text = write_text("no.las", "not a LAS file at all");
-  EXPECT_THAT(message_of([&] { import_canopy({.las = {text}}); }), HasSubstr("does not begin with LASF"));
-  EXPECT_THAT(message_of([&] { import_canopy({.las = {"/nowhere/a.las"}}); }), HasSubstr("does not exist"));
+  EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {text}}); }),
+              HasSubstr("does not begin with LASF"));
+  EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {"/nowhere/a.las"}}); }),
+              HasSubstr("does not exist"));
   const auto half = write_text("half.las", std::string("LASF") + std::string(100, '\0'));
-  EXPECT_THAT(message_of([&] { import_canopy({.las = {half}}); }), HasSubstr("ends within its header"));
+  EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {half}}); }),
+              HasSubstr("ends within its header"));
 }
 
 TEST(Las, PointsFarApartAreRefusedRatherThanGridded) {
@@ -143,17 +147,17 @@ TEST(Las, FilesOfDifferentPlacesOfReferenceAreRefused) {
   LasFile a{.name = "a.las", .points = some_points()}, b{.name = "b.las", .points = some_points()};
   b.epsg = 32632;
   const std::vector<std::string> files{written(a), written(b)};
-  EXPECT_THAT(message_of([&] { import_canopy({.las = files}); }),
+  EXPECT_THAT(message_of([&] { importers::import_canopy({.las = files}); }),
               AllOf(HasSubstr("EPSG:32633"), HasSubstr("EPSG:32632")));
   b.epsg = 4326;
   const auto degrees = written(b);
-  EXPECT_THAT(message_of([&] { import_canopy({.las = {degrees}}); }), HasSubstr("in degrees"));
+  EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {degrees}}); }), HasSubstr("in degrees"));
 }
 
 // Cones 12 m high on a slope, four points a square metre.
-std::vector<LasPoint> cones(double height_unit = 1) {
+std::vector<importers::LasPoint> cones(double height_unit = 1) {
   Random random(5, "cones");
-  std::vector<LasPoint> points;
+  std::vector<importers::LasPoint> points;
   for (int i = 0; i < 4 * 60 * 60; ++i) {
     const double x = 60 * random.uniform(), y = 60 * random.uniform(), ground = 300 + 0.3 * x;
     double above = 0;
@@ -170,7 +174,7 @@ std::vector<LasPoint> cones(double height_unit = 1) {
 }
 
 TEST(PointCanopy, TreesStandOnTheSlope) {
-  const auto canopy = import_canopy({.las = {written({.points = cones()})}});
+  const auto canopy = importers::import_canopy({.las = {written({.points = cones()})}});
   EXPECT_NEAR(canopy->geometry().where.dx, 0.5, 1e-12);
   const GridGeometry& grid = canopy->geometry();
   const auto trees =
@@ -186,17 +190,18 @@ TEST(PointCanopy, TreesStandOnTheSlope) {
 
 TEST(PointCanopy, ManyFilesAreOneCatalogue) {
   const auto all = cones();
-  std::vector<LasPoint> west, east;
-  for (const LasPoint& p : all) (p.x < 500030 ? west : east).push_back(p);
-  const auto one = import_canopy({.las = {written({.name = "all.las", .points = all})}});
-  const auto two = import_canopy(
+  std::vector<importers::LasPoint> west, east;
+  for (const importers::LasPoint& p : all) (p.x < 500030 ? west : east).push_back(p);
+  const auto one = importers::import_canopy({.las = {written({.name = "all.las", .points = all})}});
+  const auto two = importers::import_canopy(
       {.las = {written({.name = "w.las", .points = west}), written({.name = "e.las", .points = east})}});
   const Window cells{0, 0, one->geometry().columns, one->geometry().rows};
   EXPECT_EQ(one->read(cells), two->read(cells));
 }
 
 TEST(PointCanopy, FeetBecomeMetres) {
-  const auto canopy = import_canopy({.las = {written({.points = cones(0.3048), .vertical_unit = 9002})}});
+  const auto canopy =
+      importers::import_canopy({.las = {written({.points = cones(0.3048), .vertical_unit = 9002})}});
   EXPECT_THAT(canopy->warnings(), Contains(HasSubstr("heights are in feet")));
   float highest = 0;
   const Grid<float> heights = canopy->read({0, 0, 120, 120});
@@ -205,4 +210,4 @@ TEST(PointCanopy, FeetBecomeMetres) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

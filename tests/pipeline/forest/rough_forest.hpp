@@ -2,7 +2,8 @@
 #pragma once
 #include "pipeline/forest/forest_presets.hpp"
 #include "synthetic_canopy.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Canopy with rougher crowns than those of the testbed, and its trees: several leaders per crown, bark and
 /// twigs of 1 and 3 m, gaps, understory. Roughness varies between forests.
@@ -73,4 +74,4 @@ inline RoughForest rough_forest(std::uint64_t seed, ForestType type) {
   return {SyntheticCanopy(std::move(heights), cell), std::move(owner)};
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

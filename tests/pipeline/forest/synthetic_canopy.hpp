@@ -5,7 +5,7 @@
 
 #include "core/random.hpp"
 #include "geo/canopy_source.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// Canopy model in memory, cells of `cell` metres on a local plane.
 class SyntheticCanopy final : public CanopySource {
@@ -56,4 +56,4 @@ inline SyntheticCanopy synthetic_forest(std::uint64_t seed, std::int64_t side, i
   return {std::move(heights), cell};
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

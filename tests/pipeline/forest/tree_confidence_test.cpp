@@ -15,7 +15,8 @@
 #include "rough_forest.hpp"
 #include "testbed/forest/forest_scan.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr double kMaxCalibrationError = 0.08;  // calibration error
@@ -64,7 +65,7 @@ std::vector<ScoredTop> score_rough_forest(std::uint64_t seed, ForestType type) {
 /// that no higher detection has taken.
 std::vector<ScoredTop> score_testbed_forest(std::uint64_t seed, ForestType type) {
   Random random(seed, "forests for confidence");
-  ForestModel law;
+  testbed::ForestModel law;
   law.width = law.height = 100;
   law.density = random.log_uniform(200, 1200);
   law.mean_dbh = 0.32 * std::sqrt(300 / law.density);
@@ -72,9 +73,9 @@ std::vector<ScoredTop> score_testbed_forest(std::uint64_t seed, ForestType type)
   law.cell = random.bernoulli(0.5) ? 0.5 : 1;
   if (random.bernoulli(0.3)) law.pattern = "clustered";
   const Terrain flat(Grid<float>(4, 4, 0.0F), -225, 225, 150, 150);
-  const SyntheticForest forest = plant_forest(law, flat, 0, 0, seed);
-  const ForestRasters rasters =
-      scan_forest(law, forest, flat, 0, 0, seed, [](std::span<const LaserReturn>) {});
+  const testbed::SyntheticForest forest = testbed::plant_forest(law, flat, 0, 0, seed);
+  const testbed::ForestRasters rasters =
+      testbed::scan_forest(law, forest, flat, 0, 0, seed, [](std::span<const testbed::LaserReturn>) {});
   std::vector<char> predicted(forest.trees.size());
   return score_tops(SyntheticCanopy(rasters.chm, rasters.cell), type, [&](const CanopyCell& at) {
     double nearest = 2.5;
@@ -219,4 +220,4 @@ TEST(TreeConfidence, DISABLED_Fit) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "pipeline/terrain/prominence.hpp"
 #include "synthetic_canopy.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using Cells = std::set<std::pair<std::int64_t, std::int64_t>>;
@@ -187,4 +188,4 @@ TEST(Crowns, OfTwoTreesMeetInTheSaddle) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 #include "tests/pipeline/fusion/own_types.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 Observation rock(double x, double y, double radius, double height = 0, std::string source = "a") {
@@ -216,4 +217,4 @@ TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -12,7 +12,8 @@
 #include "core/random.hpp"
 #include "tests/pipeline/fusion/made_objects.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 const MapPlane kPlane(Crs::local());
@@ -187,4 +188,4 @@ TEST(ClosePairs, MatchComparingAll) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

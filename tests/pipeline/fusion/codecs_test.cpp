@@ -4,7 +4,8 @@
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Encoding, decoding and encoding again must give the same bytes, and every truncation must be detected.
@@ -87,4 +88,4 @@ TEST(FusionCodecs, CamerasAreToldAsJson) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -9,7 +9,8 @@
 #include "pipeline/fusion/projection/degradation_profiles.hpp"
 #include "pipeline/fusion/projection/detection_projection.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Returns the state whose depth is next to the requested one.
@@ -116,4 +117,4 @@ TEST(CrestCorrection, CratersOfImagesArePlacedByTheirCrests) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -12,13 +12,14 @@
 #include "testbed/render.hpp"
 #include "tests/pipeline/fusion/made_landing.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using Vector6 = Eigen::Vector<double, 6>;
 
-Scenario descent(std::int64_t seed) {
-  Scenario scenario;
+testbed::Scenario descent(std::int64_t seed) {
+  testbed::Scenario scenario;
   scenario.seed = seed;
   scenario.ground.width = scenario.ground.height = 0;
   scenario.ground.cell = 0.8;
@@ -55,12 +56,13 @@ struct MadeImages {
   std::vector<Pixels> pixels;
 };
 
-MadeImages made_images(Scenario scenario) {
-  const std::vector<Shot> shots = plan_shots(scenario);
-  scenario.ground = size_site(scenario, shots);
-  const Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
+MadeImages made_images(testbed::Scenario scenario) {
+  const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
+  scenario.ground = testbed::size_site(scenario, shots);
+  const testbed::Scene scene =
+      testbed::make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
   MadeImages made{given_terrain(scenario, scene), {}, {}, {}};
-  for (const Shot& shot : shots) {
+  for (const testbed::Shot& shot : shots) {
     ImageInfo info;
     info.name = shot.name;
     info.columns = shot.view.camera.columns, info.rows = shot.view.camera.rows;
@@ -70,7 +72,8 @@ MadeImages made_images(Scenario scenario) {
     made.given.push_back(make_image_view(info));
     compute_footprint(made.given.back(), made.dem, 1);
     made.truth.push_back(shot.view);
-    made.pixels.push_back(render_view(scene, camera_view(shot.view), scenario.exposure, made.pixels.size()));
+    made.pixels.push_back(
+        testbed::render_view(scene, testbed::camera_view(shot.view), scenario.exposure, made.pixels.size()));
   }
   return made;
 }
@@ -105,12 +108,12 @@ TEST(GroundMatch, SaysNothingOfOtherGround) {
 }
 
 TEST(GroundMatch, TakesOutWhatAllImagesAreOffByTogether) {
-  Scenario scenario = descent(7);
+  testbed::Scenario scenario = descent(7);
   scenario.flights.front().images = 6;
   scenario.lens.columns = scenario.lens.rows = 600;
   MadeLanding made = made_landing(scenario);
   std::vector<PosedCamera> truth;
-  for (const Shot& shot : plan_shots(scenario)) truth.push_back(shot.view);
+  for (const testbed::Shot& shot : testbed::plan_shots(scenario)) truth.push_back(shot.view);
   const Eigen::Vector3d together(0.5, -0.4, 0);  // invisible to comparisons between images
   for (ImageView& image : made.images) image.view->grid_from_camera.transform.translation() += together;
   for (Observation& o : made.observations) o.position.xyz += together;
@@ -143,13 +146,13 @@ TEST(GroundMatch, TakesOutWhatAllImagesAreOffByTogether) {
 // The contribution of an uncertain pose on a slope must be removed as it was added. Removed as on level
 // ground, it leaves half of the ellipses too small.
 TEST(GroundMatch, PlacesOnSlopesStayHonest) {
-  Scenario scenario = descent(8);
+  testbed::Scenario scenario = descent(8);
   scenario.ground.relief.rms = 12;
   scenario.ground.rocks.k = 0.08;
   scenario.lens.columns = scenario.lens.rows = 600;
   scenario.pose_errors = {0.8, Degrees{0.1}};
   MadeLanding made = made_landing(scenario);
-  const std::vector<Shot> shots = plan_shots(scenario);
+  const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
   for (std::size_t i = 0; i < shots.size(); ++i) {
     PoseConstraint tie;
     tie.information.diagonal() << 1e10, 1e10, 1e10, 1e6, 1e6, 1e6;
@@ -192,4 +195,4 @@ TEST(ShadedRelief, FinePartIsWithoutTheMeanOfItsNeighbours) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

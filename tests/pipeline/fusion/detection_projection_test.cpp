@@ -14,7 +14,8 @@
 #include "pipeline/fusion/projection/rock_height.hpp"
 #include "tests/pipeline/fusion/own_types.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -273,4 +274,4 @@ TEST(LatticeRings, RingAreasAddUpAndHaveNoHoles) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

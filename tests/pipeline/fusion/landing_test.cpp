@@ -9,11 +9,12 @@
 #include "pipeline/fusion/association/alignment.hpp"
 #include "tests/pipeline/fusion/made_landing.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
-Scenario landing(std::int64_t seed, double position_sd, double attitude_sd, double rocks) {
-  Scenario scenario;
+testbed::Scenario landing(std::int64_t seed, double position_sd, double attitude_sd, double rocks) {
+  testbed::Scenario scenario;
   scenario.seed = seed;
   scenario.ground.width = scenario.ground.height = 0;
   scenario.ground.cell = 1;
@@ -175,4 +176,4 @@ TEST(Landing, RockHeightsAndCraterDepthsAreRight) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

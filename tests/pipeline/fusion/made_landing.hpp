@@ -8,7 +8,8 @@
 #include "pipeline/fusion/projection/detection_projection.hpp"
 #include "pipeline/fusion/projection/image_view_factory.hpp"
 #include "testbed/scene_files.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Performance of a simulated detector; errors in pixels, as it reports them.
 struct MadeDetector {
@@ -22,7 +23,7 @@ struct MadeDetector {
 /// Landing without pictures: scene, poses with errors, DEM with errors, and the detections of a simulated
 /// detector. `thing` holds the truth of each observation.
 struct MadeLanding {
-  Scene scene;
+  testbed::Scene scene;
   Terrain dem;
   std::vector<ImageView> images;
   std::vector<Observation> observations;
@@ -36,20 +37,20 @@ struct MadeLanding {
   }
 };
 
-inline Terrain given_terrain(const Scenario& scenario, const Scene& scene) {
-  SimulatedDem dem = simulate_dem(scenario, scene);
+inline Terrain given_terrain(const testbed::Scenario& scenario, const testbed::Scene& scene) {
+  testbed::SimulatedDem dem = testbed::simulate_dem(scenario, scene);
   return {std::move(dem.heights), dem.x0, dem.y0, dem.cell, dem.cell, scenario.dem.height_sd};
 }
 
-inline MadeLanding made_landing(Scenario scenario, const MadeDetector& detector = {}) {
-  const std::vector<Shot> shots = plan_shots(scenario);
-  scenario.ground = size_site(scenario, shots);
-  Scene scene = make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
+inline MadeLanding made_landing(testbed::Scenario scenario, const MadeDetector& detector = {}) {
+  const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
+  scenario.ground = testbed::size_site(scenario, shots);
+  testbed::Scene scene = testbed::make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
   Terrain dem = given_terrain(scenario, scene);
   MadeLanding made{std::move(scene), std::move(dem), {}, {}, {}, {}};
   register_landmark_types(made.types);
   Random random(static_cast<std::uint64_t>(scenario.seed), "made detector");
-  for (const Shot& shot : shots) {
+  for (const testbed::Shot& shot : shots) {
     ImageInfo info;
     info.name = shot.name;
     info.columns = shot.view.camera.columns, info.rows = shot.view.camera.rows;
@@ -58,7 +59,7 @@ inline MadeLanding made_landing(Scenario scenario, const MadeDetector& detector 
     info.sun = scenario.exposure.sun;
     ImageView image = make_image_view(info);
     compute_footprint(image, made.dem, 1);
-    const View view = camera_view(shot.view);
+    const testbed::View view = testbed::camera_view(shot.view);
     const double tangent = std::tan(to_radians(scenario.exposure.sun.elevation).value);
     const auto see = [&](const PixelEllipse& outline, TypeId type, double height_over_diameter, int thing,
                          double confidence) {
@@ -86,15 +87,15 @@ inline MadeLanding made_landing(Scenario scenario, const MadeDetector& detector 
     std::size_t before = made.observations.size();
     const auto craters = static_cast<int>(made.scene.craters.size());
     for (int i = 0; i < craters; ++i) {
-      const TrueCrater& crater = made.scene.craters[static_cast<std::size_t>(i)];
-      if (crater.preserved_fraction() < kErased) continue;
-      const auto outline = image_outline(view, crater);
+      const testbed::TrueCrater& crater = made.scene.craters[static_cast<std::size_t>(i)];
+      if (crater.preserved_fraction() < testbed::kErased) continue;
+      const auto outline = testbed::image_outline(view, crater);
       if (outline && outline->diameter() >= 2 * detector.min_diameter && random.bernoulli(detector.recall))
         see(*outline, made.types.id("crater"), 0, i, random.uniform(0.6, 1));
     }
     for (int i = 0; i < static_cast<int>(made.scene.rocks.size()); ++i) {
-      const TrueRock& rock = made.scene.rocks[static_cast<std::size_t>(i)];
-      const auto outline = image_outline(view, rock);
+      const testbed::TrueRock& rock = made.scene.rocks[static_cast<std::size_t>(i)];
+      const auto outline = testbed::image_outline(view, rock);
       if (outline && outline->diameter() >= detector.min_diameter && random.bernoulli(detector.recall))
         see(*outline, made.types.id("rock"), rock.height / rock.width, craters + i, random.uniform(0.6, 1));
     }
@@ -158,4 +159,4 @@ inline MergeScore merge_score(const MadeLanding& made, const MergedObservations&
   return s;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

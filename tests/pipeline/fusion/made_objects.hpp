@@ -4,7 +4,8 @@
 #include <vector>
 #include "core/random.hpp"
 #include "pipeline/fusion/association/observed_object.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 struct Making {
   std::uint64_t seed = 0;
@@ -51,4 +52,4 @@ inline MadeObjects made_objects(const Making& making) {
   return made;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

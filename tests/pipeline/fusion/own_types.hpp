@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "landmarks/landmark_type.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// The landmark types of this program.
 inline const TypeRegistry kTypes = [] {
@@ -10,4 +10,4 @@ inline const TypeRegistry kTypes = [] {
   return types;
 }();
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 
 #include "tests/pipeline/fusion/own_types.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Ground rising to the north, heights every metre; in the lower half a bowl every 40 m, 12 m wide, with a rim
@@ -92,4 +93,4 @@ TEST(WeighByRims, PlacesAreInTheMapsUnits) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "core/error.hpp"
 #include "pipeline/rocks/find_classic_rocks.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 using ::testing::HasSubstr;
@@ -167,4 +168,4 @@ TEST(MaximumEntropyThreshold, PartsTwoClasses) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

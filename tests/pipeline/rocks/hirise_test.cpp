@@ -11,7 +11,8 @@
 #include "importers/images/image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/sun_angle.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 struct Annotation {
@@ -74,7 +75,7 @@ TEST(HiriseScene, AnnotatedRocks) {
   const auto path =
       std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/rocks/hirise_nm2020/Example_1_half.png";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
-  const ImageHandle image = import_image(path.string(), {});
+  const ImageHandle image = importers::import_image(path.string(), {});
   const Pixels pixels = image->read({0, 0, image->info().columns, image->info().rows});
   const auto sun = estimate_sun_angle(pixels);
   ASSERT_TRUE(sun);
@@ -99,7 +100,7 @@ TEST(HiriseScene, SurestDetectionsAreRocks) {
   const auto path =
       std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/rocks/hirise_nm2020/Example_1_half.png";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
-  const ImageHandle image = import_image(path.string(), {});
+  const ImageHandle image = importers::import_image(path.string(), {});
   const Pixels pixels = image->read({0, 0, image->info().columns, image->info().rows});
   auto found = find_rocks(pixels, {});
   std::sort(found.begin(), found.end(),
@@ -118,4 +119,4 @@ TEST(HiriseScene, SurestDetectionsAreRocks) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

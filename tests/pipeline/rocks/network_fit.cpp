@@ -10,7 +10,8 @@
 #include "pipeline/rocks/find_shadow_rocks.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
 #include "tests/pipeline/rocks/synthetic_view.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr Eigen::Index kUnits = 48, kInputs = kEvidenceCount, kOutputs = 8;
@@ -286,4 +287,4 @@ std::string source_of(const FittedNetwork& network) {
   return text + "\n}  // namespace waymark::rock_network\n";
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

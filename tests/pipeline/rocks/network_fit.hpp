@@ -7,7 +7,8 @@
 #include "pipeline/rocks/rock_evidence.hpp"
 #include "tests/pipeline/rocks/rock_scene.hpp"
 #include "tests/pipeline/rocks/synthetic_view.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 /// Dark spot of a synthetic scene: its evidence, whether it is a rock shadow, and the target outputs
 /// (RockPrediction).
@@ -47,4 +48,4 @@ FittedNetwork average_networks(const FittedNetwork& a, const FittedNetwork& b);
 /// Returns the network as the source file pipeline/rocks/rock_network.hpp.
 std::string source_of(const FittedNetwork& network);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

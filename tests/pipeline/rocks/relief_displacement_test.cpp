@@ -10,7 +10,8 @@
 #include "pipeline/rocks/shadow_shape.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
 #include "tests/pipeline/rocks/synthetic_view.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 PosedCamera looking_down(double tilt) {
@@ -81,4 +82,4 @@ TEST(ReliefDisplacement, ToldItPlacesRocksBetter) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

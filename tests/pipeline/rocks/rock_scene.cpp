@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 constexpr int kFine = 4;  // samples per pixel and direction
@@ -289,4 +289,4 @@ RockImage render(const RockScene& scene) {
   return image;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -5,7 +5,7 @@
 
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// Rocks on terrain in a vertical view. All lengths are pixels. Rendered from a height field with many
 /// samples per pixel, independently of the detector.
@@ -48,4 +48,4 @@ struct RockImage {
 
 RockImage render(const RockScene& scene);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

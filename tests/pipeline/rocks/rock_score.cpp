@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-namespace waymark::testing {
+namespace waymark::test {
 namespace {
 
 int bin_of(double diameter) {
@@ -155,4 +155,4 @@ std::string RockScore::text() const {
   return out + line;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -5,7 +5,7 @@
 
 #include "core/detection.hpp"
 #include "tests/pipeline/rocks/rock_scene.hpp"
-namespace waymark::testing {
+namespace waymark::test {
 
 /// Which detection is which rock: greedy, the largest rock first, nearest free detection within
 /// max(0.75 D, 2 px). Rocks whose outline or shadow reaches the border, and detections as near to it, count
@@ -56,4 +56,4 @@ class RockScore {
   std::vector<double> true_sizes_, found_sizes_;
 };
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

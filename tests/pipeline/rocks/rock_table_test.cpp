@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "pipeline/rocks/synthetic_rock.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -90,4 +91,4 @@ TEST(RockTable, NoiseAndTextureWidenTheDeviations) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -14,7 +14,8 @@
 #include "tests/pipeline/rocks/network_fit.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
 #include "tests/pipeline/rocks/synthetic_view.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 void print(const char* title, const RockScore& score) {
@@ -187,4 +188,4 @@ TEST(RockNetwork, JoinedSaysTheMean) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include <string_view>
 
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Digits are tenths of shadow; the smoothed map is given, so that passes are exact.
@@ -110,4 +111,4 @@ TEST(MapShadows, NothingWithoutContrast) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 
 #include "core/random.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // By the definition: the squares within one of the spot's own.
@@ -53,4 +54,4 @@ TEST(SpotContext, FewSpotsAreJudgedByAll) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

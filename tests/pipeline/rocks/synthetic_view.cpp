@@ -7,11 +7,12 @@
 
 #include "core/random.hpp"
 #include "testbed/render.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 /// Outcrops, dunes, how many craters there are, and relief.
-void draw_terrain(SiteModel& ground, Random& random) {
+void draw_terrain(testbed::SiteModel& ground, Random& random) {
   if (random.bernoulli(0.2)) ground.outcrops.cover = random.uniform(0, 0.03);
   ground.dunes.cover = random.uniform(0, 0.4);
   ground.dunes.wavelength = random.log_uniform(4, 20);
@@ -29,7 +30,7 @@ SyntheticView synthetic_view(int number) {
   Random random(static_cast<std::uint64_t>(number), "made view of rocks");
   constexpr std::int64_t kPixels = 448;
   const double gsd = random.log_uniform(0.1, 0.5);  // the finer, the more of the ground's texture is seen
-  SiteModel ground;
+  testbed::SiteModel ground;
   ground.width = ground.height = 1.5 * gsd * kPixels;
   ground.cell = random.uniform(1.5, 4) * gsd;
   ground.rocks.k = random.log_uniform(0.006, 0.3);
@@ -48,10 +49,10 @@ SyntheticView synthetic_view(int number) {
     ground.rocks.k = other.log_uniform(0.02, 0.3);
     ground.relief.roughness = other.log_uniform(0.6, 2);
   }
-  const Scene scene = make_scene(ground, static_cast<std::uint64_t>(number));
-  const View view = map_view(scene, gsd, kPixels, kPixels);
+  const testbed::Scene scene = testbed::make_scene(ground, static_cast<std::uint64_t>(number));
+  const testbed::View view = testbed::map_view(scene, gsd, kPixels, kPixels);
   const double incidence = random.uniform(30, 75);
-  Exposure exposure;
+  testbed::Exposure exposure;
   exposure.sun = {Degrees{random.uniform(0, 360)}, Degrees{90 - incidence}, Degrees{0.5}};
   exposure.psf_sd = random.uniform(0.4, 1.0);
   exposure.haze = random.uniform(0, 0.2);
@@ -61,11 +62,11 @@ SyntheticView synthetic_view(int number) {
   if (bare) exposure.contrast = other.uniform(1, 2);
   SyntheticView made;
   made.elevation = to_radians(exposure.sun.elevation);
-  made.sun_angle = image_sun_angle(view, exposure.sun);
-  made.image.pixels = render_view(scene, view, exposure, static_cast<std::uint64_t>(number));
+  made.sun_angle = testbed::image_sun_angle(view, exposure.sun);
+  made.image.pixels = testbed::render_view(scene, view, exposure, static_cast<std::uint64_t>(number));
   for (float& value : made.image.pixels.cells()) value = std::round(value * 255);
-  for (const TrueRock& rock : scene.rocks)
-    if (const auto outline = image_outline(view, rock))
+  for (const testbed::TrueRock& rock : scene.rocks)
+    if (const auto outline = testbed::image_outline(view, rock))
       made.image.rocks.push_back({outline->x, outline->y, rock.width / gsd, rock.height / gsd,
                                   rock.height / gsd / std::tan(made.elevation.value)});
   return made;
@@ -75,7 +76,7 @@ SyntheticView leaning_view(int number) {
   Random random(static_cast<std::uint64_t>(number), "leaning view of rocks");
   constexpr std::int64_t kPixels = 448;
   const double gsd = random.log_uniform(0.05, 0.4);
-  SiteModel ground;
+  testbed::SiteModel ground;
   ground.width = ground.height = 2.4 * gsd * kPixels;
   ground.cell = random.uniform(1.5, 4) * gsd;
   ground.rocks.k = random.log_uniform(0.01, 0.3);
@@ -85,7 +86,7 @@ SyntheticView leaning_view(int number) {
   draw_terrain(ground, random);
   ground.craters.min_diameter = std::max(2.0, 8 * gsd);
   ground.craters.max_diameter = 80;
-  const Scene scene = make_scene(ground, static_cast<std::uint64_t>(number) + 50000);
+  const testbed::Scene scene = testbed::make_scene(ground, static_cast<std::uint64_t>(number) + 50000);
 
   PosedCamera camera;
   camera.camera.columns = camera.camera.rows = kPixels;
@@ -103,10 +104,10 @@ SyntheticView leaning_view(int number) {
                                scene.terrain.height(ground.east, ground.north).value_or(ground.up));
   pose.translation() = middle - gsd * camera.camera.fx * pose.linear().col(2);
   camera.grid_from_camera.transform = pose;
-  const View view = camera_view(camera);
+  const testbed::View view = testbed::camera_view(camera);
 
   const double elevation = random.bernoulli(0.3) ? random.uniform(14, 25) : random.uniform(14, 62);
-  Exposure exposure;
+  testbed::Exposure exposure;
   exposure.sun = {Degrees{random.uniform(0, 360)}, Degrees{elevation}, Degrees{0.5}};
   exposure.psf_sd = random.uniform(0.4, 1.0);
   exposure.haze = random.uniform(0, 0.2);
@@ -115,13 +116,13 @@ SyntheticView leaning_view(int number) {
   exposure.contrast = random.uniform(0.8, 1.8);
   SyntheticView made;
   made.elevation = to_radians(exposure.sun.elevation);
-  made.sun_angle = image_sun_angle(view, exposure.sun);
+  made.sun_angle = testbed::image_sun_angle(view, exposure.sun);
   made.displacement = relief_displacement_of(camera);
-  made.image.pixels = render_view(scene, view, exposure, static_cast<std::uint64_t>(number));
+  made.image.pixels = testbed::render_view(scene, view, exposure, static_cast<std::uint64_t>(number));
   for (float& value : made.image.pixels.cells()) value = std::round(value * 255);
   const Eigen::Vector3d light = sun_direction(exposure.sun).unit;
-  for (const TrueRock& rock : scene.rocks) {
-    const auto outline = image_outline(view, rock);
+  for (const testbed::TrueRock& rock : scene.rocks) {
+    const auto outline = testbed::image_outline(view, rock);
     if (!outline) continue;
     const Eigen::Vector3d step = 0.05 * Eigen::Vector3d(light.x(), light.y(), 0).normalized();
     const auto from = project(camera, Point<GridFrame>{rock.position - step});
@@ -137,4 +138,4 @@ SyntheticView leaning_view(int number) {
   return made;
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

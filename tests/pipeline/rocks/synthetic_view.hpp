@@ -4,7 +4,8 @@
 #include "core/units.hpp"
 #include "pipeline/rocks/relief_displacement.hpp"
 #include "tests/pipeline/rocks/rock_scene.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 /// View of synthetic terrain with its rocks in pixels.
 struct SyntheticView {
@@ -24,4 +25,4 @@ SyntheticView synthetic_view(int number);
 /// 14 degrees: large rocks, low light and rocks that displacement.
 SyntheticView leaning_view(int number);
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

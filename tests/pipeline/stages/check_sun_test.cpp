@@ -8,7 +8,7 @@
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
 
-namespace waymark {
+namespace waymark::pipeline {
 
 void register_stage_check_sun(Registry& registry);
 
@@ -17,6 +17,11 @@ struct Codec<ImageSet> {
   static std::string encode(const ImageSet&) { return {}; }
   static ImageSet decode(std::string_view) { return {}; }
 };
+
+}  // namespace waymark::pipeline
+
+namespace waymark::test {
+using namespace pipeline;
 
 namespace {
 
@@ -99,4 +104,4 @@ TEST(CheckSun, SaysWhereNoSunIsKnown) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -6,7 +6,8 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Encoding, decoding and encoding again must give the same bytes, and every truncation must be detected.
@@ -54,4 +55,4 @@ TEST(Codecs, Landmarks) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "pipeline/terrain/nearest_grid_point.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 std::vector<HighPoint> summits_of(const DemSource& dem) {
@@ -256,4 +257,4 @@ TEST(Isolation, ContactMatchesLookingEverywhere) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 
 #include "tests/pipeline/terrain/survey.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 const TypeRegistry& types() {
@@ -133,4 +134,4 @@ TEST(MountainTops, OnNoBodyHaveNoVisibility) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -5,7 +5,8 @@
 
 #include <bit>
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 std::uint8_t mask(std::initializer_list<int> bits) {
@@ -44,4 +45,4 @@ TEST(Neighbourhood, EarlierCellsWinTies) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "pipeline/terrain/cell_order.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // ---- the slow twin: everything by its definition
@@ -318,4 +319,4 @@ TEST(Prominence, ATileThatIsMissingIsNoticed) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

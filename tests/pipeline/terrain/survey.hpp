@@ -9,7 +9,8 @@
 #include "pipeline/terrain/prominence.hpp"
 #include "pipeline/terrain/relief_pyramid.hpp"
 #include "tests/support/dem_art.hpp"
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 
 inline std::vector<Window> tiles_of(const GridGeometry& grid, std::int64_t side) {
   std::vector<Window> tiles;
@@ -54,4 +55,4 @@ inline ReliefPyramid pyramid_of(const DemSource& dem, std::int64_t side) {
   return {tiles, dem.geometry().columns, dem.geometry().rows};
 }
 
-}  // namespace waymark::testing
+}  // namespace waymark::test

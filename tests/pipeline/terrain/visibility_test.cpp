@@ -7,7 +7,8 @@
 #include <cmath>
 #include <limits>
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr Meters kEarth{6371000}, kRange{10000};
@@ -59,4 +60,4 @@ TEST(Visibility, NothingIsSeenOfWhatDoesNotStandOut) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -10,7 +10,8 @@
 #include "core/random.hpp"
 #include "pipeline/vision/image_faults.hpp"
 
-namespace waymark::testing {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 // Two normal distributions of log odds, calibrated for equal priors, drawn with another prior.
@@ -46,4 +47,4 @@ TEST(ImageFault, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace waymark::testing
+}  // namespace waymark::test

@@ -9,7 +9,8 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 DenseNetwork random_network(std::uint64_t seed, const std::vector<int>& sizes) {
@@ -136,4 +137,4 @@ TEST(TrainNetwork, TheSameExamplesAndSeedGiveTheSameNetwork) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -80,4 +81,4 @@ TEST(NoiseSd, IsZeroWhereNothingCanBeMeasured) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "core/random.hpp"
-namespace waymark {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -67,4 +68,4 @@ TEST(EstimateSunAngle, NoneWithoutContrastOrPixels) {
 }
 
 }  // namespace
-}  // namespace waymark
+}  // namespace waymark::test

@@ -2,7 +2,7 @@
 #include "core/landmark.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "tests/plug_in/stations.hpp"
-namespace waymark {
+namespace waymark::test {
 namespace {
 
 /// Places a station on each summit above the minimum elevation.
@@ -14,15 +14,15 @@ struct PlaceWeatherStations {
              {.help = "Lowest summit that gets a station", .min = -500, .max = 9000});
     }
   };
-  static constexpr In<std::vector<Landmark>> summits{"landmarks"};
-  static constexpr Out<Stations> stations{"stations"};
-  static StageSpec spec() {
+  static constexpr pipeline::In<std::vector<Landmark>> summits{"landmarks"};
+  static constexpr pipeline::Out<Stations> stations{"stations"};
+  static pipeline::StageSpec spec() {
     return {.name = "place_weather_stations",
             .summary = "Puts weather stations on summits",
             .inputs = {summits},
             .outputs = {stations}};
   }
-  static void run(const Options& options, StageContext& unit) {
+  static void run(const Options& options, pipeline::StageContext& unit) {
     Stations placed;
     const auto& tops = unit.read(summits);
     unit.count_in(std::ssize(tops));
@@ -39,9 +39,9 @@ struct PlaceWeatherStations {
 
 }  // namespace
 
-void register_stage_place_weather_stations(Registry& registry);
-void register_stage_place_weather_stations(Registry& registry) {
+void register_stage_place_weather_stations(pipeline::Registry& registry);
+void register_stage_place_weather_stations(pipeline::Registry& registry) {
   registry.add<PlaceWeatherStations>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "landmarks/landmark_type.hpp"
-namespace waymark {
+namespace waymark::test {
 
 void register_type_weather_station(TypeRegistry& types);
 void register_type_weather_station(TypeRegistry& types) {
@@ -10,4 +10,4 @@ void register_type_weather_station(TypeRegistry& types) {
              .drawn_as = Solid::cylinder});
 }
 
-}  // namespace waymark
+}  // namespace waymark::test

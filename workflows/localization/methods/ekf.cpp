@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/localization/localizer_factory.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 class Ekf final : public FilterMethod {
@@ -15,7 +15,7 @@ class Ekf final : public FilterMethod {
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
-  std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
+  std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_kalman_localizer(task, search_, false);
   }
 
@@ -30,4 +30,4 @@ void register_method_ekf(MethodTable& methods) {
   methods.add<Ekf>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

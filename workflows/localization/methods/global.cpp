@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/localization/localizer_factory.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 class Global final : public FilterMethod {
@@ -15,7 +15,7 @@ class Global final : public FilterMethod {
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
-  std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
+  std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_particle_localizer(task, std::nullopt, search_);
   }
 
@@ -30,4 +30,4 @@ void register_method_global(MethodTable& methods) {
   methods.add<Global>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

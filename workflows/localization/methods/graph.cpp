@@ -10,7 +10,7 @@
 #include "workflows/localization/localizer_factory.hpp"
 #include "workflows/localization/slam_update.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 double seconds_now() {
@@ -18,15 +18,15 @@ double seconds_now() {
 }
 
 /// Returns a row for each pose.
-Track to_track(const GraphSolution& solution) {
-  Track track;
+localization::Track to_track(const localization::GraphSolution& solution) {
+  localization::Track track;
   for (std::size_t i = 0; i < solution.graph.poses.size(); ++i) {
-    const GraphPose& pose = solution.graph.poses[i];
-    TrackRow row{.t = pose.t, .at = {pose.at, Eigen::Matrix3d::Zero()}};
+    const localization::GraphPose& pose = solution.graph.poses[i];
+    localization::TrackRow row{.t = pose.t, .at = {pose.at, Eigen::Matrix3d::Zero()}};
     if (!solution.pose_covariances.empty()) row.at.covariance = solution.pose_covariances[i];
     track.rows.push_back(row);
   }
-  for (const SightingEdge& e : solution.graph.sightings) ++track.rows[e.pose].matched;
+  for (const localization::SightingEdge& e : solution.graph.sightings) ++track.rows[e.pose].matched;
   return track;
 }
 
@@ -46,31 +46,34 @@ class Graph final : public LocalizeMethod {
     search_.describe(option);
   }
 
-  Track run(LocalizeTask& task) override {
+  localization::Track run(LocalizeTask& task) override {
     if (!task.log.graph) return smooth(task);
-    PoseGraph graph = *task.log.graph;
+    localization::PoseGraph graph = *task.log.graph;
     if (task.start && !graph.poses.front().given) graph.poses.front().at = task.start->pose;
-    const GraphSolution solution = solve(std::move(graph), options_, task.callbacks);
-    std::vector<SlamLandmark> landmarks(solution.graph.landmarks.size());
+    const localization::GraphSolution solution = solve(std::move(graph), options_, task.callbacks);
+    std::vector<localization::SlamLandmark> landmarks(solution.graph.landmarks.size());
     for (std::size_t i = 0; i < landmarks.size(); ++i) {
-      landmarks[i].log_odds = kSurestLogOdds;
-      landmarks[i].key = landmark_key(std::to_string(solution.graph.landmarks[i].id));
+      landmarks[i].log_odds = localization::kSurestLogOdds;
+      landmarks[i].key = localization::landmark_key(std::to_string(solution.graph.landmarks[i].id));
       copy_estimate(solution, i, landmarks[i]);
     }
-    for (const SightingEdge& e : solution.graph.sightings) ++landmarks[e.landmark].matches;
+    for (const localization::SightingEdge& e : solution.graph.sightings) ++landmarks[e.landmark].matches;
     write_updated_map(task, landmarks, 0, name());
     return to_track(solution);
   }
 
  private:
-  static void copy_estimate(const GraphSolution& solution, std::size_t i, SlamLandmark& into) {
+  static void copy_estimate(const localization::GraphSolution& solution, std::size_t i,
+                            localization::SlamLandmark& into) {
     into.at = solution.graph.landmarks[i].at;
     if (!solution.landmark_covariances.empty()) into.covariance = solution.landmark_covariances[i];
   }
 
-  static GraphSolution solve(PoseGraph graph, const GraphOptions& options, const Callbacks& callbacks) {
+  static localization::GraphSolution solve(localization::PoseGraph graph,
+                                           const localization::GraphOptions& options,
+                                           const Callbacks& callbacks) {
     const double before = seconds_now();
-    GraphSolution solution = optimise(std::move(graph), options);
+    localization::GraphSolution solution = localization::optimise(std::move(graph), options);
     callbacks.send(MessageKind::result,
                    fmt::format("{:20} {:.4f}\n{:20} {}\n{:20} {}\n{:20} {}\n{:20} {:.3f}\n", "chi2",
                                solution.chi2, "residuals", solution.residuals, "unknowns", solution.unknowns,
@@ -79,36 +82,39 @@ class Graph final : public LocalizeMethod {
   }
 
   /// Runs SLAM over the log, then solves for the whole drive.
-  Track smooth(LocalizeTask& task) const {
+  localization::Track smooth(LocalizeTask& task) const {
     const SlamSetup setup = slam_setup(task, slam_);
-    EkfSlam slam(setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
-                 FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
+    localization::EkfSlam slam(
+        setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
+        localization::FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
     if (task.map.map.landmarks > 0) slam.set_pose_finder(make_pose_finder(task, search_));
-    PoseGraphBuilder drive(setup.start, slam);
-    Track track = run_slam(task, setup, drive);
-    std::vector<SlamLandmark> landmarks;
-    PoseGraph graph = drive.graph(landmarks);
-    GraphOptions options = options_;
+    localization::PoseGraphBuilder drive(setup.start, slam);
+    localization::Track track = run_slam(task, setup, drive);
+    std::vector<localization::SlamLandmark> landmarks;
+    localization::PoseGraph graph = drive.graph(landmarks);
+    localization::GraphOptions options = options_;
     if (options.kernel == "auto") options.kernel = "huber";
-    const GraphSolution solution = solve(std::move(graph), options, task.callbacks);
+    const localization::GraphSolution solution = solve(std::move(graph), options, task.callbacks);
     for (std::size_t i = 0; i < landmarks.size(); ++i) copy_estimate(solution, i, landmarks[i]);
     write_updated_map(task, landmarks, setup.options.confirmed, name());
     // Rows between two poses of the graph keep their position relative to the previous pose.
     std::size_t pose = 0;
-    Pose2 before = setup.start.pose;
+    localization::Pose2 before = setup.start.pose;
     for (std::size_t i = 0; i < track.rows.size(); ++i) {
-      const LogReading& what = task.log.events[i].what;
-      if (std::holds_alternative<SightingSet>(what) || std::holds_alternative<LaserScan>(what))
+      const localization::LogReading& what = task.log.events[i].what;
+      if (std::holds_alternative<localization::SightingSet>(what) ||
+          std::holds_alternative<localization::LaserScan>(what))
         ++pose, before = track.rows[i].at.pose;
-      PoseEstimate at{solution.graph.poses[pose].at, Eigen::Matrix3d::Zero()};
+      localization::PoseEstimate at{solution.graph.poses[pose].at, Eigen::Matrix3d::Zero()};
       if (!solution.pose_covariances.empty()) at.covariance = solution.pose_covariances[pose];
-      track.rows[i].at = predict_pose(at, {inverse(before) * track.rows[i].at.pose, Eigen::Matrix3d::Zero()});
+      track.rows[i].at = localization::predict_pose(
+          at, {localization::inverse(before) * track.rows[i].at.pose, Eigen::Matrix3d::Zero()});
     }
     return track;
   }
 
-  GraphOptions options_;
-  SlamOptions slam_;
+  localization::GraphOptions options_;
+  localization::SlamOptions slam_;
   SearchOptions search_;
 };
 
@@ -119,4 +125,4 @@ void register_method_graph(MethodTable& methods) {
   methods.add<Graph>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

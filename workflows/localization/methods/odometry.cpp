@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/localization/localize_method.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 class Odometry final : public FilterMethod {
@@ -11,8 +11,8 @@ class Odometry final : public FilterMethod {
   bool requires_map() const override { return false; }
 
  protected:
-  std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
-    return std::make_unique<DeadReckoning>(*task.start);
+  std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
+    return std::make_unique<localization::DeadReckoning>(*task.start);
   }
 };
 
@@ -23,4 +23,4 @@ void register_method_odometry(MethodTable& methods) {
   methods.add<Odometry>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

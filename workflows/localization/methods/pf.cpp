@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/localization/localizer_factory.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 class Pf final : public FilterMethod {
@@ -14,7 +14,7 @@ class Pf final : public FilterMethod {
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
-  std::unique_ptr<Localizer> make(LocalizeTask& task) const override {
+  std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_particle_localizer(task, task.start, search_);
   }
 
@@ -29,4 +29,4 @@ void register_method_pf(MethodTable& methods) {
   methods.add<Pf>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

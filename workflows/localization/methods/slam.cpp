@@ -5,7 +5,7 @@
 #include "workflows/localization/localizer_factory.hpp"
 #include "workflows/localization/slam_update.hpp"
 
-namespace waymark {
+namespace waymark::workflows {
 namespace {
 
 class Slam final : public LocalizeMethod {
@@ -23,30 +23,31 @@ class Slam final : public LocalizeMethod {
     search_.describe(option);
   }
 
-  Track run(LocalizeTask& task) override {
+  localization::Track run(LocalizeTask& task) override {
     const SlamSetup setup = slam_setup(task, options_);
-    EkfSlam slam(setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
-                 FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
+    localization::EkfSlam slam(
+        setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
+        localization::FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
     if (task.map.map.landmarks > 0) slam.set_pose_finder(make_pose_finder(task, search_));
-    Track track = run_slam(task, setup, slam);
-    const std::vector<SlamLandmark> landmarks = slam.landmarks();
+    localization::Track track = run_slam(task, setup, slam);
+    const std::vector<localization::SlamLandmark> landmarks = slam.landmarks();
     summarize(landmarks, setup.options, task.callbacks);
     write_updated_map(task, landmarks, setup.options.confirmed, name());
     return track;
   }
 
  private:
-  static void summarize(const std::vector<SlamLandmark>& landmarks, const SlamOptions& options,
-                        const Callbacks& callbacks) {
+  static void summarize(const std::vector<localization::SlamLandmark>& landmarks,
+                        const localization::SlamOptions& options, const Callbacks& callbacks) {
     std::size_t sure = 0, doubtful = 0, not_seen = 0, gone = 0;
-    for (const SlamLandmark& l : landmarks)
+    for (const localization::SlamLandmark& l : landmarks)
       ++(l.gone ? gone : !l.slot ? not_seen : l.log_odds >= options.confirmed ? sure : doubtful);
     callbacks.summary(
         fmt::format("landmarks: {} sure, {} doubtful, {} of the map not seen, {} of the map not there\n",
                     sure, doubtful, not_seen, gone));
   }
 
-  SlamOptions options_;
+  localization::SlamOptions options_;
   SearchOptions search_;
 };
 
@@ -57,4 +58,4 @@ void register_method_slam(MethodTable& methods) {
   methods.add<Slam>();
 }
 
-}  // namespace waymark
+}  // namespace waymark::workflows

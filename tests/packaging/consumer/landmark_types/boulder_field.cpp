@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <waymark/waymark.hpp>
-namespace waymark {
+namespace consumer {
+using namespace waymark;
 
 void register_type_boulder_field(TypeRegistry& types);
 void register_type_boulder_field(TypeRegistry& types) {
@@ -9,4 +10,4 @@ void register_type_boulder_field(TypeRegistry& types) {
              .features = {{"area", "m2", Scale::ratio, 1, 1e9, "Ground covered"}}});
 }
 
-}  // namespace waymark
+}  // namespace consumer
