@@ -6,7 +6,9 @@
 #include "localization/filters/particle_filter.hpp"
 #include "localization/global/constellation.hpp"
 #include "localization/global/skyline.hpp"
+#include "localization/localizer.hpp"
 #include "localization/motion_model.hpp"
+#include "localization/sighting.hpp"
 #include "workflows/evaluation/evaluate.hpp"
 #include "workflows/localization/localize.hpp"
 

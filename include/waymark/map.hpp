@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/error.hpp"
+#include "core/landmark.hpp"
 #include "core/quality.hpp"
+#include "core/units.hpp"
 #include "exporters/report/report_html.hpp"
 #include "exporters/vector/export_map.hpp"
-#include "geodb/layers/layer_style.hpp"
 #include "geodb/map_editor.hpp"
+#include "geodb/map_query.hpp"
+#include "geodb/map_store.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "landmarks/landmark_type.hpp"

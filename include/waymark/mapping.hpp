@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "geo/camera.hpp"
+#include "geo/crs.hpp"
+#include "geo/dem_source.hpp"
+#include "geo/image_source.hpp"
 #include "importers/stages.hpp"
 #include "pipeline/engine/job.hpp"
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/engine/stage_pages.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/stages.hpp"
