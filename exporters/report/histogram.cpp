@@ -85,7 +85,7 @@ std::string svg_axis(const Histogram& histogram, const FeatureSpec& feature, dou
 
 std::string figure(const LandmarkSection& section, std::size_t f) {
   const FeatureSpec& feature = section.type.features[f];
-  const std::vector<double> values = known_values(section, f);
+  const std::vector<double>& values = section.values[f];
   if (values.size() < 2) return {};
   const Histogram histogram = histogram_of(values, feature.scale);
   const double largest = *std::max_element(values.begin(), values.end());

@@ -36,25 +36,34 @@ const char* outline_colour(TypeId type) {
 /// Observations in one image.
 struct ImageObservations {
   const geodb::ImageRecord* record = nullptr;
-  std::vector<const Observation*> seen;  ///< with a pixel
-  std::int64_t used = 0;
+  std::vector<Observation> seen = {};  ///< with a pixel
+  std::int64_t count = 0, used = 0;    ///< of those
 };
 
-std::vector<ImageObservations> observed_images(const std::vector<geodb::ImageRecord>& images,
-                                               const std::vector<Observation>& observations) {
+/// Returns the `most` images with the most used observations, and their observations. Those of the other
+/// images are counted only.
+std::vector<ImageObservations> observed_images(const geodb::MapStore& map,
+                                               const std::vector<geodb::ImageRecord>& images,
+                                               std::size_t most) {
   std::map<std::string, ImageObservations> by_name;
   for (const geodb::ImageRecord& image : images) by_name[image.name].record = &image;
-  for (const Observation& one : observations) {
+  map.visit_observations([&](Observation&& one) {
     const auto found = by_name.find(one.source);
-    if (found == by_name.end() || !one.pixel) continue;
-    found->second.seen.push_back(&one);
+    if (found == by_name.end() || !one.pixel) return;
+    ++found->second.count;
     found->second.used += one.rejected.empty();
-  }
+  });
   std::vector<ImageObservations> all;
   for (auto& [name, image] : by_name)
-    if (!image.seen.empty()) all.push_back(std::move(image));
+    if (image.count > 0) all.push_back(std::move(image));
   std::ranges::stable_sort(
       all, [](const ImageObservations& a, const ImageObservations& b) { return a.used > b.used; });
+  all.resize(std::min(all.size(), most));
+  map.visit_observations([&](Observation&& one) {
+    const auto image = std::ranges::find_if(
+        all, [&](const ImageObservations& shown) { return shown.record->name == one.source; });
+    if (image != all.end() && one.pixel) image->seen.push_back(std::move(one));
+  });
   return all;
 }
 
@@ -85,9 +94,9 @@ double radius_in_pixels(const Observation& one, const LandmarkType& type, const 
 /// Returns the square inside the image with the most used observations.
 Window densest_window(const ImageObservations& image, const Window& extent) {
   std::map<std::pair<std::int64_t, std::int64_t>, int> counts;
-  for (const Observation* one : image.seen)
-    if (one->rejected.empty())
-      ++counts[{std::llround(one->pixel->x()) / kDetail, std::llround(one->pixel->y()) / kDetail}];
+  for (const Observation& one : image.seen)
+    if (one.rejected.empty())
+      ++counts[{std::llround(one.pixel->x()) / kDetail, std::llround(one.pixel->y()) / kDetail}];
   std::pair<std::int64_t, std::int64_t> best{0, 0};
   int most = -1;
   for (const auto& [cell, count] : counts)
@@ -100,23 +109,23 @@ Window densest_window(const ImageObservations& image, const Window& extent) {
 std::string outlines(const ImageObservations& image, const TypeRegistry& types, const Window& part) {
   std::string svg;
   std::size_t drawn = 0;
-  for (const Observation* one : image.seen) {
-    const LandmarkType& type = types[one->type];
-    const double r = radius_in_pixels(*one, type, *image.record);
+  for (const Observation& one : image.seen) {
+    const LandmarkType& type = types[one.type];
+    const double r = radius_in_pixels(one, type, *image.record);
     // pixel (0, 0) is the centre of the first pixel, the picture begins at its corner
-    const double x = one->pixel->x() + 0.5 - static_cast<double>(part.column),
-                 y = one->pixel->y() + 0.5 - static_cast<double>(part.row);
+    const double x = one.pixel->x() + 0.5 - static_cast<double>(part.column),
+                 y = one.pixel->y() + 0.5 - static_cast<double>(part.row);
     if (x < -r || y < -r || x > static_cast<double>(part.columns) + r ||
         y > static_cast<double>(part.rows) + r)
       continue;
     if (++drawn > kMaxOutlines) break;
-    const bool used = one->rejected.empty();
+    const bool used = one.rejected.empty();
     svg += fmt::format(
         "<circle class='{}' cx='{:.1f}' cy='{:.1f}' r='{:.1f}' style='--type:{}'><title>{}</title></circle>",
-        used ? "used" : "rejected", x, y, r, outline_colour(one->type),
+        used ? "used" : "rejected", x, y, r, outline_colour(one.type),
         escape_markup(
-            used ? fmt::format("{} {}\nconfidence {:.2f}", type.name, one->landmark_uid, one->confidence)
-                 : fmt::format("{}, rejected: {}", type.name, one->rejected)));
+            used ? fmt::format("{} {}\nconfidence {:.2f}", type.name, one.landmark_uid, one.confidence)
+                 : fmt::format("{}, rejected: {}", type.name, one.rejected)));
   }
   return svg;
 }
@@ -134,8 +143,8 @@ std::string picture_html(const ImageObservations& image, const TypeRegistry& typ
 std::string counts_html(const ImageObservations& image, const TypeRegistry& types) {
   std::map<TypeId, std::int64_t> used;
   std::map<std::string, std::int64_t> rejected;
-  for (const Observation* one : image.seen)
-    one->rejected.empty() ? ++used[one->type] : ++rejected[one->rejected];
+  for (const Observation& one : image.seen)
+    one.rejected.empty() ? ++used[one.type] : ++rejected[one.rejected];
   std::string html;
   for (const auto& [type, count] : used)
     html += fmt::format("<span class='count' style='--type:{}'><i></i>{} {}</span>", outline_colour(type),
@@ -173,16 +182,14 @@ std::string image_html(const geodb::MapStore& map, const ImageObservations& imag
 std::string image_figures(const geodb::MapStore& map, std::int64_t most) {
   const auto records = map.images();
   if (records.empty() || most < 1) return {};
-  const auto observations = map.observations();
-  const auto images = observed_images(records, observations);
+  const auto images = observed_images(map, records, static_cast<std::size_t>(most));
   if (images.empty()) return {};
-  const std::size_t shown = std::min(images.size(), static_cast<std::size_t>(most));
   std::string html = "<p>";
-  if (shown < records.size())
-    html += fmt::format("{} of {} images, those with the most detections. ", shown,
+  if (images.size() < records.size())
+    html += fmt::format("{} of {} images, those with the most detections. ", images.size(),
                         number_text(static_cast<double>(records.size())));
   html += "Used observations are outlined, rejected ones dashed; the tooltip gives the reason.</p>\n";
-  for (std::size_t i = 0; i < shown; ++i) html += image_html(map, images[i]);
+  for (const ImageObservations& image : images) html += image_html(map, image);
   return html;
 }
 

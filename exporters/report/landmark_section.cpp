@@ -3,37 +3,104 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "core/quality.hpp"
+#include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark::exporters {
 namespace {
 
-void sort_by_rank(LandmarkSection& section) {
-  const auto by = find_feature(section.type, section.type.size_feature);
-  std::vector<std::pair<double, Landmark>> ranked;
-  ranked.reserve(section.landmarks.size());
-  for (Landmark& landmark : section.landmarks) {
-    const double rank =
-        by ? certified_value(section.type, landmark, section.type.size_feature) : landmark.confidence;
-    ranked.emplace_back(std::isnan(rank) ? -std::numeric_limits<double>::infinity() : rank,
-                        std::move(landmark));
+struct Ranked {
+  double rank = 0;
+  Landmark landmark;
+
+  bool operator<(const Ranked& other) const {
+    return rank != other.rank ? rank > other.rank : landmark.uid < other.landmark.uid;
   }
-  std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
-    return a.first != b.first ? a.first > b.first : a.second.uid < b.second.uid;
-  });
-  for (std::size_t i = 0; i < ranked.size(); ++i) section.landmarks[i] = std::move(ranked[i].second);
+};
+
+/// Keeps the foremost landmarks; holds up to twice as many.
+class Foremost {
+ public:
+  explicit Foremost(std::size_t limit) : limit_(std::max<std::size_t>(limit, 1)) {}
+
+  void add(double rank, Landmark&& landmark) {
+    found_.push_back(
+        {std::isnan(rank) ? -std::numeric_limits<double>::infinity() : rank, std::move(landmark)});
+    if (found_.size() >= 2 * limit_) prune();
+  }
+
+  std::vector<Landmark> take() {
+    prune();
+    std::vector<Landmark> landmarks;
+    landmarks.reserve(found_.size());
+    for (Ranked& one : found_) landmarks.push_back(std::move(one.landmark));
+    return landmarks;
+  }
+
+ private:
+  void prune() {
+    std::ranges::sort(found_, std::less{});
+    if (found_.size() > limit_)
+      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(limit_), found_.end());
+  }
+
+  std::size_t limit_;
+  std::vector<Ranked> found_;
+};
+
+void add_observed(ObservationMeans& means, const Landmark& landmark) {
+  const Quality& quality = landmark.quality;
+  means.several += quality.seen > 1;
+  means.seen.add(quality.seen);
+  means.visible.add(quality.visible);
+  means.multiplicity.add(multiplicity_confidence(quality.seen, quality.visible));
+  for (const auto& confidence : quality.feature_confidences) means.spread.add(confidence);
+  means.quality.add(equal_weight_quality(landmark));
+  means.confidence.add(landmark.confidence);
 }
 
 }  // namespace
 
-std::vector<LandmarkSection> landmark_sections(const geodb::MapStore& map) {
+void Mean::add(std::optional<double> value) {
+  if (!value || !std::isfinite(*value)) return;
+  sum_ += *value;
+  ++count_;
+}
+
+std::optional<double> Mean::value() const {
+  return count_ > 0 ? std::optional(sum_ / static_cast<double>(count_)) : std::nullopt;
+}
+
+LandmarkSection landmark_section(const LandmarkType& type, const LandmarkVisit& visit,
+                                 std::size_t max_ranked) {
+  LandmarkSection section{.type = type, .values = std::vector<std::vector<double>>(type.features.size())};
+  Foremost foremost(max_ranked);
+  const bool sized = find_feature(type, type.size_feature).has_value();
+  visit([&](Landmark&& landmark) {
+    ++section.count;
+    const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
+    section.extent = section.extent ? section.extent->united({x, y, x, y}) : Extent{x, y, x, y};
+    for (std::size_t i = 0; i < section.values.size(); ++i)
+      if (const double value = value_of(landmark, i); std::isfinite(value))
+        section.values[i].push_back(value);
+    add_observed(section.observed, landmark);
+    const double rank = sized ? certified_value(type, landmark, type.size_feature) : landmark.confidence;
+    foremost.add(rank, std::move(landmark));
+  });
+  section.landmarks = foremost.take();
+  return section;
+}
+
+std::vector<LandmarkSection> landmark_sections(const geodb::MapStore& map, std::size_t max_ranked) {
   std::vector<LandmarkSection> sections;
-  for (const LandmarkType& type : map.types()) {
-    sections.push_back({type, map.query({.types = {type.name}})});
-    sort_by_rank(sections.back());
-  }
+  for (const LandmarkType& type : map.types())
+    sections.push_back(landmark_section(
+        type, [&](const auto& take) { map.visit(type.name, take); },
+        std::max(max_ranked, LandmarkSection::kMaxRanked)));
   return sections;
 }
 
@@ -61,13 +128,6 @@ double certified_value(const LandmarkType& type, const Landmark& landmark, const
                           ? std::get_if<double>(&landmark.attributes[*bound])
                           : nullptr;
   return low != nullptr && *low < value ? *low : value;
-}
-
-std::vector<double> known_values(const LandmarkSection& section, std::size_t feature) {
-  std::vector<double> values;
-  for (const Landmark& landmark : section.landmarks)
-    if (const double value = value_of(landmark, feature); std::isfinite(value)) values.push_back(value);
-  return values;
 }
 
 }  // namespace waymark::exporters

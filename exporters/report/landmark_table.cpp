@@ -111,7 +111,7 @@ std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::
   std::string html = fmt::format(
       "<div class='scroll'><table class='landmarks'><caption>The foremost {} of {}{}</caption>"
       "<thead><tr><th scope='col'>#</th>",
-      count, number_text(static_cast<double>(section.landmarks.size())), rank_text(section.type));
+      count, number_text(static_cast<double>(section.count)), rank_text(section.type));
   for (const TableColumn& column : columns)
     html += fmt::format("<th scope='col' title='{}'>{}</th>", escape_markup(column.tip), column.heading);
   html += "</tr></thead><tbody>\n";

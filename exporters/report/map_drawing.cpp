@@ -37,7 +37,7 @@ std::string legend(const std::vector<LandmarkSection>& sections, const MapMarker
                    const std::string& ramp) {
   std::string items;
   for (const LandmarkSection& section : sections) {
-    if (section.landmarks.empty()) continue;
+    if (section.count == 0) continue;
     const std::string sized =
         section.type.size_feature.empty() ? "" : ", larger with " + section.type.size_feature;
     items += fmt::format("<span>{}{}{}</span>", svg_symbol(section.type, 16),

@@ -157,7 +157,7 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
     result.svg += "</g>\n";
     for (const Marker& marker : markers) labels.add(marker, label_text(*marker.landmark, section.type));
     result.drawn += markers.size();
-    result.total += section.landmarks.size();
+    result.total += static_cast<std::size_t>(section.count);
   }
   result.svg += "<g class='labels'>" + labels.svg() + "</g>\n";
   return result;

@@ -81,10 +81,7 @@ MapView view_of(const Crs& crs, const Extent& extent) {
 std::optional<Extent> extent_of(const std::vector<LandmarkSection>& sections, const Crs& crs) {
   std::optional<Extent> extent;
   for (const LandmarkSection& section : sections)
-    for (const Landmark& landmark : section.landmarks) {
-      const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
-      extent = extent ? extent->united({x, y, x, y}) : Extent{x, y, x, y};
-    }
+    if (section.extent) extent = extent ? extent->united(*section.extent) : section.extent;
   if (!extent) return {};
   const double kilometre = crs.kind() == CrsKind::geographic
                                ? 1000 / (crs.body().mean_radius() * kRadiansPerDegree)

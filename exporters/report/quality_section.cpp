@@ -17,47 +17,21 @@ namespace {
 
 constexpr double kSide = 260;  // of a calibration plot, drawing units
 
-/// Mean of the known values.
-class Mean {
- public:
-  void add(std::optional<double> value) {
-    if (!value || !std::isfinite(*value)) return;
-    sum_ += *value;
-    ++count_;
-  }
-  std::string text() const {
-    return count_ > 0 ? number_text(sum_ / static_cast<double>(count_), 2) : "\u2013";
-  }
-
- private:
-  double sum_ = 0;
-  std::int64_t count_ = 0;
-};
-
 std::string observed_row(const LandmarkSection& section) {
-  Mean seen, visible, multiplicity, quality, confidence, spread;
-  std::int64_t several = 0;
-  for (const Landmark& l : section.landmarks) {
-    several += l.quality.seen > 1;
-    seen.add(l.quality.seen);
-    visible.add(l.quality.visible);
-    multiplicity.add(multiplicity_confidence(l.quality.seen, l.quality.visible));
-    quality.add(equal_weight_quality(l));
-    confidence.add(l.confidence);
-    for (const auto& q : l.quality.feature_confidences) spread.add(q);
-  }
+  const ObservationMeans& means = section.observed;
   std::string row = fmt::format(
       "<tr><th scope='row'>{}</th><td>{}</td><td>{}</td>", escape_markup(title_of(section.type.name)),
-      number_text(static_cast<double>(section.landmarks.size())), number_text(static_cast<double>(several)));
-  for (const Mean* mean : {&seen, &visible, &multiplicity, &spread, &quality, &confidence})
-    row += "<td>" + mean->text() + "</td>";
+      number_text(static_cast<double>(section.count)), number_text(static_cast<double>(means.several)));
+  for (const Mean* mean :
+       {&means.seen, &means.visible, &means.multiplicity, &means.spread, &means.quality, &means.confidence})
+    row += "<td>" + (mean->value() ? number_text(*mean->value(), 2) : "\u2013") + "</td>";
   return row + "</tr>\n";
 }
 
 std::string observed_table(const std::vector<LandmarkSection>& sections) {
   std::string rows;
   for (const LandmarkSection& section : sections)
-    if (!section.landmarks.empty()) rows += observed_row(section);
+    if (section.count > 0) rows += observed_row(section);
   return "<div class='scroll'><table class='stages'><caption>How well the landmarks were observed: means "
          "over the "
          "landmarks</caption><thead><tr><th scope='col'>Type</th><th scope='col'>Landmarks</th>"

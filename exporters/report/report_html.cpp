@@ -32,13 +32,13 @@ constexpr int kFactsPerType = 3;
 std::string facts(const std::vector<LandmarkSection>& sections, const std::vector<geodb::RunRecord>& runs) {
   std::string items;
   for (const LandmarkSection& section : sections) {
-    if (section.landmarks.empty()) continue;
+    if (section.count == 0) continue;
     const std::string type = title_of(section.type.name);
     const std::string whose = sections.size() > 1 ? section.type.name + " " : "";
-    items += fact(number_text(static_cast<double>(section.landmarks.size())), type + " landmarks");
+    items += fact(number_text(static_cast<double>(section.count)), type + " landmarks");
     int shown = 0;
     for (std::size_t i = 0; i < section.type.features.size() && shown < kFactsPerType; ++i) {
-      const auto values = known_values(section, i);
+      const std::vector<double>& values = section.values[i];
       const FeatureSpec& feature = section.type.features[i];
       if (values.empty() || feature.scale == Scale::axis) continue;
       const double largest = *std::max_element(values.begin(), values.end());
@@ -60,13 +60,13 @@ std::string place_of(const Crs& crs) {
 
 bool counts_craters(const std::vector<LandmarkSection>& sections) {
   return std::ranges::any_of(sections, [](const LandmarkSection& section) {
-    return section.type.drawn_as == Solid::bowl && !section.landmarks.empty();
+    return section.type.drawn_as == Solid::bowl && section.count > 0;
   });
 }
 
 std::string section_html(const LandmarkSection& section, const Crs& crs,
                          const std::optional<CountingArea>& area, std::int64_t top) {
-  if (section.landmarks.empty()) return {};
+  if (section.count == 0) return {};
   return fmt::format("<section><h2>{}{}</h2><p>{}</p>\n{}{}{}</section>\n", svg_symbol(section.type, 20),
                      escape_markup(title_of(section.type.name)), escape_markup(section.type.summary),
                      histogram_figures(section), size_frequency_figures(section, area),
@@ -74,7 +74,8 @@ std::string section_html(const LandmarkSection& section, const Crs& crs,
 }
 
 std::string page(const geodb::MapStore& map, const std::string& title, const ReportOptions& options) {
-  const auto sections = landmark_sections(map);
+  const auto sections =
+      landmark_sections(map, static_cast<std::size_t>(std::max<std::int64_t>(0, options.top)));
   const auto runs = map.runs();
   const geodb::RunRecord latest = runs.empty() ? geodb::RunRecord{} : runs.back();
   std::string html = fmt::format(

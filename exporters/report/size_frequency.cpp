@@ -56,7 +56,7 @@ std::string size_frequency_figures(const LandmarkSection& section, const std::op
   const auto radius = find_feature(section.type, "radius");
   if (section.type.drawn_as != Solid::bowl || !radius) return {};
   std::vector<double> diameters;
-  for (const double r : known_values(section, *radius))
+  for (const double r : section.values[*radius])
     if (r > 0) diameters.push_back(2 * r);
   if (diameters.size() < kMinCount) return {};
   const auto bins = size_bins(diameters);

@@ -64,9 +64,40 @@ TEST(NorthArrow, TurnsWithThePolarMap) {
   EXPECT_THAT(svg_north_arrow(view), HasSubstr("rotate(-90.0)"));
 }
 
+/// Returns the section of the type of the first landmark.
+LandmarkSection section_of(const geodb::MapContents& map) {
+  return landmark_section(map.types[map.landmarks[0].type], [&](const auto& take) {
+    for (Landmark landmark : map.landmarks) take(std::move(landmark));
+  });
+}
+
+TEST(LandmarkSections, HoldTheForemostAndTheValuesOfAll) {
+  const geodb::MapContents map = test::three_summits("EPSG:4326", -70, -32, 0.1);
+  const LandmarkSection section = landmark_section(
+      map.types[map.landmarks[0].type],
+      [&](const auto& take) {
+        for (auto landmark = map.landmarks.rbegin(); landmark != map.landmarks.rend(); ++landmark)
+          take(Landmark(*landmark));
+      },
+      2);
+  ASSERT_EQ(section.landmarks.size(), 2u);
+  EXPECT_EQ(section.landmarks[0].uid, "mt-one");
+  EXPECT_EQ(section.landmarks[1].uid, "mt-two");
+  EXPECT_EQ(section.count, 3);
+  const std::size_t elevation = *find_feature(section.type, "elevation");
+  EXPECT_THAT(section.values[elevation], ::testing::UnorderedElementsAre(1000, 2000, 3000));
+  double west = 180, north = -90;
+  for (const Landmark& landmark : map.landmarks) {
+    west = std::min(west, landmark.position.xyz.x());
+    north = std::max(north, landmark.position.xyz.y());
+  }
+  EXPECT_EQ(section.extent->west, west);
+  EXPECT_EQ(section.extent->north, north);
+}
+
 TEST(DrawMarkers, ForemostComesLastAndLabelled) {
   const geodb::MapContents map = test::three_summits("EPSG:4326", -70, -32, 0.1);
-  const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
+  const LandmarkSection section = section_of(map);
   const MapView view = view_of(map.crs, {-70.2, -32.2, -69.8, -31.8});
   const MapMarkers markers = draw_markers(view, {section});
   EXPECT_EQ(markers.drawn, 3u);
@@ -94,7 +125,7 @@ geodb::MapContents crowd_of(const std::string& type, std::size_t count) {
 /// "scale(1.23)" of the last marker.
 double last_scale(const geodb::MapContents& map) {
   const MapView view = view_of(map.crs, {0, 0, 1000, 1000});
-  const LandmarkSection section{map.types[map.landmarks[0].type], map.landmarks};
+  const LandmarkSection section = section_of(map);
   const std::string svg = draw_markers(view, {section}).svg;
   return std::stod(svg.substr(svg.rfind(" scale(") + 7));
 }
