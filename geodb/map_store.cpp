@@ -163,6 +163,38 @@ void MapStore::visit(std::string_view type, const MapQuery::Box& box,
       visit(std::move(landmark));
   }
 }
+std::vector<MapStore::RowRange> MapStore::row_ranges(std::string_view type, std::int64_t rows) const {
+  const std::string& table = connection_->table(type).layout.type().name;
+  sqlite::Statement row =
+      connection_->database.prepare("SELECT id FROM " + quote_identifier(table) + " ORDER BY id");
+  std::vector<RowRange> ranges;
+  for (std::int64_t i = 0; row.step(); ++i) {
+    if (i % rows == 0) ranges.push_back({row.integer(0), row.integer(0)});
+    ranges.back().last = row.integer(0);
+  }
+  return ranges;
+}
+void MapStore::visit(std::string_view type, const RowRange& range,
+                     const std::function<void(Landmark&&)>& visit) const {
+  const LandmarkLayout& layout = connection_->table(type).layout;
+  sqlite::Statement row =
+      connection_->database.prepare(layout.select("WHERE t.id BETWEEN ? AND ? ORDER BY t.id"));
+  row.bind_all(range.first, range.last);
+  while (row.step()) visit(layout.read(row));
+}
+void MapStore::visit_rejected(const std::function<void(Observation&&)>& visit) const {
+  with_map_name(path(), [&] {
+    visit_evidence(connection_->database, types(), "WHERE o.rejected IS NOT NULL", {}, visit);
+  });
+}
+void MapStore::visit_observations(std::string_view type, const RowRange& range,
+                                  const std::function<void(Observation&&)>& visit) const {
+  const std::string& table = connection_->table(type).layout.type().name;
+  const std::string where = substitute_keys(
+      R"(WHERE o.rejected IS NULL AND o.id IN (SELECT related_id FROM "{t}_observation" WHERE base_id BETWEEN {a} AND {b}))",
+      {{"t", table}, {"a", std::to_string(range.first)}, {"b", std::to_string(range.last)}});
+  with_map_name(path(), [&] { visit_evidence(connection_->database, types(), where, {}, visit); });
+}
 void MapStore::visit_observations(const std::function<void(Observation&&)>& visit) const {
   with_map_name(path(), [&] { visit_evidence(connection_->database, types(), "", {}, visit); });
 }

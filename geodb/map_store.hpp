@@ -47,7 +47,22 @@ class MapStore {
   /// Visits the landmarks in a box, edges included; the box cannot cross the antimeridian.
   void visit(std::string_view type, const MapQuery::Box& box,
              const std::function<void(Landmark&&)>& visit) const;
+  /// Rows of a type, consecutive in order of storage.
+  struct RowRange {
+    std::int64_t first = 0, last = 0;  ///< ids, both inclusive
+  };
+  /// Divides the rows of a type into ranges of `rows` rows. Throws Error{usage} for a type that the map
+  /// lacks.
+  std::vector<RowRange> row_ranges(std::string_view type, std::int64_t rows) const;
+  /// Visits the landmarks of a range of rows.
+  void visit(std::string_view type, const RowRange& range,
+             const std::function<void(Landmark&&)>& visit) const;
   void visit_observations(const std::function<void(Observation&&)>& visit) const;
+  /// Visits the rejected observations.
+  void visit_rejected(const std::function<void(Observation&&)>& visit) const;
+  /// Visits the accepted observations of the landmarks of a range of rows.
+  void visit_observations(std::string_view type, const RowRange& range,
+                          const std::function<void(Observation&&)>& visit) const;
   /// Visits the accepted observations of a type's landmarks in a box, and possibly of landmarks slightly
   /// outside.
   void visit_observations(std::string_view type, const MapQuery::Box& box,

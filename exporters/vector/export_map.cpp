@@ -143,10 +143,13 @@ std::vector<OutputFile> output_files(const VectorFormat& format, const std::stri
   return files;
 }
 
+constexpr std::size_t kLandmarksInMemory = 10'000;  // 1 to 2 kB each
+
 void write_map_file(Export& job, const std::vector<std::string>& types, const fs::path& out) {
   geodb::check_before_copy(job.map.path());
   MapSubset subset = map_subset(job.map, types, job.crs);
-  geodb::write_map(out, subset.contents, {.empty_tables = types});
+  geodb::write_map(out, subset.contents,
+                   {.empty_tables = types, .max_landmarks_in_memory = kLandmarksInMemory});
   job.summary.layers = std::move(subset.layers);
   job.summary.files = {out.string()};
   job.warn(std::move(subset.warnings));

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <set>
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "exporters/vector/reproject.hpp"
 
@@ -22,23 +26,80 @@ void reproject(std::vector<geodb::ImageRecord>& images, const Crs& from, const C
       }
 }
 
-void reproject(std::vector<Observation>& observations, const Crs& from, const Crs& to) {
-  if (from.same_as(to)) return;
-  const CrsTransform transform(from, to);
-  for (Observation& seen : observations) {
-    const auto there = transform(seen.position.xyz.x(), seen.position.xyz.y());
-    seen.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
+/// Landmarks and observations of some types in another CRS, read from a map range by range.
+class SubsetReader {
+ public:
+  SubsetReader(const geodb::MapStore& map, const TypeRegistry& types, const Crs& crs)
+      : map_(&map), types_(types), crs_(crs) {
+    if (!map.crs().same_as(crs)) transform_.emplace(map.crs(), crs);
+    for (TypeId id = 0; id < types.size(); ++id)
+      for (const geodb::MapStore::RowRange& rows : map.row_ranges(types[id].name, kRows))
+        ranges_.push_back({id, rows});
   }
-}
 
-bool keep(Observation& seen, const TypeRegistry& from, const TypeRegistry& to,
-          const std::set<std::string>& uids) {
-  const std::string& type = from[seen.type].name;
-  if (to.find(type) == nullptr || !(seen.landmark_uid.empty() || uids.contains(seen.landmark_uid)))
-    return false;
-  seen.type = to.id(type);
-  return seen.position.xyz.head<2>().allFinite();
-}
+  std::size_t parts() const { return ranges_.size(); }
+
+  Reprojected landmarks(std::size_t part) const {
+    const auto& [id, rows] = ranges_[part];
+    const LandmarkType& type = types_[id];
+    std::vector<Landmark> found;
+    map_->visit(type.name, rows, [&](Landmark&& landmark) {
+      landmark.type = id;
+      found.push_back(std::move(landmark));
+    });
+    return reproject(std::move(found), type, map_->crs(), crs_);
+  }
+
+  /// Returns the number of landmarks of a type without a position in the CRS.
+  std::int64_t count_lost(TypeId type) const {
+    std::int64_t lost = 0;
+    for (std::size_t part = 0; part < parts(); ++part)
+      if (transform_ && ranges_[part].first == type) lost += landmarks(part).lost;
+    return lost;
+  }
+
+  std::vector<Observation> evidence(std::size_t part) const {
+    std::vector<Observation> found;
+    const auto& [id, rows] = ranges_[part];
+    std::unordered_set<std::string> uids;  // landmarks without a position in the CRS are left out
+    if (transform_)
+      for (const Landmark& landmark : landmarks(part).landmarks) uids.insert(landmark.uid);
+    map_->visit_observations(types_[id].name, rows, [&](Observation&& seen) {
+      if ((!transform_ || uids.contains(seen.landmark_uid)) && keep(seen)) found.push_back(std::move(seen));
+    });
+    return found;
+  }
+
+  /// Returns the rejected observations. Those of landmarks that are not in the map are left out.
+  std::vector<Observation> rejected() const {
+    std::vector<Observation> found;
+    map_->visit_rejected([&](Observation&& seen) {
+      if (!seen.landmark_uid.empty() && !map_->find(seen.landmark_uid)) return;
+      if (keep(seen)) found.push_back(std::move(seen));
+    });
+    return found;
+  }
+
+ private:
+  static constexpr std::int64_t kRows = 10'000;  // of a part
+
+  bool keep(Observation& seen) const {
+    const std::string& type = map_->types()[seen.type].name;
+    if (types_.find(type) == nullptr) return false;
+    seen.type = types_.id(type);
+    if (transform_) {
+      const auto there = (*transform_)(seen.position.xyz.x(), seen.position.xyz.y());
+      seen.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
+    }
+    return seen.position.xyz.head<2>().allFinite();
+  }
+
+  const geodb::MapStore* map_;
+  TypeRegistry types_;  ///< of the subset
+  Crs crs_;
+  std::optional<CrsTransform> transform_;
+  std::vector<std::pair<TypeId, geodb::MapStore::RowRange>> ranges_;
+};
 
 }  // namespace
 
@@ -46,25 +107,23 @@ MapSubset map_subset(const geodb::MapStore& map, const std::vector<std::string>&
   MapSubset subset;
   geodb::MapContents& contents = subset.contents;
   contents.crs = crs;
-  std::set<std::string> uids;
+  for (const std::string& name : types) contents.types.add(*map.types().find(name));
+  const auto reader = std::make_shared<SubsetReader>(map, contents.types, crs);
   for (const std::string& name : types) {
-    const LandmarkType& type = *map.types().find(name);
-    const TypeId id = contents.types.add(type);
-    Reprojected found = reproject(map.query({.types = {name}}), type, map.crs(), crs);
-    subset.layers.push_back({name, static_cast<std::int64_t>(found.landmarks.size())});
-    if (found.lost > 0)
+    const std::int64_t lost = reader->count_lost(contents.types.id(name));
+    subset.layers.push_back({name, map.count(name) - lost});
+    if (lost > 0)
       subset.warnings.push_back(
-          fmt::format("{} {} landmarks have no position in {} and are left out", found.lost, name, crs.id()));
-    for (Landmark& landmark : found.landmarks) {
-      landmark.type = id;
-      uids.insert(landmark.uid);
-      contents.landmarks.push_back(std::move(landmark));
-    }
+          fmt::format("{} {} landmarks have no position in {} and are left out", lost, name, crs.id()));
   }
-  contents.observations = map.observations();
-  reproject(contents.observations, map.crs(), crs);
-  std::erase_if(contents.observations,
-                [&](Observation& seen) { return !keep(seen, map.types(), contents.types, uids); });
+  contents.parts.count = reader->parts();
+  contents.parts.landmarks = [reader](std::size_t part) {
+    return std::make_shared<const std::vector<Landmark>>(reader->landmarks(part).landmarks);
+  };
+  contents.parts.evidence = [reader](std::size_t part) {
+    return std::make_shared<const std::vector<Observation>>(reader->evidence(part));
+  };
+  contents.observations = reader->rejected();
   contents.images = map.images();
   reproject(contents.images, map.crs(), crs);
   const auto runs = map.runs();

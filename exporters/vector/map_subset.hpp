@@ -7,7 +7,8 @@
 #include "geodb/map_store.hpp"
 namespace waymark::exporters {
 
-/// Some types of a map with their evidence, images and latest run, in a CRS of the same body.
+/// Some types of a map with their evidence, images and latest run, in a CRS of the same body. Landmarks and
+/// accepted observations are parts, read from the map when it is written: it must be open until then.
 struct MapSubset {
   geodb::MapContents contents;
   std::vector<ExportedLayer> layers;
