@@ -193,38 +193,8 @@ class Rejections {
   const TableSource& table_;
 };
 
-bool before(const Landmark& a, const Landmark& b) {
-  if (a.type != b.type) return a.type < b.type;
-  const auto& p = a.position.xyz;
-  const auto& q = b.position.xyz;
-  if (p != q) return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
-  for (std::size_t i = 0; i < std::min(a.features.size(), b.features.size()); ++i)
-    if (const double x = a.features[i].value, y = b.features[i].value; x < y || y < x) return x > y;
-  return a.uid < b.uid;
-}
-
-/// Assigns missing uids. Throws if the table gives two landmarks the same uid.
-void name_landmarks(const TypeRegistry& types, ImportedTable& result, const std::string& path) {
-  std::ranges::stable_sort(result.landmarks, before);
-  std::vector<std::string> given;
-  given.reserve(result.landmarks.size());
-  for (Landmark& landmark : result.landmarks) given.push_back(std::exchange(landmark.uid, {}));
-  assign_uids(types, result.crs, result.landmarks);
-  std::unordered_set<std::string_view> taken;
-  TypeId type = 0;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (result.landmarks[i].type != type) taken.clear();  // sorted by type; types have tables of their own
-    type = result.landmarks[i].type;
-    std::string& uid = result.landmarks[i].uid;
-    if (!given[i].empty()) uid = std::move(given[i]);
-    if (!taken.insert(uid).second)
-      throw Error(ErrorCode::input, fmt::format("two rows have the uid '{}'", uid), path,
-                  "correct the column, or leave it out: --columns uid=");
-  }
-}
-
 void refuse_empty_result(const ImportedTable& result, const std::string& path) {
-  if (!result.landmarks.empty() || result.rows == 0) return;
+  if (result.landmarks > 0 || result.rows == 0) return;
   std::string reasons;
   for (const auto& [reason, count] : result.rejected_by_reason)
     reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
@@ -236,7 +206,8 @@ void refuse_empty_result(const ImportedTable& result, const std::string& path) {
 
 }  // namespace
 
-ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how) {
+ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how,
+                           const std::function<void(Landmark&&)>& take) {
   const TableHeader& header = table.header();
   const RowTypes row_types(header, types, how.type);
   ImportedTable result;
@@ -264,12 +235,14 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
         continue;
       }
       Landmark landmark = read_landmark(cells, row, types[*type], *type);
-      if (const std::string nowhere = positions.transform_to_map(landmark.position); !nowhere.empty())
+      if (const std::string nowhere = positions.transform_to_map(landmark.position); !nowhere.empty()) {
         rejections.add(row, nowhere);
-      else if (const std::string reason = find_implausibility(types[*type], landmark); !reason.empty())
+      } else if (const std::string reason = find_implausibility(types[*type], landmark); !reason.empty()) {
         rejections.add(row, landmark, reason);
-      else
-        result.landmarks.push_back(std::move(landmark));
+      } else {
+        ++result.landmarks;
+        take(std::move(landmark));
+      }
     } catch (const Error& error) {
       if (!how.skip_bad_rows || error.code() != ErrorCode::input) throw;
       rejections.add(row, "cannot be read");
@@ -277,7 +250,6 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
   }
   result.warnings = positions.warnings();
   refuse_empty_result(result, header.path);
-  name_landmarks(types, result, header.path);
   return result;
 }
 

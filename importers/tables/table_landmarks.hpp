@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,11 +21,11 @@ struct TableImport {
   bool skip_bad_rows = false;  ///< reject rows that cannot be read instead of throwing
 };
 
-/// Landmarks read from a table, and the rows that were rejected.
+/// What was read of a table, and the rows that were rejected.
 struct ImportedTable {
   Crs crs = Crs::local();             ///< of the landmarks
   std::vector<std::string> types;     ///< that were read
-  std::vector<Landmark> landmarks;    ///< with uids, sorted by type and position
+  std::int64_t landmarks = 0;         ///< number of landmarks
   std::vector<Observation> rejected;  ///< those of the rejected rows that have a position in the map
   std::int64_t rows = 0;              ///< = landmarks + rejected
   std::map<std::string, std::int64_t> rejected_by_reason;
@@ -33,15 +34,17 @@ struct ImportedTable {
   std::vector<std::string> warnings;
 };
 
-/// Reads all rows as landmarks.
+/// Reads all rows and passes the landmarks to `take`, in the order of rows. A landmark without a uid in the
+/// table has none.
 /// - A row is rejected, and counted, if it has no position, lies outside the domain of the map's CRS, has a
 ///   feature outside its plausible range, a negative deviation or a confidence outside [0, 1], or is of
 ///   another type.
 /// - Missing features and position deviations are unknown (NaN), a missing height is 0, missing counts are 1.
 ///   A deviation is taken as a spread.
-/// Throws Error for a cell that is no number or a broken row (with its line), a duplicate uid, an unknown
-/// CRS, and a table without a plausible row (probably in another unit). About 0.15 M rows/s; memory is that
-/// of the landmarks.
-ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how);
+/// Throws Error for a cell that is no number or a broken row (with its line), an unknown CRS, and a table
+/// without a plausible row (probably in another unit). About 0.15 M rows/s; memory is that of the rejected
+/// rows.
+ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how,
+                           const std::function<void(Landmark&&)>& take);
 
 }  // namespace waymark::importers

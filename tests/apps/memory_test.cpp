@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <cmath>
+#include <map>
 
 #include "made_dem.hpp"
 #include "program.hpp"
@@ -96,6 +97,39 @@ TEST(Memory, OfPeaksHoldsSummitsInPieces) {
                     "--threads", "1", "-o", folder / "peaks.gpkg"});
   };
   EXPECT_LT(peak("5"), peak("100") + 200) << "MB";
+}
+
+/// A table of rocks, 100 to a row.
+std::string rock_table(const TempFolder& folder, int count) {
+  std::string text = "x,y,radius,height\n";
+  for (int i = 0; i < count; ++i)
+    text += std::to_string(i % 100 * 7) + "," + std::to_string(i / 100 * 7) + "," +
+            std::to_string(0.2 + i % 50 * 0.05) + "," + std::to_string(0.3 + i % 40 * 0.02) + "\n";
+  const std::string file = folder / (std::to_string(count) + ".csv");
+  write_text(file, text);
+  return file;
+}
+
+// As landmarks in memory, 100,000 rocks would take 130 to 220 MB.
+TEST(Memory, OfMapsDoesNotGrowWithTheirLandmarks) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peaks = [&](int count) {
+    const std::string map = folder / (std::to_string(count) + ".gpkg");
+    std::map<std::string, double> peak;
+    peak["import"] = peak_of(
+        {"-q", "import", rock_table(folder, count), "-o", map, "--type", "rock", "--map-crs", "EPSG:32632"});
+    peak["export to a map"] = peak_of({"-q", "export", map, folder / "out.gpkg", "--overwrite"});
+    peak["export to FlatGeobuf"] = peak_of({"-q", "export", map, folder / "out.fgb", "--overwrite"});
+    peak["report"] = peak_of({"-q", "report", map, "-o", folder / "out.html"});
+    return peak;
+  };
+  const auto small = peaks(20'000), large = peaks(120'000);
+  for (const auto& [what, megabytes] : small) {
+    RecordProperty(what, static_cast<int>(megabytes));
+    EXPECT_GT(megabytes, 20) << "MB, " << what;
+    EXPECT_LT(large.at(what), megabytes + 20) << "MB, " << what << ": " << megabytes << " for a sixth";
+  }
 }
 
 }  // namespace

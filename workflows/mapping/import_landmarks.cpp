@@ -11,6 +11,7 @@
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/tables/table.hpp"
+#include "workflows/mapping/staged_landmarks.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
@@ -18,19 +19,27 @@
 namespace waymark::workflows {
 namespace {
 
-importers::ImportedTable read_table(const ImportRequest& request) {
+constexpr std::size_t kLandmarksInMemory = 10'000;  // 1 to 2 kB each
+
+importers::ImportedTable read_table(const ImportRequest& request, StagedLandmarks& landmarks) {
   const importers::TableFormat format = request.format == "csv"   ? importers::TableFormat::csv
                                         : request.format == "ogr" ? importers::TableFormat::ogr
                                                                   : importers::TableFormat::by_name;
   const auto source = importers::open_table(request.table, format, request.layer, request.options.type);
-  return importers::import_table(*source, all_types(), request.options);
+  return importers::import_table(*source, all_types(), request.options,
+                                 [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); });
 }
 
 /// Reads Landmark_Groundtruth.dat: numbered posts in a local CRS.
-importers::ImportedTable read_mrclam_table(const std::string& file, const std::string& type) {
+importers::ImportedTable read_mrclam_table(const std::string& file, const std::string& type,
+                                           StagedLandmarks& landmarks) {
   importers::ImportedTable table;
-  table.landmarks = importers::import_mrclam_landmarks(file, all_types().id(type), *all_types().find(type));
-  table.rows = static_cast<std::int64_t>(table.landmarks.size());
+  for (Landmark& landmark :
+       importers::import_mrclam_landmarks(file, all_types().id(type), *all_types().find(type))) {
+    landmarks.add(std::move(landmark));
+    ++table.landmarks;
+  }
+  table.rows = table.landmarks;
   table.types = {type};
   table.bindings = {"uid: subject", "x", "y", "covariance: deviations of x and y"};
   return table;
@@ -42,7 +51,7 @@ geodb::RunRecord run_record(const importers::ImportedTable& table, const std::st
   stage.stage = "import_table";
   stage.units = stage.made = 1;
   stage.counts.in = table.rows;
-  stage.counts.out = static_cast<std::int64_t>(table.landmarks.size());
+  stage.counts.out = table.landmarks;
   for (const auto& [reason, count] : table.rejected_by_reason) stage.counts.rejected[reason] = count;
   stage.warnings = table.warnings;
   return make_single_step_record(std::move(stage), file, command_line, started);
@@ -51,8 +60,8 @@ geodb::RunRecord run_record(const importers::ImportedTable& table, const std::st
 void send_counts(const importers::ImportedTable& table, const Callbacks& callbacks) {
   callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, ", ")));
   for (const std::string& warning : table.warnings) callbacks.warning(warning);
-  const auto kept = static_cast<std::int64_t>(table.landmarks.size());
-  callbacks.summary(fmt::format("{} rows, {} landmarks, {} rejected\n", table.rows, kept, table.rows - kept));
+  callbacks.summary(fmt::format("{} rows, {} landmarks, {} rejected\n", table.rows, table.landmarks,
+                                table.rows - table.landmarks));
   for (const auto& [reason, count] : table.rejected_by_reason)
     callbacks.summary(fmt::format("    {} {}\n", count, reason));
   if (!table.first_rejection.empty())
@@ -65,24 +74,27 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
   check_map_output(request.map);
   const auto started = std::chrono::system_clock::now();
   std::string file = request.table;
+  const std::filesystem::path folder = std::filesystem::path(request.map).parent_path();
+  StagedLandmarks landmarks(all_types(), folder.empty() ? "." : folder);
   importers::ImportedTable table;
   if (request.format == "mrclam") {
     if (std::filesystem::is_directory(file))
       file = (std::filesystem::path(file) / "Landmark_Groundtruth.dat").string();
-    table = read_mrclam_table(file, request.options.type.empty() ? "beacon" : request.options.type);
+    table =
+        read_mrclam_table(file, request.options.type.empty() ? "beacon" : request.options.type, landmarks);
   } else {
-    table = read_table(request);
+    table = read_table(request, landmarks);
   }
   geodb::MapContents contents;
   contents.types = all_types();
   contents.crs = table.crs;
   contents.run = run_record(table, file, request.command_line, started);
   send_counts(table, callbacks);
-  contents.landmarks = std::move(table.landmarks);
+  contents.parts = landmarks.finish(table.crs, file);
   contents.observations = std::move(table.rejected);
-  geodb::write_map(request.map, contents, {.empty_tables = table.types});
-  callbacks.summary(
-      fmt::format("{}: {} landmarks in {}\n", request.map, contents.landmarks.size(), contents.crs.id()));
+  geodb::write_map(request.map, contents,
+                   {.empty_tables = table.types, .max_landmarks_in_memory = kLandmarksInMemory});
+  callbacks.summary(fmt::format("{}: {} landmarks in {}\n", request.map, table.landmarks, contents.crs.id()));
   return table;
 }
 
