@@ -14,8 +14,10 @@
 #include "geo/dem_handle.hpp"
 #include "landmarks/uid_index.hpp"
 #include "pipeline/forest/crown_table.hpp"
+#include "pipeline/forest/survey_outline.hpp"
 #include "pipeline/fusion/projection/canopy_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
+#include "workflows/mapping/summit_names.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::workflows {
@@ -47,33 +49,19 @@ std::string cell_count(double cells) {
   return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
 }
 
-/// Returns the fraction of cells with data in a canopy model, sampled from every 64th of its rows.
-double known_fraction(const CanopySource& canopy) {
-  const GridGeometry& grid = canopy.geometry();
-  const std::int64_t step = std::max<std::int64_t>(1, grid.rows / 64);
-  std::int64_t all = 0, known = 0;
-  for (std::int64_t row = 0; row < grid.rows; row += step) {
-    const Grid<float> heights = canopy.read({0, row, grid.columns, 1});
-    all += grid.columns;
-    known += std::ranges::count_if(heights.cells(), [](float h) { return h > kNoCanopy; });
-  }
-  return all > 0 ? static_cast<double>(known) / static_cast<double>(all) : 0;
-}
-
-/// Returns the area that was searched for trees if it is a full rectangle. An inventory of the map needs it.
-std::optional<geodb::ShapeLayer> survey_layer(const Canopies& canopies) {
-  constexpr double kMinKnown = 0.995;
+/// Returns the ground that was searched for trees. An inventory of the map needs it.
+geodb::ShapeLayer survey_layer(const Canopies& canopies) {
   geodb::ShapeLayer layer{.name = "survey",
                           .summary = "Ground that was searched for trees",
                           .kind = geodb::ShapeKind::polygon,
-                          .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy model"}},
+                          .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy models"}},
                           .style = {.colour = "#546e7a", .width = 0.4}};
-  if (canopies.size() != 1 || known_fraction(*canopies[0]) < kMinKnown) return {};
-  const GridGeometry& grid = canopies[0]->geometry();
-  const double left = grid.where.x(-0.5), right = grid.where.x(static_cast<double>(grid.columns) - 0.5),
-               top = grid.where.y(-0.5), bottom = grid.where.y(static_cast<double>(grid.rows) - 0.5);
-  layer.rows.push_back({.parts = {{.outer = {{left, bottom}, {right, bottom}, {right, top}, {left, top}}}},
-                        .values = {canopies[0]->name()}});
+  std::string sources;
+  for (const auto& canopy : canopies) sources += (sources.empty() ? "" : ", ") + canopy->name();
+  geodb::Shape row{.parts = {}, .values = {sources}};
+  for (pipeline::SurveyedPart& part : pipeline::survey_outline(canopies))
+    row.parts.push_back({.outer = std::move(part.outer), .holes = std::move(part.holes)});
+  if (!row.parts.empty()) layer.rows.push_back(std::move(row));
   return layer;
 }
 
@@ -184,7 +172,7 @@ bool has_all_landmarks(const pipeline::Pipeline& pipeline, const pipeline::RunRe
 }
 
 std::vector<std::string> map_artifacts() {
-  return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views"};
+  return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views", "place_names"};
 }
 
 geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord run, bool with_dem) {
@@ -197,12 +185,14 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord ru
   contents.parts = tile_parts(result);
   contents.landmarks = concatenate(result.take<std::vector<Landmark>>("landmarks"));
   contents.observations = concatenate(result.take<std::vector<Observation>>("evidence"));
+  for (const auto& names : result.artifacts<importers::PlaceNames>("place_names"))
+    name_summits(contents, *names);
   auto tables = result.take_readers<pipeline::CrownTable>("crowns");
   for (pipeline::CrownTable& table : result.take<pipeline::CrownTable>("crowns"))
     tables.push_back(
         [held = std::make_shared<const pipeline::CrownTable>(std::move(table))] { return held; });
   for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
-    if (auto survey = survey_layer(*surveys)) contents.layers.push_back(std::move(*survey));
+    contents.layers.push_back(survey_layer(*surveys));
     for (const auto& canopy : *surveys)
       contents.images.push_back(image_record(pipeline::canopy_view(*canopy)));
   }
