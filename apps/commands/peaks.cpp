@@ -29,7 +29,10 @@ class Peaks final : public Shortcut {
         .arguments = {file_word("DEM...", &files_,
                                 "Elevation models that GDAL opens, /vsi paths too, - for standard input; "
                                 "where they overlap the first "
-                                "wins")},
+                                "wins"),
+                      Argument{"--names", "LAYER", &names_,
+                               "Points with a column name, after which summits are named; may be repeated"}
+                          .offering(Offer::file)},
         .examples = {
             {"waymark peaks alps.tif -o alps.gpkg --min-prominence 30",
              "A map of the summits that rise 30 m"},
@@ -46,9 +49,10 @@ class Peaks final : public Shortcut {
     std::vector<std::string> files = files_;
     std::ranges::replace(files, "-", "/vsistdin/");
     workflows::add_mountain_top_stages(pipeline, files);
+    if (!names_.empty()) workflows::add_name_stage(pipeline, names_);
   }
 
-  std::vector<std::string> files_;
+  std::vector<std::string> files_, names_;
 };
 
 }  // namespace

@@ -137,13 +137,16 @@ std::string title_of_type(std::string name) {
   return name;
 }
 
-/// Returns a QGIS expression: "Mountain top 940 m", or the uid of types without a label.
+/// Returns a QGIS expression: the attribute `name` where the type has one, else "Mountain top 940 m", or the
+/// uid of types without a label.
 std::string display_expression(const LandmarkType& type) {
+  const bool named = std::ranges::count(type.attributes, "name", &AttributeSpec::name) > 0;
+  const std::string name = named ? "nullif(\"name\", ''), " : "";
   const auto feature = std::ranges::find(type.features, type.label_feature, &FeatureSpec::name);
-  if (feature == type.features.end()) return "\"uid\"";
-  return fmt::format("coalesce('{0} ' || round(\"{1}\", if(abs(\"{1}\") < 100, 1, 0)) || '{2}', \"uid\")",
+  if (feature == type.features.end()) return "coalesce(" + name + "\"uid\")";
+  return fmt::format("coalesce({3}'{0} ' || round(\"{1}\", if(abs(\"{1}\") < 100, 1, 0)) || '{2}', \"uid\")",
                      title_of_type(type.name), feature->name,
-                     feature->unit.empty() ? "" : " " + feature->unit);
+                     feature->unit.empty() ? "" : " " + feature->unit, name);
 }
 
 /// Returns the HTML that QGIS shows under the pointer: the display name, each known feature, and the

@@ -59,6 +59,34 @@ TEST_F(Peaks, SummaryTellsStagesCountsSpeedAndTheMap) {
                                    HasSubstr("cells/s"), HasSubstr("map.gpkg: 2 mountain_top")));
 }
 
+TEST_F(Peaks, SummitsAreNamedAfterTheNearestPoints) {
+  write_text(folder_ / "names.csv",
+             "name,x,y\nGro\xC3\x9F"
+             "er Kopf,501600,5198500\nFar away,509000,5198500\n"
+             "Farther,505300,5198500\nKleiner Kopf,505450,5198450\n,501500,5198500\n");
+  table({twins(), "--names", folder_ / "names.csv"});
+  const json tops = json::parse(waymark({"query", folder_ / "map.gpkg", "--format", "json"}).out);
+  ASSERT_EQ(tops.size(), 2);
+  for (const json& top : tops)
+    EXPECT_EQ(top["name"], top["elevation"] == 900 ? "Gro\xC3\x9F"
+                                                     "er Kopf"
+                                                   : "Kleiner Kopf");
+}
+
+TEST_F(Peaks, WithoutAGazetteerSummitsHaveNoNames) {
+  table({twins()});
+  const json tops = json::parse(waymark({"query", folder_ / "map.gpkg", "--format", "json"}).out);
+  for (const json& top : tops) EXPECT_EQ(top["name"], nullptr);
+}
+
+TEST_F(Peaks, GazetteerWithoutNamesIsRefused) {
+  write_text(folder_ / "names.csv", "summit,x,y\nA,1,2\n");
+  const Outcome said =
+      waymark({"peaks", twins(), "--names", folder_ / "names.csv", "-o", folder_ / "m.gpkg"});
+  EXPECT_NE(said.code, 0);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("no column 'name'"), HasSubstr("names.csv"), HasSubstr("summit")));
+}
+
 TEST_F(Peaks, QuietSaysNothing) {
   table({twins(), "-q"});
   EXPECT_EQ(last_summary_, "");

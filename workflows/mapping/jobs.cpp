@@ -36,6 +36,10 @@ void add_mountain_top_stages(pipeline::Pipeline& pipeline, const std::vector<std
     pipeline.add(stage);
 }
 
+void add_name_stage(pipeline::Pipeline& pipeline, const std::vector<std::string>& gazetteers) {
+  pipeline.add("load_names", nlohmann::json{{"files", gazetteers}}.dump());
+}
+
 void add_crater_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem) {
   pipeline.add(
       "load_dem",

@@ -8,6 +8,9 @@ namespace waymark::workflows {
 /// Appends the stages that find the mountain tops of a DEM. Files that touch or overlap are one DEM.
 void add_mountain_top_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem);
 
+/// Appends the stage that names mountain tops after the points of gazetteers.
+void add_name_stage(pipeline::Pipeline& pipeline, const std::vector<std::string>& gazetteers);
+
 /// Appends the stages that find the craters of a DEM.
 void add_crater_stages(pipeline::Pipeline& pipeline, const std::vector<std::string>& dem);
 
