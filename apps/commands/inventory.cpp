@@ -51,7 +51,7 @@ class Inventory final : public Command {
                       "Fraction of trees detected by height: height_from,recall[,sd]; corrects for "
                       "undetected trees"}
                  .offering(Offer::file)
-                 .or_else("all trees were detected"),
+                 .or_else("that of simulated forests for maps from the air; else all trees were detected"),
              Argument{"--memory", "MEGABYTES", &memory_.megabytes,
                       "Memory for trees, 1 kB each, unless one stand has more; no figure depends on it"}
                  .or_else(std::to_string(MemoryOption{}.megabytes)),

@@ -130,16 +130,23 @@ std::string map_figure(const InventoryPage& page) {
   return svg;
 }
 
+/// Returns true for stems_per_ha_d035, but not for its standard error nor for stems_per_ha_detected.
+bool is_diameter_class(std::string_view column) {
+  constexpr std::string_view kPrefix = "stems_per_ha_d";
+  return column.starts_with(kPrefix) &&
+         column.find_first_not_of("0123456789", kPrefix.size()) == std::string_view::npos;
+}
+
 struct TableColumn {
   const char *name, *title;
   int decimals;
 };
 constexpr TableColumn kTable[] = {{"stems_per_ha", "stems / ha", 0},
-                                  {"stems_per_ha_all", "all stems / ha", 0},
+                                  {"stems_per_ha_detected", "stems / ha of detected trees", 0},
                                   {"basal_area_m2_per_ha", "basal area m²/ha", 1},
-                                  {"basal_area_m2_per_ha_all", "all basal area m²/ha", 1},
+                                  {"basal_area_m2_per_ha_detected", "basal area m²/ha of detected trees", 1},
                                   {"volume_m3_per_ha", "volume m³/ha", 0},
-                                  {"volume_m3_per_ha_all", "all volume m³/ha", 0},
+                                  {"volume_m3_per_ha_detected", "volume m³/ha of detected trees", 0},
                                   {"lorey_height_m", "Lorey height m", 1},
                                   {"dominant_height_m", "dominant height m", 1},
                                   {"quadratic_mean_diameter_cm", "quadratic mean diameter cm", 1},
@@ -181,8 +188,7 @@ std::string chart_of(const geodb::ShapeLayer& stands, const geodb::Shape& row, d
       escape_markup(text(row, column(stands, "stand"))), kWide + 44, kHigh + 40);
   std::vector<std::size_t> bins;
   for (std::size_t i = 0; i < stands.columns.size(); ++i)
-    if (stands.columns[i].name.starts_with("stems_per_ha_d") && !stands.columns[i].name.ends_with("_se"))
-      bins.push_back(i);
+    if (is_diameter_class(stands.columns[i].name)) bins.push_back(i);
   const double width = kWide / static_cast<double>(std::max<std::size_t>(bins.size(), 1));
   const std::size_t every = 1 + bins.size() / 10;
   for (std::size_t k = 0; k < bins.size(); ++k) {
@@ -209,8 +215,7 @@ std::string charts_of(const geodb::ShapeLayer& stands) {
   double tallest = 1;
   for (const geodb::Shape& row : stands.rows)
     for (std::size_t i = 0; i + 1 < stands.columns.size(); ++i)
-      if (stands.columns[i].name.starts_with("stems_per_ha_d") && !stands.columns[i].name.ends_with("_se"))
-        tallest = std::max(tallest, number(row, i));
+      if (is_diameter_class(stands.columns[i].name)) tallest = std::max(tallest, number(row, i));
   std::string html = "<div class=\"histograms\">\n";
   for (std::size_t i = 0; i < std::min(stands.rows.size(), kMaxCharts); ++i)
     html += chart_of(stands, stands.rows[i], tallest);

@@ -91,7 +91,7 @@ TEST_F(InventoryCommand, WritesALinePerStand) {
   EXPECT_EQ(cell("out.csv", 0, "stand"), "west");
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "area_ha")), 1, 1e-9);
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "stems_per_ha")), 10, 1e-9);
-  EXPECT_EQ(cell("out.csv", 0, "stems_per_ha_all"), cell("out.csv", 0, "stems_per_ha"))
+  EXPECT_EQ(cell("out.csv", 0, "stems_per_ha_detected"), cell("out.csv", 0, "stems_per_ha"))
       << "a list has all its trees";
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "basal_area_m2_per_ha")), 0.706858, 1e-6);
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "lorey_height_m")), 20, 1e-9);
@@ -229,11 +229,11 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
   const Told counted = waymark("inventory found.gpkg --stands one/stands.geojson -o stands.csv");
   ASSERT_EQ(counted.code, 0) << counted.text;
   EXPECT_EQ(cell("stands.csv", 1, "stand"), "2");
-  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha")), 100);
-  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_all")),
-            1.2 * std::stod(cell("stands.csv", 0, "stems_per_ha")))
+  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_detected")), 100);
+  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha")),
+            1.2 * std::stod(cell("stands.csv", 0, "stems_per_ha_detected")))
       << "trees under others, which the air does not see";
-  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_all_se")), 30);
+  EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_se")), 30);
 
   // The same, whether all trees are in memory or the few about a stand.
   const auto layers = [&](const std::string& map) {

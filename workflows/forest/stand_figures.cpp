@@ -77,15 +77,18 @@ StandResult compute_stand_figures(const MapTrees& map, NamedStand stand, const S
   for (std::size_t i = 0; !all_near && i < near.size(); ++i) crowns.push_back(map.crowns[near[i]]);
   const std::span<const pipeline::StandCrown> shades = all_near ? map.crowns : crowns;
   const pipeline::VolumeRow& volumes = volume_row(tables, result.stand.species);
-  pipeline::InventoryOptions all = options;
-  all.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
-  result.figures = result.complete = inventory(trees, polygon, all);
+  pipeline::InventoryOptions detected = options;
+  detected.form_factor_error = volumes.form_factor_sd / volumes.form_factor;
+  detected.recall.clear();
+  result.figures = inventory(trees, polygon, detected);
+  pipeline::InventoryOptions all = detected;
+  all.recall = options.recall;
   if (map.from_air && all.recall.empty()) {
     const double dominant = result.figures.dominant_height.value;
     all.recall = pipeline::airborne_recall(dominant, crown_ratio(trees, shades, dominant));
     all.recall_errors_correlated = true;
-    result.complete = inventory(trees, polygon, all);
   }
+  result.complete = all.recall.empty() ? result.figures : inventory(trees, polygon, all);
   result.cover = pipeline::canopy_cover(shades, polygon);
   return result;
 }

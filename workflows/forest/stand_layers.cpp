@@ -22,37 +22,39 @@ struct FigureColumn {
   pipeline::Estimate (*of)(const StandResult&);
 };
 
+// Of detected and undetected trees.
 constexpr FigureColumn kFigures[] = {
-    {"stems_per_ha", "1/ha", "Trees per hectare", 1, [](const StandResult& r) { return r.figures.stems; }},
+    {"stems_per_ha", "1/ha", "Trees per hectare, undetected ones included", 1,
+     [](const StandResult& r) { return r.complete.stems; }},
     {"basal_area_m2_per_ha", "m2/ha", "Stem cross-sections at 1.3 m per hectare", 1,
-     [](const StandResult& r) { return r.figures.basal_area; }},
+     [](const StandResult& r) { return r.complete.basal_area; }},
     {"volume_m3_per_ha", "m3/ha", "Stem volume per hectare", 1,
-     [](const StandResult& r) { return r.figures.volume; }},
+     [](const StandResult& r) { return r.complete.volume; }},
     {"biomass_t_per_ha", "t/ha", "Dry mass per hectare; NULL without a table that gives it", 1,
-     [](const StandResult& r) { return r.figures.mass; }},
+     [](const StandResult& r) { return r.complete.mass; }},
     {"lorey_height_m", "m", "Mean height weighted by basal area", 1,
-     [](const StandResult& r) { return r.figures.lorey_height; }},
+     [](const StandResult& r) { return r.complete.lorey_height; }},
     {"dominant_height_m", "m", "Mean height of the 100 thickest per hectare", 1,
-     [](const StandResult& r) { return r.figures.dominant_height; }},
-    {"mean_height_m", "m", "Mean height", 1, [](const StandResult& r) { return r.figures.mean_height; }},
+     [](const StandResult& r) { return r.complete.dominant_height; }},
+    {"mean_height_m", "m", "Mean height", 1, [](const StandResult& r) { return r.complete.mean_height; }},
     {"quadratic_mean_diameter_cm", "cm", "Diameter of the tree of mean basal area", 100,
-     [](const StandResult& r) { return r.figures.quadratic_mean_diameter; }},
+     [](const StandResult& r) { return r.complete.quadratic_mean_diameter; }},
     {"mean_diameter_cm", "cm", "Mean diameter", 100,
-     [](const StandResult& r) { return r.figures.mean_diameter; }},
+     [](const StandResult& r) { return r.complete.mean_diameter; }},
     {"cover", "", "Share of the ground under crowns, 0 to 1", 1,
      [](const StandResult& r) { return r.cover; }},
 };
 
-// Corrected for undetected trees.
-constexpr FigureColumn kComplete[] = {
-    {"stems_per_ha_all", "1/ha", "Trees per hectare, corrected for undetected trees", 1,
-     [](const StandResult& r) { return r.complete.stems; }},
-    {"basal_area_m2_per_ha_all", "m2/ha", "Stem cross-sections, corrected for undetected trees", 1,
-     [](const StandResult& r) { return r.complete.basal_area; }},
-    {"volume_m3_per_ha_all", "m3/ha", "Stem volume, corrected for undetected trees", 1,
-     [](const StandResult& r) { return r.complete.volume; }},
-    {"lorey_height_m_all", "m", "Mean height weighted by basal area, of all trees", 1,
-     [](const StandResult& r) { return r.complete.lorey_height; }},
+// Of detected trees only; their errors do not include the others.
+constexpr FigureColumn kDetected[] = {
+    {"stems_per_ha_detected", "1/ha", "Detected trees per hectare", 1,
+     [](const StandResult& r) { return r.figures.stems; }},
+    {"basal_area_m2_per_ha_detected", "m2/ha", "Stem cross-sections of detected trees", 1,
+     [](const StandResult& r) { return r.figures.basal_area; }},
+    {"volume_m3_per_ha_detected", "m3/ha", "Stem volume of detected trees", 1,
+     [](const StandResult& r) { return r.figures.volume; }},
+    {"lorey_height_m_detected", "m", "Mean height of detected trees, weighted by basal area", 1,
+     [](const StandResult& r) { return r.figures.lorey_height; }},
 };
 
 std::string class_name(const pipeline::DiameterClass& c) {
@@ -62,7 +64,7 @@ std::string class_name(const pipeline::DiameterClass& c) {
 std::vector<pipeline::DiameterClass> all_classes(const std::vector<StandResult>& results) {
   std::vector<pipeline::DiameterClass> all;
   for (const StandResult& result : results)
-    if (result.figures.classes.size() > all.size()) all = result.figures.classes;
+    if (result.complete.classes.size() > all.size()) all = result.complete.classes;
   return all;
 }
 
@@ -103,7 +105,7 @@ geodb::ShapeLayer stand_layer(const std::vector<StandResult>& results) {
     layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
                              "Standard error of " + std::string(figure.name)});
   }
-  for (const FigureColumn& figure : kComplete) {
+  for (const FigureColumn& figure : kDetected) {
     layer.columns.push_back({figure.name, figure.unit, Kind::real, figure.summary});
     layer.columns.push_back({std::string(figure.name) + "_se", figure.unit, Kind::real,
                              "Standard error of " + std::string(figure.name)});
@@ -122,13 +124,13 @@ geodb::ShapeLayer stand_layer(const std::vector<StandResult>& results) {
                   number(r.figures.hectares), std::int64_t{r.figures.trees},
                   std::int64_t{r.figures.without_diameter}};
     for (const FigureColumn& figure : kFigures) push(row, figure.of(r), figure.factor);
-    for (const FigureColumn& figure : kComplete) push(row, figure.of(r), figure.factor);
+    for (const FigureColumn& figure : kDetected) push(row, figure.of(r), figure.factor);
     for (std::size_t i = 0; i < classes.size(); ++i)
-      push(row, i < r.figures.classes.size() ? r.figures.classes[i].stems : pipeline::Estimate{0, 0}, 1);
+      push(row, i < r.complete.classes.size() ? r.complete.classes[i].stems : pipeline::Estimate{0, 0}, 1);
     layer.rows.push_back(std::move(row));
   }
   std::vector<double> volumes;
-  for (const StandResult& r : results) volumes.push_back(r.figures.volume.value);
+  for (const StandResult& r : results) volumes.push_back(r.complete.volume.value);
   layer.style.graduated = "volume_m3_per_ha";
   layer.style.classes = class_bounds(std::move(volumes));
   return layer;

@@ -17,7 +17,7 @@ struct NamedStand {
 /// Figures of a stand.
 struct StandResult {
   NamedStand stand;
-  pipeline::StandAttributes figures;  ///< of the detected trees
+  pipeline::StandAttributes figures;  ///< of the detected trees, whatever recall is given
   pipeline::StandAttributes
       complete;  ///< corrected for undetected trees: by the given recall, else that of trees from the air
   pipeline::Estimate cover;  ///< fraction of the area under crowns, 0 to 1
