@@ -32,6 +32,7 @@ std::vector<Finding> findings_of(const sqlite::Database& database) {
     }
     check_landmarks(database, layout, srs_id, findings);
     check_spatial_index(database, types[id].name, findings);
+    check_edit_triggers(database, types[id].name, findings);
   }
   check_shapes(database, srs_id, findings);
   if (whole) check_evidence(database, types, findings);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <span>
+
 #include "geodb/checks/map_checks.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
@@ -26,19 +28,30 @@ constexpr const char* kOutside =
        WHERE c.table_name = '{t}' AND (c.min_x IS NULL OR ST_MinX(t.geom) < c.min_x OR ST_MaxX(t.geom) > c.max_x
           OR ST_MinY(t.geom) < c.min_y OR ST_MaxY(t.geom) > c.max_y))";
 
+void check_triggers(const sqlite::Database& database, const std::string& table, const std::string& prefix,
+                    std::span<const char* const> names, const char* code, FindingList& findings) {
+  sqlite::Statement known =
+      database.prepare("SELECT 1 FROM sqlite_master WHERE type = 'trigger' AND name = ?");
+  for (const char* trigger : names) {
+    const std::string name = prefix + "_" + trigger;
+    known.bind(1, name);
+    if (!known.step()) findings.add(code, table, std::nullopt, "trigger " + name + " is missing");
+    known.reset();
+  }
+}
+
 }  // namespace
+
+void check_edit_triggers(const sqlite::Database& database, const std::string& table, FindingList& findings) {
+  constexpr const char* kEdits[] = {"added", "moved", "removed"};  // edits.sql
+  check_triggers(database, table, table, kEdits, "edits.trigger", findings);
+}
 
 void check_spatial_index(const sqlite::Database& database, const std::string& table, FindingList& findings) {
   const std::string index = "rtree_" + table + "_geom";
   if (!database.has_table(index))
     return findings.add("rtree.missing", table, std::nullopt, "the table has no spatial index");
-  for (const char* trigger : kTriggers) {
-    sqlite::Statement known =
-        database.prepare("SELECT 1 FROM sqlite_master WHERE type = 'trigger' AND name = ?");
-    const std::string name = index + "_" + trigger;
-    known.bind(1, name);
-    if (!known.step()) findings.add("rtree.trigger", table, std::nullopt, "trigger " + name + " is missing");
-  }
+  check_triggers(database, table, index, kTriggers, "rtree.trigger", findings);
   sqlite::Statement sound = database.prepare("SELECT rtreecheck(?)");
   sound.bind(1, index);
   if (sound.step() && sound.text(0) != "ok")

@@ -18,6 +18,9 @@ bool check_columns(const sqlite::Database& database, const LandmarkLayout& layou
 void check_landmarks(const sqlite::Database& database, const LandmarkLayout& layout, std::int32_t srs_id,
                      FindingList& findings);
 
+/// Checks that the triggers are there that keep a type's table sound when other programs edit it.
+void check_edit_triggers(const sqlite::Database& database, const std::string& table, FindingList& findings);
+
 /// Checks the RTree against the geometries, its triggers, and the declared extent.
 void check_spatial_index(const sqlite::Database& database, const std::string& table, FindingList& findings);
 

@@ -64,6 +64,8 @@ const Fault kFaults[] = {
     {"bound.above", "UPDATE lamp_post SET height_low = 19.5 WHERE id = 7"},
     {"rtree.missing", "DROP TABLE rtree_lamp_post_geom"},
     {"rtree.trigger", "DROP TRIGGER rtree_lamp_post_geom_update3"},
+    {"edits.trigger", "DROP TRIGGER lamp_post_moved"},
+    {"edits.trigger", "DROP TRIGGER lamp_post_added; DROP TRIGGER lamp_post_removed"},
     {"rtree.damaged", "UPDATE rtree_lamp_post_geom_rowid SET nodeno = nodeno % 3 + 2 WHERE rowid = 7"},
     {"rtree.row", "DELETE FROM rtree_lamp_post_geom WHERE id = 7"},
     {"rtree.orphan", "INSERT INTO rtree_lamp_post_geom VALUES (5000, 1, 1, 1, 1)"},
