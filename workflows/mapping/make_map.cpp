@@ -63,6 +63,8 @@ void require_metric_dem(pipeline::Pipeline& pipeline) {
   if (has("load_dem") && has("load_images")) pipeline.set("load_dem.metric=true");
 }
 
+constexpr std::size_t kScratchInMemory = std::size_t{4} << 20;  // bytes of each stage's results
+
 }  // namespace
 
 pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
@@ -73,6 +75,7 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   options.shard = request.shard;
   options.unit = request.unit;
   options.work = request.work;
+  options.max_bytes_in_memory = kScratchInMemory;
   options.rerun_from = request.rerun_from;
   return options;
 }
