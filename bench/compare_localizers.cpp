@@ -130,22 +130,18 @@ std::unique_ptr<localization::Localizer> make(const Variant& v, const localizati
   id.use_identities = false;
   if (v.sensor == "camera") id.bearing_reach = 30;
   if (!v.quality) id.quality_floor = 1;
-  const localization::FeatureScales scales(types);
+  const localization::LandmarkMatcher matcher(localization::LandmarkWindow(map),
+                                              localization::FeatureScales(types), id);
   if (v.method == "odometry") return std::make_unique<localization::DeadReckoning>(start);
   if (v.method == "slam") return std::make_unique<localization::EkfSlam>(start);
   if (v.method.starts_with("pf"))
     return std::make_unique<localization::ParticleFilter>(
-        start, localization::LandmarkWindow(map), scales, id,
+        start, matcher,
         localization::ParticleOptions{
             .particles = 300, .recovery = v.method != "pf", .threads = 1, .weight = {}});
-  if (v.method == "ukf")
-    return std::make_unique<localization::UnscentedKalman>(start, localization::LandmarkWindow(map), scales,
-                                                           id);
-  if (v.method == "ekf, one Gaussian")
-    return std::make_unique<localization::ExtendedKalman>(start, localization::LandmarkWindow(map), scales,
-                                                          id);
-  return std::make_unique<localization::MultiHypothesisFilter>(start, localization::LandmarkWindow(map),
-                                                               scales, id);
+  if (v.method == "ukf") return std::make_unique<localization::UnscentedKalman>(start, matcher);
+  if (v.method == "ekf, one Gaussian") return std::make_unique<localization::ExtendedKalman>(start, matcher);
+  return std::make_unique<localization::MultiHypothesisFilter>(start, matcher);
 }
 
 void run(const Variant& v, const localization::RobotLog& log, const Site& site,

@@ -119,8 +119,9 @@ void particle_update(benchmark::State& state) {
   localization::ParticleOptions options;
   options.particles = 1000;
   options.threads = 1;
-  localization::ParticleFilter filter(start, localization::LandmarkWindow(map), {}, {.use_identities = false},
-                                      options);
+  localization::ParticleFilter filter(
+      start, localization::LandmarkMatcher(localization::LandmarkWindow(map), {}, {.use_identities = false}),
+      options);
   localization::Pose2 truth;
   double error = 0;
   std::size_t updates = 0;

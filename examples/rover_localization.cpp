@@ -59,8 +59,9 @@ int main() try {
   localization::IdentificationOptions without_names;
   without_names.use_identities = false;
   localization::DeadReckoning odometry(start);
-  localization::ExtendedKalman filter(start, localization::LandmarkWindow(rocks),
-                                      localization::FeatureScales(map.types()), without_names);
+  localization::ExtendedKalman filter(
+      start, localization::LandmarkMatcher(localization::LandmarkWindow(rocks),
+                                           localization::FeatureScales(map.types()), without_names));
 
   const double speed = 0.5, turn = 0.0125, seconds = 1;  // a circle of 40 m about the middle of the map
   std::size_t sightings = 0, matched = 0;

@@ -53,12 +53,11 @@ void filters() {
   const localization::LandmarkGrid rocks(localization::to_map_landmarks(map));
   const localization::PoseEstimate start{{0.2, -0.1, 0.02},
                                          Eigen::Vector3d(0.1, 0.1, 0.01).asDiagonal()};  // m2, m2, rad2
-  localization::ExtendedKalman ekf(start, localization::LandmarkWindow(rocks),
-                                   localization::FeatureScales(map.types()));
-  localization::UnscentedKalman ukf(start, localization::LandmarkWindow(rocks),
-                                    localization::FeatureScales(map.types()));
-  localization::ParticleFilter particles(start, localization::LandmarkWindow(rocks),
-                                         localization::FeatureScales(map.types()));
+  const localization::LandmarkMatcher matcher(localization::LandmarkWindow(rocks),
+                                              localization::FeatureScales(map.types()));
+  localization::ExtendedKalman ekf(start, matcher);
+  localization::UnscentedKalman ukf(start, matcher);
+  localization::ParticleFilter particles(start, matcher);
   localization::DeadReckoning odometry(start);
   //! [filters]
   for (localization::Localizer* filter :

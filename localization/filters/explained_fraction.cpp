@@ -22,10 +22,10 @@ double matched_fraction(const std::vector<Match>& matches) {
   return fits + strange > 0 ? static_cast<double>(fits) / (fits + strange) : -1;
 }
 
-ChanceFraction make_chance_fraction(LandmarkWindow map, FeatureScales scales, IdentificationOptions options) {
+ChanceFraction make_chance_fraction(LandmarkMatcher matcher) {
   const auto calls = std::make_shared<int>(0);
-  return [calls, map = std::make_shared<LandmarkWindow>(std::move(map)), scales = std::move(scales),
-          options = std::move(options)](const SightingSet& seen, const PoseEstimate& at) {
+  return [calls, matcher = std::make_shared<LandmarkMatcher>(std::move(matcher))](const SightingSet& seen,
+                                                                                  const PoseEstimate& at) {
     double reach = 0;
     for (const SeenLandmark& s : seen.sightings)
       if (s.is_valid() && s.range) reach = std::max(reach, *s.range + 6 * s.range_sd);
@@ -37,7 +37,7 @@ ChanceFraction make_chance_fraction(LandmarkWindow map, FeatureScales scales, Id
     there.pose.yaw = wrap_angle(there.pose.yaw + 1 + 4 * part);
     const double width = std::sqrt(at.covariance(0, 0) + at.covariance(1, 1));
     return matched_fraction(
-        identify(seen, there, map->landmarks_near(there.pose.at(), reach + 6 * width + 1), scales, options)
+        matcher->identify(seen, there, matcher->landmarks_near(there.pose.at(), reach + 6 * width + 1))
             .matches);
   };
 }

@@ -2,8 +2,7 @@
 #pragma once
 #include <functional>
 #include <vector>
-#include "localization/identification/identification.hpp"
-#include "localization/identification/landmark_window.hpp"
+#include "localization/identification/landmark_matcher.hpp"
 namespace waymark::localization {
 
 /// Returns the fraction of a set's sightings with a landmark, among those that could have one. Negative if
@@ -14,7 +13,7 @@ double matched_fraction(const std::vector<Match>& matches);
 /// one sensor range away and rotated. Each call uses another pose; the sequence is the same in every run.
 using ChanceFraction = std::function<double(const SightingSet& seen, const PoseEstimate& at)>;
 /// Returns that function for a map.
-ChanceFraction make_chance_fraction(LandmarkWindow map, FeatureScales scales, IdentificationOptions options);
+ChanceFraction make_chance_fraction(LandmarkMatcher matcher);
 
 /// Fraction of the sightings that the map explains beyond chance. If the fraction q is of mapped landmarks
 /// and others fit with probability c, q + (1 - q) c fit; so q = (fit - c) / (1 - c). A dense map with wide

@@ -10,16 +10,6 @@ namespace {
 
 constexpr double kCertain = 0.999;  // pairings above this need no mixture
 
-// Returns the distance from the estimated pose within which landmarks are needed.
-double reach_of(const SightingSet& seen, const PoseEstimate& robot, const IdentificationOptions& options) {
-  double farthest = 0;
-  for (const SeenLandmark& s : seen.sightings)
-    if (s.is_valid())
-      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options.bearing_reach);
-  const double spread = std::sqrt(std::max(robot.covariance(0, 0), robot.covariance(1, 1)));
-  return farthest + 6 * spread + std::hypot(seen.robot_from_sensor.x, seen.robot_from_sensor.y);
-}
-
 }  // namespace
 
 Eigen::Vector3d clamp_sd(const Eigen::Vector3d& sd) {
@@ -35,17 +25,13 @@ void KalmanOptions::describe(OptionVisitor& option) {
          {.help = "Growth of the standard deviations per set while searching", .min = 1, .max = 10});
 }
 
-KalmanLocalizer::KalmanLocalizer(LandmarkWindow map, FeatureScales scales,
-                                 IdentificationOptions identification, KalmanOptions options)
-    : map_(std::move(map)),
-      scales_(std::move(scales)),
-      identification_(std::move(identification)),
-      options_(options) {}
+KalmanLocalizer::KalmanLocalizer(LandmarkMatcher matcher, KalmanOptions options)
+    : matcher_(std::move(matcher)), options_(options) {}
 
 std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
-  const LandmarkGrid& map = map_.landmarks_near(before.pose.at(), reach_of(seen, before, identification_));
-  auto [matches, posterior] = identify(seen, before, map, scales_, identification_);
+  const LandmarkGrid& map = matcher_.landmarks_near(seen, before);
+  auto [matches, posterior] = matcher_.identify(seen, before, map);
   std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -55,7 +41,7 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
     match.key = landmark.key;
-    uses.push_back({&seen.sightings[i], &landmark, effective_quality(landmark, identification_)});
+    uses.push_back({&seen.sightings[i], &landmark, effective_quality(landmark, matcher_.options())});
   }
   if (posterior && doubtful) {
     missed_ = 0;
@@ -87,10 +73,8 @@ bool KalmanLocalizer::apply_fix(const Fix& measured, int rows) {
 template bool KalmanLocalizer::apply_fix(const GnssFix&, int);
 template bool KalmanLocalizer::apply_fix(const HeadingFix&, int);
 
-ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
-                               IdentificationOptions identification, KalmanOptions options)
-    : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),
-      estimate_(start) {
+ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options)
+    : KalmanLocalizer(std::move(matcher), options), estimate_(start) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "localization/identification/landmark_window.hpp"
+#include "localization/identification/landmark_matcher.hpp"
 #include "localization/localizer.hpp"
 namespace waymark::localization {
 
@@ -17,8 +17,7 @@ struct KalmanOptions {
 /// Without this a gate that is too tight would reject for ever.
 class KalmanLocalizer : public Localizer {
  public:
-  KalmanLocalizer(LandmarkWindow map, FeatureScales scales, IdentificationOptions identification,
-                  KalmanOptions options);
+  KalmanLocalizer(LandmarkMatcher matcher, KalmanOptions options);
   std::vector<Match> update(const SightingSet& seen) final;
   bool fix(const GnssFix& gnss) final { return apply_fix(gnss, 2); }
   bool fix(const HeadingFix& heading) final { return apply_fix(heading, 1); }
@@ -41,9 +40,7 @@ class KalmanLocalizer : public Localizer {
   template <class Fix>
   bool apply_fix(const Fix& measured, int rows);
 
-  LandmarkWindow map_;
-  FeatureScales scales_;
-  IdentificationOptions identification_;
+  LandmarkMatcher matcher_;
   KalmanOptions options_;
   std::int64_t missed_ = 0;
   FixGate gnss_, heading_;
@@ -53,8 +50,7 @@ class KalmanLocalizer : public Localizer {
 /// the covariance is updated in Joseph form, which stays positive for any gain. About 1 us per sighting.
 class ExtendedKalman final : public KalmanLocalizer {
  public:
-  ExtendedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
-                 IdentificationOptions identification = {}, KalmanOptions options = {});
+  ExtendedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options = {});
   void predict(const BodyMotion& motion) override { estimate_ = predict_pose(estimate_, motion); }
   PoseEstimate estimate() const override { return estimate_; }
 
@@ -83,8 +79,7 @@ PoseEstimate ukf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
 /// circle.
 class UnscentedKalman final : public KalmanLocalizer {
  public:
-  UnscentedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
-                  IdentificationOptions identification = {}, KalmanOptions options = {});
+  UnscentedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options = {});
   void predict(const BodyMotion& motion) override;
   PoseEstimate estimate() const override { return {pose_, root_ * root_.transpose()}; }
 

@@ -32,13 +32,9 @@ void MultiHypothesisOptions::describe(OptionVisitor& option) {
           .formerly = "same_error"});
 }
 
-MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, LandmarkWindow map,
-                                             FeatureScales scales, IdentificationOptions identification,
+MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, LandmarkMatcher matcher,
                                              MultiHypothesisOptions options)
-    : map_(std::move(map)),
-      scales_(std::move(scales)),
-      identification_(std::move(identification)),
-      options_(options) {
+    : matcher_(std::move(matcher)), options_(options) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
   components_.push_back({start, 1, {}});
@@ -64,7 +60,7 @@ double MultiHypothesisFilter::recent_sightings(LandmarkKey key) const {
 
 // Weights the Gaussians of a set by the landmarks they expect and that were not seen.
 void MultiHypothesisFilter::weigh_unseen(const SightingSet& seen, const LandmarkGrid& map) {
-  SightingScore score(seen, map, scales_, *view_, identification_);
+  SightingScore score(seen, map, matcher_.scales(), *view_, matcher_.options());
   std::vector<double> logs;
   for (const Component& component : components_) {
     score.hide(
@@ -88,7 +84,7 @@ PoseEstimate MultiHypothesisFilter::update_component(const Component& component,
     if (how.choice[i] < 0) continue;
     MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
     landmark.covariance *= 1 + recent_sightings(landmark.key) / 2;
-    const double trust = effective_quality(landmark, identification_);
+    const double trust = effective_quality(landmark, matcher_.options());
     const SeenLandmark& seen = some.sightings[i];
     if (options_.unscented)
       at = ukf_update(at, seen, some.robot_from_sensor, landmark, trust);
@@ -106,12 +102,12 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some, const Landma
   for (const Component& component : components_) {
     std::vector<Candidates> sets;
     for (const SeenLandmark& s : some.sightings) {
-      sets.push_back(candidates(s, some.robot_from_sensor, component.at, map, scales_, identification_));
+      sets.push_back(matcher_.candidates(s, some.robot_from_sensor, component.at, map));
       std::erase_if(sets.back().pairings, [&](const CandidatePair& p) {
         return std::ranges::find(component.choice, static_cast<int>(p.landmark)) != component.choice.end();
       });
     }
-    const auto found = joint_hypotheses(sets, some, map, component.at.covariance, identification_);
+    const auto found = joint_hypotheses(sets, some, map, component.at.covariance, matcher_.options());
     if (!found) continue;
     for (const JointHypothesis& h : *found) {
       Component& after = next.emplace_back(component);
@@ -137,13 +133,8 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some, const Landma
 
 std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
-  double farthest = 0;
-  for (const SeenLandmark& s : seen.sightings)
-    if (s.is_valid())
-      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : identification_.bearing_reach);
-  if (view_) farthest = std::max(farthest, view_->view_range);
-  const double width = std::sqrt(before.covariance(0, 0) + before.covariance(1, 1));
-  const LandmarkGrid& map = map_.landmarks_near(before.pose.at(), farthest + 6 * width + 1);
+  const IdentificationOptions& identification = matcher_.options();
+  const LandmarkGrid& map = matcher_.landmarks_near(seen, before, view_ ? view_->view_range : 0);
 
   std::vector<Match> matches(seen.sightings.size());
   SightingSet some{seen.robot_from_sensor, {}};
@@ -156,7 +147,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
   };
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const SeenLandmark& s = seen.sightings[i];
-    const bool named = identification_.use_identities && s.identity;
+    const bool named = identification.use_identities && s.identity;
     matches[i].verdict = !s.is_valid()                                                ? Verdict::unsound
                          : s.type == kNoSuchType || (named && !map.find(*s.identity)) ? Verdict::unknown_type
                                                                                       : Verdict::matched;
@@ -177,8 +168,8 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     match.probability = best->second;
     fits = fits || best->first >= 0;
     if (best->first < 0) {
-      match.verdict = best->second > identification_.certainty ? Verdict::too_far : Verdict::ambiguous;
-    } else if (best->second < identification_.certainty) {
+      match.verdict = best->second > identification.certainty ? Verdict::too_far : Verdict::ambiguous;
+    } else if (best->second < identification.certainty) {
       match.verdict = Verdict::ambiguous;
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);
@@ -186,7 +177,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
       match.key = landmark.key;
       const SeenLandmark& s = seen.sightings[places[k]];
       match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
-                                           landmark.covariance, effective_quality(landmark, identification_));
+                                           landmark.covariance, effective_quality(landmark, identification));
       uses_[match.key] = {1 + recent_sightings(match.key), driven_};
     }
   }

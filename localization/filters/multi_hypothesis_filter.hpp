@@ -4,7 +4,7 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "localization/identification/joint_search.hpp"
-#include "localization/identification/landmark_window.hpp"
+#include "localization/identification/landmark_matcher.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 namespace waymark::localization {
@@ -34,8 +34,8 @@ struct MultiHypothesisOptions {
 /// (IdentificationOptions).
 class MultiHypothesisFilter final : public Localizer {
  public:
-  MultiHypothesisFilter(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
-                        IdentificationOptions identification = {}, MultiHypothesisOptions options = {});
+  MultiHypothesisFilter(const PoseEstimate& start, LandmarkMatcher matcher,
+                        MultiHypothesisOptions options = {});
   void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override { return apply_fix(gnss, 2); }
@@ -72,9 +72,7 @@ class MultiHypothesisFilter final : public Localizer {
                                 const std::vector<Candidates>& sets, const JointHypothesis& how,
                                 const LandmarkGrid& map) const;
 
-  LandmarkWindow map_;
-  FeatureScales scales_;
-  IdentificationOptions identification_;
+  LandmarkMatcher matcher_;
   MultiHypothesisOptions options_;
   std::vector<Component> components_;
   struct LandmarkUse {

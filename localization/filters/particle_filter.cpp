@@ -37,25 +37,22 @@ void ParticleOptions::describe(OptionVisitor& option) {
   weight.describe(option);
 }
 
-ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
-                               IdentificationOptions identification, ParticleOptions options,
-                               PoseFinder finder)
-    : map_(std::move(map)),
-      scales_(std::move(scales)),
-      identification_(std::move(identification)),
+ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatcher matcher,
+                               ParticleOptions options, PoseFinder finder)
+    : matcher_(std::move(matcher)),
       options_(std::move(options)),
       finder_(std::move(finder)),
-      memory_(scales_) {
+      memory_(matcher_.scales()) {
   if (!start) {
     searching_ = true;
-    const Eigen::AlignedBox2d box = map_.landmarks_near({0, 0}, 0).bounds();
+    const Eigen::AlignedBox2d box = matcher_.landmarks_near({0, 0}, 0).bounds();
     if (!box.isEmpty()) {
       summary_.pose = {box.center().x(), box.center().y(), 0};
       summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
           box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
     }
     convergence_.emplace(summary_);
-    if (!identification_.use_identities) chance_ = make_chance_fraction(map_, scales_, identification_);
+    if (!matcher_.options().use_identities) chance_ = make_chance_fraction(matcher_);
     return;
   }
   if (!start->pose.finite() || !start->covariance.allFinite())
@@ -165,13 +162,8 @@ bool ParticleFilter::fix(const HeadingFix& heading) {
 
 std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   apply_motion();
-  double farthest = 0;
-  for (const SeenLandmark& s : seen.sightings)
-    if (s.is_valid())
-      farthest = std::max(farthest, s.range.value_or(identification_.bearing_reach) + 6 * s.range_sd);
-  if (options_.weight.expect_unseen) farthest = std::max(farthest, options_.weight.view_range);
-  const double width = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));
-  const LandmarkGrid& map = map_.landmarks_near(summary_.pose.at(), farthest + 6 * width);
+  const LandmarkGrid& map =
+      matcher_.landmarks_near(seen, summary_, options_.weight.expect_unseen ? options_.weight.view_range : 0);
   ++sets_;
   if (finder_) {
     memory_.add(seen);
@@ -193,7 +185,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   if (effective_sample_size(weights_) < options_.resample_below * static_cast<double>(poses_.size()))
     resample_particles(seen, map);
 
-  std::vector<Match> matches = identify(seen, summary_, map, scales_, identification_).matches;
+  std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations

@@ -6,7 +6,7 @@
 #include "localization/filters/particle_weights.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
-#include "localization/identification/landmark_window.hpp"
+#include "localization/identification/landmark_matcher.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 namespace waymark::localization {
@@ -37,8 +37,7 @@ struct ParticleOptions {
 class ParticleFilter final : public Localizer {
  public:
   /// Without a start the first sightings initialise the filter.
-  ParticleFilter(std::optional<PoseEstimate> start, LandmarkWindow map, FeatureScales scales,
-                 IdentificationOptions identification = {}, ParticleOptions options = {},
+  ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatcher matcher, ParticleOptions options = {},
                  PoseFinder finder = {});
   void predict(const BodyMotion& motion) override;
   /// Returns the verdicts of `identify` at the estimate after the update.
@@ -71,9 +70,7 @@ class ParticleFilter final : public Localizer {
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
   std::size_t required_count() const;
 
-  LandmarkWindow map_;
-  FeatureScales scales_;
-  IdentificationOptions identification_;
+  LandmarkMatcher matcher_;
   ParticleOptions options_;
   std::vector<Pose2> poses_;
   std::vector<double> weights_;  // sum to 1

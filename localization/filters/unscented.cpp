@@ -107,11 +107,8 @@ PoseEstimate ukf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
   return {after.pose, after.root * after.root.transpose()};
 }
 
-UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkWindow map, FeatureScales scales,
-                                 IdentificationOptions identification, KalmanOptions options)
-    : KalmanLocalizer(std::move(map), std::move(scales), std::move(identification), options),
-      pose_(start.pose),
-      root_(square_root(start.covariance)) {
+UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options)
+    : KalmanLocalizer(std::move(matcher), options), pose_(start.pose), root_(square_root(start.covariance)) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
 }

@@ -85,7 +85,7 @@ class DrawnAgain {
   double anees(PoseEstimate start) {
     const Eigen::Vector3d sd = start.covariance.diagonal().cwiseSqrt();
     start.pose = pose_of(start.pose.vector() + sd.cwiseProduct(normal3()));
-    ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(map_)}, FeatureScales{});
+    ExtendedKalman filter(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid(map_)}));
     RepeatedSightings repeated(log_.error_memory);
     std::optional<Pose2> before;
     double now = log_.events.front().t, sum = 0;
@@ -172,7 +172,8 @@ TEST(MrclamConsistency, ExtendedKalmanIsWithinTheBandOfItsOwnModel) {
   for (std::size_t robot = 0; robot < 5; ++robot) {
     const RobotLog& log = robots.logs[robot];
     const PoseEstimate& start = robots.start[robot];
-    ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(robots.map)}, FeatureScales(robots.types));
+    ExtendedKalman filter(
+        start, LandmarkMatcher(LandmarkWindow{LandmarkGrid(robots.map)}, FeatureScales(robots.types)));
     const TrackScore s = score(replay(log, filter, {}), log.truth, TrackAlignment::none, true);
     const auto n = static_cast<double>(s.poses);
     std::vector<double> drawn;

@@ -44,8 +44,8 @@ TEST(ExplainedFraction, ChanceGrowsWithTheDensityOfTheMap) {
   for (const std::size_t count : {0UL, 200UL, 2000UL}) {
     IdentificationOptions o;
     o.use_identities = false;
-    ChanceFraction chance =
-        make_chance_fraction(LandmarkWindow(LandmarkGrid(scatter_landmarks(count, 100, 5, 0.3))), {}, o);
+    ChanceFraction chance = make_chance_fraction(
+        LandmarkMatcher(LandmarkWindow(LandmarkGrid(scatter_landmarks(count, 100, 5, 0.3))), {}, o));
     double sum = 0;
     for (int i = 0; i < 60; ++i) sum += chance(seen, at) / 60;
     EXPECT_GT(sum, before) << count;
@@ -55,8 +55,8 @@ TEST(ExplainedFraction, ChanceGrowsWithTheDensityOfTheMap) {
   EXPECT_LT(before, 0.9);
   // The same at each run; nothing without ranges.
   const LandmarkGrid grid(scatter_landmarks(800, 100, 5, 0.3));
-  ChanceFraction one = make_chance_fraction(LandmarkWindow(grid), {}, {}),
-                 two = make_chance_fraction(LandmarkWindow(grid), {}, {});
+  ChanceFraction one = make_chance_fraction(LandmarkMatcher(LandmarkWindow(grid))),
+                 two = make_chance_fraction(LandmarkMatcher(LandmarkWindow(grid)));
   for (int i = 0; i < 5; ++i) EXPECT_EQ(one(seen, at), two(seen, at));
   EXPECT_LT(one({}, at), 0);
 }

@@ -25,10 +25,10 @@ using Make = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const
 
 Make kalman(bool unscented) {
   return [unscented](const PoseEstimate& start, const MadeDrive& drive) -> std::unique_ptr<Localizer> {
-    LandmarkWindow map{LandmarkGrid(drive.map())};
-    if (unscented)
-      return std::make_unique<UnscentedKalman>(start, map, FeatureScales{}, identification_options(true));
-    return std::make_unique<ExtendedKalman>(start, map, FeatureScales{}, identification_options(true));
+    const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                                  identification_options(true));
+    if (unscented) return std::make_unique<UnscentedKalman>(start, matcher);
+    return std::make_unique<ExtendedKalman>(start, matcher);
   };
 }
 
@@ -104,7 +104,8 @@ TEST(ExtendedKalman, FindsBackAfterItWasMoved) {
   MadeDrive drive(7);
   PoseEstimate start = drive.start();
   start.pose.x += 6;  // 60 standard deviations off
-  ExtendedKalman filter(start, LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(true));
+  ExtendedKalman filter(
+      start, LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(true)));
   bool was_lost = false;
   for (int i = 0; i < 60; ++i) {
     filter.predict(drive.drive());
@@ -120,8 +121,8 @@ TEST(ExtendedKalman, FindsBackAfterItWasMoved) {
 TEST(MultiHypothesisFilter, FollowsLandmarksWithoutNames) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     MadeDrive drive(seed, 60, true);
-    MultiHypothesisFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
-                                 identification_options(false));
+    MultiHypothesisFilter filter(drive.start(), LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {},
+                                                                identification_options(false)));
     int matched = 0, wrong = 0;
     for (int i = 0; i < 60; ++i) {
       filter.predict(drive.drive());
@@ -148,8 +149,10 @@ TEST(ParticleFilter, AFewHundredAreConsistent) {
     ParticleOptions options;
     options.particles = 300;
     options.weight.temper = 1;  // made errors are independent
-    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
-                          identification_options(true), options);
+    ParticleFilter filter(
+        drive.start(),
+        LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(true)),
+        options);
     for (int i = 0; i < 20; ++i) {
       filter.predict(drive.drive());
       filter.update(drive.look());
@@ -168,8 +171,10 @@ TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {
     ParticleOptions options;
     options.particles = 5000;
     options.threads = threads;
-    ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
-                          identification_options(false), options);
+    ParticleFilter filter(
+        drive.start(),
+        LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(false)),
+        options);
     for (int i = 0; i < 10; ++i) {
       filter.predict(drive.drive());
       filter.update(drive.look());
@@ -182,7 +187,8 @@ TEST(ParticleFilter, IsTheSameForAnyNumberOfThreads) {
 
 TEST(ParticleFilter, FindsItsPoseWithoutAStart) {
   MadeDrive drive(11, 80, false);
-  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(false));
+  ParticleFilter filter(
+      {}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(false)));
   EXPECT_EQ(filter.status(), LocalizationStatus::uninitialized);
   for (int i = 0; i < 80; ++i) {
     filter.predict(drive.drive());
@@ -197,8 +203,9 @@ TEST(ParticleFilter, PaperWeightsFollowToo) {
   MadeDrive drive(13);
   ParticleOptions options;
   options.weight.weights = "paper";
-  ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {},
-                        identification_options(true), options);
+  ParticleFilter filter(
+      drive.start(),
+      LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification_options(true)), options);
   for (int i = 0; i < 60; ++i) {
     filter.predict(drive.drive());
     filter.update(drive.look());
@@ -210,7 +217,7 @@ TEST(ParticleFilter, EmptyMapAndEmptySetsLeaveTheEstimateFinite) {
   MadeDrive drive(1);
   for (const bool with_start : {false, true}) {
     ParticleFilter filter(with_start ? std::optional(drive.start()) : std::nullopt,
-                          LandmarkWindow{LandmarkGrid{}}, {}, identification_options(false));
+                          LandmarkMatcher(LandmarkWindow{LandmarkGrid{}}, {}, identification_options(false)));
     filter.predict(drive.drive());
     filter.update({});
     filter.update(drive.look());
@@ -231,12 +238,12 @@ TEST(AllFilters, NumbersThatAreNoneAreRejectedWithAReason) {
   s.bearing_sd = 0.1;
   s.range = -2;
   bad.sightings.push_back(s);
-  const LandmarkWindow map{LandmarkGrid(drive.map())};
+  const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(drive.map())});
   std::vector<std::unique_ptr<Localizer>> all;
-  all.push_back(std::make_unique<ExtendedKalman>(drive.start(), map, FeatureScales{}));
-  all.push_back(std::make_unique<UnscentedKalman>(drive.start(), map, FeatureScales{}));
-  all.push_back(std::make_unique<MultiHypothesisFilter>(drive.start(), map, FeatureScales{}));
-  all.push_back(std::make_unique<ParticleFilter>(drive.start(), map, FeatureScales{}));
+  all.push_back(std::make_unique<ExtendedKalman>(drive.start(), matcher));
+  all.push_back(std::make_unique<UnscentedKalman>(drive.start(), matcher));
+  all.push_back(std::make_unique<MultiHypothesisFilter>(drive.start(), matcher));
+  all.push_back(std::make_unique<ParticleFilter>(drive.start(), matcher));
   for (const auto& filter : all) {
     const auto matches = filter->update(bad);
     ASSERT_EQ(matches.size(), 3u);
@@ -245,8 +252,8 @@ TEST(AllFilters, NumbersThatAreNoneAreRejectedWithAReason) {
   }
   PoseEstimate nowhere = drive.start();
   nowhere.pose.x = NAN;
-  EXPECT_THROW(ExtendedKalman(nowhere, map, FeatureScales{}), std::invalid_argument);
-  EXPECT_THROW(ParticleFilter(nowhere, map, FeatureScales{}), std::invalid_argument);
+  EXPECT_THROW(ExtendedKalman(nowhere, matcher), std::invalid_argument);
+  EXPECT_THROW(ParticleFilter(nowhere, matcher), std::invalid_argument);
 }
 
 }  // namespace

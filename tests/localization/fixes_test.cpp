@@ -14,22 +14,21 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, const LandmarkWindow& map) {
+std::vector<std::unique_ptr<Localizer>> all_filters(const PoseEstimate& start, const LandmarkMatcher& map) {
   std::vector<std::unique_ptr<Localizer>> all;
-  all.push_back(std::make_unique<ExtendedKalman>(start, map, FeatureScales{}));
-  all.push_back(std::make_unique<UnscentedKalman>(start, map, FeatureScales{}));
-  all.push_back(std::make_unique<MultiHypothesisFilter>(start, map, FeatureScales{}));
+  all.push_back(std::make_unique<ExtendedKalman>(start, map));
+  all.push_back(std::make_unique<UnscentedKalman>(start, map));
+  all.push_back(std::make_unique<MultiHypothesisFilter>(start, map));
   ParticleOptions options;
   options.particles = 2000;
-  all.push_back(
-      std::make_unique<ParticleFilter>(start, map, FeatureScales{}, IdentificationOptions{}, options));
+  all.push_back(std::make_unique<ParticleFilter>(start, map, options));
   return all;
 }
 
 TEST(Fixes, PositionAndHeadingAreTheProductOfGaussians) {
   // 1 m known to 0.3 m, measured 1.6 m with 0.3 m: in the middle, with half the variance.
   const PoseEstimate start{{1, 0, 0}, Eigen::Vector3d(0.09, 0.09, 0.04).asDiagonal()};
-  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+  for (const auto& filter : all_filters(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid{}}))) {
     EXPECT_TRUE(filter->fix(GnssFix{{1.6, 0}, 0.3}));
     EXPECT_NEAR(filter->estimate().pose.x, 1.3, 0.03);
     EXPECT_NEAR(filter->estimate().covariance(0, 0), 0.045, 0.006);
@@ -41,7 +40,7 @@ TEST(Fixes, PositionAndHeadingAreTheProductOfGaussians) {
 
 TEST(Fixes, HeadingsWrap) {
   const PoseEstimate start{{0, 0, 3.1}, Eigen::Vector3d(1, 1, 0.01).asDiagonal()};
-  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+  for (const auto& filter : all_filters(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid{}}))) {
     EXPECT_TRUE(filter->fix(HeadingFix{-3.1, 0.1}));
     EXPECT_NEAR(std::abs(filter->estimate().pose.yaw), std::numbers::pi, 0.03);
   }
@@ -49,7 +48,7 @@ TEST(Fixes, HeadingsWrap) {
 
 TEST(Fixes, OneOutlierIsRejectedAndManyInARowAreAccepted) {
   const PoseEstimate start{{0, 0, 0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal()};
-  for (const auto& filter : all_filters(start, LandmarkWindow{LandmarkGrid{}})) {
+  for (const auto& filter : all_filters(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid{}}))) {
     EXPECT_FALSE(filter->fix(GnssFix{{500, 0}, 1}));
     EXPECT_NEAR(filter->estimate().pose.x, 0, 0.1);
     for (int i = 0; i < 12; ++i) filter->fix(GnssFix{{500, 0}, 1});
@@ -66,7 +65,7 @@ TEST(Fixes, AnImprobableHypothesisSurvivesUntilMoreIsSeen) {
   landmarks[1].at = {6.2, 0};
   landmarks[2].at = {0, 4};
   MultiHypothesisFilter filter({{0.6, 0, 0}, Eigen::Vector3d(0.25, 1e-4, 1e-6).asDiagonal()},
-                               LandmarkWindow{LandmarkGrid(landmarks)}, {});
+                               LandmarkMatcher(LandmarkWindow{LandmarkGrid(landmarks)}));
   SeenLandmark ahead;
   ahead.range = 5;
   ahead.range_sd = 0.01;
@@ -86,7 +85,8 @@ TEST(Fixes, CorrelatedFixesDoNotOverruleSightings) {
   MadeDrive drive(5, 60, false);
   IdentificationOptions identification;
   identification.use_identities = false;
-  ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification);
+  ParticleFilter filter(drive.start(),
+                        LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification));
   for (int i = 0; i < 60; ++i) {
     filter.predict(drive.drive());
     filter.update(drive.look());
@@ -108,8 +108,8 @@ TEST(Fixes, ManyFixesFindParticlesThatWereMoved) {
   identification.use_identities = false;
   ParticleOptions options;
   options.search_particles = 20000;
-  ParticleFilter filter(drive.start(), LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification,
-                        options);
+  ParticleFilter filter(
+      drive.start(), LandmarkMatcher(LandmarkWindow{LandmarkGrid(drive.map())}, {}, identification), options);
   for (int i = 0; i < 70; ++i) {
     const BodyMotion motion = drive.drive();
     if (i < 10 || i >= 20) filter.predict(motion);  // carried for 5 m
@@ -122,12 +122,12 @@ TEST(Fixes, ManyFixesFindParticlesThatWereMoved) {
 TEST(ParticleFilter, BearingsAloneBoundTheError) {
   for (const bool particles : {false, true}) {
     MadeDrive drive(21);
-    const LandmarkWindow map{LandmarkGrid(drive.map())};
+    const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(drive.map())});
     std::unique_ptr<Localizer> filter;
     if (particles)
-      filter = std::make_unique<ParticleFilter>(drive.start(), map, FeatureScales{});
+      filter = std::make_unique<ParticleFilter>(drive.start(), matcher);
     else
-      filter = std::make_unique<UnscentedKalman>(drive.start(), map, FeatureScales{});
+      filter = std::make_unique<UnscentedKalman>(drive.start(), matcher);
     double drift = 0;
     DeadReckoning blind(drive.start());
     for (int i = 0; i < 80; ++i) {
@@ -215,7 +215,7 @@ TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
   options.threads = 1;
   IdentificationOptions id;
   id.use_identities = false;
-  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(landmarks)}, {}, id, options,
+  ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(landmarks)}, {}, id), options,
                         [&](const SightingSet& seen) {
                           PoseSearchResult found;
                           const auto answer = index->find(seen);

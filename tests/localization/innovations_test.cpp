@@ -66,7 +66,7 @@ TrackRow row_of(Localizer& filter, const RobotLog& log, double noise = 1) {
 ExtendedKalman ekf() {
   IdentificationOptions options;
   options.quality_floor = 1;
-  return {{{}, kPrior}, LandmarkWindow{LandmarkGrid(beacons())}, FeatureScales(TypeRegistry{}), options};
+  return {{{}, kPrior}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(beacons())}, {}, options)};
 }
 
 // v' S^-1 v with the matrices written out.
@@ -120,8 +120,8 @@ TEST(Innovations, AreReportedByAMultiHypothesisFilter) {
   const RobotLog log = look(3);
   IdentificationOptions options;
   options.quality_floor = 1;
-  MultiHypothesisFilter filter({{}, kPrior}, LandmarkWindow{LandmarkGrid(beacons())},
-                               FeatureScales(TypeRegistry{}), options);
+  MultiHypothesisFilter filter({{}, kPrior},
+                               LandmarkMatcher(LandmarkWindow{LandmarkGrid(beacons())}, {}, options));
   EXPECT_NEAR(row_of(filter, log).nis, by_hand(log), 1e-9);
 }
 

@@ -56,7 +56,7 @@ double x_of_estimate(const LineOfSight& visible) {
   view.detection = 0.95;
   view.view_range = 11;
   MultiHypothesisFilter filter({{1, -2, 0}, Eigen::Vector3d(1, 1e-4, 1e-6).asDiagonal()},
-                               LandmarkWindow{LandmarkGrid(all)}, FeatureScales{});
+                               LandmarkMatcher(LandmarkWindow{LandmarkGrid(all)}));
   filter.expect_landmarks(view, visible);
   filter.update({{}, {seen_at(3, 0)}});
   return filter.estimate().pose.x;

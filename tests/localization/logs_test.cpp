@@ -139,7 +139,8 @@ TEST_F(WaymarkLog, TypesTheMapLacksAreRejectedNotMatched) {
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("type 'boulder', which the map does not have")));
   MapLandmark landmark;
   landmark.at = {3, 0};
-  ExtendedKalman filter({}, LandmarkWindow{LandmarkGrid({landmark})}, FeatureScales(all_types()));
+  ExtendedKalman filter(
+      {}, LandmarkMatcher(LandmarkWindow{LandmarkGrid({landmark})}, FeatureScales(all_types())));
   const Track track = replay(log, filter, {});
   EXPECT_EQ(track.verdicts[static_cast<std::size_t>(Verdict::unknown_type)], 1);
 }
@@ -207,8 +208,9 @@ class Mrclam : public ::testing::Test {
     double rows = 0;
     for (std::size_t robot = 0; robot < 5; ++robot) {
       const RobotLog& log = robots.logs[robot];
-      const auto localizer = make(robots.start[robot], LandmarkWindow{LandmarkGrid(robots.map)},
-                                  FeatureScales(robots.types), options);
+      const auto localizer = make(
+          robots.start[robot],
+          LandmarkMatcher(LandmarkWindow{LandmarkGrid(robots.map)}, FeatureScales(robots.types), options));
       const Track track = replay(log, *localizer, {});
       const TrackScore s = score(track, log.truth, TrackAlignment::none, true);
       const auto n = static_cast<double>(s.poses);

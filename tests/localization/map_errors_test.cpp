@@ -31,7 +31,8 @@ double consistency(double error_correlation_distance) {
     }
     PoseEstimate start;
     start.covariance = Eigen::Vector3d(0.25, 0.25, 0.01).asDiagonal();
-    MultiHypothesisFilter filter(start, LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999},
+    MultiHypothesisFilter filter(start,
+                                 LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999}),
                                  {.error_correlation_distance = error_correlation_distance, .search = {}});
     Pose2 truth;
     for (int step = 0; step < 80; ++step) {

@@ -101,7 +101,7 @@ double anees(bool knows) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const RobotLog log = drive(seed, 3, beacons);
     ExtendedKalman filter({log.truth[0].pose, Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal()},
-                          LandmarkWindow{LandmarkGrid(beacons)}, FeatureScales(TypeRegistry{}));
+                          LandmarkMatcher(LandmarkWindow{LandmarkGrid(beacons)}));
     ReplayOptions options;
     options.error_memory = knows ? 1 : 0;
     sum += score(replay(log, filter, options), log.truth, TrackAlignment::none, true).consistency->anees / 60;

@@ -40,6 +40,13 @@ std::vector<localization::HorizonTop> horizon_tops(const localization::SightingS
   return tops;
 }
 
+/// Moves the landmark window out of the task.
+localization::LandmarkMatcher make_matcher(LocalizeTask& task) {
+  return localization::LandmarkMatcher(std::move(task.map.window),
+                                       localization::FeatureScales(task.map.map.types()),
+                                       task.settings.identification);
+}
+
 /// Returns the growth of the search, 1 without identities unless set otherwise: in a map of many landmarks a
 /// growing search always finds some fit.
 double search_growth(const LocalizeTask& task, double requested) {
@@ -105,11 +112,10 @@ std::unique_ptr<localization::Localizer> make_particle_localizer(
     LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search) {
   localization::PoseFinder finder = make_pose_finder(task, search);
   const auto particles =
-      [window = std::move(task.map.window), scales = localization::FeatureScales(task.map.map.types()),
-       &settings = task.settings, visible = line_of_sight(task)](
+      [matcher = make_matcher(task), &settings = task.settings, visible = line_of_sight(task)](
           const std::optional<localization::PoseEstimate>& from, localization::PoseFinder finds) {
-        auto filter = std::make_unique<localization::ParticleFilter>(
-            from, window, scales, settings.identification, settings.particles, std::move(finds));
+        auto filter = std::make_unique<localization::ParticleFilter>(from, matcher, settings.particles,
+                                                                     std::move(finds));
         filter->set_line_of_sight(visible);
         return filter;
       };
@@ -122,28 +128,24 @@ std::unique_ptr<localization::Localizer> make_particle_localizer(
 std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& task,
                                                                const SearchOptions& search, bool unscented) {
   const localization::IdentificationOptions& identification = task.settings.identification;
+  const localization::LandmarkMatcher matcher = make_matcher(task);
   localization::ChanceFraction chance;
-  if (!identification.use_identities)
-    chance = localization::make_chance_fraction(
-        task.map.window, localization::FeatureScales(task.map.map.types()), identification);
-  const auto make = [unscented, window = std::move(task.map.window),
-                     scales = localization::FeatureScales(task.map.map.types()), &settings = task.settings,
-                     visible = line_of_sight(task),
+  if (!identification.use_identities) chance = localization::make_chance_fraction(matcher);
+  const auto make = [unscented, matcher, &settings = task.settings, visible = line_of_sight(task),
                      growth = search_growth(task, task.settings.kalman.search_growth)](
                         const localization::PoseEstimate& start) -> std::unique_ptr<localization::Localizer> {
     const localization::IdentificationOptions& id = settings.identification;
     if (id.use_identities || id.chosen_association() != "joint") {
       localization::KalmanOptions options = settings.kalman;
       options.search_growth = growth;
-      if (unscented)
-        return std::make_unique<localization::UnscentedKalman>(start, window, scales, id, options);
-      return std::make_unique<localization::ExtendedKalman>(start, window, scales, id, options);
+      if (unscented) return std::make_unique<localization::UnscentedKalman>(start, matcher, options);
+      return std::make_unique<localization::ExtendedKalman>(start, matcher, options);
     }
     localization::MultiHypothesisOptions options = settings.hypotheses;
     options.unscented = unscented;
     options.search = settings.kalman;
     options.search.search_growth = growth;
-    auto filter = std::make_unique<localization::MultiHypothesisFilter>(start, window, scales, id, options);
+    auto filter = std::make_unique<localization::MultiHypothesisFilter>(start, matcher, options);
     filter->expect_landmarks(settings.particles.weight, visible);
     return filter;
   };

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/identification/landmark_matcher.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace waymark::localization {
+
+const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, const PoseEstimate& robot,
+                                                    double view_range) {
+  double farthest = view_range;
+  for (const SeenLandmark& s : seen.sightings)
+    if (s.is_valid())
+      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options_.bearing_reach);
+  const double width = std::sqrt(robot.covariance(0, 0) + robot.covariance(1, 1));
+  const double mount = seen.robot_from_sensor.at().norm();
+  return map_.landmarks_near(robot.pose.at(), farthest + 6 * width + mount + 1);
+}
+
+}  // namespace waymark::localization
