@@ -41,6 +41,14 @@ std::string range(const FeatureSpec& feature) {
   return fmt::format("{} to {}{}", feature.min_value, feature.max_value, unit);
 }
 
+std::string evidence_line(const LandmarkType& type) {
+  std::string text = fmt::format("Evidence model {}, identification reach {:g} m", to_string(type.evidence),
+                                 type.identification_reach);
+  if (!type.body.feature.empty())
+    text += fmt::format(", body radius {:g} x {}", type.body.radius_per_value, type.body.feature);
+  return text + "\n";
+}
+
 std::string as_text(const LandmarkType& type) {
   std::string text = fmt::format("{}: {}\n\nFeatures, with the plausible range:\n", type.name, type.summary);
   for (const FeatureSpec& feature : type.features)
@@ -49,7 +57,8 @@ std::string as_text(const LandmarkType& type) {
   for (const AttributeSpec& attribute : type.attributes)
     text += fmt::format("  {:<18} {}{}\n", attribute.name, attribute.summary,
                         attribute.unit.empty() ? "" : ", " + attribute.unit);
-  return text + fmt::format("\nDrawn as a {} in {}\n", word(type.drawn_as), type.colour);
+  return text + "\n" + evidence_line(type) +
+         fmt::format("Drawn as a {} in {}\n", word(type.drawn_as), type.colour);
 }
 
 std::string as_markdown(const LandmarkType& type) {
@@ -63,12 +72,20 @@ std::string as_markdown(const LandmarkType& type) {
   for (const AttributeSpec& attribute : type.attributes)
     text += fmt::format("| `{}` | {} | {} | {} |\n", attribute.name, attribute.unit, word(attribute.kind),
                         attribute.summary);
-  return text;
+  return text + "\n" + evidence_line(type);
 }
 
 std::string as_json(const LandmarkType& type) {
-  Json json{{"name", type.name},           {"summary", type.summary},         {"features", Json::array()},
-            {"attributes", Json::array()}, {"drawn_as", word(type.drawn_as)}, {"colour", type.colour}};
+  Json json{{"name", type.name},
+            {"summary", type.summary},
+            {"features", Json::array()},
+            {"attributes", Json::array()},
+            {"drawn_as", word(type.drawn_as)},
+            {"colour", type.colour},
+            {"evidence", to_string(type.evidence)},
+            {"identification_reach", type.identification_reach}};
+  if (!type.body.feature.empty())
+    json["body"] = {{"feature", type.body.feature}, {"radius_per_value", type.body.radius_per_value}};
   for (const FeatureSpec& feature : type.features) {
     Json entry{{"name", feature.name},
                {"unit", feature.unit},

@@ -2,6 +2,8 @@
 #include "landmarks/landmark_type.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -15,6 +17,20 @@ bool is_column_name(std::string_view name) {
   return !name.empty() && name[0] >= 'a' && name[0] <= 'z' && std::ranges::all_of(name, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   });
+}
+
+constexpr std::array<std::string_view, 5> kEvidenceModels = {"none", "shadow_caster", "bowl", "canopy",
+                                                             "pole"};
+
+bool is_positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+template <class Predicate>
+std::optional<TypeId> first_type(const TypeRegistry& types, Predicate predicate) {
+  const auto found = std::ranges::find_if(types, predicate);
+  if (found == types.end()) return std::nullopt;
+  return static_cast<TypeId>(found - types.begin());
 }
 
 }  // namespace
@@ -31,6 +47,12 @@ TypeId TypeRegistry::add(LandmarkType type) {
   for (const auto& attribute : type.attributes)
     if (!is_column_name(attribute.name) || !columns.insert(attribute.name).second)
       throw std::logic_error(type.name + ": bad or repeated attribute '" + attribute.name + "'");
+  if (!type.body.feature.empty() &&
+      std::ranges::find(type.features, type.body.feature, &FeatureSpec::name) == type.features.end())
+    throw std::logic_error(type.name + ": its body is measured by '" + type.body.feature +
+                           "', which is no feature of it");
+  if (!is_positive(type.body.radius_per_value) || !is_positive(type.identification_reach))
+    throw std::logic_error(type.name + ": radius_per_value and identification_reach must be above 0");
   types_.push_back(std::move(type));
   return static_cast<TypeId>(types_.size() - 1);
 }
@@ -52,6 +74,25 @@ std::vector<std::string> TypeRegistry::names() const {
   std::vector<std::string> all;
   for (const auto& type : types_) all.push_back(type.name);
   return all;
+}
+
+std::optional<TypeId> find_type(const TypeRegistry& types, EvidenceModel evidence) {
+  return first_type(types, [&](const LandmarkType& type) { return type.evidence == evidence; });
+}
+
+std::optional<TypeId> find_self_identifying_type(const TypeRegistry& types) {
+  return first_type(types, [](const LandmarkType& type) { return type.identifies_itself; });
+}
+
+std::string_view to_string(EvidenceModel evidence) {
+  return kEvidenceModels.at(static_cast<std::size_t>(evidence));
+}
+
+EvidenceModel parse_evidence_model(std::string_view name) {
+  const auto found = std::ranges::find(kEvidenceModels, name);
+  if (found == kEvidenceModels.end())
+    throw std::logic_error("there is no evidence model '" + std::string(name) + "'");
+  return static_cast<EvidenceModel>(found - kEvidenceModels.begin());
 }
 
 std::size_t feature_index(const LandmarkType& type, std::string_view feature) {

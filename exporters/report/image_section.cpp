@@ -83,12 +83,11 @@ std::optional<std::string> file_of(const geodb::MapStore& map, const std::string
 }
 
 double radius_in_pixels(const Observation& one, const LandmarkType& type, const geodb::ImageRecord& image) {
-  for (const auto& [name, factor] : {std::pair{"radius", 1.0}, {"crown_diameter", 0.5}, {"diameter", 0.5}}) {
-    const auto feature = find_feature(type, name);
-    if (feature && *feature < one.features.size() && one.features[*feature].known() && image.gsd)
-      return std::max(kMinOutlineRadius, factor * one.features[*feature].value / image.gsd->value);
-  }
-  return kMinOutlineRadius;
+  const auto feature = find_feature(type, type.body.feature);
+  if (!feature || *feature >= one.features.size() || !one.features[*feature].known() || !image.gsd)
+    return kMinOutlineRadius;
+  const double radius = type.body.radius_per_value * one.features[*feature].value;
+  return std::max(kMinOutlineRadius, radius / image.gsd->value);
 }
 
 /// Returns the square inside the image with the most used observations.

@@ -52,8 +52,8 @@ double radius_of(const Landmark& landmark, const LandmarkSection& section, const
   const auto feature = find_feature(section.type, section.type.size_feature);
   const double value = value_of(landmark, feature);
   if (!(value > 0)) return kMinMarkerRadius;
-  const double on_the_ground = value / view.metres_per_unit();
-  if (section.type.drawn_as == Solid::bowl && section.type.size_feature == "radius")
+  const double on_the_ground = section.type.body.radius_per_value * value / view.metres_per_unit();
+  if (section.type.drawn_as == Solid::bowl && section.type.size_feature == section.type.body.feature)
     return std::max(kMinMarkerRadius, on_the_ground);
   const std::string& size = section.type.size_feature;
   const double largest = certified_value(section.type, section.landmarks.front(), size);

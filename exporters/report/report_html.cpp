@@ -60,7 +60,7 @@ std::string place_of(const Crs& crs) {
 
 bool counts_craters(const std::vector<LandmarkSection>& sections) {
   return std::ranges::any_of(sections, [](const LandmarkSection& section) {
-    return section.type.drawn_as == Solid::bowl && section.count > 0;
+    return section.type.evidence == EvidenceModel::bowl && section.count > 0;
   });
 }
 

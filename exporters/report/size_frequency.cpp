@@ -53,11 +53,11 @@ double relative_density(const SizeBin& bin, double square_metres) {
 }
 
 std::string size_frequency_figures(const LandmarkSection& section, const std::optional<CountingArea>& area) {
-  const auto radius = find_feature(section.type, "radius");
-  if (section.type.drawn_as != Solid::bowl || !radius) return {};
+  const auto size = find_feature(section.type, section.type.body.feature);
+  if (section.type.evidence != EvidenceModel::bowl || !size) return {};
   std::vector<double> diameters;
-  for (const double r : section.values[*radius])
-    if (r > 0) diameters.push_back(2 * r);
+  for (const double value : section.values[*size])
+    if (value > 0) diameters.push_back(2 * section.type.body.radius_per_value * value);
   if (diameters.size() < kMinCount) return {};
   const auto bins = size_bins(diameters);
   const bool far = bins.back().to >= 2000;  // kilometres read better

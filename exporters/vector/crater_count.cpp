@@ -27,13 +27,18 @@ struct Crater {
 
 const LandmarkType& type_of(const geodb::MapStore& map, const ExportOptions& options,
                             const std::string& shown) {
-  const std::string name = options.types.empty() ? "crater" : options.types.front();
   if (options.types.size() > 1)
     throw Error(ErrorCode::usage, "a crater count holds one type", "--type", "name one, or none for craters");
-  const LandmarkType* type = map.types().find(name);
-  if (type == nullptr || !find_feature(*type, "radius"))
-    throw Error(ErrorCode::usage, fmt::format("the map has no type '{}' with a radius to count", name), shown,
-                "crater counts need a map with craters; other formats hold any type");
+  const auto bowl = find_type(map.types(), EvidenceModel::bowl);
+  const LandmarkType* type = !options.types.empty() ? map.types().find(options.types.front())
+                             : bowl                 ? &map.types()[*bowl]
+                                                    : nullptr;
+  if (type == nullptr || type->body.feature.empty())
+    throw Error(ErrorCode::usage,
+                options.types.empty()
+                    ? "the map has no craters to count"
+                    : fmt::format("the map has no type '{}' with a size to count", options.types.front()),
+                shown, "crater counts need a map with craters; other formats hold any type");
   return *type;
 }
 
@@ -66,11 +71,12 @@ bool inside(const std::vector<CountingArea::Ring>& rings, const Eigen::Vector2d&
 
 std::vector<Crater> craters_of(const geodb::MapStore& map, const LandmarkType& type, const CountingArea& area,
                                ExportSummary& summary) {
-  const auto radius = find_feature(type, "radius");
+  const auto size = find_feature(type, type.body.feature);
   std::vector<Crater> craters;
   std::int64_t unsized = 0, outside = 0;
   for (const Landmark& landmark : map.query({.types = {type.name}})) {
-    const Crater crater{2 * value_of(landmark, radius) / 1000, landmark.position.xyz.head<2>()};
+    const Crater crater{2 * type.body.radius_per_value * value_of(landmark, size) / 1000,
+                        landmark.position.xyz.head<2>()};
     if (!(crater.kilometres > 0))
       ++unsized;
     else if (!inside(area.rings, crater.at))
@@ -78,7 +84,7 @@ std::vector<Crater> craters_of(const geodb::MapStore& map, const LandmarkType& t
     else
       craters.push_back(crater);
   }
-  if (unsized > 0) summary.warnings.push_back(fmt::format("{} without a radius are left out", unsized));
+  if (unsized > 0) summary.warnings.push_back(fmt::format("{} without a size are left out", unsized));
   if (outside > 0)
     summary.warnings.push_back(
         fmt::format("{} whose centre lies outside the counting area are left out", outside));

@@ -9,13 +9,40 @@
 #include "core/error.hpp"
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/sqlite/sql_text.hpp"
+#include "landmarks/landmark_type.hpp"
 
 namespace waymark::geodb {
 namespace {
 
 constexpr std::int64_t kGeoPackage = 0x47504B47;  // "GPKG", SQLite's application_id
 
+// Maps of version 2 do not say how their types are seen. Types unknown to this program keep what drawing and
+// size meant before: bowls were craters, and a size called radius or diameter was that of the body.
+void declare_types(const sqlite::Database& database) {
+  TypeRegistry built_in;
+  register_landmark_types(built_in);
+  sqlite::Statement set = database.prepare(
+      "UPDATE waymark_type SET evidence = ?, body_feature = ?, radius_per_value = ?,"
+      "  identification_reach = ?, identifies_itself = ? WHERE id = ?");
+  sqlite::Statement row = database.prepare("SELECT id, name, drawn_as, size_feature FROM waymark_type");
+  while (row.step()) {
+    LandmarkType type;
+    if (const LandmarkType* known = built_in.find(row.text(1))) {
+      type = *known;
+    } else {
+      const std::string size(row.text(3));
+      if (row.text(2) == "bowl") type.evidence = EvidenceModel::bowl;
+      if (size == "radius") type.body = {size, 1};
+      if (size.ends_with("diameter")) type.body = {size, 0.5};
+    }
+    set.bind_all(to_string(type.evidence), type.body.feature, type.body.radius_per_value,
+                 type.identification_reach, static_cast<int>(type.identifies_itself), row.integer(0));
+    set.run();
+  }
+}
+
 void migrate_types_to_3(const sqlite::Database& database) {
+  declare_types(database);
   std::vector<std::string> types;
   sqlite::Statement type = database.prepare("SELECT name FROM waymark_type ORDER BY id");
   while (type.step()) types.emplace_back(type.text(0));

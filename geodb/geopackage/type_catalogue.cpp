@@ -58,8 +58,8 @@ std::vector<AttributeSpec> read_attributes(const sqlite::Database& database, std
   return attributes;
 }
 
-/// Returns the feature that a style refers to; empty if the type has none of that name.
-std::string feature_of_style(std::string_view name, const std::vector<FeatureSpec>& features) {
+/// Returns the feature that a style or body refers to; empty if the type has none of that name.
+std::string existing_feature(std::string_view name, const std::vector<FeatureSpec>& features) {
   return std::ranges::find(features, name, &FeatureSpec::name) == features.end() ? "" : std::string(name);
 }
 
@@ -67,16 +67,19 @@ std::string feature_of_style(std::string_view name, const std::vector<FeatureSpe
 
 void write_types(const sqlite::Database& database, const TypeRegistry& types) {
   sqlite::Statement insert_type = database.prepare(
-      "INSERT INTO waymark_type (name, summary, drawn_as, colour, label_feature, size_feature) VALUES (?, ?, "
-      "?, ?, ?, ?)");
+      "INSERT INTO waymark_type (name, summary, evidence, body_feature, radius_per_value,"
+      "  identification_reach, identifies_itself, drawn_as, colour, label_feature, size_feature)"
+      "  VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   sqlite::Statement insert_feature = database.prepare(
       "INSERT INTO waymark_feature (type, position, name, unit, scale, lowest, highest, reference, summary)"
       "  VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   sqlite::Statement insert_attribute = database.prepare(
       "INSERT INTO waymark_attribute (type, position, name, unit, kind, summary) VALUES (?, ?, ?, ?, ?, ?)");
   for (const auto& type : types) {
-    insert_type.bind_all(type.name, type.summary, enum_name(type.drawn_as, kSolids), type.colour,
-                         type.label_feature, type.size_feature);
+    insert_type.bind_all(type.name, type.summary, to_string(type.evidence), type.body.feature,
+                         type.body.radius_per_value, type.identification_reach,
+                         static_cast<int>(type.identifies_itself), enum_name(type.drawn_as, kSolids),
+                         type.colour, type.label_feature, type.size_feature);
     insert_type.run();
     int position = 0;
     for (const auto& f : type.features) {
@@ -95,17 +98,23 @@ void write_types(const sqlite::Database& database, const TypeRegistry& types) {
 TypeRegistry read_types(const sqlite::Database& database) {
   TypeRegistry types;
   sqlite::Statement row = database.prepare(
-      "SELECT name, summary, drawn_as, colour, label_feature, size_feature FROM waymark_type ORDER BY id");
+      "SELECT name, summary, drawn_as, colour, label_feature, size_feature, evidence, body_feature,"
+      "  radius_per_value, identification_reach, identifies_itself FROM waymark_type ORDER BY id");
   try {
     while (row.step()) {
       const std::string name(row.text(0));
       std::vector<FeatureSpec> features = read_features(database, name);
-      const std::string label = feature_of_style(row.text(4), features);
-      const std::string size = feature_of_style(row.text(5), features);
+      const std::string label = existing_feature(row.text(4), features);
+      const std::string size = existing_feature(row.text(5), features);
+      const BodySize body{existing_feature(row.text(7), features), row.real(8)};
       types.add({.name = name,
                  .summary = std::string(row.text(1)),
                  .features = std::move(features),
                  .attributes = read_attributes(database, name),
+                 .evidence = parse_evidence_model(row.text(6)),
+                 .body = body,
+                 .identification_reach = row.real(9),
+                 .identifies_itself = row.integer(10) != 0,
                  .drawn_as = parse_enum<Solid>(row.text(2), kSolids),
                  .colour = is_colour(row.text(3)) ? std::string(row.text(3)) : LandmarkType{}.colour,
                  .label_feature = label,

@@ -126,6 +126,11 @@ CREATE TABLE waymark_type (
   id INTEGER PRIMARY KEY,           -- from 1; rows of its table have ids from (id - 1) * 1e9 + 1
   name TEXT NOT NULL UNIQUE,        -- of the table
   summary TEXT NOT NULL,
+  evidence TEXT NOT NULL,           -- how it shows itself: none, shadow_caster, bowl, canopy, pole
+  body_feature TEXT NOT NULL,       -- its horizontal extent; '' for none
+  radius_per_value DOUBLE NOT NULL, -- of body_feature: 1 for a radius, 0.5 for a diameter
+  identification_reach DOUBLE NOT NULL,  -- m: largest range at which a bearing is associated with it
+  identifies_itself BOOLEAN NOT NULL,    -- e.g. by a bar code
   drawn_as TEXT NOT NULL,           -- point, sphere, cylinder, cone, bowl
   colour TEXT NOT NULL,             -- #rrggbb
   label_feature TEXT NOT NULL,      -- '' for none

@@ -74,9 +74,7 @@ localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std:
   for (std::size_t i = 0; i < codes.size(); i += 2)
     subject_of[static_cast<int>(codes[i + 1])] = static_cast<int>(codes[i]);
 
-  const bool has_beacons = types.find("beacon") != nullptr;
-  std::optional<TypeId> beacon;
-  if (has_beacons) beacon = types.id("beacon");
+  const std::optional<TypeId> beacon = find_self_identifying_type(types);
   Frames frames;
   std::size_t unknown = 0;
   const auto seen = number_table(file("Measurement"), 4);

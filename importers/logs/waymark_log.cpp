@@ -14,6 +14,7 @@
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/log_line.hpp"
 #include "localization/detectors/depth_rocks.hpp"
+#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/horizon_summits.hpp"
 #include "localization/robot_log.hpp"
 
@@ -42,7 +43,8 @@ class Reader {
     else if (kind == "laser")
       add(t, scan(line));
     else if (kind == "depth")
-      add(t, localization::sightings_of_rocks(depth(line), {.type = type("rock")}));
+      add(t,
+          localization::sightings_of_rocks(depth(line), {.type = localization::detected_types(types_).rock}));
     else if (kind == "panorama")
       add(t, panorama(line));
     else if (kind == "felled")
@@ -172,10 +174,6 @@ class Reader {
     return scan;
   }
 
-  std::optional<TypeId> type(const char* name) const {
-    return types_.find(name) ? std::optional<TypeId>(types_.id(name)) : std::nullopt;
-  }
-
   static std::int64_t pixels(const LogLine& line, const char* key) {
     const double count = line.positive(key, 1);
     if (!(count <= 1e5 && count == std::floor(count)))
@@ -204,7 +202,8 @@ class Reader {
                                                .angle_step = line.angle("angle_step"),
                                                .elevation_sd = line.positive("elevation_sd", 0.001),
                                                .elevations = line.numbers("elevations", kMissing)};
-    return localization::sightings_of_summits(profile, {.type = type("mountain_top")});
+    return localization::sightings_of_summits(profile,
+                                              {.type = localization::detected_types(types_).mountain_top});
   }
 
   static localization::FelledReading felled(const LogLine& line, double t) {

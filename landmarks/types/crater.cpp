@@ -16,6 +16,12 @@ void register_type_crater(TypeRegistry& types) {
                    {"minor_axis", "m", Scale::ratio, 0.5, 4e6, "Full width of the rim ellipse"},
                    {"orientation", "rad", Scale::axis, -half_turn, half_turn,
                     "Major axis, clockwise from north", half_turn / 4}},
+      .evidence = EvidenceModel::bowl,
+      .body = {"radius"},
+      .identification_reach = 1000,
+      // Often missed; with a DEM all observations share its evidence
+      // (docs/evaluation/2026-11-22-existence-weights.md).
+      .existence = {.further_detection = 0.2, .missed_image = 0.15},
       .drawn_as = Solid::bowl,
       .colour = "#2f6fb0",
       .label_feature = "",

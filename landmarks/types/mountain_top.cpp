@@ -23,6 +23,8 @@ void register_type_mountain_top(TypeRegistry& types) {
                      {"higher_y", "", Kind::real, "Where the isolation ends, map CRS"},
                      {"visibility", "", Kind::real,
                       "Expected share of the ground around that sees the summit"}},
+      // On Earth, 1500 m of height are above the horizon of a plain up to 140 km away.
+      .identification_reach = 150e3,
       .drawn_as = Solid::cone,
       .colour = "#8c4a1f",
       .label_feature = "elevation",

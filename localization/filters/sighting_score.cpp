@@ -80,14 +80,14 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
   const double sigmas = std::sqrt(gate);
   for (const SeenLandmark& s : seen.sightings) {
     if (!s.is_valid()) continue;
-    const double far = s.range ? *s.range : identification.bearing_reach;
+    const double far = s.range ? *s.range : identification.reach_of(s, scales);
     Prepared p{.seen = s,
                .cosine = std::cos(s.bearing),
                .sine = std::sin(s.bearing),
                .range_variance = s.range ? s.range_sd * s.range_sd : 0,
                .bearing_variance = s.bearing_sd * s.bearing_sd,
                .radius = far,
-               .clutter = identification.clutter * (s.range ? 1 : far),
+               .clutter = s.range ? identification.clutter : identification.bearing_clutter(),
                .gate = gate,
                .candidates = {}};
     if (s.range)

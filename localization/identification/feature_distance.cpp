@@ -13,6 +13,7 @@ FeatureScales::FeatureScales(const TypeRegistry& types) {
     scales.fill(Scale::ratio);
     for (std::size_t i = 0; i < std::min(type.features.size(), kMaxFeatures); ++i)
       scales[i] = type.features[i].scale;
+    reaches_.push_back(type.identification_reach);
   }
 }
 
@@ -22,6 +23,11 @@ double FeatureScales::difference(TypeId type, std::size_t feature, double a, dou
 
 bool FeatureScales::has_axis(TypeId type) const {
   return type < scales_.size() && std::ranges::find(scales_[type], Scale::axis) != scales_[type].end();
+}
+
+double FeatureScales::identification_reach(std::optional<TypeId> type) const {
+  if (type && *type < reaches_.size()) return reaches_[*type];
+  return reaches_.empty() ? LandmarkType{}.identification_reach : std::ranges::min(reaches_);
 }
 
 KnownFeatures features_in_map(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 #include "landmarks/landmark_type.hpp"
 #include "localization/identification/known_features.hpp"
 namespace waymark::localization {
 
-/// Scale of each feature, by TypeId and index of the feature.
+/// Scale of each feature, by TypeId and index of the feature, and identification reach of each type.
 class FeatureScales {
  public:
   FeatureScales() = default;
@@ -18,9 +19,13 @@ class FeatureScales {
     return type < scales_.size() && scales_[type][feature] == Scale::axis;
   }
   bool has_axis(TypeId type) const;
+  /// Returns LandmarkType::identification_reach. Without a type the smallest of the registry, so that one
+  /// type with a far reach does not make all landmarks candidates; 100 m for an empty registry.
+  double identification_reach(std::optional<TypeId> type) const;
 
  private:
   std::vector<std::array<Scale, kMaxFeatures>> scales_;
+  std::vector<double> reaches_;
 };
 
 /// Returns the features of a sighting as a map states them: axes, which a sensor measures from its x axis to

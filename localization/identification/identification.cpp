@@ -32,6 +32,7 @@ double largest_sd(const Eigen::Matrix2d& c) {
 /// Returns the landmarks that may pass the gate of a sighting; others cannot.
 std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Pose2& sensor,
                                               const PoseEstimate& robot, const LandmarkGrid& map,
+                                              const FeatureScales& scales,
                                               const IdentificationOptions& options) {
   std::vector<std::uint32_t> found;
   const double sigmas = std::sqrt(gate_of(options, 2 + static_cast<int>(kMaxFeatures)));
@@ -52,12 +53,13 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
     map.near(at(*seen.range), apex + sigmas * noise * seen.range_sd + chord, keep);
     return found;
   }
+  const double reach = options.reach_of(seen, scales);
   if (half > 0.7) {
-    map.near(sensor.at(), apex + options.bearing_reach, keep);
+    map.near(sensor.at(), apex + reach, keep);
   } else {
     // Discs along the wedge, each 1.6 times as wide as the wedge there and half as far from the next.
-    for (double t = 0; t <= options.bearing_reach + apex;) {
-      const double wide = std::max(apex + t * std::tan(half), 0.02 * options.bearing_reach);
+    for (double t = 0; t <= reach + apex;) {
+      const double wide = std::max(apex + t * std::tan(half), 0.02 * reach);
       map.near(at(t), 1.6 * wide, keep);
       t += wide;
     }
@@ -165,7 +167,9 @@ void IdentificationOptions::describe(OptionVisitor& option) {
   option("clutter", clutter,
          {.help = "False sightings per metre of range and radian of bearing", .min = 1e-12, .max = 1e3});
   option("bearing_reach", bearing_reach,
-         {.help = "Largest range of a sighting without range, metres", .min = 0.1, .max = 1e6});
+         {.help = "Largest range of a sighting without range, metres; 0: that of its landmark type",
+          .min = 0,
+          .max = 1e6});
   option("node_limit", node_limit,
          {.help = "Largest number of nodes of a joint search", .min = 1, .max = 1e9});
   option("quality_floor", quality_floor,
@@ -206,7 +210,7 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     if (!found) return {Verdict::unknown_type, {}};
     reach = {*found};
   } else {
-    reach = landmarks_in_reach(seen, sensor, robot, map, options);
+    reach = landmarks_in_reach(seen, sensor, robot, map, scales, options);
   }
   result.verdict = Verdict::nothing_near;
   const KnownFeatures seen_features =

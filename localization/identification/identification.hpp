@@ -29,7 +29,7 @@ struct IdentificationOptions {
   double feature_tolerance = 0.15;  ///< relative standard deviation between two sensors
   double feature_limit = 9;         ///< squared standard deviations by which one feature may differ
   double clutter = 0.003;           ///< density of false sightings, per metre of range and radian of bearing
-  double bearing_reach = 100;       ///< m: largest range of a sighting without range
+  double bearing_reach = 0;         ///< m: largest range of a sighting without range; 0: that of its type
   std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` is used
   bool use_identities = true;       ///< use the identities of landmarks
   /// The noise of a landmark of quality q is divided by max(q, quality_floor) (section 4.3); 1: quality is
@@ -39,6 +39,13 @@ struct IdentificationOptions {
   void describe(OptionVisitor& option);
   /// Returns the association that `auto` stands for, otherwise the given one.
   std::string_view chosen_association() const;
+  /// Returns the largest range of a sighting without range.
+  double reach_of(const SeenLandmark& seen, const FeatureScales& scales) const {
+    return bearing_reach > 0 ? bearing_reach : scales.identification_reach(seen.type);
+  }
+  /// Returns the density of false sightings without range, per radian: those nearer than `bearing_reach`, or
+  /// 100 m. Objects confused with landmarks are near, so it does not grow with the reach of a type.
+  double bearing_clutter() const { return clutter * (bearing_reach > 0 ? bearing_reach : 100); }
   /// Returns whether the association uses `distance`: not `paper` with one that has its own evidence.
   bool distance_applies() const;
 };

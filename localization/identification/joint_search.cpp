@@ -122,7 +122,7 @@ class HypothesisList {
   // A sighting without range is clutter anywhere along its bearing.
   double unpaired(std::size_t sighting) const {
     const auto& pairings = sets_[sighting].pairings;
-    return std::log(options_.clutter * (seen_.sightings[sighting].range ? 1 : options_.bearing_reach)) -
+    return std::log(seen_.sightings[sighting].range ? options_.clutter : options_.bearing_clutter()) -
            0.5 * (pairings.empty() ? 0 : typical_features(pairings));
   }
 

@@ -11,7 +11,7 @@ const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, con
   double farthest = view_range;
   for (const SeenLandmark& s : seen.sightings)
     if (s.is_valid())
-      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options_.bearing_reach);
+      farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options_.reach_of(s, scales_));
   const double width = std::sqrt(robot.covariance(0, 0) + robot.covariance(1, 1));
   const double mount = seen.robot_from_sensor.at().norm();
   return map_.landmarks_near(robot.pose.at(), farthest + 6 * width + mount + 1);

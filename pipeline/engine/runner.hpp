@@ -16,6 +16,8 @@
 #include "pipeline/engine/report.hpp"
 namespace waymark::pipeline {
 
+class TypeRegistry;
+
 /// Part of the work done by one process: `index` of `count`, from 1.
 /// Tiles and images are dealt out in turn. A map-scope unit is run by every shard that finds its inputs
 /// complete, so the last one finishes the job.
@@ -39,6 +41,8 @@ struct RunOptions {
   std::filesystem::path scratch = {};
   /// Bytes per stage of such tile results that stay in memory without a work folder.
   std::size_t max_bytes_in_memory = std::size_t{32} << 20;
+  /// Landmark types of the stages, must outlive the run; null: the built-in types.
+  const TypeRegistry* types = nullptr;
   bool check_only = false;  ///< stop after planning: options, wiring, files
   ProgressListener progress = {};
   FileHasher hash_file = hash_plain_file;

@@ -93,6 +93,11 @@ const ImageItem& StageContext::image() const {
   return *inputs_.image;
 }
 
+const TypeRegistry& StageContext::types() const {
+  if (!inputs_.types) throw std::logic_error(fmt::format("stage {} has no landmark types", spec_.name));
+  return *inputs_.types;
+}
+
 Window StageContext::cells_with_halo() const {
   return expand(tile().cells, spec_.halo);
 }

@@ -15,6 +15,8 @@
 #include "pipeline/engine/tile.hpp"
 namespace waymark::pipeline {
 
+class TypeRegistry;
+
 /// Counts of items read, written and rejected. Sums over units and resumed runs.
 struct Counts {
   std::int64_t in = 0, out = 0;
@@ -39,6 +41,7 @@ struct UnitInputs {
   std::map<std::string, PortInput, std::less<>> ports = {};
   std::filesystem::path base_folder = {};  ///< relative paths of options start here
   int threads = 1;
+  const TypeRegistry* types = nullptr;  ///< landmark types of the run
   std::function<void(double)> progress = {};
 };
 
@@ -110,6 +113,8 @@ class StageContext {
   Window cells_with_halo() const;
   /// Returns "stage/item", the seed for random generators.
   const std::string& id() const { return inputs_.id; }
+  /// Returns the landmark types of the run. Throws std::logic_error if the unit has none.
+  const TypeRegistry& types() const;
   /// Returns the number of threads a stage may use. oneTBB algorithms respect it by themselves.
   int threads() const { return inputs_.threads; }
   /// Returns the path of an option that names a file, relative to the folder of the job file.

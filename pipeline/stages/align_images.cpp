@@ -41,8 +41,7 @@ struct AlignImages {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::vector<ImageView> images;
     for (const auto& image : unit.read_all(image_view)) images.push_back(*image);
     const DemHandle& ground = unit.read(dem);

@@ -38,8 +38,7 @@ struct CratersFromDem {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     auto found = survey_craters(*unit.read(dem), unit.tile().cells,
                                 {.type = types.id("crater"),
                                  .min_diameter = options.min_diameter,

@@ -42,8 +42,7 @@ struct CratersInImage {
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
     auto found = find_craters(pixels, {.method = kMethod,

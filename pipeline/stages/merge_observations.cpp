@@ -76,8 +76,7 @@ struct MergeObservations {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::vector<Observation> all = concatenate(unit.take_all(observations));
     MergeRules rules;
     rules.association.position_gate = options.position_gate;

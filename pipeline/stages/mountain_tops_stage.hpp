@@ -40,8 +40,7 @@ struct MountainTopsStage {
   }
 
   static void write_landmarks(const Options& options, const Window& window, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     MountainTops tops = mountain_tops(
         unit.read(summits), unit.read(isolation), *unit.read(dem), types,
         {.min_isolation = options.min_isolation, .visible_range = options.visible_range}, window);

@@ -95,8 +95,7 @@ struct ProjectToGround {
     compute_footprint(image, terrain, metres_per_unit);
     if (image.footprint.empty()) unit.warn(why_no_ground(image, terrain));
 
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     const ProjectionRules rules{.height_sd = options.height_sd.value,
                                 .heights_known = !is_assumed_plane(*ground),
                                 .slope_sd = options.slope_sd,
@@ -117,7 +116,7 @@ struct ProjectToGround {
     if (rules.heights_known) update_crater_confidences(all, types, terrain, metres_per_unit);
     std::int64_t kept = 0;
     for (Observation& o : all) {
-      if (types[o.type].drawn_as == Solid::bowl && o.confidence < options.min_crater_confidence)
+      if (types[o.type].evidence == EvidenceModel::bowl && o.confidence < options.min_crater_confidence)
         o.rejected = "more probably no crater";
       o.rejected.empty() ? void(++kept) : unit.reject(o.rejected);
     }

@@ -35,8 +35,7 @@ struct RejectImplausible {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::vector<Observation> all = unit.read(placed);
     RejectionCounter count(unit, all);
     reject_implausible(

@@ -49,8 +49,7 @@ struct RejectRimShadows {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::map<std::string, Sun> suns;
     for (const auto& image : unit.read_all(image_view))
       if (image->sun) suns[image->name] = *image->sun;

@@ -34,8 +34,7 @@ struct RejectTerrainShadows {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::vector<Observation> all = unit.read(plausible);
     RejectionCounter count(unit, all);
     const DemHandle& ground = unit.read(dem);

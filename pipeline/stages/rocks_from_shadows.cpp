@@ -48,8 +48,7 @@ struct RocksFromShadows {
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     RockSearch search{.method = options.method == "classic" ? RockMethod::classic : RockMethod::shadow,
                       .type = types.id("rock"),
                       .sun_angle = sun_angle_in_image(image.info()),

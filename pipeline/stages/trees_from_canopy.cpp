@@ -97,8 +97,7 @@ struct TreesFromCanopy {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     const TypeId id = types.id("tree");
     const std::vector<Allometry> table = load_table(options, unit);
     TreeSearch search{.forest = configure(forest_preset(options.preset), options), .crowns = options.crowns};

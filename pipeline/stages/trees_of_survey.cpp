@@ -41,8 +41,7 @@ struct TreesOfSurvey {
   static void run(const Options& options, StageContext& unit) {
     check_inputs(options, unit);
     const Canopies& surveys = unit.read(canopies);
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     MergeRules apart;
     apart.association.duplicate_overlap = 0;  // two tops of one canopy model are two trees
     MergedObservations made =

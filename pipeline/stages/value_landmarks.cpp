@@ -54,8 +54,7 @@ struct ValueLandmarks {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     const std::vector<ImageView>& images = unit.read(aligned_views);
     std::vector<Landmark> all = unit.take(merged);
     std::vector<Observation> seen = unit.take(merged_evidence);

@@ -29,8 +29,7 @@ struct ValueSurveys {
   }
 
   static void run(const Options&, StageContext& unit) {
-    TypeRegistry types;
-    register_landmark_types(types);
+    const TypeRegistry& types = unit.types();
     std::vector<Landmark> all = unit.take(merged);
     std::vector<Observation> seen = unit.take(merged_evidence);
     value_landmarks(all, seen, {}, nullptr, types, 1);

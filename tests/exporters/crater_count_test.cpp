@@ -115,7 +115,7 @@ TEST_F(CraterCount, AreaMustBeKnownOrGiven) {
 
 TEST_F(CraterCount, OtherMapsAreRefused) {
   test::write_small_map(map);  // mountain tops
-  EXPECT_THAT(error_of([&] { exported("x.diam"); }), HasSubstr("no type 'crater' with a radius to count"));
+  EXPECT_THAT(error_of([&] { exported("x.diam"); }), HasSubstr("no craters to count"));
   geodb::MapContents local = mars_craters();
   local.crs = Crs::local();
   geodb::write_map(map, local);

@@ -43,17 +43,29 @@ Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   return truth;
 }
 
-// Colours of the types' own symbols, paler so that tracks stand out.
+// Returns a colour halfway to white, so that tracks stand out.
+std::string paler(const std::string& colour) {
+  std::string pale = "#";
+  for (const std::size_t i : {1, 3, 5})
+    pale += fmt::format("{:02x}", (std::stoi(colour.substr(i, 2), nullptr, 16) + 255) / 2);
+  return pale;
+}
+
+// Returns the size of a dot: a radius, or a diameter where that is the measure of what a robot sees.
+double dot_size(const localization::MapLandmark& landmark, const LandmarkType& type) {
+  for (std::size_t i = 0; i < std::min(type.features.size(), localization::kMaxFeatures); ++i)
+    if ((type.features[i].name == "radius" || type.features[i].name == "diameter") &&
+        landmark.features.known(i))
+      return landmark.features.value[i];
+  return 0.5;
+}
+
 std::vector<exporters::PictureDot> map_dots(OpenedMap& opened) {
   std::vector<exporters::PictureDot> dots;
   for (const localization::MapLandmark& l : opened.window.landmarks_near({0, 0}, 0).landmarks()) {
-    const std::string type = opened.map.types()[l.type].name;
-    const bool radius = type == "rock" || type == "crater";
-    const double size = radius && l.features.known(0)           ? l.features.value[0]
-                        : type == "tree" && l.features.known(1) ? l.features.value[1]
-                                                                : 0.5;
-    if (type == "crater") continue;  // wide discs would hide the rest
-    dots.push_back({l.at, size, type == "tree" ? "#8fbc8f" : "#b5ada3"});
+    const LandmarkType& type = opened.map.types()[l.type];
+    if (type.evidence == EvidenceModel::bowl) continue;  // wide discs would hide the rest
+    dots.push_back({l.at, dot_size(l, type), paler(type.colour)});
   }
   return dots;
 }

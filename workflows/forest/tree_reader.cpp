@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 #include <unordered_map>
@@ -111,6 +112,17 @@ void read_outlines(const geodb::MapStore& map, const TreeIndex& places,
       window);
 }
 
+// Returns the first type with a canopy and the features of an inventory; null if there is none.
+const LandmarkType* inventoried_type(const TypeRegistry& types) {
+  const auto found = std::ranges::find_if(types, [](const LandmarkType& type) {
+    return type.evidence == EvidenceModel::canopy &&
+           std::ranges::all_of(std::array{"height", "diameter", "crown_diameter"}, [&](const char* name) {
+             return std::ranges::find(type.features, name, &FeatureSpec::name) != type.features.end();
+           });
+  });
+  return found == types.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 double influence_radius(const pipeline::StandTree& tree, const pipeline::StandCrown& crown) {
@@ -118,17 +130,18 @@ double influence_radius(const pipeline::StandTree& tree, const pipeline::StandCr
 }
 
 TreeReader::TreeReader(const geodb::MapStore& map) : map_(&map), unit_(metres_per_unit(map)) {
-  const LandmarkType* type = map.types().find("tree");
+  const LandmarkType* type = inventoried_type(map.types());
   if (type == nullptr)
     throw Error(
         ErrorCode::input, "the map has no trees", map.path().string(),
         "`waymark trees` makes a map of trees from a canopy model, `waymark import --type tree` one of a "
         "list");
+  type_ = type->name;
   features_ = {.height = feature_index(*type, "height"),
                .diameter = feature_index(*type, "diameter"),
                .crown = feature_index(*type, "crown_diameter")};
   from_air_ = geodb::count_shapes(map.path(), "crown") > 0;
-  map.visit("tree", [&](Landmark&& landmark) {
+  map.visit(type_, [&](Landmark&& landmark) {
     MapTrees one = none();
     add(one, std::move(landmark));
     ++count_;
@@ -140,7 +153,7 @@ TreeReader::TreeReader(const geodb::MapStore& map) : map_(&map), unit_(metres_pe
 std::vector<Eigen::Vector2d> TreeReader::positions() const {
   std::vector<Eigen::Vector2d> positions;
   positions.reserve(static_cast<std::size_t>(count_));
-  map_->visit("tree",
+  map_->visit(type_,
               [&](Landmark&& landmark) { positions.push_back(landmark.position.xyz.head<2>() * unit_); });
   return positions;
 }
@@ -168,11 +181,11 @@ void TreeReader::add(MapTrees& to, Landmark&& landmark) const {
 
 MapTrees TreeReader::all() const {
   MapTrees trees = none();
-  map_->visit("tree", [&](Landmark&& landmark) { add(trees, std::move(landmark)); });
+  map_->visit(type_, [&](Landmark&& landmark) { add(trees, std::move(landmark)); });
   const TreeIndex places = index_trees(trees);
   ErrorSums errors(places, features_);
   map_->visit_observations([&](Observation&& seen) {
-    if (seen.rejected.empty() && map_->types()[seen.type].name == "tree") errors.add(seen);
+    if (seen.rejected.empty() && map_->types()[seen.type].name == type_) errors.add(seen);
   });
   errors.apply(trees);
   if (from_air_) read_outlines(*map_, places, {}, trees);
@@ -187,10 +200,10 @@ MapTrees TreeReader::read(const Eigen::AlignedBox2d& box) const {
                           high = (box.max().array() + margin) / unit_;
     return geodb::MapQuery::Box{low.x(), low.y(), high.x(), high.y()};
   };
-  map_->visit("tree", window(0), [&](Landmark&& landmark) { add(trees, std::move(landmark)); });
+  map_->visit(type_, window(0), [&](Landmark&& landmark) { add(trees, std::move(landmark)); });
   const TreeIndex places = index_trees(trees);
   ErrorSums errors(places, features_);
-  map_->visit_observations("tree", window(0), [&](Observation&& seen) { errors.add(seen); });
+  map_->visit_observations(type_, window(0), [&](Observation&& seen) { errors.add(seen); });
   errors.apply(trees);
   if (from_air_) read_outlines(*map_, places, window(max_influence_radius_), trees);
   return trees;

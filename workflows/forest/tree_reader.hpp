@@ -29,8 +29,8 @@ double influence_radius(const pipeline::StandTree& tree, const pipeline::StandCr
 /// `crown`, or circles without it. A tree takes 1 kB.
 class TreeReader {
  public:
-  /// Reads every tree once; `map` must outlive the reader. Throws Error{input} if the map has no type `tree`
-  /// or its CRS is in degrees.
+  /// Reads every tree once; `map` must outlive the reader. Throws Error{input} if the map has no type
+  /// with a canopy and the features of a tree, or its CRS is in degrees.
   explicit TreeReader(const geodb::MapStore& map);
 
   double unit() const { return unit_; }  ///< metres per unit of the map's CRS
@@ -50,6 +50,7 @@ class TreeReader {
   }
 
   const geodb::MapStore* map_;
+  std::string type_;  ///< of the trees
   double unit_ = 1;
   TreeFeatures features_;
   std::int64_t count_ = 0;

@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "geodb/validate_map.hpp"
+#include "localization/detectors/detected_types.hpp"
 #include "localization/robot_log.hpp"
 #include "workflows/localization/drive_layers.hpp"
 #include "workflows/localization/localize_method.hpp"
@@ -193,21 +194,20 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);
-  LocalizeTask task{
-      .map_file = request.map,
-      .log_file = request.log,
-      .log = log,
-      .map = std::move(opened),
-      .start = start,
-      .settings = settings,
-      .sensor = sensor,
-      .ground = open_terrain(map, request.dem),
-      .command_line = request.command_line,
-      .settings_json = options_as_json(option_table(options)),
-      .write_map = request.write_map,
-      .update_map = request.update_map,
-      .stem_type = map.types().find("tree") ? std::optional<TypeId>(map.types().id("tree")) : std::nullopt,
-      .callbacks = callbacks};
+  LocalizeTask task{.map_file = request.map,
+                    .log_file = request.log,
+                    .log = log,
+                    .map = std::move(opened),
+                    .start = start,
+                    .settings = settings,
+                    .sensor = sensor,
+                    .ground = open_terrain(map, request.dem),
+                    .command_line = request.command_line,
+                    .settings_json = options_as_json(option_table(options)),
+                    .write_map = request.write_map,
+                    .update_map = request.update_map,
+                    .stem_type = detected_types(map.types()).tree,
+                    .callbacks = callbacks};
   if (request.live != 0 && (request.layers.empty() || !(request.live > 0)))
     throw Error(ErrorCode::usage, "--live takes the seconds between two writings of --layers", "--live",
                 "e.g. --layers MAP.gpkg --live 10");

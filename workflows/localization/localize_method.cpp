@@ -7,16 +7,14 @@
 #include <chrono>
 
 #include "core/error.hpp"
+#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 
 namespace waymark::workflows {
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
-  const TypeRegistry& types = task.map.map.types();
-  const auto type = [&](const char* name) {
-    return types.find(name) ? std::optional<TypeId>(types.id(name)) : std::nullopt;
-  };
-  const localization::ScanTypes seen{type("tree"), type("rock")};
+  const localization::DetectedTypes types = detected_types(task.map.map.types());
+  const localization::ScanTypes seen{types.tree, types.rock};
   return localization::replay(
       task.log, localizer, task.settings.play,
       [&](const localization::LaserScan& scan) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "localization/detectors/detected_types.hpp"
 #include "localization/filters/relocalizing_filter.hpp"
 #include "localization/global/skyline_index.hpp"
 
@@ -11,14 +12,15 @@ namespace {
 
 std::vector<localization::SkylineSummit> skyline_summits(const RobotMap& map) {
   std::vector<localization::SkylineSummit> all;
-  const LandmarkType* type = map.types().find("mountain_top");
-  if (!type) return all;
+  const auto top = detected_types(map.types()).mountain_top;
+  if (!top) return all;
+  const LandmarkType* type = &map.types()[*top];
   const auto feature = [&](const Landmark& l, std::string_view name) {
     for (std::size_t i = 0; i < type->features.size() && i < l.features.size(); ++i)
       if (type->features[i].name == name && l.features[i].known()) return l.features[i].value;
     return 0.0;
   };
-  for (const Landmark& l : map.store->query({.types = {"mountain_top"}})) {
+  for (const Landmark& l : map.store->query({.types = {type->name}})) {
     const Eigen::Vector3d at = map.frame.map_frame_from_crs(l.position).xyz;
     const double height = feature(l, "elevation");
     all.push_back({at.head<2>(), height != 0 ? height : l.position.xyz.z(), feature(l, "prominence"),
@@ -73,9 +75,7 @@ localization::PoseFinder make_pose_finder(const LocalizeTask& task, const Search
     return Known{.index = localization::ConstellationIndex(std::move(landmarks),
                                                            localization::FeatureScales(map.types()), options),
                  .skyline = {},
-                 .top_type = map.types().find("mountain_top")
-                                 ? std::optional<TypeId>(map.types().id("mountain_top"))
-                                 : std::nullopt};
+                 .top_type = detected_types(map.types()).mountain_top};
   };
   localization::SkylineOptions skyline = search.skyline;
   const Body& body = task.map.map.crs().body();

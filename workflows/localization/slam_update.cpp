@@ -17,6 +17,7 @@
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 #include "landmarks/uid.hpp"
+#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "workflows/provenance.hpp"
@@ -115,11 +116,8 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
 
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer) {
-  const TypeRegistry& types = task.map.map.types();
-  const auto type = [&](const char* name) {
-    return types.find(name) ? std::optional<TypeId>(types.id(name)) : std::nullopt;
-  };
-  const localization::ScanTypes seen{type("tree"), type("rock")};
+  const localization::DetectedTypes types = detected_types(task.map.map.types());
+  const localization::ScanTypes seen{types.tree, types.rock};
   localization::ScanDetectionOptions scans = task.settings.scans;
   // A map without landmarks has all types, so the log decides: that of a park has odometry. Its beams are so
   // far apart that a stem is one or two wide: diameters mislead (ATE 1.9 m with, 1.2 m without).
@@ -140,11 +138,8 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
   std::unordered_map<localization::LandmarkKey, Landmark> of_map;
   for (Landmark& l : map.store->query({})) of_map.emplace(localization::landmark_key(l.uid), std::move(l));
   std::vector<const localization::SlamLandmark*> seen_of;
-  std::optional<TypeId> fallback;
-  if (types.find("beacon"))
-    fallback = types.id("beacon");
-  else if (types.size() == 1)
-    fallback = TypeId{0};
+  std::optional<TypeId> fallback = find_self_identifying_type(types);
+  if (!fallback && types.size() == 1) fallback = TypeId{0};
   for (const localization::SlamLandmark& l : landmarks) {
     if (l.was_mapped) {
       const auto known = of_map.find(l.key.value_or(0));

@@ -18,7 +18,6 @@
 #include "pipeline/fusion/projection/canopy_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
 #include "workflows/mapping/summit_names.hpp"
-#include "workflows/registries.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -175,10 +174,11 @@ std::vector<std::string> map_artifacts() {
   return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views", "place_names"};
 }
 
-geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord run, bool with_dem) {
+geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry& types, geodb::RunRecord run,
+                                bool with_dem) {
   const auto& dem = result.artifact<DemHandle>("dem");
   geodb::MapContents contents;
-  contents.types = all_types();
+  contents.types = types;
   contents.crs = dem->geometry().where.crs;
   contents.run = std::move(run);
   if (with_dem) contents.dem_coverage = dem;
@@ -197,7 +197,7 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord ru
       contents.images.push_back(image_record(pipeline::canopy_view(*canopy)));
   }
   if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
-  for (geodb::ShapeLayer& layer : summit_layers(all_types(), contents.landmarks))
+  for (geodb::ShapeLayer& layer : summit_layers(types, contents.landmarks))
     contents.layers.push_back(std::move(layer));
   for (const auto& made : result.artifacts<std::vector<pipeline::ImageView>>("image_views"))
     for (const pipeline::ImageView& image : *made) contents.images.push_back(image_record(image));

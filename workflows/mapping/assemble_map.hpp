@@ -13,8 +13,10 @@ bool has_all_landmarks(const pipeline::Pipeline& pipeline, const pipeline::RunRe
 
 /// Collects the contents of a map from the artifacts of a run, stage by stage: `landmarks`, and with images
 /// `evidence` and `image_views`. `crowns` become the layer crown. Landmarks, evidence and crowns are moved
-/// out of the result; those of tiles are parts that are read while the map is written.
-geodb::MapContents assemble_map(pipeline::RunResult& result, geodb::RunRecord run, bool with_dem);
+/// out of the result; those of tiles are parts that are read while the map is written. `types`: those of the
+/// run; must outlive the contents.
+geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry& types, geodb::RunRecord run,
+                                bool with_dem);
 
 /// Returns the artifacts that assemble_map() and summarize_run() read (RunOptions::results).
 std::vector<std::string> map_artifacts();

@@ -80,8 +80,8 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
   if (request.format == "mrclam") {
     if (std::filesystem::is_directory(file))
       file = (std::filesystem::path(file) / "Landmark_Groundtruth.dat").string();
-    table =
-        read_mrclam_table(file, request.options.type.empty() ? "beacon" : request.options.type, landmarks);
+    const std::string coded = all_types()[find_self_identifying_type(all_types()).value()].name;
+    table = read_mrclam_table(file, request.options.type.empty() ? coded : request.options.type, landmarks);
   } else {
     table = read_table(request, landmarks);
   }

@@ -77,6 +77,7 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   options.work = request.work;
   options.max_bytes_in_memory = kScratchInMemory;
   options.rerun_from = request.rerun_from;
+  options.types = request.types ? request.types : &all_types();
   return options;
 }
 
@@ -111,8 +112,8 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
     callbacks.summary(request.map + " is not written: some units of work are missing\n");
     return made;
   }
-  const geodb::MapContents contents =
-      assemble_map(result, run_record(job, result, request.command_line, started), request.with_dem);
+  const geodb::MapContents contents = assemble_map(
+      result, *options.types, run_record(job, result, request.command_line, started), request.with_dem);
   made.landmarks = geodb::write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
   made.written = true;
   callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));

@@ -22,6 +22,7 @@ struct MapRequest {
   bool with_dem = false;                      ///< store the DEM in the map
   int threads = 0;                            ///< 0: one per processor
   std::string command_line = {};              ///< recorded in the map
+  const TypeRegistry* types = nullptr;        ///< landmark types; null: the built-in types
 };
 
 /// What a job did.

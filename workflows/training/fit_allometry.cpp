@@ -47,9 +47,9 @@ std::vector<pipeline::Allometry> fit_allometry(const AllometryRequest& request, 
       read.skipped_rows ? fmt::format("; {} rows without them left out", read.skipped_rows) : ""));
   const auto table = fit_table(read, request);
   for (const pipeline::Allometry& row : table)
-    callbacks.summary(fmt::format(
-        "{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n", row.species,
-        pipeline::to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
+    callbacks.summary(
+        fmt::format("{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n",
+                    row.species, to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
   if (request.output.empty()) return table;
   exporters::write_file(request.output, pipeline::allometry_as_csv(table));
   return table;

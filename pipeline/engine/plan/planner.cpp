@@ -89,13 +89,30 @@ void append_units(Plan& plan, const Pipeline& pipeline, const Items& items) {
   plan.begins.push_back(plan.units.size());
 }
 
+std::string types_fingerprint(const TypeRegistry& types) {
+  auto all = nlohmann::json::array();
+  for (const LandmarkType& type : types) {
+    auto columns = nlohmann::json::array();
+    for (const FeatureSpec& f : type.features)
+      columns.push_back(
+          {f.name, static_cast<int>(f.scale), fmt::format("{} {}", f.min_value, f.max_value), f.reference});
+    for (const AttributeSpec& a : type.attributes) columns.push_back({a.name, static_cast<int>(a.kind)});
+    const ExistenceRules& e = type.existence;
+    all.push_back({type.name, columns, to_string(type.evidence), type.body.feature,
+                   type.body.radius_per_value, e.further_detection, e.missed_image, e.prior_penalty,
+                   e.min_probability});
+  }
+  return sha256(all.dump());
+}
+
 std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
-                             const std::vector<InputFile>& files) {
+                             const std::vector<InputFile>& files, const std::string& types) {
   auto key = nlohmann::json{{"stage", unit.stage},
                             {"version", step.spec().version},
                             {"halo", step.spec().halo},
                             {"options", canonical_options(step)},
                             {"item", unit.item},
+                            {"types", types},
                             {"files", nlohmann::json::array()},
                             {"reads", nlohmann::json::array()}};
   if (unit.tile) key["tile"] = Codec<std::vector<Tile>>::encode({*unit.tile});

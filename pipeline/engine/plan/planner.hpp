@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 #include "core/input_file.hpp"
+#include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/pipeline.hpp"
 #include "pipeline/engine/plan.hpp"
 namespace waymark::pipeline {
@@ -36,10 +37,14 @@ struct Items {
 /// Appends the units of the next stage, without fingerprints.
 void append_units(Plan& plan, const Pipeline& pipeline, const Items& items);
 
+/// Returns a hash of the declarations of the landmark types that determine results: all but drawing and
+/// texts.
+std::string types_fingerprint(const TypeRegistry& types);
+
 /// Returns a hash of everything that determines the result of a unit, as 32 hex digits: stage, version, halo,
-/// options that affect the result, item, contents of input files, fingerprints of the units it reads.
-/// For an image the list that contains it is left out.
+/// options that affect the result, item, landmark types, contents of input files, fingerprints of the units
+/// it reads. For an image the list that contains it is left out.
 std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
-                             const std::vector<InputFile>& files);
+                             const std::vector<InputFile>& files, const std::string& types);
 
 }  // namespace waymark::pipeline

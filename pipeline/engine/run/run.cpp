@@ -33,7 +33,13 @@ std::vector<bool> dependent_stages(const std::string& name, const Pipeline& pipe
 
 }  // namespace
 
-Run::Run(const Pipeline& pipeline, const RunOptions& options) : pipeline_(pipeline), options_(options) {
+Run::Run(const Pipeline& pipeline, const RunOptions& options)
+    : pipeline_(pipeline), options_(options), types_(options.types) {
+  if (!types_) {
+    register_landmark_types(built_in_types_);
+    types_ = &built_in_types_;
+  }
+  types_fingerprint_ = types_fingerprint(*types_);
   pipeline.check();
   check_run_options(options, pipeline);
   for (std::size_t stage = 0; stage < pipeline.steps().size(); ++stage)
@@ -105,7 +111,7 @@ void Run::take_items(std::size_t stage) {
 
 /// Lets a stage compare its options with the map-scope artifacts that planning made.
 void Run::check_inputs(std::size_t stage) const {
-  UnitInputs inputs{.id = step(stage).spec().name, .base_folder = pipeline_.base_folder};
+  UnitInputs inputs{.id = step(stage).spec().name, .base_folder = pipeline_.base_folder, .types = types_};
   for (const Wire& wire : wires_[stage]) {
     PortInput& input = inputs.ports[wire.port];
     input.many = wire.gathers;
@@ -127,7 +133,8 @@ void Run::append_stage(bool fingerprints) {
   for (std::size_t i = plan_.begins[stage]; i < plan_.units.size(); ++i) {
     std::vector<InputFile> own = files;
     if (plan_.units[i].image) own.push_back(image_files_.at(i - plan_.begins[stage]));
-    plan_.units[i].fingerprint = unit_fingerprint(plan_, plan_.units[i], step(stage), pipeline_, own);
+    plan_.units[i].fingerprint =
+        unit_fingerprint(plan_, plan_.units[i], step(stage), pipeline_, own, types_fingerprint_);
     plan_.units[i].done = store_ && store_->contains(plan_.units[i]);
   }
 }

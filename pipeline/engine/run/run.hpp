@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <vector>
+#include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/plan/planner.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/engine/run/run_state.hpp"
@@ -51,6 +52,9 @@ class Run {
 
   const Pipeline& pipeline_;
   const RunOptions& options_;
+  TypeRegistry built_in_types_;  ///< empty if the caller gave types
+  const TypeRegistry* types_;
+  std::string types_fingerprint_;
   std::optional<ArtifactStore> store_;
   std::vector<std::vector<Wire>> wires_;  ///< per stage
   std::vector<bool> planning_;            ///< per stage: runs while planning

@@ -151,7 +151,8 @@ UnitInputs Run::unit_inputs(std::size_t stage, std::size_t unit) const {
                     .tile = what.tile,
                     .image = what.image,
                     .base_folder = pipeline_.base_folder,
-                    .threads = tbb::this_task_arena::max_concurrency()};
+                    .threads = tbb::this_task_arena::max_concurrency(),
+                    .types = types_};
   for (const Wire& wire : wires_[stage]) {
     PortInput& input = inputs.ports[wire.port];
     const bool all_items = !wire.same_item && step(wire.writer).spec().scope != Scope::map;

@@ -67,8 +67,8 @@ class BundleAdjustment {
       prior.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
       prior_.block<6, 6>(6 * i, 6 * i) = prior;
     }
-    std::vector<std::optional<BodySize>> sizes;
-    for (const LandmarkType& type : types) sizes.push_back(body_size(type));
+    std::vector<std::optional<BodyIndex>> sizes;
+    for (const LandmarkType& type : types) sizes.push_back(body_index(type));
     std::vector<int> count(images.size(), 0);
     for (Index o = 0; o < observations.size(); ++o) {
       const auto image = index.find(observations[o].source);

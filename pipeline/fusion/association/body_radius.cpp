@@ -5,13 +5,12 @@
 
 namespace waymark::pipeline {
 
-std::optional<BodySize> body_size(const LandmarkType& type) {
-  if (type.size_feature == "radius") return BodySize{feature_index(type, "radius"), 1};
-  if (type.size_feature.ends_with("diameter")) return BodySize{feature_index(type, type.size_feature), 0.5};
-  return std::nullopt;
+std::optional<BodyIndex> body_index(const LandmarkType& type) {
+  if (type.body.feature.empty()) return std::nullopt;
+  return BodyIndex{feature_index(type, type.body.feature), type.body.radius_per_value};
 }
 
-std::optional<BodyRadius> body_radius(const std::optional<BodySize>& size, const FeatureSet& features) {
+std::optional<BodyRadius> body_radius(const std::optional<BodyIndex>& size, const FeatureSet& features) {
   if (!size || size->feature >= features.size()) return std::nullopt;
   const FeatureValue& f = features[size->feature];
   if (!f.known() || !(f.value > 0) || !std::isfinite(f.value)) return std::nullopt;

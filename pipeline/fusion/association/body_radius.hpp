@@ -5,19 +5,18 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark::pipeline {
 
-/// Feature that holds the horizontal size of a type: a size feature called "radius", or one whose name ends
-/// in "diameter".
-/// Types without one (mountain tops) are associated by position alone.
-struct BodySize {
+/// Index of the feature of LandmarkType::body.
+/// Types without a body are associated by position alone.
+struct BodyIndex {
   std::size_t feature = 0;
-  double radius_per_value = 1;  ///< 1 or 1/2
+  double radius_per_value = 1;
 };
-std::optional<BodySize> body_size(const LandmarkType& type);
+std::optional<BodyIndex> body_index(const LandmarkType& type);
 
 /// Radius of the body in metres, > 0, and the variance of its logarithm.
 struct BodyRadius {
   double metres = 0, log_variance = 0;
 };
-std::optional<BodyRadius> body_radius(const std::optional<BodySize>& size, const FeatureSet& features);
+std::optional<BodyRadius> body_radius(const std::optional<BodyIndex>& size, const FeatureSet& features);
 
 }  // namespace waymark::pipeline

@@ -39,8 +39,8 @@ struct ObservedObjects {
 
 ObservedObjects observed_objects(std::span<const Observation> observations, const TypeRegistry& types,
                                  const MergeRules& rules) {
-  std::vector<std::optional<BodySize>> sizes;
-  for (const LandmarkType& type : types) sizes.push_back(body_size(type));
+  std::vector<std::optional<BodyIndex>> sizes;
+  for (const LandmarkType& type : types) sizes.push_back(body_index(type));
   std::map<std::string_view, Index> sources;  // by name, so numbers do not depend on the order
   for (const Observation& o : observations) sources.emplace(o.source, 0);
   Index next = 0;

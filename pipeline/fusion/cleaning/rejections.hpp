@@ -14,15 +14,15 @@ namespace waymark::pipeline {
 // Cleaning (Rossmann et al. 3.2). Each function marks observations with a reason and skips marked ones.
 
 struct PlausibilityRules {
-  /// Smallest accepted depth / diameter of a crater, with a tolerance of two standard deviations.
+  /// Smallest accepted depth / diameter of a bowl, with a tolerance of two standard deviations.
   double min_depth_ratio = 0.01;
-  /// Largest accepted height / diameter of an object detected by its shadow. Taller ones are cliffs and
+  /// Largest accepted height / diameter of a shadow caster. Taller ones are cliffs and
   /// ridges.
   double max_height_ratio = 3;
 };
 
-/// Rejects features outside the range of their type ("implausible radius"), craters with "negative depth" or
-/// "too shallow", and rocks that are "too tall".
+/// Rejects features outside the range of their type ("implausible radius"), bowls with "negative depth" or
+/// "too shallow", and shadow casters that are "too tall".
 void reject_implausible(std::span<Observation> observations, const TypeRegistry& types,
                         const PlausibilityRules& rules = {});
 
@@ -30,10 +30,9 @@ struct TerrainShadowRules {
   double min_distance_cells = 2;  ///< smallest distance between object and shadowing terrain
 };
 
-/// Rejects objects detected by a shadow that the terrain casts, even with the sun one standard deviation
-/// higher; tests the centre of the assumed shadow.
-/// `image` is the source of all observations; without sun nothing is rejected. Positions in units of a CRS of
-/// `metres_per_unit`.
+/// Rejects shadow casters detected by a shadow that the terrain casts, even with the sun one standard
+/// deviation higher; tests the centre of the assumed shadow. `image` is the source of all observations;
+/// without sun nothing is rejected. Positions in units of a CRS of `metres_per_unit`.
 void reject_terrain_shadows(std::span<Observation> observations, const TypeRegistry& types,
                             const ImageView& image, const Terrain& terrain, double metres_per_unit,
                             const TerrainShadowRules& rules = {});
@@ -45,9 +44,10 @@ struct RimShadowRules {
   double min_confidence = 0.5;       ///< of the crater
 };
 
-/// Rejects rocks on the light-facing rim of a crater, where the shadow is the crater's.
-/// Such a rock lies towards the sun from the crater's centre, at about the elliptic radius. Craters of all
-/// images and DEMs count (`craters` may be the same list); the sun is that of the rock's image.
+/// Rejects shadow casters on the light-facing rim of a bowl, where the shadow is the bowl's: rocks and
+/// craters for short. Such a rock lies towards the sun from the crater's centre, at about the elliptic
+/// radius. Craters of all images and DEMs count (`craters` may be the same list); the sun is that of the
+/// rock's image.
 void reject_rim_shadows(std::span<Observation> observations, std::span<const Observation> craters,
                         const TypeRegistry& types, const std::map<std::string, Sun>& sun_of_image,
                         const Crs& crs, const RimShadowRules& rules = {});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "pipeline/fusion/cleaning/rim_axes.hpp"
 #include "pipeline/fusion/projection/rim_profile.hpp"
 
 namespace waymark::pipeline {
@@ -67,13 +68,13 @@ void update_crater_confidences(std::span<Observation> observations, const TypeRe
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     const LandmarkType& type = types[o.type];
-    if (type.drawn_as != Solid::bowl || !o.rejected.empty()) continue;
+    if (type.evidence != EvidenceModel::bowl || !o.rejected.empty()) continue;
     GroundOutline outline;
     outline.centre = o.position.xyz;
     outline.centre.head<2>() *= metres_per_unit;
-    outline.major = o.features[feature_index(type, "major_axis")].value;
-    outline.minor = o.features[feature_index(type, "minor_axis")].value;
-    outline.orientation = o.features[feature_index(type, "orientation")].value;
+    const auto rim = rim_axes(o, type);
+    if (!rim) continue;
+    outline.major = rim->major, outline.minor = rim->minor, outline.orientation = rim->orientation;
     if (const auto closed = rim_closure(terrain, outline))
       rims.push_back({i, std::clamp(*closed, kMin, kMax)});
   }

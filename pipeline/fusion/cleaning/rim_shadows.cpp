@@ -8,6 +8,7 @@
 #include "pipeline/fusion/association/map_plane.hpp"
 #include "pipeline/fusion/association/neighbour_pairs.hpp"
 #include "pipeline/fusion/cleaning/rejections.hpp"
+#include "pipeline/fusion/cleaning/rim_axes.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -18,18 +19,9 @@ struct Rim {
 };
 
 std::optional<Rim> rim_of(const Observation& o, const LandmarkType& type) {
-  Rim rim{o.position.xyz.head<2>()};
-  const auto body = body_radius(body_size(type), o.features);
-  if (!body) return std::nullopt;
-  rim.major = rim.minor = body->metres;
-  for (std::size_t i = 0; i < type.features.size() && i < o.features.size(); ++i) {
-    const FeatureValue& f = o.features[i];
-    if (!f.known()) continue;
-    if (type.features[i].name == "major_axis") rim.major = f.value / 2;
-    if (type.features[i].name == "minor_axis") rim.minor = f.value / 2;
-    if (type.features[i].name == "orientation") rim.orientation = f.value;
-  }
-  return rim;
+  const auto axes = rim_axes(o, type);
+  if (!axes) return std::nullopt;
+  return Rim{o.position.xyz.head<2>(), axes->major / 2, axes->minor / 2, axes->orientation};
 }
 
 // Returns the radius of the ellipse in a direction.
@@ -52,13 +44,14 @@ void reject_rim_shadows(std::span<Observation> observations, std::span<const Obs
   std::vector<Eigen::Vector3d> points;
   std::vector<double> reach;
   for (Observation& o : observations)
-    if (o.rejected.empty() && types[o.type].drawn_as == Solid::cylinder && sun_of_image.contains(o.source)) {
+    if (o.rejected.empty() && types[o.type].evidence == EvidenceModel::shadow_caster &&
+        sun_of_image.contains(o.source)) {
       rocks.push_back(&o);
       points.push_back(plane.to_cartesian(o.position.xyz.head<2>()));
       reach.push_back(0);
     }
   for (const Observation& o : craters) {
-    if (!o.rejected.empty() || types[o.type].drawn_as != Solid::bowl) continue;
+    if (!o.rejected.empty() || types[o.type].evidence != EvidenceModel::bowl) continue;
     if (o.confidence < rules.min_confidence) continue;
     const auto rim = rim_of(o, types[o.type]);
     if (!rim) continue;
@@ -76,7 +69,7 @@ void reject_rim_shadows(std::span<Observation> observations, std::span<const Obs
     if (!(distance > 0)) return false;
     const double fraction = distance / radius_towards(rim, from_middle);
     if (!(fraction >= rules.inner && fraction <= rules.outer)) return false;
-    const auto body = body_radius(body_size(types[rock.type]), rock.features);
+    const auto body = body_radius(body_index(types[rock.type]), rock.features);
     if (body && body->metres < rules.min_fraction * std::sqrt(rim.major * rim.minor)) return false;
     const Eigen::Vector2d sun = sun_direction(sun_of_image.at(rock.source)).unit.head<2>().normalized();
     return from_middle.dot(sun) >= distance * std::cos(rules.half_angle);

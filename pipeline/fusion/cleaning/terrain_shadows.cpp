@@ -19,8 +19,8 @@ void reject_terrain_shadows(std::span<Observation> observations, const TypeRegis
   const Eigen::Vector2d away = -light.head<2>() / level;
   for (Observation& o : observations) {
     const LandmarkType& type = types[o.type];
-    if (!o.rejected.empty() || type.drawn_as != Solid::cylinder) continue;
-    const auto body = body_radius(body_size(type), o.features);
+    if (!o.rejected.empty() || type.evidence != EvidenceModel::shadow_caster) continue;
+    const auto body = body_radius(body_index(type), o.features);
     if (!body) continue;
     double reach = body->metres;  // half of a shadow of unknown length
     for (std::size_t i = 0; i < type.features.size(); ++i)

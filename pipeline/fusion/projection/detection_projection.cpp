@@ -86,7 +86,7 @@ Observation project_detection(const Detection& detection, const ImageView& image
   auto outline = project_outline(image, detection.outline, *ground);
   if (!outline) return reject(observation, "seen too flat");
 
-  const bool bowl = type.drawn_as == Solid::bowl;
+  const bool bowl = type.evidence == EvidenceModel::bowl;
   if (bowl && outline->diameter() >= 4 * cell)
     if (const auto rim = rim_plane(image, detection.outline, terrain))
       if (const auto on_rim = project_outline(image, detection.outline, *rim)) outline = on_rim, ground = rim;
@@ -106,8 +106,10 @@ Observation project_detection(const Detection& detection, const ImageView& image
   const auto pixel_sd = detection.diameter_sd / std::max(detection.outline.diameter(), 1e-3);
   const auto range_sd = relative_range_sd(image, *line, hit.range);
   const double diameter_sd = diameter * std::hypot(pixel_sd, range_sd, growth_sd);
-  for (const char* name : {"diameter", "crown_diameter"}) set(observation, type, name, diameter, diameter_sd);
-  set(observation, type, "radius", diameter / 2, diameter_sd / 2);
+  if (!type.body.feature.empty()) {
+    const double per_diameter = 1 / (2 * type.body.radius_per_value);
+    set(observation, type, type.body.feature, per_diameter * diameter, per_diameter * diameter_sd);
+  }
   set(observation, type, "major_axis", outline->major, diameter_sd * std::sqrt(2.0));
   set(observation, type, "minor_axis", outline->minor, diameter_sd * std::sqrt(2.0));
   set(observation, type, "orientation", outline->orientation, orientation_sd(*outline, diameter_sd));

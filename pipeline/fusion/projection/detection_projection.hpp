@@ -24,11 +24,11 @@ struct ProjectionRules {
 
 /// Projects a detection onto the terrain.
 /// - The line of sight of its centre is intersected with the terrain; its outline is projected onto the
-///   tangent plane there, for craters of at least four cells onto the plane through the rim.
-/// - Features are measured in horizontal projection, metres: radius, major_axis, minor_axis, orientation,
-///   diameter, crown_diameter; height from the shadow; depth from the terrain. Unmeasurable features are
-///   absent.
-/// - Craters get the width of their crests if the terrain shows their degradation.
+///   tangent plane there, for bowls of at least four cells onto the plane through the rim.
+/// - Features are measured in horizontal projection, metres: that of LandmarkType::body, major_axis,
+///   minor_axis, orientation; height from the shadow; depth of bowls from the terrain. Unmeasurable features
+///   are absent.
+/// - Bowls get the width of their crests if the terrain shows their degradation.
 /// - Covariance = image + pose + terrain height along the line of sight + shape; feature variances are those
 ///   of the measurement.
 /// Observation::position is in the grid frame (metres). If no ground is visible, `rejected` gives the reason

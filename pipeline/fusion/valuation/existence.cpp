@@ -6,13 +6,6 @@
 
 namespace waymark::pipeline {
 
-ExistenceRules existence_rules(std::string_view type) {
-  if (type == "rock")
-    return {.further_detection = 0.2, .missed_image = 0.5, .prior_penalty = 1.5, .min_probability = 0.5};
-  if (type == "crater") return {.further_detection = 0.2, .missed_image = 0.15};
-  return {};
-}
-
 double existence_probability(std::span<const double> confidences, int missed, const ExistenceRules& rules) {
   if (confidences.empty()) return 0;
   double best = -1e30, sum = 0;

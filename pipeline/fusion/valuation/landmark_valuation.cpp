@@ -137,7 +137,7 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
     if (!detected.empty() && rules.cover == CoverRule::paper)
       counts = count_by_paper(known, detected, at.head<2>());
     if (!detected.empty() && rules.cover == CoverRule::sound) {
-      const auto body = body_radius(body_size(type), landmark.features);
+      const auto body = body_radius(body_index(type), landmark.features);
       const VisibilityTarget thing{{at.x() * metres_per_unit, at.y() * metres_per_unit, at.z()},
                                    body ? body->metres : 0};
       counts = count_by_visibility(known, detected, thing, terrain, metres_per_unit, rules);
@@ -151,7 +151,7 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
       landmark.quality.feature_confidences[f] = spread_confidence(
           landmark.features[f], type.features[f].scale, type.features[f].reference, rules.spread);
     landmark.confidence = existence_probability(confidences, landmark.quality.visible - landmark.quality.seen,
-                                                rules.existence.value_or(existence_rules(type.name)));
+                                                rules.existence.value_or(type.existence));
   });
 }
 
@@ -159,8 +159,7 @@ std::int64_t remove_improbable(std::vector<Landmark>& landmarks, std::vector<Obs
                                const TypeRegistry& types) {
   std::set<std::string> none;
   for (const Landmark& landmark : landmarks)
-    if (landmark.confidence < existence_rules(types[landmark.type].name).min_probability)
-      none.insert(landmark.uid);
+    if (landmark.confidence < types[landmark.type].existence.min_probability) none.insert(landmark.uid);
   std::erase_if(landmarks, [&](const Landmark& landmark) { return none.contains(landmark.uid); });
   for (Observation& o : evidence)
     if (!o.landmark_uid.empty() && none.contains(o.landmark_uid))

@@ -182,18 +182,22 @@ TEST(Existence, FurtherImagesHelpAndMissesHurt) {
   EXPECT_EQ(existence_probability({}, 0), 0);
 }
 
+const ExistenceRules& rules(std::string_view type) {
+  return kTypes[kTypes.id(type)].existence;
+}
+
 TEST(Existence, RocksAreDoubtedMoreThanCraters) {
   const double one[] = {0.9};
-  EXPECT_NEAR(existence_probability(one, 0, existence_rules("rock")), 9 / (9 + std::exp(1.5)), 1e-12);
-  EXPECT_NEAR(existence_probability(one, 0, existence_rules("crater")), 0.9, 1e-12);
-  EXPECT_NEAR(existence_probability(one, 0, existence_rules("mountain_top")), 0.9, 1e-12);
+  EXPECT_NEAR(existence_probability(one, 0, rules("rock")), 9 / (9 + std::exp(1.5)), 1e-12);
+  EXPECT_NEAR(existence_probability(one, 0, rules("crater")), 0.9, 1e-12);
+  EXPECT_NEAR(existence_probability(one, 0, rules("mountain_top")), 0.9, 1e-12);
 }
 
 // Further images of a crater add little evidence, and a missed detection counts little against it.
 TEST(Existence, CratersAreSeenThroughTheSameDemInEveryImage) {
   const double three[] = {0.9, 0.8, 0.5};
   const double logit = std::log(9) + 0.2 * std::log(4) - 2 * 0.15;
-  EXPECT_NEAR(existence_probability(three, 2, existence_rules("crater")), 1 / (1 + std::exp(-logit)), 1e-12);
+  EXPECT_NEAR(existence_probability(three, 2, rules("crater")), 1 / (1 + std::exp(-logit)), 1e-12);
 }
 
 TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bearings are associated with landmarks within the reach of their type.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.hpp"
+#include "localization/filters/kalman.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
+#include "localization/filters/particle_filter.hpp"
+
+namespace waymark::test {
+using namespace localization;
+namespace {
+
+const TypeRegistry& built_in_types() {
+  static const TypeRegistry registry = [] {
+    TypeRegistry types;
+    register_landmark_types(types);
+    return types;
+  }();
+  return registry;
+}
+
+MapLandmark landmark(LandmarkKey key, double x, double y, const char* type) {
+  return {.key = key,
+          .at = {x, y},
+          .covariance = Eigen::Matrix2d::Identity() * 25,
+          .type = built_in_types().id(type)};
+}
+
+// Summits all around at 4 to 60 km, and rocks that are much nearer.
+std::vector<MapLandmark> summits_and_rocks() {
+  std::vector<MapLandmark> all = {
+      landmark(1, 4000, 500, "mountain_top"), landmark(2, -3000, 6000, "mountain_top"),
+      landmark(3, 2000, -9000, "mountain_top"), landmark(4, -60000, -5000, "mountain_top")};
+  Random random(1, "rocks");
+  for (LandmarkKey i = 0; i < 300; ++i)
+    all.push_back(landmark(100 + i, random.uniform(-500, 500), random.uniform(-500, 500), "rock"));
+  return all;
+}
+
+SightingSet bearings_of_summits(const Pose2& robot, Random& random) {
+  SightingSet set;
+  for (const MapLandmark& l : summits_and_rocks()) {
+    if (l.type != built_in_types().id("mountain_top")) continue;
+    const Eigen::Vector2d to = l.at - robot.at();
+    set.sightings.push_back(
+        {.type = l.type,
+         .bearing = wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw + 0.001 * random.normal()),
+         .bearing_sd = 0.001,
+         .range = {},
+         .features = {},
+         .identity = {}});
+  }
+  return set;
+}
+
+const PoseEstimate kStart{{40, -30, 0.03}, Eigen::Vector3d(2500, 2500, 0.0025).asDiagonal()};
+
+void expect_found_by_summits(Localizer& filter, const char* name) {
+  const Pose2 robot{0, 0, 0};
+  Random random(2, "bearings");
+  int matched = 0;
+  for (int i = 0; i < 20; ++i)
+    for (const Match& match : filter.update(bearings_of_summits(robot, random)))
+      matched += match.verdict == Verdict::matched;
+  EXPECT_GE(matched, 60) << name;  // of 80
+  // Twenty bearings of 1 mrad at 4 km and more: 2 m across the nearest, 0.5 mrad in yaw.
+  EXPECT_LT(filter.estimate().pose.at().norm(), 15) << name;
+  EXPECT_LT(std::abs(filter.estimate().pose.yaw), 0.003) << name;
+}
+
+TEST(BearingReach, FarSummitsLocalizeEveryFilter) {
+  const LandmarkWindow map{LandmarkGrid(summits_and_rocks())};
+  const FeatureScales scales(built_in_types());
+  ExtendedKalman ekf(kStart, map, scales);
+  expect_found_by_summits(ekf, "ekf");
+  UnscentedKalman ukf(kStart, map, scales);
+  expect_found_by_summits(ukf, "ukf");
+  MultiHypothesisFilter hypotheses(kStart, map, scales);
+  expect_found_by_summits(hypotheses, "hypotheses");
+  ParticleFilter particles(kStart, map, scales);
+  expect_found_by_summits(particles, "particles");
+}
+
+TEST(BearingReach, IsThatOfTheType) {
+  const TypeRegistry& types = built_in_types();
+  const FeatureScales scales(types);
+  const IdentificationOptions options;
+  for (const char* type : {"rock", "mountain_top"}) {
+    const double reach = types[types.id(type)].identification_reach;
+    for (const double range : {0.8 * reach, 1.5 * reach}) {
+      const LandmarkGrid map({landmark(1, range, 0, type)});
+      const SeenLandmark seen{.type = types.id(type), .range = {}, .features = {}, .identity = {}};
+      const PoseEstimate robot{{}, Eigen::Matrix3d::Identity() * 1e-6};
+      EXPECT_EQ(candidates(seen, {}, robot, map, scales, options).pairings.size(), range < reach ? 1u : 0u)
+          << type << ' ' << range;
+    }
+  }
+}
+
+TEST(BearingReach, OptionReplacesTheReachOfTypes) {
+  const FeatureScales scales(built_in_types());
+  const SeenLandmark rock{.type = built_in_types().id("rock"), .range = {}, .features = {}, .identity = {}};
+  EXPECT_EQ(IdentificationOptions{}.reach_of(rock, scales), 100);
+  EXPECT_EQ((IdentificationOptions{.bearing_reach = 30}).reach_of(rock, scales), 30);
+}
+
+// A sighting of unknown type must not make every rock within sight of a summit a candidate.
+TEST(BearingReach, WithoutATypeIsTheSmallest) {
+  const FeatureScales scales(built_in_types());
+  EXPECT_EQ(scales.identification_reach({}), 100);
+  EXPECT_EQ(FeatureScales().identification_reach({}), 100);
+}
+
+}  // namespace
+}  // namespace waymark::test
