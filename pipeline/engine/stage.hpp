@@ -16,6 +16,7 @@
 #pragma once
 #include "core/error.hpp"
 #include "core/options.hpp"
+#include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/codec.hpp"
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/port.hpp"
