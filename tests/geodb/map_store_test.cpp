@@ -121,6 +121,24 @@ TEST(Migration, WhatNobodyAssessedHasNoQualityAndMovesAreSeen) {
   EXPECT_EQ(query_text(old, "SELECT count(*) FROM waymark_moved"), "1");  // lp-2 did not move
 }
 
+// Built-in types get their own declaration; others what drawing and size meant before.
+TEST(Migration, TypesDeclareHowTheyAreSeen) {
+  const TemporaryFolder folder;
+  const std::filesystem::path old = folder / "old.gpkg";
+  make_version_1(old);
+  execute_sql(old, R"(
+      INSERT INTO waymark_type VALUES (2, 'mountain_top', '', 'cone', '#000000', '', ''),
+          (3, 'sinkhole', '', 'bowl', '#000000', '', 'diameter');
+      INSERT INTO waymark_feature (type, position, name, unit, scale, reference, summary)
+          VALUES ('sinkhole', 0, 'diameter', 'm', 'ratio', 0, '');)");
+  const MapStore map = MapStore::open(old);
+  EXPECT_EQ(map.types()[0].evidence, EvidenceModel::none);
+  EXPECT_EQ(map.types()[0].identification_reach, 100);
+  EXPECT_EQ(map.types()[1].identification_reach, 150e3);
+  EXPECT_EQ(map.types()[2].evidence, EvidenceModel::bowl);
+  EXPECT_EQ(map.types()[2].body, (BodySize{"diameter", 0.5}));
+}
+
 TEST(Reading, VisitingGivesTheSameAsReadingAll) {
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", scattered({}));

@@ -87,6 +87,10 @@ TEST(WriteMap, ReadsTypesItWasNotBuiltWith) {
   EXPECT_EQ(read.colour, wanted.colour);
   EXPECT_EQ(read.drawn_as, wanted.drawn_as);
   EXPECT_EQ(read.label_feature, wanted.label_feature);
+  EXPECT_EQ(read.evidence, wanted.evidence);
+  EXPECT_EQ(read.body, wanted.body);
+  EXPECT_EQ(read.identification_reach, wanted.identification_reach);
+  EXPECT_EQ(read.identifies_itself, wanted.identifies_itself);
   ASSERT_EQ(read.features.size(), 2u);
   EXPECT_EQ(read.features[1].name, "diameter");
   EXPECT_EQ(read.features[1].max_value, 0.6);
