@@ -13,4 +13,5 @@ ALTER TABLE waymark_type ADD COLUMN identification_reach DOUBLE NOT NULL DEFAULT
 ALTER TABLE waymark_type ADD COLUMN identifies_itself BOOLEAN NOT NULL DEFAULT 0;
 INSERT INTO gpkg_extensions VALUES
   ('waymark_moved', NULL, 'waymark_map', 'docs/map.md of Waymark', 'read-write');
-INSERT INTO waymark_schema VALUES (3, 'quality: NULL where not assessed; landmarks: edit triggers; waymark_moved; types: evidence, body, reach');
+INSERT INTO waymark_schema VALUES
+  (3, 'quality: NULL where not assessed; landmarks: edit triggers; waymark_moved; types: evidence, body, reach');

@@ -29,7 +29,7 @@ double largest_sd(const Eigen::Matrix2d& c) {
   return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
 }
 
-/// Returns the landmarks that may pass the gate of a sighting; others cannot.
+/// Returns the landmarks of its type that may pass the gate of a sighting; others cannot.
 std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Pose2& sensor,
                                               const PoseEstimate& robot, const LandmarkGrid& map,
                                               const FeatureScales& scales,
@@ -44,7 +44,9 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double apex = sigmas * std::hypot(place, noise * map.largest_sd());
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
   const double along = sensor.yaw + seen.bearing;
-  const auto keep = [&](std::uint32_t i) { found.push_back(i); };
+  const auto keep = [&](std::uint32_t i) {
+    if (!seen.type || *seen.type == map[i].type) found.push_back(i);
+  };
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
   };
