@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Types from outside go from detection to localization; no other file of the program knows them.
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -32,9 +33,9 @@ struct Object {
 };
 
 // The haystack and the lamp post west of the pothole stand on its rim, which faces the sun.
-const std::vector<Object> kWorld = {{kPothole, 3, -7},     {kHaystack, -4, 8},  {kTallHaystack, 4, 8},
-                                    {kHaystack, -1.2, -7}, {kLampPost, -7, -3}, {kLampPost, -0.5, -5},
-                                    {kLampPost, 10, 3},    {kLampPost, 0, 12},  {kLampPost, 8, 9, 1}};
+const std::vector<Object> kWorld = {{kPothole, 3, -7},     {kHaystack, -4, 8},   {kTallHaystack, 4, 8},
+                                    {kHaystack, -1.9, -7}, {kLampPost, -7, -12}, {kLampPost, -2, -5.5},
+                                    {kLampPost, 10, 3},    {kLampPost, 0, 12},   {kLampPost, 8, 9, 1}};
 
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
@@ -46,7 +47,7 @@ std::string text_of(const std::filesystem::path& file) {
 class NewType : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder = std::filesystem::path(testing::TempDir()) / "new_type";
+    folder = std::filesystem::path(testing::TempDir()) / ("new_type_" + std::to_string(getpid()));
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
     register_landmark_types(types);
@@ -66,6 +67,7 @@ class NewType : public testing::Test {
     job.pipeline.base_folder = folder;
     workflows::make_map(job, {.map = map(), .types = &types});
   }
+  static void TearDownTestSuite() { std::filesystem::remove_all(folder); }
   static std::string map() { return folder / "map.gpkg"; }
 
   static void write_dem() {
@@ -132,14 +134,14 @@ TEST_F(NewType, IsMapped) {
 // Height over diameter 4: the bounds of a shadow caster do not hold for a pole.
 TEST_F(NewType, DecidesThePhysicsByItsEvidenceModel) {
   EXPECT_THAT(rejections_at(4, 8), ElementsAre("too tall"));
-  EXPECT_THAT(rejections_at(-1.2, -7), ElementsAre("shadow of a crater's rim"));
+  EXPECT_THAT(rejections_at(-1.9, -7), ElementsAre("shadow of a crater's rim"));
   for (const Object& object : kWorld)
     if (std::string(object.mark.type) == "lamp_post" && object.images == 4)
       EXPECT_THAT(rejections_at(object.x, object.y), ElementsAre("")) << object.x << ' ' << object.y;
   const auto holes = geodb::MapStore::open(map()).query({.types = {"pothole"}});
   ASSERT_EQ(holes.size(), 1u);
-  EXPECT_NEAR(holes[0].features[0].value, 2 * kPotholeRadius, 1);
-  EXPECT_NEAR(holes[0].features[1].value, 1.5, 0.5);
+  EXPECT_NEAR(holes[0].features[0].value, 2 * kPotholeRadius, 2);
+  EXPECT_NEAR(holes[0].features[1].value, 1.5, 0.8);
 }
 
 TEST_F(NewType, IsValuedByItsOwnWeights) {
@@ -174,7 +176,7 @@ TEST_F(NewType, LocalizesARobotByBearings) {
     for (const Object& object : kWorld) {
       if (std::string(object.mark.type) != "lamp_post" || object.images < 4) continue;
       const double bearing = std::atan2(object.y - robot.y(), object.x - robot.x()) - yaw;
-      log << (first ? "" : ",") << R"({"type":"lamp_post","bearing_sd":0.002,"bearing":)" << bearing << '}';
+      log << (first ? "" : ",") << R"({"type":"lamp_post","bearing_sd":0.003,"bearing":)" << bearing << '}';
       first = false;
     }
     log << "]}\n";
