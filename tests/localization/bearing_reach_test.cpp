@@ -26,7 +26,8 @@ MapLandmark landmark(LandmarkKey key, double x, double y, const char* type) {
   return {.key = key,
           .at = {x, y},
           .covariance = Eigen::Matrix2d::Identity() * 25,
-          .type = built_in_types().id(type)};
+          .type = built_in_types().id(type),
+          .features = {}};
 }
 
 // Summits all around at 4 to 60 km, and rocks that are much nearer.

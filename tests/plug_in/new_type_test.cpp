@@ -135,9 +135,10 @@ TEST_F(NewType, IsMapped) {
 TEST_F(NewType, DecidesThePhysicsByItsEvidenceModel) {
   EXPECT_THAT(rejections_at(4, 8), ElementsAre("too tall"));
   EXPECT_THAT(rejections_at(-1.9, -7), ElementsAre("shadow of a crater's rim"));
-  for (const Object& object : kWorld)
-    if (std::string(object.mark.type) == "lamp_post" && object.images == 4)
-      EXPECT_THAT(rejections_at(object.x, object.y), ElementsAre("")) << object.x << ' ' << object.y;
+  for (const Object& object : kWorld) {
+    if (std::string(object.mark.type) != "lamp_post" || object.images < 4) continue;
+    EXPECT_THAT(rejections_at(object.x, object.y), ElementsAre("")) << object.x << ' ' << object.y;
+  }
   const auto holes = geodb::MapStore::open(map()).query({.types = {"pothole"}});
   ASSERT_EQ(holes.size(), 1u);
   EXPECT_NEAR(holes[0].features[0].value, 2 * kPotholeRadius, 2);
