@@ -29,7 +29,7 @@ struct ReadMarks {
     for (std::int64_t row = 0; row < info.rows; ++row)
       for (std::int64_t column = 0; column < info.columns; ++column)
         for (const Mark& mark : kMarks) {
-          if (pixels(column, row) != mark.value) continue;
+          if (static_cast<int>(pixels(column, row)) != mark.value) continue;
           Detection one;
           one.type = unit.types().id(mark.type);
           one.outline = {static_cast<double>(column), static_cast<double>(row), mark.diameter, mark.diameter,
