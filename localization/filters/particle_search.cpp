@@ -15,8 +15,9 @@ std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const 
   const auto known = matcher_.options().use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
   const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.uniform_index(map.size()));
   if (!known && s.type && *s.type != map[l].type) return {};
-  const double range = s.range ? std::max(0.0, *s.range + s.range_sd * random.normal())
-                               : matcher_.options().reach_of(s, matcher_.scales()) * std::sqrt(random.uniform());
+  const double range = s.range
+                           ? std::max(0.0, *s.range + s.range_sd * random.normal())
+                           : matcher_.options().reach_of(s, matcher_.scales()) * std::sqrt(random.uniform());
   const double from = random.uniform(-std::numbers::pi, std::numbers::pi);  // landmark to sensor
   const double yaw = wrap_angle(from + std::numbers::pi - s.bearing + s.bearing_sd * random.normal());
   const Pose2 sensor{map[l].at.x() + range * std::cos(from), map[l].at.y() + range * std::sin(from), yaw};
