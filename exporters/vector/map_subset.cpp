@@ -47,7 +47,7 @@ class SubsetReader {
       landmark.type = id;
       found.push_back(std::move(landmark));
     });
-    return reproject(std::move(found), type, map_->crs(), crs_);
+    return exporters::reproject(std::move(found), type, map_->crs(), crs_);
   }
 
   /// Returns the number of landmarks of a type without a position in the CRS.

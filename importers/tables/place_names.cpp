@@ -67,7 +67,7 @@ std::vector<PlaceName> read_place_names(const std::string& path, const std::stri
   return places;
 }
 
-std::string pipeline::Codec<PlaceNames>::encode(const PlaceNames& names) {
+std::string encode_place_names(const PlaceNames& names) {
   ByteWriter write;
   write(names.max_distance);
   write(static_cast<std::uint64_t>(names.places.size()));
@@ -75,7 +75,7 @@ std::string pipeline::Codec<PlaceNames>::encode(const PlaceNames& names) {
   return write.take();
 }
 
-PlaceNames pipeline::Codec<PlaceNames>::decode(std::string_view bytes) {
+PlaceNames decode_place_names(std::string_view bytes) {
   ByteReader read(bytes);
   PlaceNames names;
   read(names.max_distance);

@@ -26,10 +26,19 @@ struct PlaceNames {
 std::vector<PlaceName> read_place_names(const std::string& path, const std::string& layer,
                                         const std::string& column, const Crs& into);
 
-template <>
-struct pipeline::Codec<PlaceNames> {
-  static std::string encode(const PlaceNames& names);
-  static PlaceNames decode(std::string_view bytes);
-};
+std::string encode_place_names(const PlaceNames& names);
+PlaceNames decode_place_names(std::string_view bytes);
 
 }  // namespace waymark::importers
+
+namespace waymark::pipeline {
+
+template <>
+struct Codec<importers::PlaceNames> {
+  static std::string encode(const importers::PlaceNames& names) {
+    return importers::encode_place_names(names);
+  }
+  static importers::PlaceNames decode(std::string_view bytes) { return importers::decode_place_names(bytes); }
+};
+
+}  // namespace waymark::pipeline

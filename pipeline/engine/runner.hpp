@@ -14,9 +14,11 @@
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/progress.hpp"
 #include "pipeline/engine/report.hpp"
-namespace waymark::pipeline {
-
+namespace waymark::inline landmarks {
 class TypeRegistry;
+}
+
+namespace waymark::pipeline {
 
 /// Part of the work done by one process: `index` of `count`, from 1.
 /// Tiles and images are dealt out in turn. A map-scope unit is run by every shard that finds its inputs

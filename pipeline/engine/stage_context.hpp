@@ -13,9 +13,11 @@
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/stage_spec.hpp"
 #include "pipeline/engine/tile.hpp"
-namespace waymark::pipeline {
-
+namespace waymark::inline landmarks {
 class TypeRegistry;
+}
+
+namespace waymark::pipeline {
 
 /// Counts of items read, written and rejected. Sums over units and resumed runs.
 struct Counts {
