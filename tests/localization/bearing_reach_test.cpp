@@ -58,6 +58,8 @@ SightingSet bearings_of_summits(const Pose2& robot, Random& random) {
 }
 
 const PoseEstimate kStart{{40, -30, 0.03}, Eigen::Vector3d(2500, 2500, 0.0025).asDiagonal()};
+// The default number of particles covers bearings of 1 mrad only where the pose is known roughly.
+const PoseEstimate kParticleStart{{8, -6, 0.004}, Eigen::Vector3d(100, 100, 25e-6).asDiagonal()};
 
 void expect_found_by_summits(Localizer& filter, const char* name) {
   const Pose2 robot{0, 0, 0};
@@ -81,7 +83,7 @@ TEST(BearingReach, FarSummitsLocalizeEveryFilter) {
   expect_found_by_summits(ukf, "ukf");
   MultiHypothesisFilter hypotheses(kStart, map, scales);
   expect_found_by_summits(hypotheses, "hypotheses");
-  ParticleFilter particles(kStart, map, scales);
+  ParticleFilter particles(kParticleStart, map, scales);
   expect_found_by_summits(particles, "particles");
 }
 
@@ -92,7 +94,9 @@ TEST(BearingReach, IsThatOfTheType) {
   for (const char* type : {"rock", "mountain_top"}) {
     const double reach = types[types.id(type)].identification_reach;
     for (const double range : {0.8 * reach, 1.5 * reach}) {
-      const LandmarkGrid map({landmark(1, range, 0, type)});
+      MapLandmark exact = landmark(1, range, 0, type);
+      exact.covariance *= 1e-3;  // an uncertain landmark is looked for farther away
+      const LandmarkGrid map({exact});
       const SeenLandmark seen{.type = types.id(type), .range = {}, .features = {}, .identity = {}};
       const PoseEstimate robot{{}, Eigen::Matrix3d::Identity() * 1e-6};
       EXPECT_EQ(candidates(seen, {}, robot, map, scales, options).pairings.size(), range < reach ? 1u : 0u)
