@@ -21,7 +21,10 @@ std::string refusal(LandmarkType type) {
 }
 
 LandmarkType post() {
-  return {.name = "post", .summary = "", .features = {{"width", "m"}}, .body = {"width", 0.5}};
+  return {.name = "post",
+          .summary = "",
+          .features = {{"width", "m", Scale::ratio, 0, 1e9, ""}},
+          .body = {"width", 0.5}};
 }
 
 TEST(LandmarkType, BodyAndReachMustBeUsable) {

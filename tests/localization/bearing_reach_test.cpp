@@ -75,15 +75,15 @@ void expect_found_by_summits(Localizer& filter, const char* name) {
 }
 
 TEST(BearingReach, FarSummitsLocalizeEveryFilter) {
-  const LandmarkWindow map{LandmarkGrid(summits_and_rocks())};
-  const FeatureScales scales(built_in_types());
-  ExtendedKalman ekf(kStart, map, scales);
+  const LandmarkMatcher matcher(LandmarkWindow(LandmarkGrid(summits_and_rocks())),
+                                FeatureScales(built_in_types()));
+  ExtendedKalman ekf(kStart, matcher);
   expect_found_by_summits(ekf, "ekf");
-  UnscentedKalman ukf(kStart, map, scales);
+  UnscentedKalman ukf(kStart, matcher);
   expect_found_by_summits(ukf, "ukf");
-  MultiHypothesisFilter hypotheses(kStart, map, scales);
+  MultiHypothesisFilter hypotheses(kStart, matcher);
   expect_found_by_summits(hypotheses, "hypotheses");
-  ParticleFilter particles(kParticleStart, map, scales);
+  ParticleFilter particles(kParticleStart, matcher);
   expect_found_by_summits(particles, "particles");
 }
 

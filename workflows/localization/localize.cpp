@@ -206,7 +206,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
                     .settings_json = options_as_json(option_table(options)),
                     .write_map = request.write_map,
                     .update_map = request.update_map,
-                    .stem_type = detected_types(map.types()).tree,
+                    .stem_type = localization::detected_types(map.types()).tree,
                     .callbacks = callbacks};
   if (request.live != 0 && (request.layers.empty() || !(request.live > 0)))
     throw Error(ErrorCode::usage, "--live takes the seconds between two writings of --layers", "--live",

@@ -13,7 +13,7 @@
 namespace waymark::workflows {
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
-  const localization::DetectedTypes types = detected_types(task.map.map.types());
+  const localization::DetectedTypes types = localization::detected_types(task.map.map.types());
   const localization::ScanTypes seen{types.tree, types.rock};
   return localization::replay(
       task.log, localizer, task.settings.play,

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<localization::SkylineSummit> skyline_summits(const RobotMap& map) {
   std::vector<localization::SkylineSummit> all;
-  const auto top = detected_types(map.types()).mountain_top;
+  const auto top = localization::detected_types(map.types()).mountain_top;
   if (!top) return all;
   const LandmarkType* type = &map.types()[*top];
   const auto feature = [&](const Landmark& l, std::string_view name) {
@@ -75,7 +75,7 @@ localization::PoseFinder make_pose_finder(const LocalizeTask& task, const Search
     return Known{.index = localization::ConstellationIndex(std::move(landmarks),
                                                            localization::FeatureScales(map.types()), options),
                  .skyline = {},
-                 .top_type = detected_types(map.types()).mountain_top};
+                 .top_type = localization::detected_types(map.types()).mountain_top};
   };
   localization::SkylineOptions skyline = search.skyline;
   const Body& body = task.map.map.crs().body();

@@ -116,7 +116,7 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
 
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer) {
-  const localization::DetectedTypes types = detected_types(task.map.map.types());
+  const localization::DetectedTypes types = localization::detected_types(task.map.map.types());
   const localization::ScanTypes seen{types.tree, types.rock};
   localization::ScanDetectionOptions scans = task.settings.scans;
   // A map without landmarks has all types, so the log decides: that of a park has odometry. Its beams are so
