@@ -6,6 +6,7 @@
 #include "core/units.hpp"
 #include "exporters/report/report_html.hpp"
 #include "exporters/vector/export_map.hpp"
+#include "geodb/layers/layer_style.hpp"
 #include "geodb/map_editor.hpp"
 #include "geodb/map_query.hpp"
 #include "geodb/map_store.hpp"

@@ -9,6 +9,7 @@
 #include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage.hpp"
+#include "pipeline/engine/stage_pages.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/stages.hpp"

@@ -75,7 +75,7 @@ void expect_found_by_summits(Localizer& filter, const char* name) {
 }
 
 TEST(BearingReach, FarSummitsLocalizeEveryFilter) {
-  const LandmarkMatcher matcher(LandmarkWindow(LandmarkGrid(summits_and_rocks())),
+  const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(summits_and_rocks())},
                                 FeatureScales(built_in_types()));
   ExtendedKalman ekf(kStart, matcher);
   expect_found_by_summits(ekf, "ekf");
