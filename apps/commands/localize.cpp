@@ -43,7 +43,7 @@ class Localize final : public Command {
                  .one_of(workflows::localize_methods())
                  .or_else("ekf"),
              Argument{"--sensor", "NAME", &request_.sensor,
-                      "Weight landmark quality for this sensor profile (eq. 8)"}
+                      "Sensor profile of eq. 8; for --set quality=paper, and for maps without confidence"}
                  .offering(workflows::all_sensors().names()),
              Argument{"--min-confidence", "P", &request_.min_confidence,
                       "Use only landmarks that exist with at least this probability, 0 to 1"}

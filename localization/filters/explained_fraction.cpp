@@ -24,8 +24,10 @@ double matched_fraction(const std::vector<Match>& matches) {
 
 ChanceFraction make_chance_fraction(LandmarkMatcher matcher) {
   const auto calls = std::make_shared<int>(0);
-  return [calls, matcher = std::make_shared<LandmarkMatcher>(std::move(matcher))](const SightingSet& seen,
-                                                                                  const PoseEstimate& at) {
+  return [calls, matcher = std::make_shared<LandmarkMatcher>(std::move(matcher))](
+             const SightingSet& seen, const PoseEstimate& at, std::span<const Match> matches) {
+    matcher->observe(seen);
+    matcher->learn(matches);
     double reach = 0;
     for (const SeenLandmark& s : seen.sightings)
       if (s.is_valid() && s.range) reach = std::max(reach, *s.range + 6 * s.range_sd);

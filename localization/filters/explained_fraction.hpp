@@ -11,7 +11,9 @@ double matched_fraction(const std::vector<Match>& matches);
 
 /// Returns the fraction of sightings that fits by chance: the fraction that fits at a wrong pose, half to
 /// one sensor range away and rotated. Each call uses another pose; the sequence is the same in every run.
-using ChanceFraction = std::function<double(const SightingSet& seen, const PoseEstimate& at)>;
+/// `matches`, those of the filter, say how many sightings are not of the map.
+using ChanceFraction =
+    std::function<double(const SightingSet& seen, const PoseEstimate& at, std::span<const Match> matches)>;
 /// Returns that function for a map.
 ChanceFraction make_chance_fraction(LandmarkMatcher matcher);
 

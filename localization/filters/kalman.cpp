@@ -31,7 +31,9 @@ KalmanLocalizer::KalmanLocalizer(LandmarkMatcher matcher, KalmanOptions options)
 std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
   const LandmarkGrid& map = matcher_.landmarks_near(seen, before);
+  matcher_.observe(seen);
   auto [matches, posterior] = matcher_.identify(seen, before, map);
+  matcher_.learn(matches);
   std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -41,7 +43,7 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
     match.key = landmark.key;
-    uses.push_back({&seen.sightings[i], &landmark, effective_quality(landmark, matcher_.options())});
+    uses.push_back({&seen.sightings[i], &landmark, noise_divisor(landmark, matcher_.options())});
   }
   if (posterior && doubtful) {
     missed_ = 0;

@@ -84,7 +84,7 @@ PoseEstimate MultiHypothesisFilter::update_component(const Component& component,
     if (how.choice[i] < 0) continue;
     MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
     landmark.covariance *= 1 + recent_sightings(landmark.key) / 2;
-    const double trust = effective_quality(landmark, matcher_.options());
+    const double trust = noise_divisor(landmark, matcher_.options());
     const SeenLandmark& seen = some.sightings[i];
     if (options_.unscented)
       at = ukf_update(at, seen, some.robot_from_sensor, landmark, trust);
@@ -136,6 +136,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
   const IdentificationOptions& identification = matcher_.options();
   const LandmarkGrid& map = matcher_.landmarks_near(seen, before, view_ ? view_->view_range : 0);
 
+  matcher_.observe(seen);
   std::vector<Match> matches(seen.sightings.size());
   SightingSet some{seen.robot_from_sensor, {}};
   std::vector<std::size_t> places;  // indices of the sightings in `some`, and of those before
@@ -166,6 +167,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     const auto best = std::ranges::max_element(weight, {}, [](const auto& w) { return w.second; });
     Match& match = matches[places[k]];
     match.probability = best->second;
+    match.unmapped = weight.contains(-1) ? weight.at(-1) : 0;
     fits = fits || best->first >= 0;
     if (best->first < 0) {
       match.verdict = best->second > identification.certainty ? Verdict::too_far : Verdict::ambiguous;
@@ -177,10 +179,11 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
       match.key = landmark.key;
       const SeenLandmark& s = seen.sightings[places[k]];
       match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
-                                           landmark.covariance, effective_quality(landmark, identification));
+                                           landmark.covariance, noise_divisor(landmark, identification));
       uses_[match.key] = {1 + recent_sightings(match.key), driven_};
     }
   }
+  matcher_.learn(matches);
   // Merges hypotheses of one pose, whatever their associations.
   for (Component& component : components_) component.choice.clear();
   prune();

@@ -164,6 +164,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   apply_motion();
   const LandmarkGrid& map =
       matcher_.landmarks_near(seen, summary_, options_.weight.expect_unseen ? options_.weight.view_range : 0);
+  matcher_.observe(seen);
   ++sets_;
   if (finder_) {
     memory_.add(seen);
@@ -186,12 +187,14 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     resample_particles(seen, map);
 
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
+  if (!searching_) matcher_.learn(matches);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations
   }
   if (convergence_)
-    convergence_->count(matched_fraction(matches), chance_ ? chance_(seen, summary_) : 0, !searching_);
+    convergence_->count(matched_fraction(matches), chance_ ? chance_(seen, summary_, matches) : 0,
+                        !searching_);
   return matches;
 }
 

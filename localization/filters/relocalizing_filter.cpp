@@ -44,7 +44,7 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   const double fit = matched_fraction(matches);
   if (fit >= 0) fit_ += kFade * (fit - fit_);
   if (chance_ && fit >= 0) {
-    explained_.add(fit, chance_(seen, inner_->estimate()));
+    explained_.add(fit, chance_(seen, inner_->estimate(), matches));
     chance_matches_ =
         chance_matches_ ? !is_explained() : explained_.known() && explained_.value() < kByChance;
   }

@@ -107,7 +107,10 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
 }
 
 double SightingScore::quality(std::uint32_t landmark) const {
-  return std::max((*map_)[landmark].quality, identification_.quality_floor);
+  const MapLandmark& l = (*map_)[landmark];
+  return identification_.quality_floor < 1
+             ? (identification_.quality == "paper" ? l.paper_quality : l.quality)
+             : 1;
 }
 
 double SightingScore::log_unseen(std::uint32_t landmark) const {
@@ -151,13 +154,13 @@ std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const P
   const FeatureComparison features =
       comparable ? compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance)
                  : FeatureComparison{};
-  if (features.largest > identification_.feature_limit) return {};
+  if ((paper_ ? features.largest_weighted : features.largest) > identification_.feature_limit) return {};
   // A missing feature counts 1, which is what matching features count on average.
   const double alike = std::exp((features.used - features.squares) / 2);
   const double turns = 2 * std::numbers::pi;
   return PoseFreeTerms{
       .scale = quality(landmark) * p.seen.confidence * alike / (p.seen.range ? turns : std::sqrt(turns)),
-      .features = features.squares};
+      .features = features.weighted_squares};
 }
 
 template <class T>

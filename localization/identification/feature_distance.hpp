@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 #include "landmarks/landmark_type.hpp"
 #include "localization/identification/known_features.hpp"
@@ -23,9 +24,21 @@ class FeatureScales {
   /// type with a far reach does not make all landmarks candidates; 100 m for an empty registry.
   double identification_reach(std::optional<TypeId> type) const;
 
+  /// Returns alpha_f of eq. 11, which is the same for all landmarks of a type. Unless it was set, one over
+  /// the feature's reference, or over `tolerance` times the geometric mean of its plausible range.
+  double alpha(TypeId type, std::size_t feature, double tolerance) const;
+  /// Sets alpha_f of eq. 11, per unit of the feature. Throws std::out_of_range for an unknown type.
+  void set_alpha(TypeId type, std::size_t feature, double alpha);
+
  private:
+  struct Weight {
+    double alpha = 0;      // 0: by the two others
+    double reference = 0;  // 0: none
+    double typical = 1;
+  };
   std::vector<std::array<Scale, kMaxFeatures>> scales_;
   std::vector<double> reaches_;
+  std::vector<std::array<Weight, kMaxFeatures>> weights_;
 };
 
 /// Returns the features of a sighting as a map states them: axes, which a sensor measures from its x axis to
@@ -36,12 +49,18 @@ KnownFeatures features_in_map(const FeatureScales& scales, TypeId type, const Kn
 /// Returns the features that do not depend on the heading of the sensor: all but axes.
 KnownFeatures features_without_axes(const FeatureScales& scales, TypeId type, KnownFeatures seen);
 
+/// Sets alpha_f of eq. 11 from a list as "rock.radius=4,rock.height=2". Throws Error{usage} for an unknown
+/// type or feature, and for a value that is not positive.
+void set_alphas(FeatureScales& scales, const TypeRegistry& types, std::string_view list);
+
 /// Agreement of the features of a sighting with those of a landmark.
 struct FeatureComparison {
-  double squares = 0;  ///< sum of squared differences over their variances
-  int used = 0;        ///< features known on both sides
-  int missing = 0;     ///< features of the sighting that the landmark lacks
-  double largest = 0;  ///< largest single squared difference over its variance
+  double squares = 0;           ///< sum of squared differences over their variances
+  int used = 0;                 ///< features known on both sides
+  int missing = 0;              ///< features of the sighting that the landmark lacks
+  double largest = 0;           ///< largest single squared difference over its variance
+  double weighted_squares = 0;  ///< sum of squared alpha_f times the difference (eq. 11)
+  double largest_weighted = 0;  ///< largest single term of it
 };
 
 /// Compares a sighting's features with those of a landmark of the same type. `tolerance`: relative standard

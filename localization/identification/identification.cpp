@@ -39,7 +39,7 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double place = largest_sd(robot.covariance.topLeftCorner<2, 2>());
   const double turn = std::sqrt(std::max(0.0, robot.covariance(2, 2)));
   // The noise of the least trusted landmark: a quality q multiplies standard deviations by 1 / sqrt(q).
-  const bool trusts = options.distance != "paper" && options.quality_floor < 1;
+  const bool trusts = options.distance != "paper" && options.quality == "paper" && options.quality_floor < 1;
   const double noise = trusts ? 1 / std::sqrt(std::max(map.min_quality(), options.quality_floor)) : 1;
   const double apex = sigmas * std::hypot(place, noise * map.largest_sd());
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
@@ -73,13 +73,13 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
 
 double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
   const double range = seen.range ? v[0] / seen.range_sd : 0, bearing = v[1] / seen.bearing_sd;
-  return range * range + bearing * bearing + features.squares;
+  return range * range + bearing * bearing + features.weighted_squares;
 }
 
 Match match_from(const Candidates& c, std::optional<std::size_t> chosen, Verdict otherwise) {
   if (c.pairings.empty()) return {.verdict = c.verdict, .pairing = {}};
   if (!chosen) return {.verdict = otherwise, .pairing = {}};
-  return {.verdict = Verdict::matched, .pairing = c.pairings[*chosen]};
+  return {.verdict = Verdict::matched, .pairing = c.pairings[*chosen], .unmapped = 0};
 }
 
 std::vector<Match> assign_individually(const std::vector<Candidates>& all,
@@ -120,6 +120,7 @@ std::vector<Match> assign_by_probability(const std::vector<Candidates>& all,
     Match match = match_from(all[i], best, Verdict::too_far);
     if (match.verdict == Verdict::matched) {
       match.probability = probability[*best];
+      match.unmapped = none;
       if (none > 0.5)
         match.verdict = Verdict::too_far;
       else if (match.probability < options.certainty)
@@ -166,14 +167,27 @@ void IdentificationOptions::describe(OptionVisitor& option) {
          {.help = "Fraction of a feature's value by which two sensors may disagree", .min = 0, .max = 10});
   option("feature_limit", feature_limit,
          {.help = "Squared standard deviations by which one feature may differ", .min = 0});
+  option(
+      "alpha", alpha,
+      {.help = "Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from "
+               "the landmark types"});
   option("clutter", clutter,
-         {.help = "False sightings per metre of range and radian of bearing", .min = 1e-12, .max = 1e3});
+         {.help = "Least density of sightings without a landmark, per metre of range and radian of bearing",
+          .min = 1e-12,
+          .max = 1e3});
+  option("learn_clutter", learn_clutter,
+         {.help = "Estimate the density of sightings without a landmark over the drive"});
   option("bearing_reach", bearing_reach,
          {.help = "Largest range of a sighting without range, metres; 0: that of its landmark type",
           .min = 0,
           .max = 1e6});
   option("node_limit", node_limit,
          {.help = "Largest number of nodes of a joint search", .min = 1, .max = 1e9});
+  option(
+      "quality", quality,
+      {.help = "Use the probability that a landmark exists as prior of its pairings, or divide its noise by "
+               "eq. 8 of the paper",
+       .choices = {"existence", "paper"}});
   option("quality_floor", quality_floor,
          {.help = "Smallest quality that the noise of a landmark is divided by; 1 turns quality off",
           .min = 1e-3,
@@ -225,14 +239,14 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     if (seen.type && *seen.type == landmark.type)
       features = compare_features(scales, landmark.type, seen_features, landmark.features,
                                   options.feature_tolerance);
-    if (!known && features.largest > options.feature_limit) {
+    if (!known && (paper ? features.largest_weighted : features.largest) > options.feature_limit) {
       if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
       continue;
     }
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
     CandidatePair p{
         .landmark = i,
-        .evidence = evidence_of(seen, expected, landmark.covariance, effective_quality(landmark, options))};
+        .evidence = evidence_of(seen, expected, landmark.covariance, noise_divisor(landmark, options))};
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;
@@ -240,7 +254,7 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
       p.squares = p.score = paper_distance(seen, innovation(seen, expected.value), features);
     } else {
       p.squares = d.squares + features.squares;
-      p.score = d.squares + d.log_det + p.features;
+      p.score = d.squares + d.log_det + p.features - 2 * std::log(existence_prior(landmark, options));
     }
     if (!(p.squares <= gate_of(options, p.evidence.rows + features.used)))
       result.verdict = Verdict::too_far;

@@ -28,13 +28,20 @@ struct IdentificationOptions {
   double ambiguity = 0;             ///< others: smallest lead in squared distance over the next landmark
   double feature_tolerance = 0.15;  ///< relative standard deviation between two sensors
   double feature_limit = 9;         ///< squared standard deviations by which one feature may differ
-  double clutter = 0.003;           ///< density of false sightings, per metre of range and radian of bearing
+  /// `distance=paper` and `weights=paper`: alpha_f of eq. 11, as "rock.radius=4,rock.height=2". Others follow
+  /// from the declaration of the type (FeatureScales::alpha).
+  std::string alpha;
+  /// Density of sightings that show no landmark of the map, per metre of range and radian of bearing. With
+  /// `learn_clutter` the least one: filters estimate it over the drive.
+  double clutter = 0.003;
+  bool learn_clutter = true;
   double bearing_reach = 0;         ///< m: largest range of a sighting without range; 0: that of its type
   std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` is used
   bool use_identities = true;       ///< use the identities of landmarks
-  /// The noise of a landmark of quality q is divided by max(q, quality_floor) (section 4.3); 1: quality is
-  /// not used.
-  double quality_floor = 0.1;
+  /// `existence`: the probability that a landmark exists is the prior of its pairings. `paper`: the noise of
+  /// a landmark of quality q (eq. 8) is divided by max(q, quality_floor) (section 4.3).
+  std::string quality = "existence";
+  double quality_floor = 0.1;  ///< 1: quality is not used
 
   void describe(OptionVisitor& option);
   /// Returns the association that `auto` stands for, otherwise the given one.
@@ -88,6 +95,8 @@ struct Match {
   CandidatePair pairing;   ///< only valid if matched
   LandmarkKey key = 0;     ///< of the landmark; 0 unless matched
   double probability = 1;  ///< of the pairing, if the map is right; only from `joint`
+  /// Probability that the sighting shows no landmark of the map; 0 or 1 by the verdict but for `joint`.
+  double unmapped = 1;
 };
 
 /// Data association of a set of sightings.
@@ -99,9 +108,15 @@ struct Identification {
   std::optional<PoseEstimate> posterior;
 };
 
-/// Returns the quality of a landmark, at least the floor; 1 if the floor is 1.
-inline double effective_quality(const MapLandmark& landmark, const IdentificationOptions& options) {
-  return options.quality_floor < 1 ? std::max(landmark.quality, options.quality_floor) : 1;
+/// Returns the divisor of a landmark's noise: its quality (eq. 8), at least the floor; 1 unless
+/// `quality=paper`.
+inline double noise_divisor(const MapLandmark& landmark, const IdentificationOptions& options) {
+  return options.quality == "paper" ? std::max(landmark.paper_quality, options.quality_floor) : 1;
+}
+
+/// Returns the prior probability of a landmark's pairings: that it exists; 1 unless `quality=existence`.
+inline double existence_prior(const MapLandmark& landmark, const IdentificationOptions& options) {
+  return options.quality == "existence" && options.quality_floor < 1 ? landmark.quality : 1;
 }
 
 /// Returns the candidates by type, position and features (section 4.1, first step): landmarks within the

@@ -116,8 +116,8 @@ class HypothesisList {
   }
 
   double paired(std::size_t sighting, const CandidatePair& p) const {
-    const double exists = options_.quality_floor < 1 ? map_[p.landmark].quality : 1;
-    return std::log(exists * seen_.sightings[sighting].confidence) - p.features / 2;
+    return std::log(existence_prior(map_[p.landmark], options_) * seen_.sightings[sighting].confidence) -
+           p.features / 2;
   }
   // A sighting without range is clutter anywhere along its bearing.
   double unpaired(std::size_t sighting) const {

@@ -23,8 +23,9 @@ struct JointHypothesis {
 };
 
 /// Returns all joint associations with their probabilities, most probable first. The probability is the
-/// Gaussian density of the joint innovations times the landmarks' qualities, against a clutter density for
-/// each unpaired sighting. Omits those below 1e-6 of the first. `std::nullopt` if `node_limit` is reached.
+/// Gaussian density of the joint innovations times the landmarks' probabilities of existence, against a
+/// clutter density for each unpaired sighting. Omits those below 1e-6 of the first. `std::nullopt` if
+/// `node_limit` is reached.
 std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Candidates> sets,
                                                              const SightingSet& seen, const LandmarkGrid& map,
                                                              const Eigen::Matrix3d& pose,

@@ -21,7 +21,7 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
   for (const MapLandmark& landmark : landmarks) {
     bounds_.extend(landmark.at);
     largest_sd_ = std::max(largest_sd_, localization::largest_sd(landmark));
-    min_quality_ = std::min(min_quality_, landmark.quality);
+    min_quality_ = std::min(min_quality_, landmark.paper_quality);
   }
   const Eigen::Vector2d size = bounds_.sizes();
   const double count = static_cast<double>(landmarks.size());

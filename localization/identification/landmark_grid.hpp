@@ -24,7 +24,7 @@ class LandmarkGrid {
   bool empty() const { return landmarks_.empty(); }
   Eigen::AlignedBox2d bounds() const { return bounds_; }
   double largest_sd() const { return largest_sd_; }    ///< of any landmark's position, m
-  double min_quality() const { return min_quality_; }  ///< of any landmark
+  double min_quality() const { return min_quality_; }  ///< least `paper_quality`
 
   /// Returns the index of a landmark by key.
   std::optional<std::uint32_t> find(LandmarkKey key) const;

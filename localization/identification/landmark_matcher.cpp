@@ -17,4 +17,25 @@ const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, con
   return map_.landmarks_near(robot.pose.at(), farthest + 6 * width + mount + 1);
 }
 
+void LandmarkMatcher::set_clutter() {
+  if (options_.learn_clutter)
+    options_.clutter = std::max(min_clutter_, clutter_.density(options_.bearing_reach));
+}
+
+void LandmarkMatcher::observe(const SightingSet& seen) {
+  clutter_.add_sightings(seen);
+  set_clutter();
+}
+
+void LandmarkMatcher::learn(std::span<const Match> matches) {
+  double unmapped = 0, count = 0;
+  for (const Match& m : matches) {
+    if (m.verdict == Verdict::unsound || m.verdict == Verdict::unknown_type) continue;
+    unmapped += m.unmapped;
+    ++count;
+  }
+  clutter_.add_unmapped(unmapped, count);
+  set_clutter();
+}
+
 }  // namespace waymark::localization

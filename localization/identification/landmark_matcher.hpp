@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
+#include "localization/identification/clutter_estimate.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_window.hpp"
 namespace waymark::localization {
@@ -9,7 +11,10 @@ namespace waymark::localization {
 class LandmarkMatcher {
  public:
   explicit LandmarkMatcher(LandmarkWindow map, FeatureScales scales = {}, IdentificationOptions options = {})
-      : map_(std::move(map)), scales_(std::move(scales)), options_(std::move(options)) {}
+      : map_(std::move(map)),
+        scales_(std::move(scales)),
+        options_(std::move(options)),
+        min_clutter_(options_.clutter) {}
 
   /// Returns at least the landmarks that the sightings may show from a pose, and those within `view_range`
   /// metres. Valid until the next call.
@@ -19,6 +24,11 @@ class LandmarkMatcher {
   const LandmarkGrid& landmarks_near(const Eigen::Vector2d& at, double reach) {
     return map_.landmarks_near(at, reach);
   }
+
+  /// Prepares for a set: estimates the density of sightings without landmark (`learn_clutter`).
+  void observe(const SightingSet& seen);
+  /// Learns from the matches of the set how many of its sightings are not of the map.
+  void learn(std::span<const Match> matches);
 
   /// Matches the sightings of a set; see waymark::identify. `map`: from landmarks_near.
   Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map) const {
@@ -31,12 +41,17 @@ class LandmarkMatcher {
   }
 
   const FeatureScales& scales() const { return scales_; }
+  /// Returns the options; `clutter` is the estimated density.
   const IdentificationOptions& options() const { return options_; }
 
  private:
+  void set_clutter();
+
   LandmarkWindow map_;
   FeatureScales scales_;
   IdentificationOptions options_;
+  ClutterEstimate clutter_;
+  double min_clutter_;
 };
 
 }  // namespace waymark::localization

@@ -47,9 +47,11 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   robots.at = frame.map_frame_from_crs(ground).xyz.head<2>();
   robots.covariance = usable(landmark.covariance);
   robots.type = landmark.type;
-  const double there = std::isfinite(landmark.confidence) ? landmark.confidence : 1;
-  const double quality = sensor ? quality_for(*sensor, type, landmark).value_or(1) : 1;
-  robots.quality = std::clamp(there * quality, 1e-3, 1.0);
+  const double quality =
+      (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark)).value_or(1);
+  robots.paper_quality = std::clamp(quality, 1e-3, 1.0);
+  robots.quality =
+      std::isfinite(landmark.confidence) ? std::clamp(landmark.confidence, 1e-3, 1.0) : robots.paper_quality;
   robots.features = known_features(landmark.features);
   return robots;
 }

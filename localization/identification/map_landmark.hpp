@@ -19,13 +19,13 @@ struct MapLandmark {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of `at`, m^2
   TypeId type = 0;
-  /// Probability that it exists and can be seen, (0, 1]: the map's confidence times its quality for the
-  /// sensor (eq. 8). 1 if the map has neither.
+  /// Probability that it exists, (0, 1]: the map's confidence, or its quality if it has none. 1 without both.
   double quality = 1;
+  double paper_quality = 1;  ///< for the sensor (eq. 8), (0, 1]; 1 if it was not assessed
   KnownFeatures features;
 };
 
-/// Converts all landmarks of a map. `sensor`: profile for the quality; null: the confidence alone counts.
+/// Converts all landmarks of a map. `sensor`: profile for eq. 8; null: equal weights.
 std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorProfile* sensor = nullptr);
 
 /// Converts one landmark.

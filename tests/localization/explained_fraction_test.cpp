@@ -47,7 +47,7 @@ TEST(ExplainedFraction, ChanceGrowsWithTheDensityOfTheMap) {
     ChanceFraction chance = make_chance_fraction(
         LandmarkMatcher(LandmarkWindow(LandmarkGrid(scatter_landmarks(count, 100, 5, 0.3))), {}, o));
     double sum = 0;
-    for (int i = 0; i < 60; ++i) sum += chance(seen, at) / 60;
+    for (int i = 0; i < 60; ++i) sum += chance(seen, at, {}) / 60;
     EXPECT_GT(sum, before) << count;
     before = sum;
   }
@@ -57,8 +57,8 @@ TEST(ExplainedFraction, ChanceGrowsWithTheDensityOfTheMap) {
   const LandmarkGrid grid(scatter_landmarks(800, 100, 5, 0.3));
   ChanceFraction one = make_chance_fraction(LandmarkMatcher(LandmarkWindow(grid))),
                  two = make_chance_fraction(LandmarkMatcher(LandmarkWindow(grid)));
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(one(seen, at), two(seen, at));
-  EXPECT_LT(one({}, at), 0);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(one(seen, at, {}), two(seen, at, {}));
+  EXPECT_LT(one({}, at, {}), 0);
 }
 
 TEST(Convergence, CoversTheMapUntilItIsProven) {

@@ -51,6 +51,15 @@ TEST(Paper, MatchIsTheLeastDistanceBeforeQualityWeighsIt) {
   // The second sighting is at the doubtful landmark but for one standard deviation of the bearing.
   EXPECT_NEAR(SightingScore(two, map, scales, options, {.use_identities = false})(Pose2{}), 1 * 0.8 + 1 * 0.1,
               1e-9);
+  // q by the letter is eq. 8, which `quality=paper` selects; no floor raises it, and 1 switches it off.
+  MapLandmark vague = sure, blurred = doubtful;
+  vague.paper_quality = 0.3, blurred.paper_quality = 0.05;
+  const LandmarkGrid valued({blurred, vague});
+  IdentificationOptions by_letter{.use_identities = false};
+  by_letter.quality = "paper";
+  EXPECT_NEAR(SightingScore(two, valued, scales, options, by_letter)(Pose2{}), 1 * 0.3 + 1 * 0.05, 1e-9);
+  by_letter.quality_floor = 1;
+  EXPECT_NEAR(SightingScore(two, valued, scales, options, by_letter)(Pose2{}), 1 + 1, 1e-9);
 }
 
 TEST(SightingScore, IsTheDensityOfTheNearestLandmark) {

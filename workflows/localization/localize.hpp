@@ -15,7 +15,8 @@ struct LocalizeRequest {
   std::string output = {};     ///< track, .csv or .gpkg; empty: no file is written
   std::string method = "ekf";  ///< a name of localize_methods()
   double min_confidence = 0;   ///< landmarks less probable than this are not used
-  std::string sensor = {};     ///< profile that weighs landmark quality (eq. 8); empty: the map's confidence
+  std::string sensor =
+      {};  ///< profile of eq. 8, for `quality=paper` and maps without confidence; empty: equal weights
   importers::LogImport log_format = {};
   bool use_identities = true;         ///< identities in the log are used for data association
   std::string start = {};             ///< "X,Y,YAW" (m, rad), "truth" or "none"; empty: the log decides

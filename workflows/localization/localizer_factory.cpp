@@ -44,8 +44,9 @@ std::vector<localization::HorizonTop> horizon_tops(const localization::SightingS
 
 /// Moves the landmark window out of the task.
 localization::LandmarkMatcher make_matcher(LocalizeTask& task) {
-  return localization::LandmarkMatcher(std::move(task.map.window),
-                                       localization::FeatureScales(task.map.map.types()),
+  localization::FeatureScales scales(task.map.map.types());
+  set_alphas(scales, task.map.map.types(), task.settings.identification.alpha);
+  return localization::LandmarkMatcher(std::move(task.map.window), std::move(scales),
                                        task.settings.identification);
 }
 
