@@ -8,7 +8,9 @@ namespace {
 
 constexpr int kWait = 5, kRestartInterval = 20;  // sets between calls of the finder, and between restarts
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
-constexpr double kLeastFit = 1.0 / 3, kLeastOfUsual = 0.5, kWell = 0.8, kByChance = 0.2;
+constexpr double kLeastOfUsual = 0.5, kWell = 0.8;
+// Fractions of the sightings explained beyond chance, or of the usual fit where the map lacks most objects.
+constexpr double kByChance = 0.2, kExplained = 0.3, kByChanceOfUsual = 0.4, kExplainedOfUsual = 0.6;
 
 }  // namespace
 
@@ -28,8 +30,12 @@ void RelocalizingFilter::predict(const BodyMotion& motion) {
 }
 
 bool RelocalizingFilter::lost() const {
-  return chance_matches_ || inner_->status() == LocalizationStatus::lost ||
-         fit_ < std::max(kLeastFit, kLeastOfUsual * usual_fit_);
+  return chance_matches_ || inner_->status() == LocalizationStatus::lost || fit_ < kLeastOfUsual * usual_fit_;
+}
+
+bool RelocalizingFilter::is_explained() const {
+  return !chance_ ||
+         (explained_.known() && explained_.value() > std::min(kExplained, kExplainedOfUsual * usual_fit_));
 }
 
 void RelocalizingFilter::restart(const PoseEstimate& at) {
@@ -46,11 +52,13 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   if (chance_ && fit >= 0) {
     explained_.add(fit, chance_(seen, inner_->estimate(), matches));
     chance_matches_ =
-        chance_matches_ ? !is_explained() : explained_.known() && explained_.value() < kByChance;
+        chance_matches_
+            ? !is_explained()
+            : explained_.known() && explained_.value() < std::min(kByChance, kByChanceOfUsual * usual_fit_);
   }
   if (!lost()) {
     unresolved_sets_ = 0;
-    if (fit >= 0) usual_fit_ += kSlowFade * (fit_ - usual_fit_);
+    if (fit >= 0) usual_fit_ += std::max(kSlowFade, 1.0 / ++usual_sets_) * (fit - usual_fit_);
     if (fit_ >= kWell * usual_fit_ && is_explained()) reliable_ = inner_->estimate();
     return matches;
   }

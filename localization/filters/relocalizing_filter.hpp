@@ -12,11 +12,11 @@ namespace waymark::localization {
 ///
 /// The filter counts as lost in three cases:
 /// - It reports so.
-/// - Less than a third of its recent sightings have a landmark, or less than half of the usual fraction. In
-///   a dense map some landmark fits by chance at any pose.
-/// - The map explains less than a fifth of the sightings beyond chance (ExplainedFraction). The estimate is
-/// then
-///   the last reliable one, or the start, predicted by odometry and updated by fixes.
+/// - Less than half of the usual fraction of its recent sightings have a landmark. In a dense map some
+///   landmark fits by chance at any pose.
+/// - The map explains less of the sightings beyond chance (ExplainedFraction) than a fifth, or two fifths of
+///   the usual fraction if that is less. The estimate is then the last reliable one, or the start, predicted
+///   by odometry and updated by fixes.
 ///
 /// A lost filter calls the PoseFinder on recent sightings, at most every fifth set, since that searches the
 /// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
@@ -54,7 +54,7 @@ class RelocalizingFilter final : public Localizer {
     return reliable_.covariance(0, 0) + reliable_.covariance(1, 1) > 2 * f.sd * f.sd;
   }
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
-  bool is_explained() const { return !chance_ || (explained_.known() && explained_.value() > 0.3); }
+  bool is_explained() const;
 
   Factory make_filter_;
   PoseFinder finder_;
@@ -65,6 +65,7 @@ class RelocalizingFilter final : public Localizer {
   PoseEstimate reliable_;        // the last reliable estimate, predicted by odometry since
   double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
   double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
+  int usual_sets_ = 5;           // sets that count in it; five for the value it begins with
   bool chance_matches_ = false;  // whether the matches were found to fit by chance
   int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
 };
