@@ -22,7 +22,11 @@ void Convergence::fix(const GnssFix& gnss) {
 void Convergence::count(double fit, double chance, bool unimodal) {
   if (!unimodal) reset();
   explained_.add(fit, chance);
-  if (explained_.known()) found_ = explained_.value() > (found_ ? kLeast : kShare);
+  if (!explained_.known()) return;
+  if (found_)
+    found_ = explained_.value() > kLeast;
+  else
+    found_ = identities_ && explained_.value() > kShare;
 }
 
 void Convergence::confirm(const PoseEstimate& sure, const PoseEstimate& here) {

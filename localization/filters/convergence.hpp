@@ -7,14 +7,15 @@ namespace waymark::localization {
 
 /// Decides whether a filter without a given start has found the robot. Until then its covariance must cover
 /// every position the robot may have.
-/// - Particles gathered at one position are no proof: those elsewhere may have died early, and in a dense
-///   map many sightings fit anywhere.
-/// - Found: a PoseFinder confirms the position, or the map explains 0.35 of the sightings beyond chance.
+/// - Particles gathered at one position are no proof: those elsewhere may have died early, the filter chose
+///   the position at which most fits by chance, and a robot at rest sees the same chance again and again.
+/// - Found: a PoseFinder is certain of the position. Identified landmarks cannot fit by chance: with them
+///   one mode for twenty sets, in which the map explains 0.35 of the sightings, is enough.
 /// - No longer found: the map explains less than 0.2.
 class Convergence {
  public:
-  /// `prior`: the estimate before any sighting.
-  explicit Convergence(const PoseEstimate& prior) : prior_(prior) {}
+  /// `prior`: the estimate before any sighting. `identities`: whether landmarks identify themselves.
+  Convergence(const PoseEstimate& prior, bool identities) : prior_(prior), identities_(identities) {}
 
   void predict(const BodyMotion& motion) { prior_ = predict_pose(prior_, motion); }
   /// Bounds the prior by a measured position.
@@ -24,6 +25,8 @@ class Convergence {
   void count(double fit, double chance, bool unimodal);
   /// Compares the filter's position with a certain one from a finder.
   void confirm(const PoseEstimate& sure, const PoseEstimate& here);
+  /// Records that the filter restarts at a certain position.
+  void accept() { explained_.clear(), found_ = true; }
 
   /// Resets the decision; called when the filter restarts.
   void reset() { explained_.clear(), found_ = false; }
@@ -35,7 +38,7 @@ class Convergence {
  private:
   PoseEstimate prior_;
   ExplainedFraction explained_;
-  bool found_ = false;
+  bool identities_ = false, found_ = false;
 };
 
 }  // namespace waymark::localization

@@ -51,7 +51,7 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatche
       summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
           box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
     }
-    convergence_.emplace(summary_);
+    convergence_.emplace(summary_, matcher_.options().use_identities);
     if (!matcher_.options().use_identities) chance_ = make_chance_fraction(matcher_);
     return;
   }
@@ -174,7 +174,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     else
       finder_samples_.clear();
   }
-  if (poses_.empty() && !seen.sightings.empty())
+  if (poses_.empty() && !seen.sightings.empty() && can_search(map))
     search(seen, map, static_cast<std::size_t>(options_.search_particles));
   if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
 

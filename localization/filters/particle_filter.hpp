@@ -33,7 +33,9 @@ struct ParticleOptions {
 /// - A unimodal cloud is updated in tempered steps and resampled after each (progressive correction and
 ///   regularization, Musso et al. 2001). This keeps a precise set from leaving a handful of particles.
 /// - During a search, poses are sampled where a landmark of the right type explains a sighting. Half of
-///   them come from the PoseFinder, if there is one, applied to recent sightings.
+///   them come from the PoseFinder, if there is one, applied to recent sightings. In a map with more
+///   than a tenth as many landmarks there are none before the finder is certain: they would miss the robot.
+/// - Without a start, the robot is found when the PoseFinder is certain (Convergence).
 class ParticleFilter final : public Localizer {
  public:
   /// Without a start the first sightings initialise the filter.
@@ -64,9 +66,11 @@ class ParticleFilter final : public Localizer {
   void resample_particles(const SightingSet& seen, const LandmarkGrid& map);
   std::optional<Pose2> sample_pose(const SightingSet& seen, const LandmarkGrid& map, Random& random) const;
   void query_finder(const SightingSet& seen);
+  void sample_found(const PoseEstimate& at);
   void sample_around_fix(const GnssFix& gnss, double kept);
   template <class Fit>
   bool reweight(Fit&& fit);
+  bool can_search(const LandmarkGrid& map) const;
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
   std::size_t required_count() const;
 

@@ -5,6 +5,11 @@
 #include "localization/filters/particle_filter.hpp"
 
 namespace waymark::localization {
+namespace {
+
+constexpr std::size_t kPerLandmark = 10;  // particles of a search in which one may be right
+
+}  // namespace
 
 std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const LandmarkGrid& map,
                                                  Random& random) const {
@@ -29,7 +34,7 @@ void ParticleFilter::query_finder(const SightingSet& seen) {
   if (queried_set_ != 0 && sets_ < queried_set_ + 5) return;
   queried_set_ = sets_;
   finder_samples_.clear();
-  PoseSearchResult found = finder_(add_bearings(memory_.recall(), seen));
+  PoseSearchResult found = memory_.find(finder_, seen);
   if (found.accepted) found.candidates = {*found.accepted};
   Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "hints");
   for (const PoseEstimate& e : found.candidates) {
@@ -46,7 +51,29 @@ void ParticleFilter::query_finder(const SightingSet& seen) {
   if (found.accepted && searching_) {
     poses_.clear();
     found_sd_ = std::sqrt(found.accepted->covariance(0, 0) + found.accepted->covariance(1, 1));
+    if (convergence_) sample_found(*found.accepted);
   }
+}
+
+// The finder is certain: all particles start there.
+void ParticleFilter::sample_found(const PoseEstimate& at) {
+  Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "found");
+  const auto count = static_cast<std::size_t>(options_.particles);
+  const Eigen::Matrix3d root = square_root(at.covariance);
+  for (std::size_t i = 0; i < count; ++i)
+    poses_.push_back(pose_of(at.pose.vector() +
+                             root * Eigen::Vector3d(random.normal(), random.normal(), random.normal())));
+  weights_.assign(count, 1 / static_cast<double>(count));
+  summary_ = at;
+  searching_ = false;
+  slow_ = fast_ = 0;
+  convergence_->accept();
+}
+
+// A pose drawn from one sighting lies anywhere on a circle about one of the landmarks, so each needs several.
+bool ParticleFilter::can_search(const LandmarkGrid& map) const {
+  return !finder_ || identification_.use_identities ||
+         kPerLandmark * map.size() <= static_cast<std::size_t>(options_.search_particles);
 }
 
 void ParticleFilter::search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count) {

@@ -65,10 +65,8 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   if (seen.sightings.empty()) return matches;
   if (++sets_since_query_ >= kWait) {
     sets_since_query_ = 0;
-    PoseSearchResult found = finder_(add_bearings(memory_.recall(), seen));
+    PoseSearchResult found = memory_.find(finder_, seen);
     if (found.accepted) {
-      // The finder does not know the odometry noise in remembered sightings.
-      found.accepted->covariance *= 4;
       restart(*found.accepted);
       reliable_ = *found.accepted;
       ++restarts_;

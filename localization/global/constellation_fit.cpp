@@ -6,12 +6,16 @@
 #include <numbers>
 #include <unordered_map>
 
+#include "localization/global/chance_matches.hpp"
 #include "localization/global/constellation_search.hpp"
 
 namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kKept = 10;
+constexpr std::int64_t kSupportTests = 50;  // poses compared with all sightings for each that is fitted
+constexpr double kSupportSlack = 1.5;       // a guess uses three sightings only
+constexpr double kNearby = 16;              // area about a sighting over that of its gate
 
 }  // namespace
 
@@ -40,17 +44,42 @@ std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
   }
   std::vector<Crowd> ranked;
   for (const auto& [k, crowd] : crowds) ranked.push_back(crowd);
-  const auto best = std::min(ranked.size(), static_cast<std::size_t>(o_.max_tried));
-  std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(best), ranked.end(),
-                    [](const Crowd& a, const Crowd& b) {
-                      return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
-                    });
+  const auto keep_best = [&](std::int64_t count) {
+    const auto best = std::min(ranked.size(), static_cast<std::size_t>(count));
+    std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(best), ranked.end(),
+                      [](const Crowd& a, const Crowd& b) {
+                        return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
+                      });
+    ranked.resize(best);
+  };
+  keep_best(kSupportTests * o_.max_tried);
+  for (Crowd& crowd : ranked) crowd.weight = support(guesses_[crowd.first]);
+  keep_best(o_.max_tried);
   std::vector<ConstellationFix> fixes;
-  for (std::size_t i = 0; i < best; ++i)
-    if (auto fix = fit(guesses_[ranked[i].first])) keep(fixes, std::move(*fix));
+  for (const Crowd& crowd : ranked)
+    if (auto fix = fit(guesses_[crowd.first])) keep(fixes, std::move(*fix));
   std::ranges::stable_sort(fixes, {}, badness);
   if (fixes.size() > kKept) fixes.resize(kKept);
   return fixes;
+}
+
+// A vote counts three sightings, and many poses share a cell of the votes: this compares all of them.
+double ConstellationSearch::support(const Guess& g) const {
+  const LandmarkPosition& anchor = index_.positions_[g.anchor];
+  const TangentPlane plane = plane_at(anchor);
+  const bool is_plane = plane.east == Eigen::Vector3d::UnitX();
+  const Eigen::Matrix2d r = rotation(g.yaw);
+  const double density = static_cast<double>(index_.size()) / index_.area_;
+  double sum = 0;
+  for (const Seen& s : points_) {
+    Eigen::Vector3d at = plane.point(g.middle + r * (s.at - middle_));
+    if (!is_plane) at *= anchor.at.norm() / at.norm();
+    const double radius = kSupportSlack * o_.sigmas * std::hypot(s.sd, index_.typical_sd_);
+    bool fits = false;
+    index_.cells_.near(at, radius, [&](std::uint32_t i, double) { fits = fits || alike(s, i); });
+    if (fits) sum -= std::log(-std::expm1(-density * s.rarity * std::numbers::pi * radius * radius));
+  }
+  return sum;
 }
 
 void ConstellationSearch::keep(std::vector<ConstellationFix>& fixes, ConstellationFix fix) const {
@@ -173,6 +202,17 @@ bool ConstellationSearch::adjust(PoseEstimate& e, const Matches& matches,
   return e.covariance.allFinite();
 }
 
+// Landmarks cluster, and sightings in a cluster match more often by chance than the mean density says.
+double ConstellationSearch::intensity_near(const Seen& s, const Pose2& pose, const std::vector<Local>& locals,
+                                           std::optional<std::uint32_t> except, double area) const {
+  const Eigen::Vector2d at = pose.at() + rotation(pose.yaw) * s.at;
+  const double square = area / std::numbers::pi;
+  double count = 0;
+  for (std::uint32_t k = 0; k < locals.size(); ++k)
+    if (k != except && (locals[k].at - at).squaredNorm() < square) count += alike(s, locals[k].landmark);
+  return count / area;
+}
+
 ConstellationFix ConstellationSearch::evaluate_fix(const PoseEstimate& e, const TangentPlane& plane,
                                                    const Matches& matches,
                                                    const std::vector<Local>& locals) const {
@@ -181,24 +221,23 @@ ConstellationFix ConstellationSearch::evaluate_fix(const PoseEstimate& e, const 
   fix.landmarks.resize(total_);
   const double reach = 1.3 * extent_ + 1e-9;
   const double density = static_cast<double>(locals.size()) / (std::numbers::pi * reach * reach);
-  std::vector<double> tail{1};  // tail[m]: probability of exactly m chance matches so far
+  std::vector<ChanceMatch> chances;
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const std::uint32_t typical = matches[i] ? locals[*matches[i]].landmark : locals[0].landmark;
     const double area = std::numbers::pi * o_.sigmas * o_.sigmas *
                         std::sqrt(spread(points_[i], e.pose, typical).determinant());
-    const double p = std::clamp(1 - std::exp(-density * area * points_[i].rarity), 1e-12, 1 - 1e-9);
-    tail.push_back(0);
-    for (std::size_t m = tail.size() - 1; m > 0; --m) tail[m] = tail[m] * (1 - p) + tail[m - 1] * p;
-    tail[0] *= 1 - p;
+    const double intensity = std::max(density * points_[i].rarity,
+                                      intensity_near(points_[i], e.pose, locals, matches[i], kNearby * area));
+    chances.push_back({-std::expm1(-intensity * area), matches[i].has_value(), 0});
     if (!matches[i]) continue;
     const Local& l = locals[*matches[i]];
     const Eigen::Vector2d d = l.at - e.pose.at() - rotation(e.pose.yaw) * points_[i].at;
-    fix.squares += d.dot(spread(points_[i], e.pose, l.landmark).inverse() * d);
+    chances.back().squares = d.dot(spread(points_[i], e.pose, l.landmark).inverse() * d);
+    fix.squares += chances.back().squares;
     fix.landmarks[points_[i].index] = l.landmark;
     ++fix.matched;
   }
-  double chance = 0;
-  for (std::size_t m = tail.size(); m-- > static_cast<std::size_t>(fix.matched);) chance += tail[m];
+  const double chance = chance_of_matches(chances, o_.sigmas * o_.sigmas);
   // Number of distinguishable poses: the volume of all over the volume of one.
   const double one =
       std::pow(2 * std::numbers::pi, 1.5) * std::sqrt(std::max(e.covariance.determinant(), 1e-300));

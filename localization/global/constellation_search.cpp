@@ -241,8 +241,6 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
     return best.matched >= least ? "" : "the identities contradict the distances";
   }
   if (best.matched < o_.min_matches) return "too few sightings fit one pose";
-  if (2 * best.matched < static_cast<int>(points_.size()) && best.matched < 8)
-    return "most sightings do not fit the best pose";
   if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
   if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
     return "two poses fit alike";

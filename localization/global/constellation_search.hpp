@@ -53,7 +53,9 @@ class ConstellationSearch {
   std::vector<std::array<TypeId, 3>> possible_types(const std::array<const Seen*, 3>& c) const;
   // Groups similar guesses and fits the best of each group.
   std::vector<ConstellationFix> fit_guesses();
-  static double badness(const ConstellationFix& f) { return f.log_false_alarms + f.squares / 2; }
+  // Returns the sum of the information of the sightings with a landmark near, -ln of their chance.
+  double support(const Guess& g) const;
+  static double badness(const ConstellationFix& f) { return f.log_false_alarms; }
   // Adds a fix unless the same pose was found already.
   void keep(std::vector<ConstellationFix>& fixes, ConstellationFix fix) const;
   static double combined_sd(const ConstellationFix& a, const ConstellationFix& b);
@@ -67,6 +69,9 @@ class ConstellationSearch {
   Matches match(const Pose2& pose, const std::vector<Local>& locals, double slack) const;
   // Gauss-Newton steps of the weighted least squares over all matches.
   bool adjust(PoseEstimate& e, const Matches& matches, const std::vector<Local>& locals) const;
+  // Returns the number of landmarks per m^2 that a sighting could be, in a disc of `area` about its position.
+  double intensity_near(const Seen& s, const Pose2& pose, const std::vector<Local>& locals,
+                        std::optional<std::uint32_t> except, double area) const;
   // Computes how many poses of the whole map would match as much by chance.
   ConstellationFix evaluate_fix(const PoseEstimate& e, const TangentPlane& plane, const Matches& matches,
                                 const std::vector<Local>& locals) const;

@@ -14,7 +14,7 @@ constexpr double kLeastElsewhere = 1;  // m: a filter recovers from less by itse
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
   const Eigen::Vector3d d(found.pose.x - other.pose.x, found.pose.y - other.pose.y,
                           wrap_angle(found.pose.yaw - other.pose.yaw));
-  const Eigen::Matrix3d both = 4 * found.covariance + other.covariance + 1e-9 * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d both = found.covariance + other.covariance + 1e-9 * Eigen::Matrix3d::Identity();
   return d.head<2>().norm() > kLeastElsewhere && !(d.dot(both.inverse() * d) < kElsewhere);
 }
 

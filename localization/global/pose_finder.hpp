@@ -18,8 +18,7 @@ struct PoseSearchResult {
 using PoseFinder = std::function<PoseSearchResult(const SightingSet&)>;
 
 /// Returns whether a found pose differs from another by more than a metre and more than both covariances
-/// explain. Counts the covariance of the found pose four times, because the finder does not know the
-/// odometry noise in remembered sightings.
+/// explain.
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other);
 
 }  // namespace waymark::localization

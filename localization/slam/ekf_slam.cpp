@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "localization/chi_square.hpp"
 #include "localization/filters/measurement.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr double kRangeMargin =
     10;  // m beyond the range of sightings in which landmarks are still considered
+constexpr double kJointGate = 0.999;  // probability that right pairs of a set agree
 
 }  // namespace
 
@@ -184,14 +186,20 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
     return std::tie(a.squares, a.sighting, a.landmark) < std::tie(b.squares, b.sighting, b.landmark);
   });
   std::vector<Pair> chosen;
+  std::vector<bool> used(matches.size(), false);
   for (const Pair& p : pairs) {
-    if (found[p.landmark] || matches[p.sighting].verdict == Verdict::matched) continue;
+    if (found[p.landmark] || used[p.sighting]) continue;
+    found[p.landmark] = used[p.sighting] = true;
+    chosen.push_back(p);
+  }
+  chosen = jointly_compatible(seen, std::move(chosen));
+  found.assign(found.size(), false);
+  for (const Pair& p : chosen) {
     found[p.landmark] = true;
     matches[p.sighting].verdict = Verdict::matched;
     matches[p.sighting].key = landmarks_[p.landmark].key.value_or(p.landmark + 1);
     matches[p.sighting].pairing.squares = p.squares;
     last_[p.sighting] = p.landmark;
-    chosen.push_back(p);
   }
   match(seen, chosen);
   update_existence(near, found);
@@ -217,24 +225,58 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   return matches;
 }
 
+SlamState::Correction EkfSlam::correction(const SightingSet& seen, const Pair& pair) {
+  SlamLandmark& l = landmarks_[pair.landmark];
+  const SeenLandmark& s = seen.sightings[pair.sighting];
+  if (!l.slot) {
+    l.slot = state_.add(l.at, l.covariance);
+    landmark_by_slot_.resize(*l.slot + 1);
+    landmark_by_slot_[*l.slot] = pair.landmark;
+  }
+  const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, state_.at(*l.slot));
+  SlamState::Correction c{
+      .slot = *l.slot,
+      .innovation = innovation(s, e.value),
+      .by_pose = e.by_pose,
+      .by_landmark = e.by_landmark,
+      .noise = sensor_noise(s) / std::max(l.quality, options_.identification.quality_floor)};
+  if (!s.range) {
+    c.by_pose.row(0).setZero(), c.by_landmark.row(0).setZero();
+    c.innovation[0] = 0;
+  }
+  return c;
+}
+
+// Removes the pair without which the others agree best, until they agree.
+std::vector<EkfSlam::Pair> EkfSlam::jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen) {
+  std::vector<SlamState::Correction> corrections;
+  int rows = 0;
+  for (const Pair& p : chosen) {
+    corrections.push_back(correction(seen, p));
+    rows += seen.sightings[p.sighting].range ? 2 : 1;
+  }
+  while (chosen.size() > 1 &&
+         state_.joint_squares(corrections) > chi_square_quantile(kJointGate, static_cast<double>(rows))) {
+    std::size_t worst = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      std::vector<SlamState::Correction> rest = corrections;
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
+      if (const double squares = state_.joint_squares(rest); squares < least) least = squares, worst = k;
+    }
+    rows -= seen.sightings[chosen[worst].sighting].range ? 2 : 1;
+    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(worst));
+    corrections.erase(corrections.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
+  return chosen;
+}
+
 void EkfSlam::match(const SightingSet& seen, const std::vector<Pair>& chosen) {
   std::vector<SlamState::Correction> corrections;
   for (const Pair& p : chosen) {
+    const SlamState::Correction c = correction(seen, p);
     SlamLandmark& l = landmarks_[p.landmark];
     const SeenLandmark& s = seen.sightings[p.sighting];
-    if (!l.slot) {
-      l.slot = state_.add(l.at, l.covariance);
-      landmark_by_slot_.resize(*l.slot + 1);
-      landmark_by_slot_[*l.slot] = p.landmark;
-    }
-    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, state_.at(*l.slot));
-    SlamState::Correction c{
-        .slot = *l.slot,
-        .innovation = innovation(s, e.value),
-        .by_pose = e.by_pose,
-        .by_landmark = e.by_landmark,
-        .noise = sensor_noise(s) / std::max(l.quality, options_.identification.quality_floor)};
-    if (!s.range) c.by_pose.row(0).setZero(), c.by_landmark.row(0).setZero();
     corrections.push_back(c);
     l.log_odds = std::min(l.log_odds + options_.seen, kSurestLogOdds);
     ++l.matches;

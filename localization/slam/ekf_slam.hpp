@@ -56,7 +56,8 @@ struct SlamLandmark {
 /// - Starts with or without a map. Landmarks of the map enter the state with their covariance when they are
 ///   first seen; their existence starts from their quality.
 /// - Sightings without identities are associated one to one, least distance first, features included. A
-///   band of ambiguity prevents duplicates.
+///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
+///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
 class EkfSlam final : public Localizer {
  public:
   explicit EkfSlam(const PoseEstimate& start, SlamOptions options = {});
@@ -99,6 +100,8 @@ class EkfSlam final : public Localizer {
   void apply_pending_motion();
   std::vector<Near> landmarks_in_reach(const SightingSet& seen) const;
   double feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const;
+  SlamState::Correction correction(const SightingSet& seen, const Pair& pair);
+  std::vector<Pair> jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen);
   void match(const SightingSet& seen, const std::vector<Pair>& chosen);
   void add(const SeenLandmark& seen, const Pose2& mount);
   void update_existence(const std::vector<Near>& near, const std::vector<bool>& found);

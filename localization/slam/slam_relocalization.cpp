@@ -13,7 +13,7 @@ namespace {
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
 constexpr double kLostFade = 0.002;              // decay of the usual fit while lost
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
-constexpr int kWait = 5, kCheckInterval = 10, kUnmatchedSets = 10;
+constexpr int kWait = 5, kCheckInterval = 10, kRoutineInterval = 20, kUnmatchedSets = 10;
 
 }  // namespace
 
@@ -34,21 +34,21 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   if (seen.sightings.empty()) return {};
   unmatched_sets_ = matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
-  if (!searching && fit_ > kConfident * usual_) {
-    sets_since_query_ = 0;
+  const bool confident = !searching && fit_ > kConfident * usual_;
+  if (++sets_since_query_ < (searching ? kWait : confident ? kRoutineInterval : kCheckInterval)) return {};
+  sets_since_query_ = 0;
+  PoseSearchResult answer = memory_.find(finder_, seen);
+  const std::optional<PoseEstimate> before = std::exchange(rival_, std::nullopt);
+  if (!answer.accepted) return {};
+  if (!are_distinct(*answer.accepted, here)) {
+    fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
     return {};
   }
-  if (++sets_since_query_ < (searching ? kWait : kCheckInterval)) return {};
-  sets_since_query_ = 0;
-  PoseSearchResult answer = finder_(add_bearings(memory_.recall(), seen));
-  const std::optional<PoseEstimate> before = std::exchange(rival_, std::nullopt);
-  if (!answer.accepted || !are_distinct(*answer.accepted, here)) return {};
   if (!before || are_distinct(*answer.accepted, *before)) {
     rival_ = answer.accepted;
     return {};
   }
   fit_ = usual_;
-  answer.accepted->covariance *= 4;
   return answer.accepted;
 }
 

@@ -7,11 +7,12 @@
 namespace waymark::localization {
 
 /// Detects and repairs localization failure of SLAM in a map.
-/// - Lost: SLAM finds less than 0.4 of the expected landmarks that it usually finds. Terrain without
-///   landmarks does not count.
-/// - The PoseFinder is called on recent sightings: every fifth set while lost, or after ten sets without a
-///   landmark of the map (returning to the map closes the loop); every tenth set in doubt.
-/// - Two consecutive answers that agree with each other and not with SLAM are accepted.
+/// - The PoseFinder is called on recent sightings: every twentieth set, as matches in a dense map are no
+///   proof; every tenth in doubt; every fifth while lost, or after ten sets without a landmark of the map
+///   (returning to the map closes the loop). Two consecutive answers that agree with each other and not with
+///   SLAM are accepted.
+/// - Lost: an answer contradicts SLAM, or SLAM finds less than 0.4 of the expected landmarks that it usually
+///   finds and no answer confirms it. Terrain without landmarks does not count.
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, FeatureScales scales = {})
@@ -19,7 +20,7 @@ class SlamRelocalization {
 
   void predict(const BodyMotion& motion);
   /// Adds a set that showed `found` of the `expected` landmarks of the map, and `matched` of the map in
-  /// all. Returns the pose at which SLAM must restart, with the covariance enlarged for odometry.
+  /// all. Returns the pose at which SLAM must restart.
   std::optional<PoseEstimate> update(const SightingSet& seen, int expected, int found, int matched,
                                      const PoseEstimate& here);
   bool lost() const { return rival_ || (sets_ >= 20 && fit_ < 0.4 * usual_); }

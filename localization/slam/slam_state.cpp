@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 
 namespace waymark::localization {
 namespace {
@@ -48,6 +49,29 @@ void SlamState::predict(const BodyMotion& motion) {
   paa_.topLeftCorner<3, 3>() = robot.covariance;
   phi_.topRows<3>() = (j.by_pose * phi_.topRows<3>()).eval();
   pose_ = robot.pose;
+}
+
+double SlamState::joint_squares(std::span<const Correction> corrections) const {
+  if (corrections.empty()) return 0;
+  const Index m = 2 * static_cast<Index>(corrections.size());
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(m, m);
+  Eigen::VectorXd v(m);
+  for (Index i = 0; i < m; i += 2) {
+    const Correction& a = corrections[static_cast<std::size_t>(i / 2)];
+    v.segment<2>(i) = a.innovation;
+    s.block<2, 2>(i, i) = a.noise;
+    for (Index j = 0; j < m; j += 2) {
+      const Correction& b = corrections[static_cast<std::size_t>(j / 2)];
+      s.block<2, 2>(i, j) +=
+          a.by_pose * (paa_.block<3, 3>(0, 0) * b.by_pose.transpose() +
+                       paa_.block<3, 2>(0, row(b.slot)) * b.by_landmark.transpose()) +
+          a.by_landmark * (paa_.block<2, 3>(row(a.slot), 0) * b.by_pose.transpose() +
+                           paa_.block<2, 2>(row(a.slot), row(b.slot)) * b.by_landmark.transpose());
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> root((s + s.transpose()) / 2);
+  if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  return v.dot(root.solve(v));
 }
 
 void SlamState::update(std::span<const Correction> corrections) {

@@ -36,6 +36,8 @@ class SlamState {
     Eigen::Matrix<double, 2, 3> by_pose;
     Eigen::Matrix2d by_landmark, noise;
   };
+  /// Returns the squared Mahalanobis distance of all innovations together; infinite if they have none.
+  double joint_squares(std::span<const Correction> corrections) const;
   /// Kalman update by all corrections at once, Joseph form.
   void update(std::span<const Correction> corrections);
 
