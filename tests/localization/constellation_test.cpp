@@ -8,6 +8,7 @@
 #include <map>
 #include <sstream>
 
+#include "localization/global/chance_matches.hpp"
 #include "localization/global/constellation.hpp"
 #include "made_look.hpp"
 #include "made_world.hpp"
@@ -95,6 +96,36 @@ TEST(PointCells, FindTheSameAsLookingAtAll) {
       EXPECT_THAT(found, ::testing::UnorderedElementsAreArray(expected)) << radius;
     }
   }
+}
+
+TEST(ChanceMatches, EqualSightingsFollowTheBinomial) {
+  // All matches in the middle shell of a gate of 9: twice the tail of matches and of better shells.
+  std::vector<ChanceMatch> sightings(4, {.probability = 0.1, .is_matched = false, .squares = 0});
+  EXPECT_EQ(chance_of_matches(sightings, 9), 1);
+  for (ChanceMatch& s : sightings) s.is_matched = true;
+  // Four matches, all in the innermost of six shells.
+  EXPECT_NEAR(chance_of_matches(sightings, 9), 2 * std::pow(0.1 / 6, 4), 1e-12);
+  // In the outermost shell every match counts: four of four.
+  for (ChanceMatch& s : sightings) s.squares = 8.9;
+  EXPECT_GE(chance_of_matches(sightings, 9), 0.99 * std::pow(0.1, 4));
+  EXPECT_GT(chance_of_matches(sightings, 9), 20 * std::pow(0.1 / 6, 4));
+}
+
+TEST(ChanceMatches, IsMoreThanTheFractionOfDrawsThatMatchAsWell) {
+  // Draws by chance: the fraction with a value below 0.05 is at most 0.05, up to three deviations.
+  Random random(5, "chance");
+  int below = 0;
+  constexpr int kDraws = 4000;
+  for (int i = 0; i < kDraws; ++i) {
+    std::vector<ChanceMatch> sightings;
+    for (int k = 0; k < 12; ++k) {
+      const double p = random.log_uniform(0.003, 0.3);
+      sightings.push_back({p, random.bernoulli(p), random.uniform(0, 9)});
+    }
+    below += chance_of_matches(sightings, 9) < 0.05;
+  }
+  EXPECT_LT(below, kDraws * 0.05 + 3 * std::sqrt(kDraws * 0.05));
+  EXPECT_GT(below, 0);
 }
 
 TEST(Constellation, FindsRocksAnywhereInAMap) {

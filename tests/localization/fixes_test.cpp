@@ -196,7 +196,7 @@ TEST(SightingMemory, CarriesWhatWasSeenAlong) {
     memory.predict(drive.drive());
     memory.add(drive.look());
   }
-  const SightingSet all = memory.recall(200);
+  const SightingSet all = memory.recall(200).set;
   EXPECT_GT(all.sightings.size(), drive.look().sightings.size());
   for (const SeenLandmark& s : all.sightings) {
     ASSERT_TRUE(s.is_valid());
@@ -246,6 +246,79 @@ TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
   }
   EXPECT_LT((filter.estimate().pose.at() - truth.at()).norm(), 0.3);
   EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
+}
+
+struct RocksAbout {
+  std::vector<MapLandmark> map = scatter_landmarks(5000, 500, 43);
+  Random random{3, "looks from nowhere"};
+  Pose2 truth{40, -30, 1};
+  std::shared_ptr<ConstellationIndex> index;
+  IdentificationOptions id;
+
+  explicit RocksAbout(bool identities) {
+    ConstellationOptions options;
+    id.use_identities = options.identification.use_identities = identities;
+    index = std::make_shared<ConstellationIndex>(map, FeatureScales{}, options);
+  }
+  PoseFinder finder() const {
+    return [index = index](const SightingSet& seen) {
+      PoseSearchResult found;
+      const auto answer = index->find(seen);
+      if (answer.fix) found.accepted = answer.fix->pose();
+      for (const auto& fix : answer.candidates) found.candidates.push_back(fix.pose());
+      return found;
+    };
+  }
+  SightingSet look(double reach, std::size_t most, bool named) {
+    SightingSet seen;
+    for (const MapLandmark& l : map) {
+      const Eigen::Vector2d d = l.at - truth.at();
+      if (d.norm() > reach || seen.sightings.size() == most) continue;
+      SeenLandmark s;
+      s.type = TypeId{0};
+      s.range = d.norm() + 0.05 * random.normal();
+      s.range_sd = 0.05;
+      s.bearing = wrap_angle(std::atan2(d.y(), d.x()) - truth.yaw + 0.01 * random.normal());
+      s.bearing_sd = 0.01;
+      if (named) s.identity = l.key;
+      seen.sightings.push_back(s);
+    }
+    return seen;
+  }
+};
+
+TEST(ParticleFilter, ARobotAtRestGathersNoEvidence) {
+  // Three rocks without identities fit at thousands of places; seen a hundred times they still do.
+  RocksAbout site(false);
+  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id, {.threads = 1},
+                        site.finder());
+  for (int i = 0; i < 100; ++i) {
+    filter.predict(step_motion({}, 0.5, {}));
+    filter.update(site.look(15, 3, false));
+    ASSERT_NE(filter.status(), LocalizationStatus::tracking) << i;
+    ASSERT_GT(filter.estimate().covariance(0, 0), 1000) << i;
+  }
+}
+
+TEST(ParticleFilter, OneSetOfIdentifiedLandmarksIsEnough) {
+  RocksAbout site(true);
+  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id, {.threads = 1},
+                        site.finder());
+  filter.update(site.look(15, 4, true));
+  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
+  EXPECT_LT((filter.estimate().pose.at() - site.truth.at()).norm(), 0.3);
+  EXPECT_LT(filter.estimate().covariance(0, 0), 0.1);
+}
+
+TEST(SightingMemory, SeenAgainIsOneObject) {
+  RocksAbout site(false);
+  SightingMemory memory;
+  const std::size_t count = site.look(10, 100, false).sightings.size();
+  for (int i = 0; i < 50; ++i) {
+    memory.predict(step_motion({}, 0.5, {}));
+    memory.add(site.look(10, 100, false));
+  }
+  EXPECT_LE(memory.recall(200).set.sightings.size(), count);
 }
 
 }  // namespace
