@@ -59,11 +59,14 @@ std::vector<ExportColumn> columns_of(const VectorFormat& format, const LandmarkT
   std::vector<ExportColumn> columns = export_columns(type);
   if (format.is_table)
     columns.insert(columns.begin() + 1, {coordinate("x", 0), coordinate("y", 1), coordinate("z", 2)});
-  if (!format.name_field.empty())
+  if (!format.name_field.empty()) {
+    std::erase_if(columns,
+                  [](const ExportColumn& column) { return column.name == "name"; });  // in name_field
     columns.insert(columns.begin(),
                    {text(format.name_field, [&type](const Landmark& l) { return placemark_name(l, type); }),
                     text(format.description_field,
                          [&type](const Landmark& l) { return placemark_description(l, type); })});
+  }
   return columns;
 }
 

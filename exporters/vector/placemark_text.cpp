@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <variant>
 
 #include "exporters/formatting.hpp"
 #include "exporters/vector/export_columns.hpp"
@@ -22,9 +24,19 @@ std::string feature_text(const FeatureValue& feature, const FeatureSpec& spec) {
   return read(feature.value) + spread;
 }
 
+/// Returns the attribute `name`; empty if the type has none or the landmark has no name.
+std::string own_name(const Landmark& landmark, const LandmarkType& type) {
+  const auto found = std::ranges::find(type.attributes, "name", &AttributeSpec::name);
+  const auto index = static_cast<std::size_t>(found - type.attributes.begin());
+  const auto* name =
+      index < landmark.attributes.size() ? std::get_if<std::string>(&landmark.attributes[index]) : nullptr;
+  return name ? *name : "";
+}
+
 }  // namespace
 
 std::string placemark_name(const Landmark& landmark, const LandmarkType& type) {
+  if (std::string name = own_name(landmark, type); !name.empty()) return name;
   return type.label_feature.empty() ? title_of(type.name)
                                     : title_of(type.name) + " " + label_of(landmark, type);
 }

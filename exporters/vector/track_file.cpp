@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
@@ -63,6 +64,17 @@ Values values_of(const localization::TrackRow& row, const LocalFrame* frame, boo
 
 std::size_t columns_of(const TrackOutput& output) {
   return kColumns.size() - !output.timing;  // times are the last column
+}
+
+constexpr std::array<std::size_t, 4> kCounts{11, 12, 13, 18};  // indices of kColumns
+constexpr double kMaxCount = 1e6, kMaxTime = 1e15;             // no drive has more sightings or seconds
+
+/// Returns the index of the first column whose value no track has; `std::nullopt` if all are possible.
+std::optional<std::size_t> impossible_column(const Values& v) {
+  if (!(std::abs(v[0]) <= kMaxTime)) return 0;
+  for (const std::size_t i : kCounts)
+    if (!(v[i] >= 0 && v[i] <= kMaxCount && v[i] == std::floor(v[i]))) return i;
+  return {};
 }
 
 localization::TrackRow row_of(const Values& v) {
@@ -181,6 +193,11 @@ localization::Track read_track_csv(const fs::path& file) {
       if (column[i] < values.size()) values[column[i]] = value;
       at = last ? end : rest + 1;
     }
+    if (const auto wrong = impossible_column(values))
+      throw Error(ErrorCode::input,
+                  fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]),
+                  fmt::format("{}, line {}", file.string(), number),
+                  "counts are whole numbers from 0 to a million");
     track.rows.push_back(row_of(values));
   }
   if (wrong_known)

@@ -73,9 +73,15 @@ std::vector<std::string> camera_formats() {
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import) {
   const CameraSource source{.path = path, .head = head_of_source(path), .interior = import.interior};
   const CameraFormat& reader = format.empty() ? recognised(source) : named(format);
-  CameraSet set = place_cameras(reader.read(source), path, import);
-  set.format = reader.name;
-  return set;
+  try {
+    CameraSet set = place_cameras(reader.read(source), path, import);
+    set.format = reader.name;
+    return set;
+  } catch (const Error& error) {  // of a value of the file, such as its CRS
+    if (error.where().find(path) != std::string::npos) throw;
+    throw Error(error.code(), error.problem(),
+                error.where().empty() ? path : fmt::format("{}, at {}", path, error.where()), error.hint());
+  }
 }
 
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file) {

@@ -159,8 +159,8 @@ TEST_F(MutatedFiles, OfLaserPoints) {
   {
     exporters::LasFile las(folder_ / "made.las", Crs::from_text("EPSG:32633"), 500000, 5000000);
     for (int i = 0; i < 400; ++i)
-      las.add({.x = 500000 + i % 20,
-               .y = 5000000 + i / 20,
+      las.add({.x = 500000.0 + i % 20,
+               .y = 5000000.0 + i / 20,
                .z = 100 + (i % 7 == 0) * 12.0,
                .kind = static_cast<std::uint8_t>(i % 7 ? 2 : 5)});
     las.close();
@@ -220,7 +220,7 @@ TEST_F(MutatedFiles, OfOpenDroneMap) {
 "geometry": {"type": "Point", "coordinates": [8.214619092077715, 49.14849807121841, 164.745]}}]}
 )",
         Content::text, 400,
-        [](const std::string& path) { importers::import_cameras(path, "odm-shots", {.crs = "EPSG:32632"}); });
+        [](const std::string& path) { importers::import_cameras(path, "odm_shots", {.crs = "EPSG:32632"}); });
 }
 
 TEST_F(MutatedFiles, OfColmap) {
@@ -279,7 +279,7 @@ TEST_F(MutatedFiles, OfMetashape) {
 </chunk></document>
 )",
         Content::text, 500,
-        [](const std::string& path) { importers::import_cameras(path, "metashape", map_frame()); });
+        [](const std::string& path) { importers::import_cameras(path, "metashape", {.crs = "local"}); });
 }
 
 TEST_F(MutatedFiles, OfAmesCameras) {
@@ -382,11 +382,11 @@ TEST_F(MutatedFiles, OfJobs) {
   check("job.json", R"({
 "name": "Mountain tops",
 "stages": [
-  {"stage": "load_dem", "files": ["dem.tif"], "nodata": "unknown", "height_scale": 1.5, "fill_distance": 10},
-  {"stage": "find_mountain_tops", "min_prominence": 30, "tile_cells": 4096},
+  {"stage": "load_dem", "files": ["dem.tif"], "nodata": "unknown", "height_scale": 1.5, "tile_cells": 4096},
+  {"stage": "find_mountain_tops", "min_prominence": 30},
   {"stage": "join_mountain_tops"},
-  {"stage": "measure_isolation", "min_isolation": 10},
-  {"stage": "map_mountain_tops"}
+  {"stage": "measure_isolation"},
+  {"stage": "map_mountain_tops", "min_isolation": 10}
 ]
 }
 )",
@@ -413,13 +413,19 @@ TEST_F(MutatedFiles, OfStands) {
         });
 }
 
+importers::TableImport rock_table(const char* crs, bool skip_bad_rows) {
+  importers::TableImport how;
+  how.type = "rock";
+  how.map_crs = crs;
+  how.skip_bad_rows = skip_bad_rows;
+  return how;
+}
+
 TEST_F(MutatedFiles, OfTables) {
   check("rocks.csv", "x,y,z,radius,uid,confidence\n1,2,0,0.5,a,0.9\n3,4,0,0.6,b,0.8\n5,6,0,0.7,c,1\n",
         Content::text, 500, [](const std::string& path) {
           const auto table = importers::open_table(path, importers::TableFormat::by_name, "", "rock");
-          importers::import_table(*table, all_types(),
-                                  {.type = "rock", .map_crs = "local", .skip_bad_rows = true},
-                                  [](Landmark&&) {});
+          importers::import_table(*table, all_types(), rock_table("local", true), [](Landmark&&) {});
         });
   check("rocks.geojson", R"({"type": "FeatureCollection", "features": [
 {"type": "Feature", "properties": {"radius": 0.5}, "geometry": {"type": "Point", "coordinates": [8.1, 49.1, 100]}},
@@ -427,8 +433,7 @@ TEST_F(MutatedFiles, OfTables) {
 )",
         Content::text, 300, [](const std::string& path) {
           const auto table = importers::open_table(path, importers::TableFormat::by_name, "", "rock");
-          importers::import_table(*table, all_types(), {.type = "rock", .map_crs = "EPSG:32632"},
-                                  [](Landmark&&) {});
+          importers::import_table(*table, all_types(), rock_table("EPSG:32632", false), [](Landmark&&) {});
         });
 }
 
