@@ -8,7 +8,7 @@ namespace waymark::localization {
 
 double chi_square_probability(double x, double freedom) {
   if (!(x > 0)) return 0;
-  if (freedom > 1e6) {  // the series takes too long; Wilson & Hilferty (1931) is exact to 1e-6 there
+  if (freedom > 1e6) {  // the series takes too long; Wilson & Hilferty (1931) is accurate to 1e-6 there
     const double s = 2 / (9 * freedom);
     return std::erfc((1 - s - std::cbrt(x / freedom)) / std::sqrt(2 * s)) / 2;
   }

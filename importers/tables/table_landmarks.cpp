@@ -193,6 +193,17 @@ class Rejections {
   const TableSource& table_;
 };
 
+/// Binds the columns; errors name the table.
+ColumnBindings bindings_of(const TableHeader& header, const TypeRegistry& types,
+                           const std::vector<std::string>& chosen, const std::string& columns) {
+  try {
+    return bind_columns(columns, header, types, chosen);
+  } catch (const Error& error) {
+    if (!error.where().empty()) throw;
+    throw Error(error.code(), error.problem(), header.path, error.hint());
+  }
+}
+
 void refuse_empty_result(const ImportedTable& result, const std::string& path) {
   if (result.landmarks > 0 || result.rows == 0) return;
   std::string reasons;
@@ -212,7 +223,7 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
   const RowTypes row_types(header, types, how.type);
   ImportedTable result;
   result.types = row_types.names();
-  const ColumnBindings bindings = bind_columns(how.columns, header, types, result.types);
+  const ColumnBindings bindings = bindings_of(header, types, result.types, how.columns);
   for (const auto& [target, expression] : bindings)
     result.bindings.push_back(
         target == expression.text() ? target : fmt::format("{} = {}", target, expression.text()));

@@ -19,9 +19,21 @@ struct Kind {
   double crown_to_height;
   Share of[std::size(kHeights)];
 };
-constexpr Kind kKinds[] = {{0.194, {{0.72, 0.42}, {0.72, 0.31}, {0.72, 0.20}, {0.72, 0.19}, {0.72, 0.08}}},
-                           {0.246, {{0.31, 0.49}, {0.31, 0.19}, {0.42, 0.22}, {0.55, 0.19}, {0.67, 0.13}}},
-                           {0.295, {{0.16, 0.22}, {0.16, 0.14}, {0.28, 0.18}, {0.44, 0.17}, {0.66, 0.17}}}};
+// Deviations are relative to the recall and equal for all heights, so that 90 % of the intervals of 1.645
+// standard errors hold the stems of simulated forests (docs/evaluation/2026-11-22-errors-of-inventories.md).
+constexpr double kConifers = 0.41, kMixed = 0.78, kBroadleaves = 0.8;
+constexpr Share share(double recall, double relative) {
+  return {recall, recall * relative};
+}
+constexpr Kind kKinds[] = {{0.194,
+                            {share(0.72, kConifers), share(0.72, kConifers), share(0.72, kConifers),
+                             share(0.72, kConifers), share(0.72, kConifers)}},
+                           {0.246,
+                            {share(0.31, kMixed), share(0.31, kMixed), share(0.42, kMixed),
+                             share(0.55, kMixed), share(0.67, kMixed)}},
+                           {0.295,
+                            {share(0.16, kBroadleaves), share(0.16, kBroadleaves), share(0.28, kBroadleaves),
+                             share(0.44, kBroadleaves), share(0.66, kBroadleaves)}}};
 
 }  // namespace
 

@@ -137,7 +137,7 @@ std::string dem_bytes(const fs::path& folder) {
 }
 
 TEST_F(MutatedFiles, OfDems) {
-  check("dem.tif", dem_bytes(folder_), Content::binary, 600, [](const std::string& path) {
+  check("dem.tif", dem_bytes(folder_), Content::binary, 200, [](const std::string& path) {
     const auto dem = importers::import_dem({.files = {path}});
     const GridGeometry& grid = dem->geometry();
     dem->read({0, 0, std::min<std::int64_t>(grid.columns, 64), std::min<std::int64_t>(grid.rows, 64)});
@@ -148,7 +148,7 @@ TEST_F(MutatedFiles, OfTextRasters) {
   check("dem.asc",
         "ncols 4\nnrows 3\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -9999\n"
         "1 2 3 4\n5 6 7 8\n9 10 -9999 12\n",
-        Content::text, 400, [](const std::string& path) {
+        Content::text, 150, [](const std::string& path) {
           const auto dem = importers::import_dem({.files = {path}, .crs = "EPSG:32633"});
           const GridGeometry& grid = dem->geometry();
           dem->read({0, 0, std::min<std::int64_t>(grid.columns, 64), std::min<std::int64_t>(grid.rows, 64)});
@@ -166,7 +166,7 @@ TEST_F(MutatedFiles, OfLaserPoints) {
     las.close();
   }
   check(
-      "points.las", read_text(folder_ / "made.las", "the points"), Content::binary, 400,
+      "points.las", read_text(folder_ / "made.las", "the points"), Content::binary, 150,
       [](const std::string& path) {
         const auto canopy = importers::import_canopy({.las = {path}});
         const GridGeometry& grid = canopy->geometry();
@@ -191,7 +191,7 @@ constexpr const char* kCameras = R"({
 )";
 
 TEST_F(MutatedFiles, OfCameras) {
-  check("cameras.json", kCameras, Content::text, 600,
+  check("cameras.json", kCameras, Content::text, 200,
         [](const std::string& path) { importers::import_cameras(path, "", {}); });
 }
 
@@ -205,7 +205,7 @@ TEST_F(MutatedFiles, OfOpenSfm) {
 "points": {"1": {"coordinates": [1, 2, 3]}},
 "reference_lla": {"latitude": 24.68, "longitude": 120.95, "altitude": 0.0}}]
 )",
-        Content::text, 500,
+        Content::text, 150,
         [](const std::string& path) { importers::import_cameras(path, "", {.crs = "EPSG:32651"}); });
 }
 
@@ -219,7 +219,7 @@ TEST_F(MutatedFiles, OfOpenDroneMap) {
 "rotation": [-3.123689868839532, -0.29161158497842005, 0.02538492108870502]},
 "geometry": {"type": "Point", "coordinates": [8.214619092077715, 49.14849807121841, 164.745]}}]}
 )",
-        Content::text, 400,
+        Content::text, 150,
         [](const std::string& path) { importers::import_cameras(path, "odm_shots", {.crs = "EPSG:32632"}); });
 }
 
@@ -235,8 +235,8 @@ TEST_F(MutatedFiles, OfColmap) {
       "# Image list with two lines of data per image:\n1 0.1 0.9 0.2 0.3 1 2 3 1 a b.png\n"
       "100 200 -1 300 400 5\n2 0.1 0.9 0.2 0.3 1 2 3 1 c.png\n\n";
   write("images.txt", images);
-  check("cameras.txt", cameras, Content::text, 300, read);
-  check("images.txt", images, Content::text, 300, read);
+  check("cameras.txt", cameras, Content::text, 100, read);
+  check("images.txt", images, Content::text, 100, read);
 }
 
 TEST_F(MutatedFiles, OfColmapBytes) {
@@ -254,8 +254,8 @@ TEST_F(MutatedFiles, OfColmapBytes) {
     importers::import_cameras(fs::path(path).parent_path().string(), "colmap", map_frame());
   };
   write("images.bin", images);
-  check("cameras.bin", cameras, Content::binary, 300, read);
-  check("images.bin", images, Content::binary, 300, read);
+  check("cameras.bin", cameras, Content::binary, 100, read);
+  check("images.bin", images, Content::binary, 100, read);
 }
 
 TEST_F(MutatedFiles, OfBundler) {
@@ -263,7 +263,7 @@ TEST_F(MutatedFiles, OfBundler) {
   check("bundle.out",
         "# Bundle file v0.3\n1 1\n700 0.01 0.001\n1 0 0\n0 1 0\n0 0 1\n1 2 3\n"
         "0 0 0\n255 0 0\n1 0 0 1 1\n",
-        Content::text, 300,
+        Content::text, 100,
         [](const std::string& path) { importers::import_cameras(path, "bundler", map_frame()); });
 }
 
@@ -278,7 +278,7 @@ TEST_F(MutatedFiles, OfMetashape) {
 <transform><rotation>1 0 0 0 1 0 0 0 1</rotation><translation>10 20 30</translation><scale>1</scale></transform>
 </chunk></document>
 )",
-        Content::text, 500,
+        Content::text, 150,
         [](const std::string& path) { importers::import_cameras(path, "metashape", {.crs = "local"}); });
 }
 
@@ -288,7 +288,7 @@ TEST_F(MutatedFiles, OfAmesCameras) {
       "VERSION_4\nPINHOLE\nfu = 620.8\nfv = 622.3\ncu = 526.1\ncv = 374.3\nu_direction = 1 0 0\n"
       "v_direction = 0 1 0\nw_direction = 0 0 1\nC = 292710 2731048 186\nR = 1 0 0 0 -1 0 0 0 -1\npitch = 1\n"
       "TSAI\nk1 = -0.33\nk2 = 0.12\np1 = -0.0004\np2 = 0.001\n",
-      Content::text, 400,
+      Content::text, 150,
       [](const std::string& path) { importers::import_cameras(path, "tsai", map_frame()); });
 }
 
@@ -297,7 +297,7 @@ TEST_F(MutatedFiles, OfExteriorOrientations) {
   check("poses.csv",
         "image,x,y,z,omega,phi,kappa,camera\na.png,292710.2,2731048.8,186.4,28.8,0.94,1.782,descent\n"
         "b.png,292746.2,2731093.5,186.6,-2.7,-30.1,-93.7,descent\n",
-        Content::text, 300, [&](const std::string& path) {
+        Content::text, 100, [&](const std::string& path) {
           importers::CameraImport import = map_frame();
           import.interior = cameras;
           importers::import_cameras(path, "opk", import);
@@ -316,7 +316,7 @@ constexpr const char* kLog = R"({"kind":"header","version":1,"frame":"map","star
 )";
 
 TEST_F(MutatedFiles, OfRobotLogs) {
-  check("log.jsonl", kLog, Content::text, 800,
+  check("log.jsonl", kLog, Content::text, 250,
         [](const std::string& path) { importers::import_log(path, all_types(), {.format = "waymark"}); });
 }
 
@@ -328,15 +328,15 @@ TEST_F(MutatedFiles, OfPoseGraphs) {
   check("isam.txt",
         "ODOMETRY 0 1 1 0 0.1 10 0 0 20 0 40\nODOMETRY 1 2 1 0 0.1 10 0 0 20 0 40\n"
         "LANDMARK 0 3 2 1 5 0 4\nLANDMARK 2 3 0.1 1 5 0 4\n",
-        Content::text, 300, read("isam"));
+        Content::text, 100, read("isam"));
   check("a.g2o",
         "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1 0 0.1\nVERTEX_XY 3 2 1\nFIX 0\n"
         "EDGE_SE2 0 1 1 0 0.1 100 0 0 400 0 1600\nEDGE_SE2_XY 0 3 2 1 25 0 16\n",
-        Content::text, 300, read("g2o"));
+        Content::text, 100, read("g2o"));
   check("a.graph",
         "VERTEX2 0 0 0 0\nVERTEX2 1 1 0 0.1\nEDGE2 0 1 1 0 0.1 100 0 400 1600 0 0\n"
         "LANDMARK 0 3 2 1 25 0 16\n",
-        Content::text, 300, read("toro"));
+        Content::text, 100, read("toro"));
 }
 
 TEST_F(MutatedFiles, OfMrclam) {
@@ -348,9 +348,9 @@ TEST_F(MutatedFiles, OfMrclam) {
   write("Robot1_Odometry.dat", "10 0.1 0\n10.2 0.1 0.1\n10.7 0.1 0\n");
   write("Robot1_Measurement.dat", seen);
   write("Robot1_Groundtruth.dat", "10 1 2 0.5\n11 1 2 0.5\n");
-  check("Barcodes.dat", codes, Content::text, 200, read);
-  check("Robot1_Measurement.dat", seen, Content::text, 300, read);
-  check("Robot1_Odometry.dat", "10 0.1 0\n10.2 0.1 0.1\n10.7 0.1 0\n", Content::text, 200, read);
+  check("Barcodes.dat", codes, Content::text, 100, read);
+  check("Robot1_Measurement.dat", seen, Content::text, 100, read);
+  check("Robot1_Odometry.dat", "10 0.1 0\n10.2 0.1 0.1\n10.7 0.1 0\n", Content::text, 100, read);
 }
 
 TEST_F(MutatedFiles, OfLaserLogs) {
@@ -358,7 +358,7 @@ TEST_F(MutatedFiles, OfLaserLogs) {
   for (int i = 0; i < 361; ++i) scan += " " + std::to_string(8 + i % 3);
   write("DRS.txt", "90 0.5 0.01\n110 0.5 0.02\n");
   write("GPS.txt", "95 -33.1 151.2\n105 -33.2 151.3\n");
-  check("LASER.txt", scan + "\n" + scan + "\n", Content::text, 300, [](const std::string& path) {
+  check("LASER.txt", scan + "\n" + scan + "\n", Content::text, 100, [](const std::string& path) {
     importers::import_log(fs::path(path).parent_path(), all_types(), {.format = "victoria-park"});
   });
 }
@@ -371,7 +371,7 @@ TEST_F(MutatedFiles, OfTracks) {
   const std::string log = write("truth.jsonl", R"({"kind":"truth","t":0,"x":0,"y":1,"yaw":0.1}
 {"kind":"truth","t":3,"x":3,"y":1,"yaw":0.1}
 )");
-  check("track.csv", read_text(folder_ / "made.csv", "the track"), Content::text, 500,
+  check("track.csv", read_text(folder_ / "made.csv", "the track"), Content::text, 150,
         [&](const std::string& path) {
           evaluate(TrackEvaluation{.track = path, .truth = log, .max_gap = 10});
         });
@@ -390,13 +390,13 @@ TEST_F(MutatedFiles, OfJobs) {
 ]
 }
 )",
-        Content::text, 300, [&](const std::string& path) { make_map(load_job(path), {.check = true}); });
+        Content::text, 100, [&](const std::string& path) { make_map(load_job(path), {.check = true}); });
 }
 
 TEST_F(MutatedFiles, OfScenarios) {
   check("scenario.json",
         read_text(WAYMARK_SOURCE_DIR "/sample_data/mars_mission/scenario.json", "the scenario"),
-        Content::text, 500,
+        Content::text, 150,
         [](const std::string& path) { testbed::read_scenario(read_text(path, "the scenario"), path); });
 }
 
@@ -408,7 +408,7 @@ TEST_F(MutatedFiles, OfStands) {
 {"type": "Feature", "properties": {"stand": "b", "species": null}, "geometry": {"type": "MultiPolygon",
 "coordinates": [[[[440200, 5400000], [440300, 5400000], [440300, 5400100], [440200, 5400000]]]]}}]}
 )",
-        Content::text, 400, [](const std::string& path) {
+        Content::text, 150, [](const std::string& path) {
           importers::read_stand_outlines(path, "", Crs::from_text("EPSG:32632"));
         });
 }
@@ -423,7 +423,7 @@ importers::TableImport rock_table(const char* crs, bool skip_bad_rows) {
 
 TEST_F(MutatedFiles, OfTables) {
   check("rocks.csv", "x,y,z,radius,uid,confidence\n1,2,0,0.5,a,0.9\n3,4,0,0.6,b,0.8\n5,6,0,0.7,c,1\n",
-        Content::text, 500, [](const std::string& path) {
+        Content::text, 150, [](const std::string& path) {
           const auto table = importers::open_table(path, importers::TableFormat::by_name, "", "rock");
           importers::import_table(*table, all_types(), rock_table("local", true), [](Landmark&&) {});
         });
@@ -431,7 +431,7 @@ TEST_F(MutatedFiles, OfTables) {
 {"type": "Feature", "properties": {"radius": 0.5}, "geometry": {"type": "Point", "coordinates": [8.1, 49.1, 100]}},
 {"type": "Feature", "properties": {"radius": 0.7}, "geometry": {"type": "Point", "coordinates": [8.2, 49.2]}}]}
 )",
-        Content::text, 300, [](const std::string& path) {
+        Content::text, 100, [](const std::string& path) {
           const auto table = importers::open_table(path, importers::TableFormat::by_name, "", "rock");
           importers::import_table(*table, all_types(), rock_table("EPSG:32632", false), [](Landmark&&) {});
         });
@@ -442,16 +442,16 @@ TEST_F(MutatedFiles, OfForestTables) {
   check("allometry.csv",
         "species,form,a,b,sigma,trees,rmse_cm\nall,height,1.2,0.9,0.2,100,3.5\n"
         "spruce,height_crown,0.5,0.8,0.2,50,3\n",
-        Content::text, 300, [&](const std::string& path) { pipeline::parse_allometry(text(path), path); });
+        Content::text, 100, [&](const std::string& path) { pipeline::parse_allometry(text(path), path); });
   check("volume.csv", "species,form_factor,form_factor_sd,mass_per_volume\nall,0.47,0.04,500\n",
-        Content::text, 200, [&](const std::string& path) { pipeline::parse_volume(text(path), path); });
-  check("recall.csv", "height_from,recall,sd\n0,0.3,0.1\n10,0.7,0.1\n20,0.9,0.05\n", Content::text, 200,
+        Content::text, 100, [&](const std::string& path) { pipeline::parse_volume(text(path), path); });
+  check("recall.csv", "height_from,recall,sd\n0,0.3,0.1\n10,0.7,0.1\n20,0.9,0.05\n", Content::text, 100,
         [&](const std::string& path) { pipeline::parse_recall(text(path), path); });
   std::string measured = "species,plot,height,dbh,crown_diameter\n";
   for (int i = 0; i < 30; ++i)
     measured += "spruce,p" + std::to_string(i % 3) + "," + std::to_string(10 + i) + "," +
                 std::to_string(12 + i) + ",4\n";
-  check("measured.csv", measured, Content::text, 200,
+  check("measured.csv", measured, Content::text, 100,
         [](const std::string& path) { fit_allometry(AllometryRequest{.input = path}); });
 }
 
@@ -506,17 +506,17 @@ std::string map_bytes(const fs::path& folder) {
 }
 
 TEST_F(MutatedFiles, OfMaps) {
-  check("map.gpkg", map_bytes(folder_), Content::binary, 400, read_map);
+  check("map.gpkg", map_bytes(folder_), Content::binary, 150, read_map);
 }
 
 TEST_F(MutatedFiles, OfMapsThatAreChecked) {
-  check("map.gpkg", map_bytes(folder_), Content::binary, 200, [](const std::string& path) {
+  check("map.gpkg", map_bytes(folder_), Content::binary, 100, [](const std::string& path) {
     if (!geodb::validate_map(path).empty()) throw Error(ErrorCode::input, "the map has errors", path);
   });
 }
 
 TEST_F(MutatedFiles, OfImages) {
-  check("a.png", dem_bytes(folder_), Content::binary, 200, [](const std::string& path) {
+  check("a.png", dem_bytes(folder_), Content::binary, 100, [](const std::string& path) {
     // A fault of one image is a warning.
     const importers::ListedImages listed =
         importers::list_images({.files = {path}, .import = {.crs = "EPSG:32633"}});

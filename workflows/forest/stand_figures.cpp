@@ -12,6 +12,10 @@
 namespace waymark::workflows {
 namespace {
 
+// Relative error that all diameters of a stand share if they were computed from heights seen from the air by
+// an allometry that was not fitted there (docs/evaluation/2026-11-22-errors-of-inventories.md).
+constexpr double kAllometryBias = 0.15;
+
 /// Returns mean crown diameter over height of the tall trees of a stand, whose crowns hide others; NaN if
 /// unknown.
 double crown_ratio(std::span<const pipeline::StandTree> trees, std::span<const pipeline::StandCrown> crowns,
@@ -57,6 +61,8 @@ StandStems stand_stems(const MapTrees& map, const NamedStand& stand, const Stand
       tree.diameter_sd = stem ? stem->sd : 0;
       const double bias = diameters.held_out_bias / 100;
       tree.diameter_bias = stem && !std::isnan(bias) ? std::abs(bias) : 0;
+    } else if (map.from_air && !std::isnan(tree.diameter)) {
+      tree.diameter_bias = kAllometryBias * tree.diameter;
     }
     tree.volume = pipeline::stem_volume(volumes, tree.diameter, tree.height);
     tree.mass = tree.volume * volumes.mass_per_volume;
