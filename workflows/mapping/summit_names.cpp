@@ -64,8 +64,10 @@ std::unordered_map<std::string, std::string> pair_names(const geodb::MapContents
     });
   };
   for (const Landmark& top : contents.landmarks) add(top);
-  for (std::size_t part = 0; part < contents.parts.count; ++part)
-    for (const Landmark& top : *contents.parts.landmarks(part)) add(top);
+  for (std::size_t part = 0; part < contents.parts.count; ++part) {
+    const auto tops = contents.parts.landmarks(part);
+    for (const Landmark& top : *tops) add(top);
+  }
   std::ranges::sort(pairs, [](const NamePair& a, const NamePair& b) {
     return std::tuple(a.distance, -a.prominence, std::string_view(a.uid), a.place) <
            std::tuple(b.distance, -b.prominence, std::string_view(b.uid), b.place);
