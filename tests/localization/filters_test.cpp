@@ -196,7 +196,8 @@ TEST(ParticleFilter, FindsItsPoseWithoutAStart) {
     ASSERT_TRUE(filter.estimate().pose.finite());
   }
   EXPECT_LT((filter.estimate().pose.at() - drive.truth().at()).norm(), 0.5);
-  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
+  // Without identities and without a finder nothing proves it.
+  EXPECT_EQ(filter.status(), LocalizationStatus::lost);
 }
 
 TEST(ParticleFilter, PaperWeightsFollowToo) {
