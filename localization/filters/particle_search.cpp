@@ -72,7 +72,7 @@ void ParticleFilter::sample_found(const PoseEstimate& at) {
 
 // A pose drawn from one sighting lies anywhere on a circle about one of the landmarks, so each needs several.
 bool ParticleFilter::can_search(const LandmarkGrid& map) const {
-  return !finder_ || identification_.use_identities ||
+  return !finder_ || matcher_.options().use_identities ||
          kPerLandmark * map.size() <= static_cast<std::size_t>(options_.search_particles);
 }
 
