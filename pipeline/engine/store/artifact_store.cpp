@@ -2,13 +2,21 @@
 #include "pipeline/engine/store/artifact_store.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/text_file.hpp"
 #include "pipeline/engine/sha256.hpp"
-#include "pipeline/engine/store/atomic_file.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -17,6 +25,58 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kManifest = "manifest.json";
+constexpr std::string_view kPrefix = ".part-";
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return name.data();
+}
+
+// Returns the process of this machine that created a name of temporary_path, else 0.
+pid_t local_owner(std::string_view name) {
+  const std::string suffix = "-" + host_name();
+  if (!name.starts_with(kPrefix) || !name.ends_with(suffix)) return 0;
+  pid_t process = 0;
+  std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), process);
+  return process;
+}
+
+bool is_gone(pid_t process) {
+  return kill(process, 0) != 0 && errno == ESRCH;
+}
+
+// Returns a path in `folder` that no other thread, process or machine uses, for a file to be renamed later.
+// The name identifies the process, so that files left by killed processes are recognised.
+fs::path temporary_path(const fs::path& folder) {
+  static std::atomic<int> counter = 0;
+  return folder / fmt::format("{}{}-{}-{}", kPrefix, getpid(), counter++, host_name());
+}
+
+// Removes temporary files that killed processes of this machine left in `folder`.
+void remove_stale_files(const fs::path& folder) {
+  std::error_code ignored;  // another process may be cleaning the same folder
+  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
+    const pid_t owner = local_owner(entry->path().filename().string());
+    if (owner > 0 && is_gone(owner)) fs::remove_all(entry->path(), ignored);
+  }
+}
+
+// Throws Error{output} with the system's reason.
+void write_file(const fs::path& path, std::string_view bytes) {
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file)
+    throw Error(ErrorCode::output, std::string("cannot write into the work folder: ") + std::strerror(errno),
+                path.string(),
+                "free some space or choose another folder with --work; finished results are kept");
+}
+
+std::string read_file(const fs::path& path) {
+  return read_text(path, "from the work folder", ErrorCode::input, "run again: missing results are computed");
+}
 
 void make_folder(const fs::path& folder) {
   std::error_code problem;
