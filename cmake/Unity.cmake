@@ -3,7 +3,7 @@
 option(WAYMARK_UNITY "Compile the sources of a library a dozen at a time" OFF)
 # Files whose private names occur in other files of their library, too.
 set(alone
-  apps/man_page.cpp apps/progress.cpp apps/waymark.cpp
+  apps/commands/man.cpp apps/progress.cpp apps/waymark.cpp
   geo/terrain_pyramid.cpp
   exporters/report/histogram.cpp exporters/report/log_plot.cpp exporters/vector/ogr_output.cpp
   geodb/geopackage/geometry_blob.cpp geodb/geopackage/shape_blob.cpp
@@ -16,7 +16,7 @@ set(alone
   pipeline/craters/crater_training.cpp pipeline/craters/dem_rim.cpp pipeline/craters/find_craters_in_dem.cpp
   pipeline/craters/rim_refinement.cpp pipeline/craters/shaded_scene.cpp pipeline/craters/tile_spectrum.cpp
   pipeline/engine/job.cpp pipeline/engine/report.cpp pipeline/engine/store/artifact_store.cpp
-  pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
+  pipeline/forest/canopy_model.cpp pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
   pipeline/fusion/valuation/landmark_valuation.cpp
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp)
 

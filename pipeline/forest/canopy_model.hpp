@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
-#include "pipeline/forest/tin.hpp"
+#include "core/grid.hpp"
 namespace waymark::pipeline {
+
+/// Cells whose centres are (x0 + column dx, y0 + row dy); dx > 0, dy < 0.
+struct CellFrame {
+  double x0 = 0, y0 = 0, dx = 1, dy = -1;
+  std::int64_t columns = 0, rows = 0;
+};
 
 /// Laser points in and around a block of a canopy model; x, y, z in metres.
 struct LaserPoints {
