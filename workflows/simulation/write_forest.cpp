@@ -3,14 +3,79 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "exporters/las_file.hpp"
 #include "exporters/raster/raster_file.hpp"
 #include "exporters/staging_folder.hpp"
-#include "testbed/forest/forest_files.hpp"
+#include "testbed/forest/forest_scan.hpp"
 
 namespace waymark::workflows {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Truth tables as CSV; coordinates in units of the CRS (`unit` metres each), everything else in metres.
+// - `trees`: type,x,y,z,height,diameter,crown_diameter,crown_base,species,stand,exposed, as read by
+//   `waymark evaluate landmarks`. `exposed`: fraction of the crown that no other overtops.
+// - `understory`: trees below 7 cm DBH, same columns, ignored in evaluation.
+struct ForestTruth {
+  std::string trees, understory;
+};
+
+ForestTruth forest_truth(const testbed::ForestModel& law, const testbed::SyntheticForest& forest,
+                         const std::vector<double>& exposed, double unit) {
+  ForestTruth truth;
+  truth.trees = truth.understory =
+      "type,x,y,z,height,diameter,crown_diameter,crown_base,species,stand,exposed\n";
+  for (std::size_t i = 0; i < forest.trees.size(); ++i) {
+    const testbed::StandingTree& t = forest.trees[i];
+    const int stand = testbed::stand_index_at(forest.stands, t.foot.head<2>());
+    (t.dbh >= testbed::kMinDbh ? truth.trees : truth.understory) +=
+        fmt::format("tree,{:.3f},{:.3f},{:.3f},{:.2f},{:.4f},{:.2f},{:.2f},{},{},{:.2f}\n", t.foot.x() / unit,
+                    t.foot.y() / unit, t.foot.z(), t.height, t.dbh, t.crown_diameter, t.crown_base,
+                    law.species().at(static_cast<std::size_t>(t.species)).name,
+                    stand < 0 ? "" : forest.stands[static_cast<std::size_t>(stand)].name, exposed.at(i));
+  }
+  return truth;
+}
+
+// Returns the stands as GeoJSON polygons with the columns stand and density (nominal). The CRS is named as
+// in older GeoJSON; a local CRS is omitted.
+std::string stands_geojson(const testbed::SyntheticForest& forest, const Crs& crs, double unit) {
+  Json file{{"type", "FeatureCollection"}, {"name", "stands"}};
+  if (!crs.code().empty())
+    file["crs"] = {
+        {"type", "name"},
+        {"properties", {{"name", fmt::format("urn:ogc:def:crs:{}::{}", crs.authority(), crs.code())}}}};
+  Json& features = file["features"] = Json::array();
+  for (const testbed::SyntheticStand& stand : forest.stands) {
+    Json ring = Json::array();
+    for (std::size_t i = 0; i <= stand.outline.size(); ++i) {
+      const Eigen::Vector2d corner = stand.outline[i % stand.outline.size()] / unit;
+      ring.push_back({corner.x(), corner.y()});
+    }
+    Json feature{{"type", "Feature"}, {"properties", {{"stand", stand.name}, {"density", stand.density}}}};
+    feature["geometry"] = {{"type", "Polygon"}, {"coordinates", Json::array({ring})}};
+    features.push_back(std::move(feature));
+  }
+  return file.dump(1) + "\n";
+}
+
+// Returns the job that maps the trees of chm.tif in the same folder.
+std::string forest_job(const std::string& name, const testbed::ForestModel& law, const std::string& crs) {
+  Json canopy{{"stage", "load_canopy"}, {"chm", {"chm.tif"}}};
+  if (crs == "local") canopy["crs"] = "local";
+  const char* preset = law.conifers > 0.8 ? "conifer" : law.conifers < 0.2 ? "broadleaf" : "mixed";
+  Json stages = Json::array();
+  stages.push_back(canopy);
+  stages.push_back({{"stage", "trees_from_canopy"}, {"preset", preset}});
+  stages.push_back({{"stage", "trees_of_survey"}});
+  return Json{{"name", name}, {"stages", stages}}.dump(2) + "\n";
+}
+
+}  // namespace
 
 testbed::Scene make_forest_terrain(const testbed::Scenario& scenario) {
   testbed::SiteModel ground = scenario.ground;
@@ -49,12 +114,12 @@ WrittenForest write_forest(const std::filesystem::path& folder, const testbed::S
   exporters::write_raster(folder / "dtm.tif", rasters.dtm, where);
   exporters::write_raster(folder / "dsm.tif", rasters.dsm, where);
   exporters::write_raster(folder / "chm.tif", rasters.chm, where);
-  const testbed::ForestTruth truth =
-      testbed::forest_truth(law, forest, testbed::visible_crown_fraction(law, forest, seed), unit);
+  const ForestTruth truth =
+      forest_truth(law, forest, testbed::visible_crown_fraction(law, forest, seed), unit);
   exporters::write_file(folder / "truth/landmarks.csv", truth.trees);
   exporters::write_file(folder / "truth/understory.csv", truth.understory);
-  exporters::write_file(folder / "stands.geojson", testbed::stands_geojson(forest, crs, unit));
-  exporters::write_file(folder / "job.json", testbed::forest_job(scenario.name, law, scenario.crs));
+  exporters::write_file(folder / "stands.geojson", stands_geojson(forest, crs, unit));
+  exporters::write_file(folder / "job.json", forest_job(scenario.name, law, scenario.crs));
   std::string summary = fmt::format("{:.0f} x {:.0f} m of forest, {} stands, {} trees, {} laser returns",
                                     law.width, law.height, law.stands, forest.trees.size(), returns);
   return {std::move(forest.trees), std::move(summary)};
