@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/random.hpp"
@@ -12,9 +13,11 @@
 #include "exporters/raster/image_file.hpp"
 #include "exporters/raster/raster_file.hpp"
 #include "exporters/staging_folder.hpp"
+#include "geo/crs.hpp"
+#include "testbed/drive/drive_log.hpp"
 #include "testbed/landing/lit_terrain.hpp"
+#include "testbed/scenario.hpp"
 #include "testbed/scene_files.hpp"
-#include "workflows/simulation/write_drive.hpp"
 #include "workflows/simulation/write_forest.hpp"
 
 namespace waymark::workflows {
@@ -81,6 +84,36 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
   exporters::write_file(folder / "truth/landmarks.csv", truth.landmarks);
   exporters::write_file(folder / "truth/ignored.csv", truth.ignored);
   exporters::write_file(folder / "truth/detections.csv", truth.detections);
+}
+
+// Makes the drive of a scenario and writes log.jsonl, truth/track.csv and, in a forest, truth/trees.csv and
+// truth/felled.csv. A table of real trees is read relative to the scenario file. Returns a summary.
+std::string write_drive(const fs::path& folder, const testbed::Scenario& scenario,
+                        const testbed::Scene& scene, std::vector<testbed::StandingTree> trees,
+                        const fs::path& scenario_file) {
+  const testbed::DriveSettings& drive = scenario.drive;
+  if (!drive.trees.empty()) {
+    const fs::path table = scenario_file.parent_path() / drive.trees;
+    const std::string text =
+        read_text(table, "the table of trees", ErrorCode::input, "see drive.trees of the scenario");
+    trees = testbed::trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north},
+                                      scene.terrain);
+  }
+  const testbed::DriveWorld world = testbed::make_drive(drive, scene, std::move(trees), scene.seed);
+  const testbed::LogCrs place{scenario.crs,
+                              scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
+  make_folder(folder / "truth");
+  exporters::write_file(folder / "log.jsonl", testbed::drive_log(world, place));
+  exporters::write_file(folder / "truth/track.csv", testbed::true_track(world, place));
+  if (!world.trees.empty()) {
+    exporters::write_file(folder / "truth/trees.csv", testbed::standing_table(world, place));
+    exporters::write_file(folder / "truth/felled.csv", testbed::felled_table(world, place));
+  }
+  return fmt::format("drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().distance,
+                     world.steps.back().t,
+                     world.trees.empty()
+                         ? ""
+                         : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
 }
 
 SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Scenario& scenario,
