@@ -1,15 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/detection/detect.hpp"
 
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <chrono>
+#include <filesystem>
 
+#include "core/error.hpp"
+#include "exporters/staging_folder.hpp"
+#include "geodb/write_map.hpp"
 #include "workflows/detection/detection_plan.hpp"
 #include "workflows/detection/run_detection.hpp"
-#include "workflows/detection/write_detections.hpp"
+#include "workflows/output_path.hpp"
+#include "workflows/provenance.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark::workflows {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where detections are written, and what a map records about their origin.
+struct DetectionOutput {
+  std::string path;
+  std::string image;  // file that was searched
+  std::string command_line;
+  std::chrono::system_clock::time_point started;
+};
+
+void write_text(const std::string& output, const std::string& text) {
+  if (!output.starts_with("/vsi")) return exporters::write_file(output, text);
+  VSILFILE* file = VSIFOpenL(output.c_str(), "wb");
+  if (file == nullptr) exporters::fail_output(output, "GDAL cannot write there");
+  const bool written = VSIFWriteL(text.data(), 1, text.size(), file) == text.size();
+  if (VSIFCloseL(file) != 0 || !written) exporters::fail_output(output, "GDAL could not write all of it");
+}
+
+geodb::RunRecord run_record(const exporters::ImageDetections& found, const DetectionOutput& output) {
+  pipeline::StageReport stage;
+  stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
+  stage.units = stage.made = 1;
+  stage.counts.in = stage.counts.out = static_cast<std::int64_t>(found.detections.size());
+  return make_single_step_record(std::move(stage), output.image, output.command_line, output.started);
+}
+
+// Throws Error for an output whose name ends in none of .csv, .geojson, .json, .gpkg, or whose folder cannot
+// be written.
+void check_detection_output(const std::string& output) {
+  const fs::path path(output);
+  if (path.extension() == ".gpkg") return check_map_output(path);
+  const bool known =
+      path.extension() == ".csv" || path.extension() == ".geojson" || path.extension() == ".json";
+  if (!known)
+    throw Error(ErrorCode::usage, "detections are written as .csv, .geojson or .gpkg", output,
+                "e.g. -o " + fs::path(path).replace_extension(".csv").string());
+  if (output.starts_with("/vsi")) return;
+  const fs::path folder = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  if (!fs::is_directory(folder))
+    throw Error(ErrorCode::output, "the folder of the output does not exist: " + folder.string(), output,
+                "make it with: mkdir -p " + folder.string());
+  if (fs::is_directory(path))
+    throw Error(ErrorCode::output, "the output is a folder", output,
+                "name a file in it: -o " + (path / "detections.csv").string());
+}
+
+// Writes detections in the format of the output's extension; a GeoPackage with the record of this run.
+void write_detections(const exporters::ImageDetections& found, const DetectionOutput& output,
+                      const Callbacks& callbacks) {
+  const LandmarkType& type = all_types()[found.type];
+  const std::string extension = fs::path(output.path).extension().string();
+  if (extension == ".csv") return write_text(output.path, exporters::detections_to_csv(found, type));
+  if (extension != ".gpkg") return write_text(output.path, exporters::detections_to_geojson(found, type));
+  if (!found.georeference && !found.gsd)
+    callbacks.warning("the size of a pixel is not known: in the map a pixel counts as a metre; pass --gsd");
+  geodb::MapContents contents = exporters::detections_to_map(found, all_types());
+  contents.run = run_record(found, output);
+  geodb::write_map(output.path, contents, {.empty_tables = {type.name}});
+}
+
+}  // namespace
 
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   const DetectionPlan plan = plan_detection(request);
