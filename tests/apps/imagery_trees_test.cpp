@@ -161,7 +161,8 @@ TEST_F(ImageryTrees, AreLearntFromMarkedImages) {
   EXPECT_THAT(text_of(folder_ / "model.txt"), testing::StartsWith("dense_network 1\n3 images"));
   ASSERT_EQ(waymark({"train", "trees", folder_ / "a.tif", "-o", folder_ / "model.cpp", "--rounds", "1"}).code,
             0);
-  EXPECT_THAT(text_of(folder_ / "model.cpp"), HasSubstr("const DenseNetwork& crown_network_infrared()"));
+  EXPECT_THAT(text_of(folder_ / "model.cpp"),
+              HasSubstr("\nnamespace waymark::pipeline {\n\nconst DenseNetwork& crown_network_infrared()"));
 }
 
 TEST_F(ImageryTrees, WrongUseOfLearningIsExplained) {

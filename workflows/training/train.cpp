@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+
 #include "core/error.hpp"
+#include "exporters/staging_folder.hpp"
 #include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "workflows/training/crater_training_data.hpp"
-#include "workflows/training/model_source.hpp"
 #include "workflows/training/tree_training_data.hpp"
 
 namespace waymark::workflows {
@@ -17,6 +20,43 @@ namespace {
 constexpr int kSide = 640;              // pixels of a scene of craters
 constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
 constexpr int kParts = 3;               // of the images, left out in turn
+
+// Names in the source file that a trained model is written as.
+struct ModelSource {
+  std::string made_by;     // the command, for people
+  std::string header;      // that declares the function
+  std::string type;        // what the function returns a reference to
+  std::string name;        // of the function
+  std::string parse;       // function that parses the model's text
+  std::string where;       // name of the text in error messages
+  std::size_t line = 140;  // characters of the text per line: a source file has at most 300 lines
+};
+
+// Returns the source of a function that parses the model's text once.
+std::string model_as_source(const std::string& text, const ModelSource& source) {
+  std::string code = fmt::format(
+      "// SPDX-License-Identifier: Apache-2.0\n"
+      "// Made by `{}`; do not edit.\n"
+      "// clang-format off\n"
+      "#include \"{}\"\n\nnamespace waymark::pipeline {{\n\n"
+      "const {}& {}() {{\n"
+      "  static const {} model = {}(\n",
+      source.made_by, source.header, source.type, source.name, source.type, source.parse);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t line = text.find('\n', begin);
+    const std::size_t end = std::min(begin + source.line, line == std::string::npos ? text.size() : line);
+    const bool ends_line = end == line;
+    code += fmt::format("      \"{}{}\"\n", text.substr(begin, end - begin), ends_line ? "\\n" : "");
+    begin = ends_line ? end + 1 : end;
+  }
+  return code + fmt::format("      , \"{}\");\n  return model;\n}}\n\n}}  // namespace waymark::pipeline\n",
+                            source.where);
+}
+
+// Writes a model, as source if the name ends in .cpp. Throws Error{output}.
+void write_model(const std::string& path, const std::string& text, const ModelSource& source) {
+  exporters::write_file(path, path.ends_with(".cpp") ? model_as_source(text, source) : text);
+}
 
 struct CraterExamples {
   std::vector<pipeline::CraterExample> bowls;
