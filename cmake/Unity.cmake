@@ -18,6 +18,7 @@ set(alone
   pipeline/engine/job.cpp pipeline/engine/report.cpp pipeline/engine/store/artifact_store.cpp
   pipeline/forest/canopy_model.cpp pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
   pipeline/fusion/valuation/landmark_valuation.cpp
+  testbed/landing/crater_field.cpp testbed/landing/crater_profile.cpp
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp)
 
 function(waymark_unity TARGET)

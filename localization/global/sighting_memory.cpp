@@ -151,18 +151,19 @@ void SightingMemory::insert(const SeenLandmark& seen, const Pose2& mount) {
 void SightingMemory::forget(const SightingSet& seen) {
   const Pose2 sensor = state_->pose() * seen.robot_from_sensor;
   std::vector<std::pair<double, SlamState::Slot>> by_range;
-  const std::vector<SlamState::Slot> active(state_->active().begin(), state_->active().end());
-  for (const SlamState::Slot slot : active) {
+  std::vector<SlamState::Slot> gone;
+  for (const SlamState::Slot slot : state_->active()) {
     const Eigen::Vector2d to = state_->at(slot) - sensor.at();
     const double range = to.norm(), bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
     const bool in_view = range < 0.7 * reach_ && std::abs(bearing) < 0.9 * view_;
     Object& object = objects_[slot];
     if (!in_view && object.missed > 0) --object.missed;
     if (object.missed > kMaxMissed)
-      state_->remove(slot);
+      gone.push_back(slot);
     else
       by_range.emplace_back(range, slot);
   }
+  for (const SlamState::Slot slot : gone) state_->remove(slot);
   std::ranges::sort(by_range);
   for (std::size_t i = kMaxObjects; i < by_range.size(); ++i) state_->remove(by_range[i].second);
 }
