@@ -30,7 +30,7 @@ struct IdentificationOptions {
   double feature_limit = 9;         ///< squared standard deviations by which one feature may differ
   /// `distance=paper` and `weights=paper`: alpha_f of eq. 11, as "rock.radius=4,rock.height=2". Others follow
   /// from the declaration of the type (FeatureScales::alpha).
-  std::string alpha;
+  std::string alpha = {};
   /// Density of sightings that show no landmark of the map, per metre of range and radian of bearing. With
   /// `learn_clutter` the least one: filters estimate it over the drive.
   double clutter = 0.003;
