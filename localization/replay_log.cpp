@@ -68,8 +68,8 @@ class Replay {
 
   void update_terrain_pose(const Pose2& pose) {
     if (!ground_) return;
-    const auto terrain_pose = pose_on_terrain(ground_, pose, options_.wheelbase, options_.track_width);
-    terrain_pose_ = terrain_pose ? *terrain_pose : TerrainPose{terrain_pose_.z, 0, 0};
+    const auto terrain_pose = pose_on_terrain(ground_, pose, {options_.wheelbase, options_.track_width});
+    terrain_pose_ = terrain_pose ? *terrain_pose : TerrainPose{pose, terrain_pose_.z, 0, 0};
   }
 
   bool take(const TwistReading& reading, TrackRow&) { return current_reading_ = reading, false; }

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include "core/frames.hpp"
 #include "localization/pose2.hpp"
 namespace waymark::localization {
 
@@ -9,18 +10,26 @@ namespace waymark::localization {
 /// where it is unknown.
 using TerrainHeight = std::function<std::optional<double>(const Eigen::Vector2d&)>;
 
-/// Height and attitude of a vehicle that stands on the terrain.
+/// Wheel contact points, metres.
+struct Wheels {
+  double base = 1;   ///< front to rear axle
+  double track = 1;  ///< left to right
+};
+
+/// Pose of a vehicle that stands on the terrain. R = Rz(yaw) Ry(pitch) Rx(roll) with x forward, y left, z up.
 struct TerrainPose {
+  Pose2 plane;       ///< in the map plane
   double z = 0;      ///< m, of its centre
   double roll = 0;   ///< rad, left side up
   double pitch = 0;  ///< rad, nose down (about the y axis, which points left)
+
+  Pose<GridFrame, RobotFrame> grid_from_robot() const;
 };
 
-/// Returns the pose of a vehicle on four wheels, `length` by `width` metres apart, that stands on the
-/// terrain at `pose`. It is the plane through the midpoints of the sides. `std::nullopt` where the terrain
-/// below a wheel is unknown.
-std::optional<TerrainPose> pose_on_terrain(const TerrainHeight& ground, const Pose2& pose, double length = 1,
-                                           double width = 1);
+/// Returns the pose of a vehicle that stands on the terrain at a planar pose, on the least-squares plane
+/// through the heights under its four wheels. `std::nullopt` where the terrain below a wheel is unknown.
+std::optional<TerrainPose> pose_on_terrain(const TerrainHeight& ground, const Pose2& plane,
+                                           const Wheels& wheels = {});
 
 /// Projects a step along the slope to the map plane: shorter by the cosines of pitch and roll.
 Pose2 project_to_map(const Pose2& step, const TerrainPose& terrain_pose);

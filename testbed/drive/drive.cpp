@@ -14,8 +14,10 @@ namespace {
 
 constexpr double kSlipLength = 5;  // metres, correlation length of the slip
 
-VehiclePose require_pose(const Terrain& terrain, const localization::Pose2& pose, const Wheels& wheels) {
-  const auto at = vehicle_pose_on(terrain, pose, wheels);
+localization::TerrainPose require_pose(const Terrain& terrain, const localization::Pose2& pose,
+                                       const localization::Wheels& wheels) {
+  const auto at = localization::pose_on_terrain(
+      [&](const Eigen::Vector2d& p) { return terrain.height(p.x(), p.y()); }, pose, wheels);
   if (!at)
     throw Error(ErrorCode::usage,
                 fmt::format("the drive leaves the terrain at {:.1f}, {:.1f}", pose.x, pose.y), "drive",
@@ -42,7 +44,7 @@ std::vector<DriveStep> drive_along(const Terrain& terrain, std::span<const Eigen
   std::size_t target = 0;
   const auto limit = static_cast<std::size_t>(3e5);
   for (std::size_t k = 0; k < limit; ++k) {
-    const VehiclePose at = require_pose(terrain, pose, settings.wheels);
+    const localization::TerrainPose at = require_pose(terrain, pose, settings.wheels);
     // The target point only moves forward, so that the path may cross itself and turn back.
     while (target + 1 < path.size() && (path[target] - pose.at()).norm() < ahead) ++target;
     const bool arrived = target + 1 == path.size() && (path[target] - pose.at()).norm() < ahead;

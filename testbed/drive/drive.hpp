@@ -2,13 +2,14 @@
 #pragma once
 #include <span>
 #include <vector>
+#include "geo/terrain.hpp"
 #include "testbed/drive/drive_settings.hpp"
 namespace waymark::testbed {
 
 /// State of a simulated drive: true pose, and the odometry reading until the next step.
 struct DriveStep {
   double t = 0;
-  VehiclePose at;
+  localization::TerrainPose at;
   double distance = 0;         ///< metres driven along the route
   double speed = 0, turn = 0;  ///< measured by odometry, m/s and rad/s, until the next step
 };

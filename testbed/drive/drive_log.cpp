@@ -72,7 +72,7 @@ class LogMaker {
                  fmt::format("{{\"kind\":\"odometry\",\"t\":{:.3f},\"v\":{:.5f},\"omega\":{:.6f}}}\n", step.t,
                              step.speed, step.turn);
              if (!world_.settings.truth_in_log) return lines;
-             const VehiclePose& at = step.at;
+             const localization::TerrainPose& at = step.at;
              return lines + fmt::format(
                                 "{{\"kind\":\"truth\",\"t\":{:.3f},\"x\":{:.4f},\"y\":{:.4f},"
                                 "\"yaw\":{:.5f},\"z\":{:.4f},\"roll\":{:.5f},\"pitch\":{:.5f}}}\n",

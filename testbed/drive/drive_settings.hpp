@@ -6,11 +6,11 @@
 #include <vector>
 #include "core/options.hpp"
 #include "core/units.hpp"
+#include "localization/terrain_pose.hpp"
 #include "testbed/drive/laser_scanner.hpp"
 #include "testbed/drive/laser_targets.hpp"
 #include "testbed/drive/panorama.hpp"
 #include "testbed/drive/stereo_camera.hpp"
-#include "testbed/drive/vehicle_pose.hpp"
 namespace waymark::testbed {
 
 /// Wheel slip and odometry errors.
@@ -64,7 +64,7 @@ struct DriveSettings {
   Degrees start_yaw_sd{1};
   std::int64_t seed = -1;  ///< -1: seed of the scenario; another seed gives another drive on the same site
   bool truth_in_log = true;
-  Wheels wheels;
+  localization::Wheels wheels{.base = 1.6, .track = 1.4};
   OdometryModel odometry;
   LaserModel laser;
   double laser_height = 0;  ///< metres above the ground; 0: rover 0.35, harvester 2

@@ -250,11 +250,19 @@ TEST(Ground, StandsAsTheSurfaceLies) {
   const auto east = pose_on_terrain(plane, {3, 4, 0});
   ASSERT_TRUE(east);
   EXPECT_NEAR(east->z, 6.1, 1e-12);
-  EXPECT_NEAR(east->pitch, -std::atan(0.1), 1e-12);  // uphill: nose up
-  EXPECT_NEAR(east->roll, std::atan(0.2), 1e-12);    // the left side is higher
+  EXPECT_NEAR(east->pitch, -std::atan(0.1), 1e-12);                        // uphill: nose up
+  EXPECT_NEAR(east->roll, std::atan(0.2 * std::cos(east->pitch)), 1e-12);  // the left side is higher
   const auto north = pose_on_terrain(plane, {3, 4, std::numbers::pi / 2});
   EXPECT_NEAR(north->pitch, -std::atan(0.2), 1e-12);
-  EXPECT_NEAR(north->roll, -std::atan(0.1), 1e-12);
+  EXPECT_NEAR(north->roll, -std::atan(0.1 * std::cos(north->pitch)), 1e-12);
+  // Its axes touch the plane at any heading, on any slope; metres.
+  for (const double slope : {0.1, 0.6})
+    for (double yaw = 0; yaw < 6; yaw += 0.7) {
+      const TerrainHeight steep = [slope](const Eigen::Vector2d& p) { return slope * (p.x() - 2 * p.y()); };
+      const auto at = pose_on_terrain(steep, {3, 4, yaw}, {.base = 1.6, .track = 1.4});
+      const Eigen::Vector3d up = at->grid_from_robot().transform.linear().col(2);
+      EXPECT_NEAR((up - Eigen::Vector3d(-slope, 2 * slope, 1).normalized()).norm(), 0, 1e-12) << yaw;
+    }
   EXPECT_NEAR(project_to_map({2, 0, 0.3}, *north).x, 2 / std::hypot(1, 0.2), 1e-12);
   const TerrainHeight hole = [](const Eigen::Vector2d& p) {
     return p.x() > 0 ? std::optional<double>(1) : std::nullopt;

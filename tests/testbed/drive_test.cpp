@@ -55,17 +55,6 @@ std::vector<StandingTree> rows_of_trees(const Terrain& terrain) {
   return trees;
 }
 
-TEST(RoverBody, StandsOnASlopeAsTheSlopeIs) {
-  const Terrain terrain = slope(0.2, -0.1);
-  const auto at = vehicle_pose_on(terrain, {3, 4, 0}, {});
-  ASSERT_TRUE(at);
-  EXPECT_NEAR(at->z, 0.2 * 3 - 0.1 * 4, 1e-6);
-  EXPECT_NEAR(at->pitch, -std::atan(0.2), 1e-6) << "uphill: the nose is up, pitch is negative";
-  const Eigen::Vector3d up = at->grid_from_robot().transform.linear().col(2);
-  EXPECT_NEAR((up - Eigen::Vector3d(-0.2, 0.1, 1).normalized()).norm(), 0, 1e-6);
-  EXPECT_FALSE(vehicle_pose_on(terrain, {29.9, 0, 0}, {})) << "a wheel is beyond the ground";
-}
-
 TEST(RayFan, MeetsWhatAskingEveryTargetMeets) {
   const Scene scene = make_scene(small_site(), 5);
   const auto trees = rows_of_trees(scene.terrain);
