@@ -4,21 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "landmarks/crater_degradation.hpp"
+
 namespace waymark::testbed {
 namespace {
 
-constexpr double kRim = 0.036;       // diameters
-constexpr double kBowl = 2.2;        // exponent of the bowl
 constexpr double kPerDiameter = 96;  // samples of the stored profiles
-constexpr double kSpacing = 0.02;    // radii, of the solver
-constexpr double kFar = 7;           // radii, where the solver ends
+constexpr double kSpacing = DiffusingCrater::kSpacing;
+constexpr double kFar = 7;  // radii, where the solver ends
 constexpr double kOldest = 0.6;
-
-// In diameters, r in radii.
-double fresh(double r) {
-  if (r < 1) return kRim - CraterProfiles::kFreshDepth * (1 - std::pow(r, kBowl));
-  return kRim * std::pow(r, -3.0);
-}
 
 double sampled(const std::vector<double>& values, double at) {
   const double place = std::clamp(at / kSpacing, 0.0, double(values.size()) - 1.001);
@@ -26,28 +20,13 @@ double sampled(const std::vector<double>& values, double at) {
   return values[i] + (place - double(i)) * (values[i + 1] - values[i]);
 }
 
-// One explicit step of dz/dt = (1/r) d/dr (r dz/dr).
-void diffuse(std::vector<double>& z, std::vector<double>& next, double step) {
-  const double scale = step / (kSpacing * kSpacing);
-  next.front() = z[0] + 4 * scale * (z[1] - z[0]);  // limit at r = 0
-  for (std::size_t i = 1; i + 1 < z.size(); ++i) {
-    const double inner = 1 - 0.5 / double(i), outer = 1 + 0.5 / double(i);
-    next[i] = z[i] + scale * (outer * (z[i + 1] - z[i]) - inner * (z[i] - z[i - 1]));
-  }
-  next.back() = next[z.size() - 2];
-  z.swap(next);
-}
-
 }  // namespace
 
 CraterProfiles::CraterProfiles() {
-  std::vector<double> z(static_cast<std::size_t>(kFar / kSpacing) + 1), next(z.size());
-  for (std::size_t i = 0; i < z.size(); ++i) z[i] = fresh(double(i) * kSpacing);
-
-  const double step = 0.2 * kSpacing * kSpacing;
-  double now = 0;
+  DiffusingCrater crater(kFar);
   for (double age = 0; age < kOldest; age = age == 0 ? 5e-4 : age * 1.15) {
-    for (; now < age; now += step) diffuse(z, next, step);
+    crater.advance_to(age);
+    const std::vector<double>& z = crater.heights();
     const auto crest = std::max_element(z.begin() + 25, z.end());
     const double rim = double(crest - z.begin()) * kSpacing;  // radii
     std::vector<float> heights;
@@ -57,7 +36,7 @@ CraterProfiles::CraterProfiles() {
       // Lengths and heights are rescaled from fresh to degraded diameters.
       heights.push_back(static_cast<float>(sampled(z, 2 * r * rim) / rim * taper * taper * (3 - 2 * taper)));
     }
-    ages_.push_back(now);
+    ages_.push_back(crater.time());
     depths_.push_back((*crest - z.front()) / rim);
     heights_.push_back(std::move(heights));
   }

@@ -4,8 +4,7 @@
 namespace waymark::testbed {
 
 /// Height profile of a crater over its radius, from fresh to almost erased.
-/// - Fresh bowl: depth / diameter 0.2, raised rim 0.036, ejecta falling as r^-3 (Pike 1977, Melosh 1989).
-/// - Degradation: topographic diffusion (Soderblom 1970, Fassett & Thomson 2014), solved numerically once.
+/// - Degradation: diffusion of a fresh bowl (landmarks/crater_degradation.hpp), solved once.
 /// - Lengths are in diameters of the *degraded* rim crest, which moves outwards with age: r = 0.5 is always
 ///   the crest.
 class CraterProfiles {

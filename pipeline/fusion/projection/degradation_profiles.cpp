@@ -4,29 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "landmarks/crater_degradation.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
-constexpr double kStep = 0.02;  // radii
-constexpr double kFar = 8;      // radii, where the solver ends
+constexpr double kStep = DiffusingCrater::kSpacing;
+constexpr double kFar = 8;  // radii, where the solver ends
 constexpr double kMaxBlur = 1.4, kBlurStep = 0.03;
 constexpr double kShallowest = 0.02;
-
-// Height in diameters, r in radii.
-double fresh(double r) {
-  return r < 1 ? 0.036 - 0.2 * (1 - std::pow(r, 2.2)) : 0.036 / (r * r * r);
-}
-
-// One explicit step of dz/dt = (1/r) d/dr (r dz/dr); blur^2 = 2 t.
-void diffuse(std::vector<double>& z, std::vector<double>& next, double fraction) {
-  next.front() = z[0] + 4 * fraction * (z[1] - z[0]);  // limit at r = 0
-  for (std::size_t i = 1; i + 1 < z.size(); ++i) {
-    const double inner = 1 - 0.5 / double(i), outer = 1 + 0.5 / double(i);
-    next[i] = z[i] + fraction * (outer * (z[i + 1] - z[i]) - inner * (z[i] - z[i - 1]));
-  }
-  next.back() = next[z.size() - 2];
-  z.swap(next);
-}
 
 double sampled(const std::vector<float>& z, double r) {
   const double position = std::min(r / kStep, double(z.size()) - 1.001);
@@ -52,13 +38,11 @@ DegradationProfiles::State measured(double blur, const std::vector<double>& z) {
 }  // namespace
 
 DegradationProfiles::DegradationProfiles() {
-  std::vector<double> z(static_cast<std::size_t>(kFar / kStep) + 1), next(z.size());
-  for (std::size_t i = 0; i < z.size(); ++i) z[i] = fresh(double(i) * kStep);
-  constexpr double fraction = 0.2, time = fraction * kStep * kStep;
-  double now = 0;
+  DiffusingCrater crater(kFar);
+  const std::vector<double>& z = crater.heights();
   for (double blur = 0; blur < kMaxBlur; blur += kBlurStep) {
-    for (; now < blur * blur / 2; now += time) diffuse(z, next, fraction);
-    blurs_.push_back(std::sqrt(2 * now));
+    crater.advance_to(blur * blur / 2);
+    blurs_.push_back(std::sqrt(2 * crater.time()));
     heights_.emplace_back(z.begin(), z.end());
     if (const State state = measured(blurs_.back(), z); state.depth >= kShallowest) states_.push_back(state);
   }

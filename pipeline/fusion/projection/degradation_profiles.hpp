@@ -4,10 +4,8 @@
 namespace waymark::pipeline {
 
 /// Radial profiles of craters from fresh to almost erased.
-/// Fresh: depth / diameter 0.2, rim height 0.036 diameters, ejecta falling as r^-3 (Pike 1977, Melosh 1989).
-/// Degradation: diffusion of the surface (Soderblom 1970; Fassett & Thomson 2014).
-/// Diffusion is a Gaussian filter, so averaging over DEM cells only adds to its width. The testbed uses the
-/// same law.
+/// Diffusion of a fresh bowl (landmarks/crater_degradation.hpp), as in the testbed. Diffusion is a Gaussian
+/// filter, so averaging over DEM cells only adds to its width.
 class DegradationProfiles {
  public:
   DegradationProfiles();
