@@ -12,30 +12,41 @@ class Train final : public Command {
     return {
         .name = "train",
         .group = Group::make,
-        .summary = "Train the models of craters and, in colour images, trees",
+        .summary = "Train the models that find craters, rocks and trees",
         .about =
             "craters: makes scenes with known craters, half of them with the testbed of `waymark "
             "simulate`, detects bowls in them and trains a classifier of craters and a model of their "
             "rims. No image of other owners is used.\n\n"
-            "trees: trains on orthophotos whose trees are all marked, in a table beside each (a.csv "
-            "beside a.tif: x, y in pixels), and reports the score on images that were left out.\n\n"
+            "rocks: renders synthetic rocks, most of them with the testbed, detects dark spots and trains a "
+            "network "
+            "that separates shadows of rocks from others and corrects their sizes.\n\n"
+            "trees: without images, trains the confidence of treetops in canopy height models on synthetic "
+            "forests. With images, trains the network of crowns on orthophotos whose trees are all marked, "
+            "in a table beside each (a.csv beside a.tif: x, y in pixels), and reports the score on images "
+            "that were left out.\n\n"
             "The same scenes, images and seed give the same model. A name that ends in .cpp gives the "
             "source file that is compiled into waymark.",
         .arguments =
-            {Argument{"", "WHAT", &request_.what, "What to train"}.needed().one_of({"craters", "trees"}),
+            {Argument{"", "WHAT", &request_.what, "What to train"}.needed().one_of(
+                 {"craters", "rocks", "trees"}),
              Argument{"", "IMAGE...", &request_.images, "trees: orthophotos to train on"}.offering(
                  Offer::file),
              Argument{"-o,--output", "MODEL", &request_.output, "Model to write, .txt or .cpp"}
                  .needed()
                  .offering(Offer::file),
-             {"--scenes", "N", &request_.scenes, "craters: scenes to train on; each takes about two seconds"},
-             {"--colour", "", &request_.colour, "trees: train on red, green and blue alone"},
+             {"--scenes", "N", &request_.scenes,
+              "Made scenes to train on; 0: 120 of craters, 240 of rocks, 120 forests of each type"},
+             {"--colour", "", &request_.colour, "trees in images: train on red, green and blue alone"},
              {"--rounds", "N", &request_.rounds, "Passes over all examples; 0: the default of the model"},
              {"--seed", "N", &request_.seed, "Another seed gives other initial weights and another order"}},
-        .examples = {{"waymark train craters -o pipeline/craters/built_in_model.cpp", "The model we ship"},
-                     {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
-                     {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
-                      "Trees in images with near infrared"}}};
+        .examples = {
+            {"waymark train craters -o pipeline/craters/built_in_model.cpp", "The model we ship"},
+            {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
+            {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp", "The shipped network"},
+            {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
+             "Confidence of treetops in canopy models"},
+            {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
+             "Trees in images with near infrared"}}};
   }
 
   int run(const Session& session) override {

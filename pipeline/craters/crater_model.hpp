@@ -43,12 +43,8 @@ CraterPrediction predict(std::span<const ConvolutionNet> convolution_nets, const
 CraterCandidate apply_correction(const CraterCandidate& candidate, const CraterPrediction& prediction,
                                  Radians sun_angle);
 
-/// Writes a model as text:
-/// - a line `waymark crater model 1` and a line of provenance;
-/// - per layer its sizes, and per output a line: bias, largest weight, and all weights as sixteen-bit
-///   fractions of it in three base-64 digits each;
-/// - per convolution `convolution SIDE CHANNELS FACTS KERNEL STRIDE OUTPUTS` and its outputs; a network
-///   ends with four outputs at one position.
+/// Writes a model as text of kind `craters` with packed numbers (pipeline/vision/network_text.hpp): dense
+/// layers first; each convolutional network ends with four outputs at one position.
 /// parse_crater_model throws Error{input} that names the malformed line.
 std::string as_text(const CraterModel& model);
 CraterModel parse_crater_model(std::string_view text, const std::string& where);

@@ -42,6 +42,14 @@ ColourWindow augment_light(ColourWindow image, Random& random) {
 
 }  // namespace
 
+std::string crown_network_as_text(const DenseNetwork& network) {
+  return as_text(network, "crowns");
+}
+
+DenseNetwork parse_crown_network(std::string_view text, const std::string& where) {
+  return parse_dense_network(text, "crowns", where);
+}
+
 std::int64_t crown_probability_reach(double cell) {
   return crown_evidence_reach(cell) + smoothing_reach(kSmoothing, cell);
 }

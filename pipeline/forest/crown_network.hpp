@@ -9,6 +9,10 @@ namespace waymark::pipeline {
 const DenseNetwork& crown_network_infrared();
 const DenseNetwork& crown_network_colour();
 
+/// Write and read a network as text of kind `crowns`. Throws Error{input} that names `where`.
+std::string crown_network_as_text(const DenseNetwork& network);
+DenseNetwork parse_crown_network(std::string_view text, const std::string& where);
+
 /// Returns the probability of a crown centre at each of the cells `wanted`, smoothed by 0.9 m; its local
 /// maxima are trees. `image` covers crown_probability_reach() around `wanted` where there is an image; NaN
 /// where it is unknown. Bitwise the same for any window.

@@ -7,15 +7,10 @@
 #include <limits>
 #include <tuple>
 
+#include "pipeline/vision/network_text.hpp"
+
 namespace waymark::pipeline {
 namespace {
-
-using Terms = std::array<double, 6>;
-
-// Printed by tests/forest: TreeConfidence.DISABLED_Fit.
-constexpr Terms kConifer{19.075, -12.140, 0.250, 6.131, -0.069, -3.058};
-constexpr Terms kBroadleaf{20.243, -13.500, 0.594, 4.947, -0.370, -3.537};
-constexpr Terms kMixed{17.285, -9.366, 1.193, 3.210, -0.197, -2.517};
 
 constexpr double kMinConfidence = 0.1, kMaxConfidence = 0.99;  // limits supported by the synthetic forests
 
@@ -77,7 +72,7 @@ TopEvidence top_evidence(const CanopyWindow& raw, const CanopyWindow& smooth,
   return evidence;
 }
 
-std::array<double, 6> regression_terms(const TopEvidence& e) {
+TreetopTerms regression_terms(const TopEvidence& e) {
   const double has_rival = e.has_rival ? 1 : 0;
   return {1,
           has_rival,
@@ -87,14 +82,43 @@ std::array<double, 6> regression_terms(const TopEvidence& e) {
           std::log(std::max(e.height, 0.1))};
 }
 
-double tree_confidence(const TopEvidence& evidence, ForestType type) {
-  const Terms& weights = type == ForestType::conifer     ? kConifer
-                         : type == ForestType::broadleaf ? kBroadleaf
-                                                         : kMixed;
-  const Terms terms = regression_terms(evidence);
+double tree_confidence(const TreeConfidenceModel& model, const TopEvidence& evidence, ForestType type) {
+  const std::size_t index = type == ForestType::conifer ? 0 : type == ForestType::broadleaf ? 1 : 2;
+  const TreetopTerms& weights = model.weights[index];
+  const TreetopTerms terms = regression_terms(evidence);
   double odds = 0;
   for (std::size_t i = 0; i < terms.size(); ++i) odds += weights[i] * terms[i];
   return std::clamp(1 / (1 + std::exp(-odds)), kMinConfidence, kMaxConfidence);
+}
+
+double tree_confidence(const TopEvidence& evidence, ForestType type) {
+  return tree_confidence(built_in_tree_confidence(), evidence, type);
+}
+
+std::string as_text(const TreeConfidenceModel& model) {
+  StoredNetwork stored;
+  stored.kind = "treetops";
+  stored.trained_on = model.trained_on;
+  stored.layers = {{{5, 3}, {}, {}}};
+  for (const TreetopTerms& weights : model.weights) {
+    stored.layers[0].biases.push_back(weights[0]);
+    stored.layers[0].weights.insert(stored.layers[0].weights.end(), weights.begin() + 1, weights.end());
+  }
+  return network_as_text(stored, {.digits = 6});
+}
+
+TreeConfidenceModel parse_tree_confidence(std::string_view text, const std::string& where) {
+  const StoredNetwork stored = parse_network(text, "treetops", where, dense_layers_of(5));
+  if (stored.layers.size() != 1 || stored.layers[0].outputs() != 3)
+    refuse_network("treetops", "it has one layer, of three outputs", where);
+  TreeConfidenceModel model;
+  model.trained_on = stored.trained_on;
+  for (std::size_t type = 0; type < 3; ++type) {
+    model.weights[type][0] = stored.layers[0].biases[type];
+    std::copy_n(stored.layers[0].weights.begin() + static_cast<std::ptrdiff_t>(5 * type), 5,
+                model.weights[type].begin() + 1);
+  }
+  return model;
 }
 
 }  // namespace waymark::pipeline

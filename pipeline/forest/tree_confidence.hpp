@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <string>
+#include <string_view>
 #include <vector>
 #include "geo/canopy_source.hpp"
 #include "pipeline/forest/treetops.hpp"
@@ -24,14 +26,30 @@ inline constexpr double kRivalReach = 10;  ///< metres
 TopEvidence top_evidence(const CanopyWindow& raw, const CanopyWindow& smooth,
                          const std::vector<Treetop>& tops, std::size_t index);
 
-/// Returns the probability that a top is a separate tree, [0.1, 0.99]: a logistic function per forest type,
-/// `unknown` as mixed. Fitted to synthetic forests of the testbed and to ones with several leaders and
-/// rough bark (tests/pipeline/forest/tree_confidence_test.cpp). docs/methods/trees.md reports its
-/// calibration.
+/// Terms of the regression: 1; has_rival; ln(drop + 0.01) and ln(distance) of rivals; ln(roughness + 0.02);
+/// ln(height).
+using TreetopTerms = std::array<double, 6>;
+TreetopTerms regression_terms(const TopEvidence& evidence);
+
+/// Coefficients of a logistic function per type of forest: conifer, broadleaf, mixed.
+struct TreeConfidenceModel {
+  std::array<TreetopTerms, 3> weights{};
+  std::string trained_on;  ///< provenance, one line of text
+};
+
+/// Returns the probability that a top is a separate tree, [0.1, 0.99]; `unknown` as mixed.
+double tree_confidence(const TreeConfidenceModel& model, const TopEvidence& evidence, ForestType type);
+/// The same by the shipped model.
 double tree_confidence(const TopEvidence& evidence, ForestType type);
 
-/// Returns the regression terms: 1; has_rival; ln(drop + 0.01) and ln(distance) of rivals; ln(roughness +
-/// 0.02); ln(height).
-std::array<double, 6> regression_terms(const TopEvidence& evidence);
+/// Writes a model as text of kind `treetops` (pipeline/vision/network_text.hpp): one layer of five inputs and
+/// three outputs.
+std::string as_text(const TreeConfidenceModel& model);
+/// Throws Error{input} that names `where`.
+TreeConfidenceModel parse_tree_confidence(std::string_view text, const std::string& where);
+
+/// Returns the shipped model, made by `waymark train trees`
+/// (pipeline/forest/built_in_tree_confidence.cpp). docs/methods/trees.md reports its calibration.
+const TreeConfidenceModel& built_in_tree_confidence();
 
 }  // namespace waymark::pipeline

@@ -42,7 +42,8 @@ void adapt_to_prior(std::vector<ScoredRock>& all) {
     const double p = std::clamp(one.confidence, 1e-9, 1 - 1e-9);
     log_odds.push_back(std::log(p / (1 - p)));
   }
-  const double shift = kPriorWeight * prior_shift(log_odds, static_cast<double>(rock_network::kRockPrior));
+  const double shift =
+      kPriorWeight * prior_shift(log_odds, static_cast<double>(built_in_rock_network().rock_prior));
   for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + shift)));
 }
 
@@ -174,9 +175,10 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
   for (const ScoredRock& one : judged)
     spots.push_back({one.rock.shadow.x, one.rock.shadow.y, one.rock.shadow.peak});
   const auto contexts = spot_contexts(spots, map.alpha.columns(), map.alpha.rows());
+  const RockNetwork& network = built_in_rock_network();
   for (std::size_t i = 0; i < judged.size(); ++i) {
     judged[i].evidence = gather_evidence(map, judged[i].rock, light, contexts[i], table);
-    judged[i].prediction = predict_rock(judged[i].evidence);
+    judged[i].prediction = predict_rock(network, judged[i].evidence);
     judged[i].confidence = judged[i].prediction.confidence;
   }
   return judged;

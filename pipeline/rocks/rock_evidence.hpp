@@ -40,9 +40,6 @@ struct RockPrediction {
   double log_radius_sd = 0, log_reach_sd = 0, along_sd = 0, across_sd = 0;
 };
 
-/// Applies a network with one hidden layer, fitted to synthetic scenes (docs/methods/rocks.md, "Network").
-RockPrediction predict_rock(const RockEvidence& evidence);
-
 /// Returns the unit of position offsets, pixels: one pixel for small rocks, half the radius for large ones.
 inline double position_unit(double radius) {
   return std::hypot(1.0, 0.5 * radius);

@@ -1,57 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/vision/dense_network.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <charconv>
 
-#include "core/error.hpp"
+#include "pipeline/vision/network_text.hpp"
 
 namespace waymark::pipeline {
 namespace {
 
 constexpr std::size_t kBatch = 256;  // examples whose values fit in the L1 cache
-
-/// Reads numbers from text.
-class Words {
- public:
-  Words(std::string_view text, const std::string& where) : text_(text), where_(where) {}
-
-  template <class T>
-  T number(const char* what) {
-    skip();
-    T value{};
-    const auto [end, problem] = std::from_chars(text_.data(), text_.data() + text_.size(), value);
-    if (problem != std::errc()) fail(what);
-    text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-    return value;
-  }
-  std::vector<float> numbers(std::size_t count, const char* what) {
-    std::vector<float> all(count);
-    for (float& value : all) value = number<float>(what);
-    return all;
-  }
-  std::string_view line() {
-    const std::size_t end = std::min(text_.find('\n'), text_.size());
-    const std::string_view found = text_.substr(0, end);
-    text_.remove_prefix(std::min(end + 1, text_.size()));
-    return found;
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorCode::input, fmt::format("not a network: {} is missing", what), where_);
-  }
-
- private:
-  void skip() { text_.remove_prefix(std::min(text_.find_first_not_of(" \n"), text_.size())); }
-  std::string_view text_;
-  const std::string& where_;
-};
-
-void add_numbers(std::string& text, std::span<const float> numbers) {
-  for (const float value : numbers) text += fmt::format("{:.4g} ", value);
-  text.back() = '\n';
-}
 
 }  // namespace
 
@@ -83,40 +40,35 @@ void evaluate(const DenseNetwork& network, std::span<const float* const> inputs,
   }
 }
 
-std::string as_text(const DenseNetwork& network) {
-  std::string text = fmt::format("dense_network 1\n{}\n{} {}\n", network.trained_on, network.centre.size(),
-                                 network.layers.size());
-  add_numbers(text, network.centre);
-  add_numbers(text, network.scale);
-  for (const auto& layer : network.layers) {
-    text += fmt::format("{}\n", layer.outputs);
-    add_numbers(text, layer.weights);
-    add_numbers(text, layer.biases);
-  }
-  return text;
+std::string as_text(const DenseNetwork& network, std::string_view kind) {
+  StoredNetwork stored;
+  stored.kind = kind;
+  stored.trained_on = network.trained_on;
+  stored.centre.assign(network.centre.begin(), network.centre.end());
+  stored.scale.assign(network.scale.begin(), network.scale.end());
+  for (const auto& layer : network.layers)
+    stored.layers.push_back({{layer.inputs, layer.outputs},
+                             {layer.biases.begin(), layer.biases.end()},
+                             {layer.weights.begin(), layer.weights.end()}});
+  return network_as_text(stored, {.digits = 4});
 }
 
-DenseNetwork parse_dense_network(std::string_view text, const std::string& where) {
-  Words words(text, where);
-  if (words.line() != "dense_network 1") words.fail("its first line, dense_network 1,");
+DenseNetwork parse_dense_network(std::string_view text, std::string_view kind, const std::string& where) {
+  const StoredNetwork stored = parse_network(text, kind, where);
   DenseNetwork network;
-  network.trained_on = words.line();
-  const int inputs = words.number<int>("the number of inputs"), layers = words.number<int>("that of layers");
-  if (inputs < 1 || inputs > 10'000 || layers < 1 || layers > 20) words.fail("a sensible size");
-  network.centre = words.numbers(static_cast<std::size_t>(inputs), "a centre");
-  network.scale = words.numbers(static_cast<std::size_t>(inputs), "a scale");
-  if (std::ranges::any_of(network.scale, [](float s) { return !(s > 0); })) words.fail("a scale above 0");
-  for (int i = 0, width = inputs; i < layers; ++i) {
-    DenseNetwork::Layer layer{
-        .inputs = width, .outputs = words.number<int>("a layer"), .weights = {}, .biases = {}};
-    if (layer.outputs < 1 || layer.outputs > 10'000) words.fail("a sensible layer");
-    const auto outputs = static_cast<std::size_t>(layer.outputs);
-    layer.weights = words.numbers(outputs * static_cast<std::size_t>(width), "a weight");
-    layer.biases = words.numbers(outputs, "a bias");
-    width = layer.outputs;
-    network.layers.push_back(std::move(layer));
+  network.trained_on = stored.trained_on;
+  network.centre = as_floats(stored.centre);
+  network.scale = as_floats(stored.scale);
+  const LayerCheck check = dense_layers_of(static_cast<int>(network.centre.size()));
+  for (std::size_t i = 0; i < stored.layers.size(); ++i) {
+    const StoredLayer& layer = stored.layers[i];
+    if (const auto problem = check(std::span(stored.layers).first(i), layer); !problem.empty())
+      refuse_network(kind, problem, where);
+    network.layers.push_back(
+        {layer.inputs(), layer.outputs(), as_floats(layer.weights), as_floats(layer.biases)});
   }
-  if (network.layers.back().outputs != 1) words.fail("a last layer of one output");
+  if (network.layers.empty() || network.layers.back().outputs != 1)
+    refuse_network(kind, "the last layer must have 1 output", where);
   return network;
 }
 

@@ -29,10 +29,10 @@ struct DenseNetwork {
 /// weights), 5 to 10 weights per ns.
 void evaluate(const DenseNetwork& network, std::span<const float* const> inputs, std::span<float> log_odds);
 
-/// Writes the network for parse_dense_network; numbers have four significant digits.
-std::string as_text(const DenseNetwork& network);
-/// Throws Error{input} naming `where` if the text is not a network.
-DenseNetwork parse_dense_network(std::string_view text, const std::string& where);
+/// Writes a network of a kind (network_text.hpp); numbers have four significant digits.
+std::string as_text(const DenseNetwork& network, std::string_view kind);
+/// Throws Error{input} naming `where` if the text is not a network of that kind with one output.
+DenseNetwork parse_dense_network(std::string_view text, std::string_view kind, const std::string& where);
 
 /// Training examples; `targets` is the target probability of each, [0, 1].
 struct NetworkExamples {

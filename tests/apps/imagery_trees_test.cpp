@@ -158,7 +158,7 @@ TEST_F(ImageryTrees, AreLearntFromMarkedImages) {
   EXPECT_THAT(made.err, HasSubstr("train trees: 0...10...20"));
   EXPECT_THAT(made.err, HasSubstr("100 - done.\n"));
   EXPECT_THAT(made.out + made.err, HasSubstr("3 images, 120 trees, 1 rounds, seed 1; left out in turn"));
-  EXPECT_THAT(text_of(folder_ / "model.txt"), testing::StartsWith("dense_network 1\n3 images"));
+  EXPECT_THAT(text_of(folder_ / "model.txt"), testing::StartsWith("waymark network 2 crowns\n3 images"));
   ASSERT_EQ(waymark({"train", "trees", folder_ / "a.tif", "-o", folder_ / "model.cpp", "--rounds", "1"}).code,
             0);
   EXPECT_THAT(text_of(folder_ / "model.cpp"),
@@ -171,7 +171,8 @@ TEST_F(ImageryTrees, WrongUseOfLearningIsExplained) {
     words.insert(words.end(), {"-o", folder_ / "model.txt"});
     return waymark(words);
   };
-  EXPECT_THAT(train({"trees"}).err, HasSubstr("trees are trained on images, and none is given"));
+  EXPECT_THAT(train({"trees", "--colour"}).err, HasSubstr("--colour and --rounds are for trees in images"));
+  EXPECT_THAT(train({"rocks", "a.tif"}).err, HasSubstr("rocks are trained on made scenes, not on images"));
   EXPECT_THAT(train({"craters", "a.tif"}).err, HasSubstr("not on images"));
   make_dem(folder_ / "park.tif", park(3));
   EXPECT_THAT(train({"trees", folder_ / "park.tif"}).err, HasSubstr("no fourth band"));

@@ -12,14 +12,17 @@
 #include "pipeline/craters/patch_network_training.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "workflows/training/crater_training_data.hpp"
+#include "workflows/training/rock_training_data.hpp"
 #include "workflows/training/tree_training_data.hpp"
+#include "workflows/training/treetop_training_data.hpp"
 
 namespace waymark::workflows {
 namespace {
 
 constexpr int kSide = 640;              // pixels of a scene of craters
 constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
-constexpr int kParts = 3;               // of the images, left out in turn
+constexpr std::int64_t kCraterScenes = 120, kTreeForests = 120;
+constexpr int kParts = 3;  // of the images, left out in turn
 
 // Names in the source file that a trained model is written as.
 struct ModelSource {
@@ -88,7 +91,8 @@ void write_crater_model(const TrainRequest& request, const std::string& text) {
 }
 
 TrainResult train_craters(const TrainRequest& request, const Callbacks& callbacks) {
-  const CraterExamples examples = make_crater_examples(request.scenes, callbacks);
+  const std::int64_t scenes = request.scenes > 0 ? request.scenes : kCraterScenes;
+  const CraterExamples examples = make_crater_examples(scenes, callbacks);
   pipeline::CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
   if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
   pipeline::CraterModel model =
@@ -101,25 +105,23 @@ TrainResult train_craters(const TrainRequest& request, const Callbacks& callback
           callbacks.summary(fmt::format("looks, network {} of {}, round {}: loss {:.4f}\n", net + 1,
                                         kNetworks, round + 1, loss));
         }));
-  model.trained_on =
-      fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
-                  request.scenes - 1, kSide, examples.bowls.size(), training.rounds, request.seed);
+  model.trained_on = fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
+                                 scenes - 1, kSide, examples.bowls.size(), training.rounds, request.seed);
   TrainResult result{pipeline::as_text(model)};
   if (!request.output.empty()) write_crater_model(request, result.model);
   return result;
 }
 
-void write_tree_model(const TrainRequest& request, const std::string& text) {
+void write_crown_network(const TrainRequest& request, const std::string& text) {
   const std::string name = request.colour ? "crown_network_colour" : "crown_network_infrared";
   write_model(request.output, text,
               {fmt::format("waymark train trees IMAGE...{} -o pipeline/forest/{}.cpp",
                            request.colour ? " --colour" : "", name),
-               "pipeline/forest/crown_network.hpp", "DenseNetwork", name, "parse_dense_network",
+               "pipeline/forest/crown_network.hpp", "DenseNetwork", name, "parse_crown_network",
                "a built-in crown network"});
 }
 
-TrainResult train_trees(const TrainRequest& request, const Callbacks& callbacks) {
-  if (request.images.empty()) throw Error(ErrorCode::usage, "trees are trained on images, and none is given");
+TrainResult train_crowns(const TrainRequest& request, const Callbacks& callbacks) {
   std::vector<TreeTrainingImage> images;
   std::size_t trees = 0;
   for (const std::string& image : request.images) {
@@ -145,21 +147,64 @@ TrainResult train_trees(const TrainRequest& request, const Callbacks& callbacks)
   network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", images.size(), trees,
                                    training.rounds, request.seed, held_out);
   callbacks.summary(network.trained_on + "\n");
-  TrainResult result{pipeline::as_text(network)};
-  if (!request.output.empty()) write_tree_model(request, result.model);
+  TrainResult result{pipeline::crown_network_as_text(network)};
+  if (!request.output.empty()) write_crown_network(request, result.model);
+  return result;
+}
+
+TrainResult train_treetops(const TrainRequest& request, const Callbacks& callbacks) {
+  if (request.colour || request.rounds > 0)
+    throw Error(ErrorCode::usage, "--colour and --rounds are for trees in images, and no image is given", "",
+                "name orthophotos whose trees are marked, or leave the options out");
+  const std::int64_t forests = request.scenes > 0 ? request.scenes : kTreeForests;
+  const pipeline::TreeConfidenceModel model =
+      train_tree_confidence(static_cast<int>(forests), request.threads, callbacks.progress);
+  callbacks.summary(model.trained_on + "\n");
+  TrainResult result{pipeline::as_text(model)};
+  if (!request.output.empty())
+    write_model(request.output, result.model,
+                {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
+                 "pipeline/forest/tree_confidence.hpp", "TreeConfidenceModel", "built_in_tree_confidence",
+                 "parse_tree_confidence", "the built-in confidence of treetops"});
+  return result;
+}
+
+TrainResult train_rocks(const TrainRequest& request, const Callbacks& callbacks) {
+  const int views = request.scenes > 0 ? static_cast<int>(request.scenes) : kRockViews;
+  const RockTrainingSets sets = make_rock_examples(views, request.threads, callbacks.progress);
+  pipeline::RockTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  if (request.rounds > 0) training.rounds = static_cast<int>(request.rounds);
+  // Each half is written and read, so that the average is of numbers with four digits.
+  const auto half = [&](const std::vector<pipeline::RockExample>& examples) {
+    callbacks.summary(fmt::format("{} dark spots\n", examples.size()));
+    return pipeline::parse_rock_network(as_text(pipeline::train_rock_network(examples, training)),
+                                        "a trained half");
+  };
+  pipeline::RockNetwork network = average_networks(half(sets.first), half(sets.second));
+  network.trained_on =
+      fmt::format("{} testbed views, drawn and oblique ones in proportion, {} rounds, seed {}", views,
+                  training.rounds, request.seed);
+  TrainResult result{as_text(network)};
+  if (!request.output.empty())
+    write_model(
+        request.output, result.model,
+        {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp", "pipeline/rocks/rock_network.hpp",
+         "RockNetwork", "built_in_rock_network", "parse_rock_network", "the built-in rock network", 480});
   return result;
 }
 
 }  // namespace
 
 TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
-  if (request.scenes < 1 || request.rounds < 0)
+  if (request.scenes < 0 || request.rounds < 0)
     throw Error(ErrorCode::usage, "there must be at least one scene and one round", "",
                 "leave out --scenes and --rounds for the usual");
-  if (request.what == "trees") return train_trees(request, callbacks);
+  if (request.what == "trees")
+    return request.images.empty() ? train_treetops(request, callbacks) : train_crowns(request, callbacks);
   if (!request.images.empty())
-    throw Error(ErrorCode::usage, "craters are trained on made scenes, not on images", request.images[0]);
-  return train_craters(request, callbacks);
+    throw Error(ErrorCode::usage, request.what + " are trained on made scenes, not on images",
+                request.images[0]);
+  return request.what == "rocks" ? train_rocks(request, callbacks) : train_craters(request, callbacks);
 }
 
 }  // namespace waymark::workflows

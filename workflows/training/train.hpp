@@ -8,9 +8,9 @@ namespace waymark::workflows {
 
 /// Options of a training. The same scenes, images and seed give the same model.
 struct TrainRequest {
-  std::string what;                      ///< "craters" or "trees"
-  std::string output = {};               ///< model to write, .txt, or .cpp for a source file; empty: none
-  std::int64_t scenes = 120;             ///< craters: made scenes; each takes about two seconds
+  std::string what;         ///< "craters", "rocks" or "trees"
+  std::string output = {};  ///< model to write, .txt, or .cpp for a source file; empty: none
+  std::int64_t scenes = 0;  ///< made scenes; 0: 120 of craters, 240 of rocks, 120 forests of each type
   std::vector<std::string> images = {};  ///< trees: orthophotos, each with a table of its trees beside it
   bool colour = false;                   ///< trees: train on red, green and blue alone
   std::int64_t rounds = 0;               ///< passes over all examples; 0: the default of the model
@@ -20,12 +20,16 @@ struct TrainRequest {
 
 /// A trained model.
 struct TrainResult {
-  std::string model;  ///< text that parse_crater_model() or parse_dense_network() reads
+  std::string model;  ///< text (pipeline/vision/network_text.hpp)
 };
 
-/// Trains a model of craters or of trees in colour images and writes it. Throws Error{usage} for missing or
-/// superfluous images, Error{input} for an image that cannot be used, Error{output}.
-/// Messages: summaries of the rounds, and for trees the cross-validated score.
+/// Trains a model and writes it:
+/// - craters: the classifier of bowls, on scenes of the testbed and of plain shading;
+/// - rocks: the network of shadows, on images of synthetic rocks;
+/// - trees without images: the confidence of treetops in canopy models, on synthetic forests;
+/// - trees with images: the network of crowns in colour images.
+/// Throws Error{usage} for superfluous images or options, Error{input} for an image that cannot be used,
+/// Error{output}. Messages: summaries of the training, and for crowns the cross-validated score.
 TrainResult train(const TrainRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

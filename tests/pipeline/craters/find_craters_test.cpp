@@ -216,7 +216,7 @@ TEST(CraterModel, SaysWhatIsWrongWithAFile) {
     }
     return std::string("none");
   };
-  EXPECT_THAT(message("hello"), HasSubstr("it does not begin with 'waymark crater model 1'"));
+  EXPECT_THAT(message("hello"), HasSubstr("it does not begin with 'waymark network 2 craters'"));
   EXPECT_THAT(message("waymark crater model 1\nx\nlayer 2 4\n"), HasSubstr("m.txt, line 3"));
   EXPECT_THAT(message("waymark crater model 1\nx\n"), HasSubstr("the last layer must have 4 outputs"));
 }

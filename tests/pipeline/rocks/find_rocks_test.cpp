@@ -13,6 +13,7 @@
 #include "tests/pipeline/rocks/rock_score.hpp"
 namespace waymark::test {
 using namespace pipeline;
+using namespace workflows;
 namespace {
 
 using ::testing::HasSubstr;

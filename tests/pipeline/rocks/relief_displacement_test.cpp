@@ -9,9 +9,10 @@
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/shadow_shape.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
-#include "tests/pipeline/rocks/synthetic_view.hpp"
+#include "workflows/training/rock_views.hpp"
 namespace waymark::test {
 using namespace pipeline;
+using namespace workflows;
 namespace {
 
 PosedCamera looking_down(double tilt) {

@@ -3,19 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/detection.hpp"
-#include "tests/pipeline/rocks/rock_scene.hpp"
+#include "workflows/training/rock_match.hpp"
 namespace waymark::test {
-
-/// Which detection is which rock: greedy, the largest rock first, nearest free detection within
-/// max(0.75 D, 2 px). Rocks whose outline or shadow reaches the border, and detections as near to it, count
-/// neither way.
-struct RockMatch {
-  std::vector<int> detection_of;                    ///< of each rock; -1: missed
-  std::vector<int> rock_of;                         ///< of each detection; -1: none
-  std::vector<char> rock_counts, detection_counts;  ///< false: too near to the border
-};
-RockMatch match_rocks(const RockImage& image, const std::vector<Detection>& found, double sun_angle);
+using namespace workflows;
 
 /// Sums over scenes. Bins by true diameter: 2-3, 3-5, 5-8, above 8 px.
 class RockScore {

@@ -83,18 +83,19 @@ TEST(DenseNetwork, WhatIsNotKnownStaysSo) {
 }
 
 TEST(DenseNetwork, TextComesBack) {
-  const DenseNetwork network = parse_dense_network(as_text(random_network(2, {4, 6, 1})), "a");
-  EXPECT_EQ(parse_dense_network(as_text(network), "b"), network);
+  const DenseNetwork network =
+      parse_dense_network(as_text(random_network(2, {4, 6, 1}), "crowns"), "crowns", "a");
+  EXPECT_EQ(parse_dense_network(as_text(network, "crowns"), "crowns", "b"), network);
   EXPECT_EQ(network.trained_on, "nothing");
 }
 
 TEST(DenseNetwork, DamagedTextIsRefused) {
-  const std::string whole = as_text(random_network(3, {4, 6, 1}));
+  const std::string whole = as_text(random_network(3, {4, 6, 1}), "crowns");
   for (std::size_t length = 0; length + 8 < whole.size(); length += 11)
-    EXPECT_THROW(parse_dense_network(std::string_view(whole).substr(0, length), "model.txt"), Error)
+    EXPECT_THROW(parse_dense_network(std::string_view(whole).substr(0, length), "crowns", "model.txt"), Error)
         << length;
   try {
-    parse_dense_network("dense_network 2\n", "model.txt");
+    parse_dense_network("dense_network 2\n", "crowns", "model.txt");
     FAIL();
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("model.txt"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/pipeline/rocks/synthetic_view.hpp"
+#include "workflows/training/rock_views.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,8 +7,7 @@
 
 #include "core/random.hpp"
 #include "testbed/render.hpp"
-namespace waymark::test {
-using namespace pipeline;
+namespace waymark::workflows {
 namespace {
 
 /// Outcrops, dunes, how many craters there are, and relief.
@@ -117,7 +116,7 @@ SyntheticView leaning_view(int number) {
   SyntheticView made;
   made.elevation = to_radians(exposure.sun.elevation);
   made.sun_angle = testbed::image_sun_angle(view, exposure.sun);
-  made.displacement = relief_displacement_of(camera);
+  made.displacement = pipeline::relief_displacement_of(camera);
   made.image.pixels = testbed::render_view(scene, view, exposure, static_cast<std::uint64_t>(number));
   for (float& value : made.image.pixels.cells()) value = std::round(value * 255);
   const Eigen::Vector3d light = sun_direction(exposure.sun).unit;
@@ -138,4 +137,4 @@ SyntheticView leaning_view(int number) {
   return made;
 }
 
-}  // namespace waymark::test
+}  // namespace waymark::workflows

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/pipeline/rocks/rock_scene.hpp"
+#include "workflows/training/rock_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
-namespace waymark::test {
+namespace waymark::workflows {
 namespace {
 
 constexpr int kFine = 4;  // samples per pixel and direction
@@ -289,4 +289,4 @@ RockImage render(const RockScene& scene) {
   return image;
 }
 
-}  // namespace waymark::test
+}  // namespace waymark::workflows

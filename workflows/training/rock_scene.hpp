@@ -5,7 +5,7 @@
 
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
-namespace waymark::test {
+namespace waymark::workflows {
 
 /// Rocks on terrain in a vertical view. All lengths are pixels. Rendered from a height field with many
 /// samples per pixel, independently of the detector.
@@ -46,6 +46,7 @@ struct RockImage {
   std::vector<TrueRockInImage> rocks;  ///< largest first
 };
 
+/// Renders a scene; the same scene gives the same image.
 RockImage render(const RockScene& scene);
 
-}  // namespace waymark::test
+}  // namespace waymark::workflows

@@ -3,16 +3,15 @@
 #include <optional>
 #include "core/units.hpp"
 #include "pipeline/rocks/relief_displacement.hpp"
-#include "tests/pipeline/rocks/rock_scene.hpp"
-namespace waymark::test {
-using namespace pipeline;
+#include "workflows/training/rock_scene.hpp"
+namespace waymark::workflows {
 
 /// View of synthetic terrain with its rocks in pixels.
 struct SyntheticView {
   RockImage image;
   double sun_angle = 0;  ///< towards the sun in the image, radians from x towards y
   Radians elevation{0};  ///< of the sun
-  std::optional<ReliefDisplacement> displacement = {};  ///< unset: vertical view
+  std::optional<pipeline::ReliefDisplacement> displacement = {};  ///< unset: vertical view
 };
 
 /// Renders terrain with craters, dunes, slopes up to about 12 degrees and rocks by Golombek's law, 0.3 m
@@ -25,4 +24,4 @@ SyntheticView synthetic_view(int number);
 /// 14 degrees: large rocks, low light and rocks that displacement.
 SyntheticView leaning_view(int number);
 
-}  // namespace waymark::test
+}  // namespace waymark::workflows

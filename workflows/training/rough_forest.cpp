@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-#include "pipeline/forest/forest_presets.hpp"
-#include "synthetic_canopy.hpp"
-namespace waymark::test {
-using namespace pipeline;
+#include "workflows/training/rough_forest.hpp"
 
-/// Canopy with rougher crowns than those of the testbed, and its trees: several leaders per crown, bark and
-/// twigs of 1 and 3 m, gaps, understory. Roughness varies between forests.
-struct RoughForest {
-  SyntheticCanopy canopy;
-  Grid<std::int32_t> tree;  ///< tree whose crown covers a cell; -1: ground
-};
+#include <algorithm>
+#include <cmath>
+#include <vector>
 
-inline RoughForest rough_forest(std::uint64_t seed, ForestType type) {
+#include "core/random.hpp"
+namespace waymark::workflows {
+
+RoughForest rough_forest(std::uint64_t seed, ForestType type) {
   Random random(seed, "rough forest");
   const bool mixed = type == ForestType::mixed;
   const double cell = random.bernoulli(0.5) ? 0.5 : 1.0, side = 100;
@@ -74,4 +70,4 @@ inline RoughForest rough_forest(std::uint64_t seed, ForestType type) {
   return {SyntheticCanopy(std::move(heights), cell), std::move(owner)};
 }
 
-}  // namespace waymark::test
+}  // namespace waymark::workflows

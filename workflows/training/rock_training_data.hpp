@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+#include "pipeline/engine/progress.hpp"
+#include "pipeline/rocks/rock_training.hpp"
+#include "workflows/training/rock_views.hpp"
+namespace waymark::workflows {
+
+/// Two overlapping sets of examples, from which two networks are trained and averaged.
+struct RockTrainingSets {
+  std::vector<pipeline::RockExample> first, second;
+};
+
+inline constexpr int kRockViews = 240;  ///< vertical testbed views that the shipped network is trained on
+
+/// Returns the dark spots of synthetic images of rocks as the detector finds them, at most 400 per image:
+/// - `views` vertical views of the testbed (synthetic_view);
+/// - 45 scenes with random light, relief and rocks, and 24 of large rocks under a low sun, each twice;
+/// - 150 oblique views (leaning_view) twice in the first set, 330 once in the second; the first set omits
+///   scene 18.
+/// The latter counts are for 240 views, and proportional for others. The same for any number of threads.
+/// About two CPU seconds per view.
+RockTrainingSets make_rock_examples(int views, int threads, const pipeline::ProgressListener& progress);
+
+/// Returns the dark spots of a view with the sun elevation known in six of ten cases and the sun direction
+/// off by a few degrees in half of them, seeded by `number`. At most `most`, chosen at random, so that scenes
+/// have equal weight.
+std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number, std::size_t most);
+
+}  // namespace waymark::workflows
