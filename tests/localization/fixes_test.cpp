@@ -290,8 +290,8 @@ struct RocksAbout {
 TEST(ParticleFilter, ARobotAtRestGathersNoEvidence) {
   // Three rocks without identities fit at thousands of places; seen a hundred times they still do.
   RocksAbout site(false);
-  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id, {.threads = 1},
-                        site.finder());
+  ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id),
+                        {.threads = 1}, site.finder());
   for (int i = 0; i < 100; ++i) {
     filter.predict(step_motion({}, 0.5, {}));
     filter.update(site.look(15, 3, false));
@@ -302,8 +302,8 @@ TEST(ParticleFilter, ARobotAtRestGathersNoEvidence) {
 
 TEST(ParticleFilter, OneSetOfIdentifiedLandmarksIsEnough) {
   RocksAbout site(true);
-  ParticleFilter filter({}, LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id, {.threads = 1},
-                        site.finder());
+  ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id),
+                        {.threads = 1}, site.finder());
   filter.update(site.look(15, 4, true));
   EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
   EXPECT_LT((filter.estimate().pose.at() - site.truth.at()).norm(), 0.3);

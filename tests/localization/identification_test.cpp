@@ -375,10 +375,10 @@ TEST(Paper, DistanceIsEquation11) {
 
 TypeRegistry rocks() {
   TypeRegistry types;
-  types.add(
-      {.name = "rock",
-       .summary = "A rock",
-       .features = {{"radius", "m", Scale::ratio, 0.01, 100}, {"height", "m", Scale::ratio, 0.04, 25}}});
+  types.add({.name = "rock",
+             .summary = "A rock",
+             .features = {{"radius", "m", Scale::ratio, 0.01, 100, ""},
+                          {"height", "m", Scale::ratio, 0.04, 25, ""}}});
   return types;
 }
 
