@@ -291,7 +291,7 @@ TEST(ParticleFilter, ARobotAtRestGathersNoEvidence) {
   // Three rocks without identities fit at thousands of places; seen a hundred times they still do.
   RocksAbout site(false);
   ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id),
-                        {.threads = 1}, site.finder());
+                        {.threads = 1, .weight = {}}, site.finder());
   for (int i = 0; i < 100; ++i) {
     filter.predict(step_motion({}, 0.5, {}));
     filter.update(site.look(15, 3, false));
@@ -303,7 +303,7 @@ TEST(ParticleFilter, ARobotAtRestGathersNoEvidence) {
 TEST(ParticleFilter, OneSetOfIdentifiedLandmarksIsEnough) {
   RocksAbout site(true);
   ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id),
-                        {.threads = 1}, site.finder());
+                        {.threads = 1, .weight = {}}, site.finder());
   filter.update(site.look(15, 4, true));
   EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
   EXPECT_LT((filter.estimate().pose.at() - site.truth.at()).norm(), 0.3);
