@@ -134,34 +134,6 @@ TEST(RockTargets, ByShapeAndSlope) {
       }
 }
 
-// Averages two fits on overlapping training sets: one uses 150 oblique views twice and omits scene 18, the
-// other uses 330 once.
-TEST(RockNetwork, DISABLED_Fit) {
-  std::vector<NetworkSample> first, second;
-  const auto take = [&](const SyntheticView& view, int number,
-                        std::initializer_list<std::vector<NetworkSample>*> into) {
-    const auto samples = rock_samples(view, number, 400);
-    for (auto* examples : into) examples->insert(examples->end(), samples.begin(), samples.end());
-  };
-  for (int k = 0; k < 240; ++k) take(synthetic_view(k), k, {&first, &second});
-  // Synthetic scenes are fewer, so each is used twice, with different knowledge of the sun.
-  for (int j = 0; j < 2; ++j)
-    for (int k = 0; k < 45; ++k) {
-      const SyntheticView view = scene_view(random_scene(k));
-      if (k != 18) take(view, k + 1000 * j, {&first});
-      take(view, k + 1000 * j, {&second});
-    }
-  for (int j = 0; j < 2; ++j)
-    for (int k = 0; k < 24; ++k) take(scene_view(low_sun_scene(k)), k + 1000 * j, {&first, &second});
-  for (int k = 0; k < 150; ++k) take(leaning_view(k), k + 100000, {&first, &second});
-  for (int k = 0; k < 150; ++k) take(leaning_view(k), k + 101000, {&first});
-  for (int k = 150; k < 330; ++k) take(leaning_view(k), k + 100000, {&second});
-  std::FILE* file = std::fopen("rock_network.hpp", "w");
-  ASSERT_NE(file, nullptr);
-  std::fputs(source_of(average_networks(fit_network(first), fit_network(second))).c_str(), file);
-  std::fclose(file);
-}
-
 // The averaged network returns the mean of both outputs.
 TEST(RockNetwork, JoinedSaysTheMean) {
   const auto net = [](float mean, float sd, float weight, float bias, float out) {
