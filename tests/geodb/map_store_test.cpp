@@ -2,6 +2,7 @@
 // Opening of maps: rejected files, migration, and reading without changes.
 #include "geodb/map_store.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include <fstream>
 
 #include "core/error.hpp"
+#include "geodb/geopackage/migrations.hpp"
 #include "geodb/map_editor.hpp"
 #include "geodb/sqlite/sqlite.hpp"
 #include "geodb/validate_map.hpp"
@@ -20,6 +22,7 @@ namespace waymark::test {
 using namespace geodb;
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -131,12 +134,17 @@ TEST(Migration, TypesDeclareHowTheyAreSeen) {
           (3, 'sinkhole', '', 'bowl', '#000000', '', 'diameter');
       INSERT INTO waymark_feature (type, position, name, unit, scale, reference, summary)
           VALUES ('sinkhole', 0, 'diameter', 'm', 'ratio', 0, '');)");
-  const MapStore map = MapStore::open(old);
-  EXPECT_EQ(map.types()[0].evidence, EvidenceModel::none);
-  EXPECT_EQ(map.types()[0].identification_reach, 100);
-  EXPECT_EQ(map.types()[1].identification_reach, 150e3);
-  EXPECT_EQ(map.types()[2].evidence, EvidenceModel::bowl);
-  EXPECT_EQ(map.types()[2].body, (BodySize{"diameter", 0.5}));
+  const sqlite::Database database(old, sqlite::OpenMode::update);
+  migrate(database);
+  sqlite::Statement row = database.prepare(
+      "SELECT name, evidence, body_feature, radius_per_value, identification_reach FROM waymark_type ORDER "
+      "BY id");
+  std::vector<std::string> rows;
+  while (row.step())
+    rows.push_back(
+        fmt::format("{} {} '{}' {} {}", row.text(0), row.text(1), row.text(2), row.real(3), row.real(4)));
+  EXPECT_THAT(rows, ElementsAre("lamp_post none '' 1 100", "mountain_top none '' 1 150000",
+                                "sinkhole bowl 'diameter' 0.5 100"));
 }
 
 TEST(Reading, VisitingGivesTheSameAsReadingAll) {

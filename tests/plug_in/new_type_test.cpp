@@ -188,7 +188,7 @@ TEST_F(NewType, LocalizesARobotByBearings) {
                                                                   .log = folder / "drive.jsonl",
                                                                   .method = method,
                                                                   .use_identities = false,
-                                                                  .start = "-249,41,0.08"});
+                                                                  .start = "-249.9,40.1,0.08"});
     EXPECT_GT(result.track.verdicts[static_cast<std::size_t>(localization::Verdict::matched)], 30) << method;
     ASSERT_FALSE(result.track.rows.empty());
     EXPECT_LT(std::abs(result.track.rows.back().at.pose.yaw - yaw), 0.015) << method;

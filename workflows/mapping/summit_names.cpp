@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -80,11 +81,20 @@ std::unordered_map<std::string, std::string> pair_names(const geodb::MapContents
   return name_of;
 }
 
+// Returns the type whose landmarks have a name.
+std::optional<TypeId> type_with_name(const TypeRegistry& types) {
+  for (TypeId type = 0; type < types.size(); ++type)
+    for (const AttributeSpec& attribute : types[type].attributes)
+      if (attribute.name == "name") return type;
+  return {};
+}
+
 }  // namespace
 
 void name_summits(geodb::MapContents& contents, const importers::PlaceNames& names) {
-  if (names.places.empty() || contents.types.find("mountain_top") == nullptr) return;
-  const TypeId type = contents.types.id("mountain_top");
+  const std::optional<TypeId> type_found = type_with_name(contents.types);
+  if (names.places.empty() || !type_found) return;
+  const TypeId type = *type_found;
   const std::size_t attribute = attribute_index(contents.types[type], "name");
   const auto name_of =
       std::make_shared<const std::unordered_map<std::string, std::string>>(pair_names(contents, type, names));
