@@ -52,7 +52,9 @@ struct IdentificationOptions {
   }
   /// Returns the density of false sightings without range, per radian: those nearer than `bearing_reach`, or
   /// 100 m. Objects confused with landmarks are near, so it does not grow with the reach of a type.
-  double bearing_clutter() const { return clutter * (bearing_reach > 0 ? bearing_reach : 100); }
+  double bearing_clutter() const { return clutter * clutter_reach(); }
+  /// Returns the metres over which the density of false sightings without range is spread.
+  double clutter_reach() const { return bearing_reach > 0 ? bearing_reach : 100; }
   /// Returns whether the association uses `distance`: not `paper` with one that has its own evidence.
   bool distance_applies() const;
 };

@@ -19,7 +19,7 @@ const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, con
 
 void LandmarkMatcher::set_clutter() {
   if (options_.learn_clutter)
-    options_.clutter = std::max(min_clutter_, clutter_.density(options_.bearing_reach));
+    options_.clutter = std::max(min_clutter_, clutter_.density(options_.clutter_reach()));
 }
 
 void LandmarkMatcher::observe(const SightingSet& seen) {
