@@ -142,9 +142,10 @@ void warn_unmatched(const std::string& type, const std::vector<testbed::Evaluate
     return fmt::format("x {:g} to {:g}, y {:g} to {:g}", box.min().x(), box.max().x(), box.min().y(),
                        box.max().y());
   };
-  callbacks.warning(fmt::format(
-      "no {} of the result matches a true one: the result has {}, the truth {}; {}", type, text(a), text(b),
-      a.intersects(b) ? "--share and --least allow larger distances" : "are both in one coordinate system?"));
+  callbacks.warning(fmt::format("no {} of the result matches a true one: the result has {}, the truth {}; {}",
+                                type, text(a), text(b),
+                                a.intersects(b) ? "--tolerance and --min-tolerance allow larger distances"
+                                                : "are both in one coordinate system?"));
 }
 
 }  // namespace
