@@ -76,31 +76,6 @@ std::string label_of(const Landmark& landmark, const LandmarkType& type) {
   return title_of(type.name) + " " + landmark.uid;
 }
 
-std::string escape_markup(std::string_view text) {
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      case '\'':
-        safe += "&#39;";
-        break;
-      default:
-        safe += c;
-    }
-  return safe;
-}
-
 std::string spreadsheet_text(std::string_view text) {
   const bool begins_formula = !text.empty() && kFormulaMarks.find(text[0]) != kFormulaMarks.npos;
   return (begins_formula && !is_number(text) ? "'" : "") + std::string(text);

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <string_view>
+#include "core/escape_markup.hpp"
 #include "core/feature.hpp"
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
@@ -35,9 +36,6 @@ NumberFormat number_format(const FeatureSpec& feature, double largest);
 
 /// Returns the map label of a landmark: its label feature, else its type and uid.
 std::string label_of(const Landmark& landmark, const LandmarkType& type);
-
-/// Escapes text for HTML or XML, in elements and in attributes with either quote.
-std::string escape_markup(std::string_view text);
 
 /// Returns a text that no spreadsheet computes: a formula gets an apostrophe in front, which the table reader
 /// removes.

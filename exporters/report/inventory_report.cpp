@@ -252,11 +252,11 @@ std::string inventory_html(const InventoryPage& page) {
     html += "</ul></div>\n";
   }
   html +=
-      "<h2>Stands</h2>\n<p>Standard errors (±) come from the errors of the single trees. Columns marked "
-      "“all” "
-      "include undetected trees, estimated from the fraction of each height detected from the air; the "
-      "others only "
-      "if a recall was given.</p>\n";
+      "<h2>Stands</h2>\n<p>Standard errors (±) include those of the single trees. Figures per hectare "
+      "include "
+      "undetected trees where the fraction of each height that is detected from the air, or a recall, is "
+      "known; "
+      "those “of detected trees” do not.</p>\n";
   html += table_of(page);
   html += "<h2>Map</h2>\n" + map_figure(page);
   html += "<h2>Diameters</h2>\n" + charts_of(page.stands);

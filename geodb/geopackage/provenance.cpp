@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "core/escape_markup.hpp"
 #include "core/json_text.hpp"
 #include "core/source_date.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
@@ -43,21 +44,6 @@ std::vector<InputFile> inputs_from(std::string_view text) {
 
 std::string json_or(const std::string& text, const char* empty) {
   return text.empty() ? empty : text;
-}
-
-std::string xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
 }
 
 template <class Unit>
@@ -130,11 +116,12 @@ void write_metadata(const sqlite::Database& database, const RunRecord& run, std:
   std::string document =
       "<metadata xmlns:dc=\"http://purl.org/dc/elements/1.1/\" xmlns:dcterms=\"http://purl.org/dc/terms/\">\n"
       "  <dc:title>Semantic map of landmarks</dc:title>\n";
-  document += fmt::format("  <dc:creator>Waymark {}</dc:creator>\n", xml(run.version));
+  document += fmt::format("  <dc:creator>Waymark {}</dc:creator>\n", escape_markup(run.version));
   document += fmt::format("  <dcterms:created>{}</dcterms:created>\n", changed);
-  document += fmt::format("  <dcterms:provenance>{}</dcterms:provenance>\n", xml(run.command_line));
+  document += fmt::format("  <dcterms:provenance>{}</dcterms:provenance>\n", escape_markup(run.command_line));
   for (const auto& input : run.inputs)
-    document += fmt::format("  <dc:source>{} sha256:{}</dc:source>\n", xml(input.path), input.sha256);
+    document +=
+        fmt::format("  <dc:source>{} sha256:{}</dc:source>\n", escape_markup(input.path), input.sha256);
   document += "</metadata>\n";
   sqlite::Statement insert = database.prepare(
       "INSERT INTO gpkg_metadata VALUES (1, 'dataset', 'http://purl.org/dc/terms/', 'text/xml', ?)");

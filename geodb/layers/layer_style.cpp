@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "core/escape_markup.hpp"
 #include "geodb/layers/landmark_layout.hpp"
 
 namespace waymark::geodb {
@@ -113,24 +114,6 @@ std::string qml_labels(const LandmarkType& type) {
                      label_expression(type.label_feature), properties(priority));
 }
 
-/// Escapes text for an XML attribute or element.
-std::string escape_xml(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string title_of_type(std::string name) {
   std::ranges::replace(name, '_', ' ');
   if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
@@ -172,10 +155,10 @@ std::string qml_form(const LandmarkType& type) {
   for (const LandmarkColumn& column : layout.columns())
     if (column.name != "geom")
       aliases += fmt::format("    <alias index=\"{}\" field=\"{}\" name=\"{}\"/>\n", index++, column.name,
-                             escape_xml(column.title));
+                             escape_markup(column.title));
   return fmt::format(
       "  <aliases>\n{}  </aliases>\n  <previewExpression>{}</previewExpression>\n  <mapTip>{}</mapTip>\n",
-      aliases, escape_xml(display_expression(type)), escape_xml(map_tip(type)));
+      aliases, escape_markup(display_expression(type)), escape_markup(map_tip(type)));
 }
 
 }  // namespace

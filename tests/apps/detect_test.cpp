@@ -183,8 +183,8 @@ TEST_F(Detect, PiecesFindWhatTheWholeFinds) {
   EXPECT_GE(std::ranges::count(whole, '\n'), 20);
   EXPECT_NEAR(static_cast<double>(std::ranges::count(pieces, '\n')),
               static_cast<double>(std::ranges::count(whole, '\n')), 1);
-  const std::string told = detect(large, {"-o", csv_, "--tile-pixels", "256", "--progress", "json"}).err;
-  const std::string last = told.substr(told.rfind(R"({"stage":"search_image")"));
+  const std::string reported = detect(large, {"-o", csv_, "--tile-pixels", "256", "--progress", "json"}).err;
+  const std::string last = reported.substr(reported.rfind(R"({"stage":"search_image")"));
   const json end = json::parse(last.substr(0, last.find('\n')));
   EXPECT_GT(end["total"], 2);
   EXPECT_EQ(end["done"], end["total"]);

@@ -60,10 +60,10 @@ std::string places() {
 
 /// Finds may be 10 pixels off.
 json score_of(const std::string& found, const std::string& truth) {
-  const Outcome told = waymark({"evaluate", "landmarks", found, "--truth", truth, "--tolerance", "0",
-                                "--min-tolerance", "10", "--format", "json"});
-  if (told.code != 0) throw std::runtime_error(told.err);
-  return json::parse(told.out)["landmarks"];
+  const Outcome reported = waymark({"evaluate", "landmarks", found, "--truth", truth, "--tolerance", "0",
+                                    "--min-tolerance", "10", "--format", "json"});
+  if (reported.code != 0) throw std::runtime_error(reported.err);
+  return json::parse(reported.out)["landmarks"];
 }
 
 class ImageryTrees : public testing::Test {
@@ -181,7 +181,7 @@ TEST_F(ImageryTrees, WrongUseOfLearningIsExplained) {
 }
 
 // What the shipped networks learnt, so no figure of quality (docs/evaluation/2026-11-21-trees-in-real-data.md
-// has those of images left out): it tells whether the program still finds what it found.
+// has those of images left out): it shows whether the program still finds what it found.
 TEST(RealImageryTrees, EurekaIsAsItWas) {
   const std::filesystem::path eureka =
       std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/forest/eureka";
@@ -194,10 +194,10 @@ TEST(RealImageryTrees, EurekaIsAsItWas) {
     if (marked.find('\n') == std::string::npos || marked.find_first_of("0123456789") == std::string::npos)
       continue;
     ASSERT_EQ(waymark({"detect", "trees", name + ".tif", "-o", folder / "trees.csv", "-q"}).code, 0);
-    const json told = score_of(folder / "trees.csv", name + ".csv");
-    matched += told["matched"].get<double>();
-    found += told["found"].get<double>();
-    truth += told["truth"].get<double>();
+    const json reported = score_of(folder / "trees.csv", name + ".csv");
+    matched += reported["matched"].get<double>();
+    found += reported["found"].get<double>();
+    truth += reported["truth"].get<double>();
   }
   ASSERT_GT(truth, 1500);
   EXPECT_GT(2 * matched / (found + truth), 0.68);

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-struct Told {
+struct Outcome {
   int code = 0;
   std::string text;
 };
@@ -57,15 +57,15 @@ class InventoryCommand : public ::testing::Test {
     std::ifstream file(folder / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  Told waymark(const std::string& words) const {
-    Told told;
+  Outcome waymark(const std::string& words) const {
+    Outcome reported;
     const std::string line = "cd '" + folder.string() + "' && " + WAYMARK_PROGRAM + " " + words + " 2>&1";
     std::FILE* pipe = ::popen(line.c_str(), "r");
     std::array<char, 4096> part{};
     while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
-      told.text.append(part.data(), n);
-    told.code = WEXITSTATUS(::pclose(pipe));
-    return told;
+      reported.text.append(part.data(), n);
+    reported.code = WEXITSTATUS(::pclose(pipe));
+    return reported;
   }
   /// A cell of a CSV by row and column name.
   std::string cell(const std::string& file, std::size_t row, const std::string& column) const {
@@ -86,8 +86,8 @@ class InventoryCommand : public ::testing::Test {
 };
 
 TEST_F(InventoryCommand, WritesALinePerStand) {
-  const Told told = waymark("inventory trees.gpkg --stands stands.geojson -o out.csv");
-  ASSERT_EQ(told.code, 0) << told.text;
+  const Outcome reported = waymark("inventory trees.gpkg --stands stands.geojson -o out.csv");
+  ASSERT_EQ(reported.code, 0) << reported.text;
   EXPECT_EQ(cell("out.csv", 0, "stand"), "west");
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "area_ha")), 1, 1e-9);
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "stems_per_ha")), 10, 1e-9);
@@ -105,8 +105,8 @@ TEST_F(InventoryCommand, WritesALinePerStand) {
 
 TEST_F(InventoryCommand, AddsLayersToACopyOrToTheMapItself) {
   for (const char* out : {"copy.gpkg", "trees.gpkg"}) {
-    const Told told = waymark(std::string("inventory trees.gpkg --stands stands.geojson -o ") + out);
-    ASSERT_EQ(told.code, 0) << told.text;
+    const Outcome reported = waymark(std::string("inventory trees.gpkg --stands stands.geojson -o ") + out);
+    ASSERT_EQ(reported.code, 0) << reported.text;
     EXPECT_THAT(geodb::validate_map(folder / out), ::testing::IsEmpty());
     EXPECT_EQ(geodb::read_shape_layer(folder / out, "stand").rows.size(), 2u);
     EXPECT_EQ(geodb::read_shape_layer(folder / out, "stand_tree").rows.size(), 11u);
@@ -120,7 +120,7 @@ TEST_F(InventoryCommand, CountsTheWholeMapAndCells) {
         "uid,x,y,height\na,440000,5400000,20\nb,440100,5400000,20\nc,440100,5400100,20\nd,440000,5400100,"
         "20\ne,440050,5400050,20\nf,440060,5400020,30\n");
   ASSERT_EQ(waymark("import more.csv -o more.gpkg --type tree --map-crs EPSG:32632").code, 0);
-  const Told all = waymark("inventory more.gpkg -o all.csv --report all.html");
+  const Outcome all = waymark("inventory more.gpkg -o all.csv --report all.html");
   ASSERT_EQ(all.code, 0) << all.text;
   EXPECT_THAT(all.text, HasSubstr("does not say which area was surveyed"));
   EXPECT_EQ(cell("all.csv", 0, "trees"), "6");
@@ -142,8 +142,8 @@ TEST_F(InventoryCommand, StandsInAnotherCrsAreTransformed) {
                          (folder / "stands.geojson").string() + "'")
                             .c_str()),
             0);
-  const Told told = waymark("inventory trees.gpkg --stands degrees.gpkg -o out.csv");
-  ASSERT_EQ(told.code, 0) << told.text;
+  const Outcome reported = waymark("inventory trees.gpkg --stands degrees.gpkg -o out.csv");
+  ASSERT_EQ(reported.code, 0) << reported.text;
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "area_ha")), 1, 1e-4);
   EXPECT_EQ(cell("out.csv", 0, "trees"), "10");
 }
@@ -161,13 +161,13 @@ TEST_F(InventoryCommand, TellsWhatIsWrongWithStandsAndGoesOn) {
  {"type":"Feature","properties":{"name":"line"},"geometry":{"type":"LineString","coordinates":
   [[440000,5400000],[440100,5400000]]}},
  {"type":"Feature","properties":{"name":"none"},"geometry":null}]})");
-  const Told told = waymark("inventory trees.gpkg --stands odd.geojson -o out.csv");
-  EXPECT_EQ(told.code, 3) << told.text;
-  EXPECT_THAT(told.text, HasSubstr("stands a and b overlap by 100.0"));
-  EXPECT_THAT(told.text, HasSubstr("stand b has no trees"));
-  EXPECT_THAT(told.text, HasSubstr("stand bow crosses itself: repaired"));
-  EXPECT_THAT(told.text, HasSubstr("stand line is a Line String, not a polygon"));
-  EXPECT_THAT(told.text, HasSubstr("stand none has no geometry"));
+  const Outcome reported = waymark("inventory trees.gpkg --stands odd.geojson -o out.csv");
+  EXPECT_EQ(reported.code, 3) << reported.text;
+  EXPECT_THAT(reported.text, HasSubstr("stands a and b overlap by 100.0"));
+  EXPECT_THAT(reported.text, HasSubstr("stand b has no trees"));
+  EXPECT_THAT(reported.text, HasSubstr("stand bow crosses itself: repaired"));
+  EXPECT_THAT(reported.text, HasSubstr("stand line is a Line String, not a polygon"));
+  EXPECT_THAT(reported.text, HasSubstr("stand none has no geometry"));
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "area_ha")), 0.94, 1e-9);
   EXPECT_EQ(cell("out.csv", 0, "trees"), "9") << "one stands in the hole";
   EXPECT_EQ(cell("out.csv", 1, "stems_per_ha"), "0");
@@ -178,9 +178,9 @@ TEST_F(InventoryCommand, TellsWhatIsWrongWithStandsAndGoesOn) {
 
 TEST_F(InventoryCommand, RefusesWhatCannotBeCounted) {
   const auto refused = [&](const std::string& words, int code, const char* says) {
-    const Told told = waymark("inventory " + words);
-    EXPECT_EQ(told.code, code) << told.text;
-    EXPECT_THAT(told.text, HasSubstr(says));
+    const Outcome reported = waymark("inventory " + words);
+    EXPECT_EQ(reported.code, code) << reported.text;
+    EXPECT_THAT(reported.text, HasSubstr(says));
   };
   refused("trees.gpkg --stands stands.geojson -o out.txt", 2, "the output is a .csv or a .gpkg");
   refused("trees.gpkg --stands stands.geojson --grid 10 -o out.csv", 2, "exclude each other");
@@ -207,7 +207,7 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
     "ground": {"cell": 2, "east": 440000, "north": 5400000, "up": 300},
     "forest": {"width": 80, "height": 60, "stands": 2, "density": 250, "conifers": 1, "pulses": 6}})");
   for (const char* out : {"one", "two"}) {
-    const Told made = waymark(std::string("simulate forest.json -o ") + out);
+    const Outcome made = waymark(std::string("simulate forest.json -o ") + out);
     ASSERT_EQ(made.code, 0) << made.text;
   }
   for (const char* file : {"chm.tif", "dsm.tif", "dtm.tif", "points.las", "truth/landmarks.csv",
@@ -222,11 +222,11 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
   std::memcpy(&start, las.data() + 96, 4);
   std::memcpy(&count, las.data() + 247, 8);
   EXPECT_EQ(las.size(), start + 30 * count) << "as many points as the header says";
-  const Told found = waymark("run one/job.json -o found.gpkg");
+  const Outcome found = waymark("run one/job.json -o found.gpkg");
   ASSERT_EQ(found.code, 0) << found.text;
   EXPECT_THAT(geodb::validate_map(folder / "found.gpkg"), ::testing::IsEmpty());
   EXPECT_THAT(geodb::shape_layers(folder / "found.gpkg"), ::testing::Contains("crown"));
-  const Told counted = waymark("inventory found.gpkg --stands one/stands.geojson -o stands.csv");
+  const Outcome counted = waymark("inventory found.gpkg --stands one/stands.geojson -o stands.csv");
   ASSERT_EQ(counted.code, 0) << counted.text;
   EXPECT_EQ(cell("stands.csv", 1, "stand"), "2");
   EXPECT_GT(std::stod(cell("stands.csv", 0, "stems_per_ha_detected")), 100);
@@ -258,8 +258,8 @@ TEST_F(InventoryCommand, AMadeForestIsTheSameEveryTimeAndIsFound) {
     EXPECT_GT(expected.size(), 1000u);
     for (const char* held : {"1", "30"}) {
       const std::string some = std::string(" --trees-at-once ") + held + " " + ground;
-      const Told told = waymark("inventory found.gpkg -o some.gpkg" + some);
-      ASSERT_EQ(told.code, 0) << told.text;
+      const Outcome reported = waymark("inventory found.gpkg -o some.gpkg" + some);
+      ASSERT_EQ(reported.code, 0) << reported.text;
       EXPECT_EQ(layers("some.gpkg"), expected) << some;
       EXPECT_THAT(geodb::validate_map(folder / "some.gpkg"), ::testing::IsEmpty());
       ASSERT_EQ(waymark("inventory found.gpkg -o some.csv" + some).code, 0);

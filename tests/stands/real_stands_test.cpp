@@ -97,14 +97,14 @@ TEST(RealStands, ThePlotsOfQuatreMontagnesFitTheDefinitions) {
 TEST(RealStands, TheBuiltInFormFactorIsWithinTwoErrorsForPines) {
   const auto path = forest_data() / "lmfor/alsTree.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
-  double measured = 0, told = 0;
+  double measured = 0, reported = 0;
   for (const auto& row : table(path)) {
     measured += std::stod(row.at("V"));
-    told += pipeline::stem_volume(pipeline::built_in_volume()[0], std::stod(row.at("DBH")) / 100,
-                                  std::stod(row.at("H")));
+    reported += pipeline::stem_volume(pipeline::built_in_volume()[0], std::stod(row.at("DBH")) / 100,
+                                      std::stod(row.at("H")));
   }
   EXPECT_NEAR(
-      told / measured, 1,
+      reported / measured, 1,
       2.2 * pipeline::built_in_volume()[0].form_factor_sd / pipeline::built_in_volume()[0].form_factor);
 }
 

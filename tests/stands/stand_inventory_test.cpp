@@ -225,14 +225,14 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
   }
   pipeline::StandPolygon stand = square(0, 0, 100);
   stand.rings.push_back(square(30, 30, 20).rings[0]);
-  const pipeline::StandAttributes told = pipeline::inventory(trees, stand),
+  const pipeline::StandAttributes reported = pipeline::inventory(trees, stand),
                                   twin = by_definition(trees, stand);
-  EXPECT_EQ(told.trees, twin.trees);
-  EXPECT_NEAR(told.stems.value, twin.stems.value, 1e-9);
-  EXPECT_NEAR(told.basal_area.value, twin.basal_area.value, 1e-9);
-  EXPECT_NEAR(told.volume.value, twin.volume.value, 1e-9);
-  EXPECT_NEAR(told.lorey_height.value, twin.lorey_height.value, 1e-9);
-  EXPECT_NEAR(told.dominant_height.value, twin.dominant_height.value, 1e-9);
+  EXPECT_EQ(reported.trees, twin.trees);
+  EXPECT_NEAR(reported.stems.value, twin.stems.value, 1e-9);
+  EXPECT_NEAR(reported.basal_area.value, twin.basal_area.value, 1e-9);
+  EXPECT_NEAR(reported.volume.value, twin.volume.value, 1e-9);
+  EXPECT_NEAR(reported.lorey_height.value, twin.lorey_height.value, 1e-9);
+  EXPECT_NEAR(reported.dominant_height.value, twin.dominant_height.value, 1e-9);
 
   // Monte Carlo: the spread over trees drawn within their errors equals the standard errors.
   const int kDraws = 600;
@@ -252,7 +252,8 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
     const double values[] = {f.stems.value, f.basal_area.value, f.volume.value, f.lorey_height.value};
     for (int i = 0; i < 4; ++i) sum[i] += values[i] / kDraws, squares[i] += values[i] * values[i] / kDraws;
   }
-  const pipeline::Estimate estimates[] = {told.stems, told.basal_area, told.volume, told.lorey_height};
+  const pipeline::Estimate estimates[] = {reported.stems, reported.basal_area, reported.volume,
+                                          reported.lorey_height};
   for (int i = 0; i < 4; ++i) {
     const double spread = std::sqrt(squares[i] - sum[i] * sum[i]);
     EXPECT_NEAR(estimates[i].se / spread, 1, 0.12) << i;  // 600 draws estimate a spread to 3 %

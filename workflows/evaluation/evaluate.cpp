@@ -126,7 +126,7 @@ ScoredTables read_truth(const LandmarkEvaluation& request) {
               request.track, "are they of the same drive, and both in seconds?");
 }
 
-/// Warns about types of which nothing was matched, and says why that may be.
+/// Warns about types without a match, and says why that may be.
 void warn_unmatched(const std::string& type, const std::vector<testbed::EvaluatedObject>& found,
                     const std::vector<testbed::EvaluatedObject>& truth, const testbed::Score& result,
                     const Callbacks& callbacks) {

@@ -46,12 +46,12 @@ std::string message(const RockSearch& search) {
 }
 
 TEST(FindRocks, FindsThemWithAndWithoutKnownSun) {
-  RockScore told, guessed;
+  RockScore known, guessed;
   const double sun = to_radians(RockScene{}.sun_angle).value;
-  told.add(field(), find_rocks(field().pixels, search_of({})), sun);
+  known.add(field(), find_rocks(field().pixels, search_of({})), sun);
   guessed.add(field(), find_rocks(field().pixels, {}), sun);
-  EXPECT_GE(told.recall(1), 0.9);
-  EXPECT_GE(told.precision(), 0.9);
+  EXPECT_GE(known.recall(1), 0.9);
+  EXPECT_GE(known.precision(), 0.9);
   EXPECT_GE(guessed.recall(1), 0.85);
   EXPECT_GE(guessed.precision(), 0.85);
 }

@@ -66,20 +66,20 @@ TEST(ReliefDisplacement, ACameraWithTheLightSeesLessShadow) {
 // Held-out views through tilted cameras: with the relief displacement the detector locates and measures rocks
 // better than without.
 TEST(ReliefDisplacement, ToldItPlacesRocksBetter) {
-  RockScore told, untold;
+  RockScore known, unknown;
   for (int k = 1000; k < 1004; ++k) {
     const SyntheticView view = leaning_view(k);
     RockSearch search{.sun_angle = Radians{view.sun_angle}, .sun_elevation = view.elevation};
-    untold.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
+    unknown.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
     search.displacement = view.displacement;
-    told.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
+    known.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
   }
-  std::printf("leaning, told\n%sleaning, untold\n%s", told.text().c_str(), untold.text().c_str());
-  EXPECT_GE(told.recall(1), 0.85);
-  EXPECT_LE(std::abs(told.width(1).bias), 0.1);
-  EXPECT_GT(told.ellipse_cover(), untold.ellipse_cover());
-  EXPECT_LT(told.median_offset(2), untold.median_offset(2));
-  EXPECT_LT(told.reach(2).sd, untold.reach(2).sd);
+  std::printf("leaning, known\n%sleaning, unknown\n%s", known.text().c_str(), unknown.text().c_str());
+  EXPECT_GE(known.recall(1), 0.85);
+  EXPECT_LE(std::abs(known.width(1).bias), 0.1);
+  EXPECT_GT(known.ellipse_cover(), unknown.ellipse_cover());
+  EXPECT_LT(known.median_offset(2), unknown.median_offset(2));
+  EXPECT_LT(known.reach(2).sd, unknown.reach(2).sd);
 }
 
 }  // namespace
