@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/association/alignment.hpp"
+#include "pipeline/fusion/association/checked_alignment.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
@@ -16,6 +16,7 @@ struct AlignImages {
   struct Options {
     bool enabled = true;
     std::int64_t max_images = AlignmentRules{}.max_images;
+    std::string wrong_geometry = "refuse";
     void describe(OptionVisitor& option) {
       option("enabled", enabled, {.help = "Correct poses; false leaves them as given"});
       option("max_images", max_images,
@@ -23,6 +24,9 @@ struct AlignImages {
               .min = 2,
               .max = 2000,
               .formerly = "most_images"});
+      option("wrong_geometry", wrong_geometry,
+             {.help = "What happens if objects of one image are hardly found again in others",
+              .choices = {"refuse", "warn"}});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -34,10 +38,45 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Corrects the poses of images by the landmarks they share",
-            .version = 4,
+            .version = 5,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};
+  }
+
+  // Reports what the comparison of the images says about their geometry.
+  static void report(const CheckedAlignment& checked, const Options& options, StageContext& unit) {
+    using Verdict = CheckedAlignment::Verdict;
+    const auto counted = [](const Repetition& seen) {
+      return fmt::format(
+          "{:.0f} % of {} views of an object are found again where another image shows the place "
+          "({:.0f} % would be by chance)",
+          100 * seen.raw, seen.expected, 100 * seen.chance);
+    };
+    constexpr std::string_view kCauses =
+        "check poses, focal length, rotation convention, and the heights and the position of the DEM";
+    switch (checked.verdict) {
+      case Verdict::unknown:
+      case Verdict::sound:
+        return;
+      case Verdict::widened:
+        unit.warn(
+            fmt::format("the poses are less certain than stated: {}; with {:.2g} m and {:.2g} deg added to "
+                        "their standard deviations {:.0f} % are",
+                        counted(checked.stated), checked.added_position_sd,
+                        to_degrees(Radians{checked.added_rotation_sd}).value, 100 * checked.aligned.raw));
+        return;
+      case Verdict::doubtful:
+        unit.warn(fmt::format("the images hardly fit each other: {}; {}", counted(checked.aligned), kCauses));
+        return;
+      case Verdict::wrong:
+        break;
+    }
+    const std::string problem = fmt::format("the images do not fit each other: {}", counted(checked.aligned));
+    if (options.wrong_geometry == "refuse")
+      throw Error(ErrorCode::input, problem, "images",
+                  fmt::format("{}; wrong_geometry = warn makes a map of it all the same", kCauses));
+    unit.warn(fmt::format("{}; {}", problem, kCauses));
   }
 
   static void run(const Options& options, StageContext& unit) {
@@ -47,10 +86,12 @@ struct AlignImages {
     const DemHandle& ground = unit.read(dem);
     Alignment aligned{unit.read(cleaned), std::move(images), {}, 0, false};
     if (options.enabled) {
-      AlignmentRules rules;
-      rules.max_images = static_cast<int>(options.max_images);
-      aligned = align_images(std::move(aligned.observations), std::move(aligned.images), load_terrain(ground),
-                             types, ground->geometry().where.crs, rules);
+      CheckedAlignmentRules rules;
+      rules.alignment.max_images = static_cast<int>(options.max_images);
+      CheckedAlignment checked = align_and_check(aligned.observations, aligned.images, load_terrain(ground),
+                                                 types, ground->geometry().where.crs, rules);
+      report(checked, options, unit);
+      aligned = std::move(checked.alignment);
     }
     if (aligned.too_many)
       unit.warn(fmt::format("{} images are not aligned: max_images allows {}", aligned.images.size(),

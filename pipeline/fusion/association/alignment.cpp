@@ -65,6 +65,11 @@ class BundleAdjustment {
       // Regularises exact poses, which must not move: 1e-7 rad and 0.1 mm.
       prior.diagonal() += Eigen::Vector<double, 6>::Constant(1e-14);
       prior.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
+      stated_.push_back(prior);
+      if (image.view) {
+        prior.diagonal().head<3>().array() += rules.added_rotation_sd * rules.added_rotation_sd;
+        prior.diagonal().tail<3>().array() += rules.added_position_sd * rules.added_position_sd;
+      }
       prior_.block<6, 6>(6 * i, 6 * i) = prior;
     }
     std::vector<std::optional<BodyIndex>> sizes;
@@ -137,7 +142,7 @@ class BundleAdjustment {
     const Eigen::Matrix2d given = o.covariance.topLeftCorner<2, 2>();
     // The same pose contribution as in position_covariance; the horizontal one leaves too much where poses
     // are uncertain.
-    const Eigen::Matrix2d pose = propagate(on_slope, prior_.block<6, 6>(6 * image, 6 * image));
+    const Eigen::Matrix2d pose = propagate(on_slope, stated_[static_cast<std::size_t>(image)]);
     tie.own = given.allFinite() ? clamp_eigenvalues(given - pose, least) : Eigen::Matrix2d::Identity();
     tie.object.at = o.position.xyz.head<2>();
     tie.object.type = o.type;
@@ -225,6 +230,7 @@ class BundleAdjustment {
   double metres_per_unit_;
   const AlignmentRules& rules_;
   std::vector<TiePoint> tie_points_;
+  std::vector<Matrix6> stated_;  // covariances that those of the observations contain
   std::vector<double> sharing_;  // number of images that share the DEM constraint
   Eigen::VectorXd correction_;
   Eigen::MatrixXd prior_, posterior_, normal_;
@@ -261,8 +267,9 @@ Alignment align_images(std::vector<Observation> observations, std::vector<ImageV
                        const AlignmentRules& rules) {
   Alignment aligned{std::move(observations), std::move(images), {}, 0, false};
   aligned.shifts.assign(aligned.images.size(), 0);
-  const bool movable = std::any_of(aligned.images.begin(), aligned.images.end(), [](const ImageView& image) {
-    return image.view && image.view->covariance.trace() > 0;
+  const bool added = rules.added_position_sd > 0 || rules.added_rotation_sd > 0;
+  const bool movable = std::any_of(aligned.images.begin(), aligned.images.end(), [&](const ImageView& image) {
+    return image.view && (added || image.view->covariance.trace() > 0);
   });
   aligned.too_many = static_cast<int>(aligned.images.size()) > rules.max_images;
   if (!movable || aligned.too_many) return aligned;

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/association/checked_alignment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace waymark::pipeline {
+namespace {
+
+constexpr double kFreeGsds = 8;      // standard deviation, in ground sample distances, that leaves poses free
+constexpr double kExactGsds = 0.25;  // corrections below this are the noise of the detections
+
+/// Medians over the images that have a pose: ground sample distance and distance to the ground, metres.
+struct ViewScale {
+  double gsd = 0, distance = 0;
+};
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+ViewScale view_scale(const std::vector<ImageView>& images) {
+  std::vector<double> gsds, distances;
+  for (const ImageView& image : images) {
+    if (!image.view || !(image.gsd > 0)) continue;
+    gsds.push_back(image.gsd);
+    distances.push_back(image.gsd * image.view->camera.fx);
+  }
+  return {median(std::move(gsds)), median(std::move(distances))};
+}
+
+/// Alignment with less certain poses.
+struct Attempt {
+  Alignment alignment;
+  Repetition found;
+  double position_sd = 0;  // added, metres
+};
+
+bool states_no_uncertainty(const std::vector<ImageView>& images) {
+  return std::ranges::all_of(
+      images, [](const ImageView& image) { return !image.view || image.view->covariance.trace() == 0; });
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+}
+
+}  // namespace
+
+CheckedAlignment align_and_check(const std::vector<Observation>& observations,
+                                 const std::vector<ImageView>& images, const Terrain& terrain,
+                                 const TypeRegistry& types, const Crs& crs,
+                                 const CheckedAlignmentRules& rules) {
+  using Verdict = CheckedAlignment::Verdict;
+  CheckedAlignment made;
+  made.alignment = align_images(observations, images, terrain, types, crs, rules.alignment);
+  const auto measure = [&](const Alignment& alignment) {
+    return measure_repetition(alignment.observations, alignment.images, types, crs, rules.repetition);
+  };
+  made.stated = made.aligned = measure(made.alignment);
+  if (made.stated.expected < rules.min_expected || made.alignment.too_many) return made;
+  made.verdict = Verdict::sound;
+
+  const ViewScale scale = view_scale(images);
+  const auto widen = [&](double position_sd) {
+    AlignmentRules wider = rules.alignment;
+    wider.added_position_sd = position_sd;
+    wider.added_rotation_sd = position_sd / scale.distance;
+    return align_images(observations, images, terrain, types, crs, wider);
+  };
+  const auto keep = [&](Attempt attempt) {
+    made.alignment = std::move(attempt.alignment);
+    made.aligned = attempt.found;
+    made.added_position_sd = attempt.position_sd;
+    made.added_rotation_sd = attempt.position_sd / scale.distance;
+    made.verdict = Verdict::widened;
+  };
+  if (!(scale.gsd > 0)) return made;
+  if (states_no_uncertainty(images)) {
+    // Unknown is not zero: the corrections of poses left free show how large their errors are.
+    const double position_sd = root_mean_square(widen(kFreeGsds * scale.gsd).shifts);
+    Alignment alignment = widen(position_sd);
+    const Repetition found = measure(alignment);
+    if (position_sd > kExactGsds * scale.gsd && found.found() > made.stated.found() - rules.step_gain)
+      keep({std::move(alignment), found, position_sd});
+  }
+  if (made.aligned.found() < rules.certain) {
+    std::optional<Attempt> best;
+    for (int k = 0; k < rules.widenings; ++k) {
+      const double position_sd = scale.gsd * std::exp2(k);
+      Attempt attempt{widen(position_sd), {}, position_sd};
+      attempt.found = measure(attempt.alignment);
+      if (attempt.found.expected < rules.min_expected) continue;
+      if (!best || attempt.found.found() > best->found.found() + rules.step_gain) best = std::move(attempt);
+    }
+    if (best && best->found.found() > made.aligned.found() + rules.min_gain) keep(std::move(*best));
+  }
+  const double found = made.aligned.found();
+  if (found < rules.sound) made.verdict = found < rules.wrong ? Verdict::wrong : Verdict::doubtful;
+  return made;
+}
+
+}  // namespace waymark::pipeline

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "pipeline/fusion/association/alignment.hpp"
+#include "pipeline/fusion/association/repetition.hpp"
+namespace waymark::pipeline {
+
+struct CheckedAlignmentRules {
+  AlignmentRules alignment = {};
+  RepetitionRules repetition = {};
+  std::size_t min_expected = 100;  ///< with fewer comparisons there is no verdict
+  double certain = 0.9;            ///< found again: no other uncertainty of the poses is tried
+  double sound = 0.6;              ///< found again at least where the geometry is right
+  double wrong = 0.35;             ///< below, after every attempt: the geometry is not usable
+  int widenings = 6;               ///< attempts, each with twice the standard deviation of the one before
+  double step_gain = 0.02;         ///< of the fraction found again, to prefer a wider attempt
+  double min_gain = 0.1;           ///< of the best attempt over the poses as stated, to be kept
+};
+
+/// Alignment with a verdict on the geometry of the images.
+struct CheckedAlignment {
+  enum class Verdict {
+    unknown,   ///< too few objects in common
+    sound,     ///< objects are found again as the poses state
+    widened,   ///< they are, with poses less certain than stated: `added_position_sd`
+    doubtful,  ///< fewer than `sound`, more than `wrong`
+    wrong,     ///< next to none: poses, lens or heights are wrong
+  };
+  Alignment alignment;
+  Repetition stated;   ///< after alignment within the stated uncertainty
+  Repetition aligned;  ///< of `alignment`
+  Verdict verdict = Verdict::unknown;
+  double added_position_sd = 0;  ///< metres
+  double added_rotation_sd = 0;  ///< radians
+};
+
+/// Aligns images and tests the result by how many objects are found again in other images.
+/// Where too few are, the poses are taken to be less certain than stated: their standard deviations grow from
+/// one ground sample distance upwards, and the attempt with the most objects found again is kept.
+/// Deterministic.
+CheckedAlignment align_and_check(const std::vector<Observation>& observations,
+                                 const std::vector<ImageView>& images, const Terrain& terrain,
+                                 const TypeRegistry& types, const Crs& crs,
+                                 const CheckedAlignmentRules& rules = {});
+
+}  // namespace waymark::pipeline

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wrong geometry shows in how many objects other images show again.
+#include "pipeline/fusion/association/repetition.hpp"
+
+#include <gmock/gmock.h>
+
+#include "pipeline/fusion/association/checked_alignment.hpp"
+#include "tests/pipeline/fusion/made_landing.hpp"
+
+namespace waymark::test {
+using namespace pipeline;
+namespace {
+
+/// `stated_sd` is what the poses claim; their errors are `true_sd`.
+MadeLanding landing_with_poses(std::int64_t seed, double true_sd, double stated_sd) {
+  testbed::Scenario scenario;
+  scenario.seed = seed;
+  scenario.ground.width = scenario.ground.height = 0;
+  scenario.ground.cell = 1;
+  scenario.ground.rocks.k = 0.08;
+  scenario.lens.columns = scenario.lens.rows = 500;
+  scenario.flights.front().images = 8;
+  scenario.pose_errors = {true_sd, Degrees{0.02}};
+  MadeLanding made = made_landing(scenario);
+  if (stated_sd == true_sd) return made;
+  // The covariance of each observation loses what the poses claimed too much.
+  for (ImageView& image : made.images)
+    image.view->covariance.diagonal().tail<3>().setConstant(stated_sd * stated_sd);
+  for (Observation& o : made.observations) {
+    const double excess = true_sd * true_sd - stated_sd * stated_sd;
+    o.covariance(0, 0) = std::max(o.covariance(0, 0) - excess, 0.003);
+    o.covariance(1, 1) = std::max(o.covariance(1, 1) - excess, 0.003);
+    o.covariance(0, 1) = o.covariance(1, 0) = 0;
+  }
+  return made;
+}
+
+Repetition of(const MadeLanding& made) {
+  return measure_repetition(made.observations, made.images, made.types, Crs::local());
+}
+
+TEST(Repetition, IsHighWhereThePosesAreAsStated) {
+  for (const std::int64_t seed : {31, 32}) {
+    const Repetition seen = of(landing_with_poses(seed, 0.1, 0.1));
+    EXPECT_GT(seen.expected, 200U);
+    EXPECT_GT(seen.found(), 0.7);
+    EXPECT_LE(seen.found(), 1);
+  }
+}
+
+TEST(Repetition, IsLowWhereThePosesAreWorseThanStated) {
+  for (const std::int64_t seed : {31, 32}) EXPECT_LT(of(landing_with_poses(seed, 3, 0.05)).found(), 0.35);
+}
+
+TEST(Repetition, MatchesByChanceDoNotCount) {
+  MadeLanding made = landing_with_poses(33, 0.1, 0.1);
+  Random random(1, "scatter");
+  for (Observation& o : made.observations) {  // objects anywhere
+    o.position.xyz.x() += random.uniform(-30, 30);
+    o.position.xyz.y() += random.uniform(-30, 30);
+  }
+  EXPECT_NEAR(of(made).found(), 0, 0.1);
+}
+
+TEST(Repetition, OneImageExpectsNothing) {
+  MadeLanding made = landing_with_poses(31, 0.1, 0.1);
+  made.images.resize(1);
+  EXPECT_EQ(of(made).expected, 0U);
+  EXPECT_EQ(of(made).found(), 0);
+}
+
+TEST(Repetition, DoesNotDependOnTheOrder) {
+  MadeLanding made = landing_with_poses(31, 0.3, 0.1);
+  const Repetition forward = of(made);
+  std::ranges::reverse(made.observations);
+  std::ranges::reverse(made.images);
+  const Repetition backward = of(made);
+  EXPECT_EQ(forward.expected, backward.expected);
+  EXPECT_NEAR(forward.raw, backward.raw, 1e-12);
+  EXPECT_NEAR(forward.chance, backward.chance, 1e-12);
+}
+
+double doubled_fraction(MadeLanding made, const std::vector<Observation>& aligned) {
+  made.observations = aligned;
+  const MergeScore score = merge_score(made, merge_observations(made.observations, made.types, Crs::local()));
+  return static_cast<double>(score.doubled) / score.landmarks;
+}
+
+TEST(CheckedAlignment, LeavesSoundPosesAsTheyAre) {
+  const MadeLanding made = landing_with_poses(34, 0.15, 0.15);
+  const CheckedAlignment checked =
+      align_and_check(made.observations, made.images, made.dem, made.types, Crs::local());
+  ASSERT_EQ(checked.verdict, CheckedAlignment::Verdict::sound)
+      << checked.stated.found() << " of the objects are found again as stated, " << checked.aligned.found()
+      << " with " << checked.added_position_sd << " m added";
+  const Alignment plain = align_images(made.observations, made.images, made.dem, made.types, Crs::local());
+  for (std::size_t i = 0; i < plain.observations.size(); ++i)
+    EXPECT_EQ(checked.alignment.observations[i].position.xyz, plain.observations[i].position.xyz);
+}
+
+TEST(CheckedAlignment, WidensPosesThatAreWorseThanStated) {
+  for (const std::int64_t seed : {35, 36}) {
+    const MadeLanding made = landing_with_poses(seed, 3, 0.05);
+    const CheckedAlignment checked =
+        align_and_check(made.observations, made.images, made.dem, made.types, Crs::local());
+    EXPECT_EQ(checked.verdict, CheckedAlignment::Verdict::widened);
+    EXPECT_GT(checked.aligned.found(), 0.7);
+    EXPECT_GT(checked.aligned.found(), checked.stated.found() + 0.2);
+    const Alignment plain = align_images(made.observations, made.images, made.dem, made.types, Crs::local());
+    EXPECT_LT(doubled_fraction(made, checked.alignment.observations),
+              0.2 * doubled_fraction(made, plain.observations));
+  }
+}
+
+TEST(CheckedAlignment, EstimatesAnUncertaintyThatIsNotStated) {
+  MadeLanding made = landing_with_poses(37, 0.4, 0.05);
+  for (ImageView& image : made.images) image.view->covariance.setZero();
+  const CheckedAlignment checked =
+      align_and_check(made.observations, made.images, made.dem, made.types, Crs::local());
+  EXPECT_EQ(checked.verdict, CheckedAlignment::Verdict::widened);
+  EXPECT_GT(checked.added_position_sd, 0.1);
+  EXPECT_LT(checked.added_position_sd, 1.5);
+}
+
+TEST(CheckedAlignment, NoPoseMakesScatteredObjectsFit) {
+  MadeLanding made = landing_with_poses(38, 0.1, 0.1);
+  Random random(1, "scatter");
+  for (Observation& o : made.observations) {
+    o.position.xyz.x() += random.uniform(-30, 30);
+    o.position.xyz.y() += random.uniform(-30, 30);
+  }
+  EXPECT_EQ(align_and_check(made.observations, made.images, made.dem, made.types, Crs::local()).verdict,
+            CheckedAlignment::Verdict::wrong);
+}
+
+}  // namespace
+}  // namespace waymark::test
