@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/workflows/mutations.hpp"
+#include "tests/support/mutations.hpp"
 
 #include <algorithm>
 #include <array>
