@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "geodb/checks/finding_list.hpp"
+#include "geodb/checks/map_checks.hpp"
 
 #include <fmt/format.h>
 

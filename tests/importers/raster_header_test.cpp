@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/rasters/height_unit.hpp"
+#include "importers/rasters/raster_header.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/filters/repeated_sightings.hpp"
+#include "localization/robot_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "localization/filters/kalman.hpp"
 #include "localization/replay_log.hpp"
-#include "localization/robot_log.hpp"
 #include "localization/track_score.hpp"
 #include "made_world.hpp"
 

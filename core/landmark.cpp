@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 
 #include <algorithm>
 #include <cassert>

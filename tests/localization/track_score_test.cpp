@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "localization/consistency.hpp"
+#include "localization/track_score.hpp"
 
 #include <algorithm>
 #include <map>
@@ -9,12 +9,29 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/replay_log.hpp"
 #include "localization/robot_log.hpp"
-#include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
 namespace waymark::test {
 using namespace localization;
 namespace {
+
+TEST(TrackScore, AlignmentTakesTurnShiftAndScaleAway) {
+  Track track;
+  std::vector<StampedPose> truth;
+  const PlaneAlignment by{{5, -3, 0.7}, 2};
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector2d p(i * 0.1, std::sin(i * 0.2));
+    const Eigen::Vector2d q = by(p);
+    TrackRow row;
+    row.t = i;
+    row.at = {{p.x(), p.y(), 0}, Eigen::Matrix3d::Identity()};
+    track.rows.push_back(row);
+    truth.push_back({static_cast<double>(i), {q.x(), q.y(), 0.7}});
+  }
+  EXPECT_NEAR(score(track, truth, TrackAlignment::sim2, true).ate_rmse, 0, 1e-9);
+  EXPECT_GT(score(track, truth, TrackAlignment::se2, true).ate_rmse, 0.5);
+  EXPECT_NEAR(*score(track, truth, TrackAlignment::se2, true).heading_rmse_deg, 0, 1e-6);
+}
 
 /// Squared errors of a consistent filter, four per second, with Gauss-Markov errors of this correlation
 /// time.
