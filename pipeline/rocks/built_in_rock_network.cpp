@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of docs/decisions/0023, in the format of `waymark train rocks`, which was not shown to reproduce
-// them.
+// Made by `waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp`; do not edit.
 // clang-format off
 #include "pipeline/rocks/rock_network.hpp"
 
