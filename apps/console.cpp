@@ -1,13 +1,142 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/console.hpp"
 
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <functional>
 #include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "apps/log.hpp"
-#include "apps/progress.hpp"
+#include "apps/session.hpp"
+#include "pipeline/engine/runner.hpp"
 
 namespace waymark::apps {
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double fraction(const pipeline::Progress& progress) {
+  return progress.total > 0 ? std::clamp(progress.done / static_cast<double>(progress.total), 0.0, 1.0) : 1.0;
+}
+
+bool finished(const pipeline::Progress& progress) {
+  return !(progress.done < static_cast<double>(progress.total));
+}
+
+/// Returns seconds until the stage is done at its present rate; negative if not known yet.
+double seconds_left(const pipeline::Progress& progress) {
+  if (!(progress.rate > 0)) return -1;
+  return std::max(0.0, static_cast<double>(progress.total) - progress.done) / progress.rate;
+}
+
+/// Returns "0:07" or "1:02:09"; "-:--" for a negative time.
+std::string clock_time(double seconds) {
+  if (!(seconds >= 0) || seconds > 1e8) return "-:--";
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+std::string speed(const pipeline::Progress& progress) {
+  return fmt::format("{:.3g} units/s", progress.rate);
+}
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+/// "join_mountain_tops     [#######.......]  50 %  3.1 units/s  0:04 left", redrawn in place.
+void draw_bar(const pipeline::Progress& progress) {
+  constexpr std::size_t kBar = 24;
+  const double part = fraction(progress);
+  const auto full = static_cast<std::size_t>(part * kBar);
+  std::string line = fmt::format("{:<22} [{}{}] {:3.0f} %", progress.stage, std::string(full, '#'),
+                                 std::string(kBar - full, '.'), std::floor(100 * part));
+  if (progress.rate > 0 && progress.total > 1) line += "  " + speed(progress);
+  if (!finished(progress)) line += "  " + clock_time(seconds_left(progress)) + " left";
+  line.resize(std::min(line.size(), terminal_width() - 1));
+  fmt::print(stderr, "\r{}\x1b[K{}", line, finished(progress) ? "\n" : "");
+}
+
+/// GDAL's "0...10...20...30...40...50...60...70...80...90...100 - done.", a line per stage.
+class Dots {
+ public:
+  void operator()(const pipeline::Progress& progress) {
+    if (progress.stage != stage_) {
+      stage_ = progress.stage;
+      drawn_ = -1;
+      fmt::print(stderr, "{}: ", stage_);
+    }
+    const int reached = static_cast<int>(std::floor(fraction(progress) * kSteps));
+    while (drawn_ < reached) {
+      ++drawn_;
+      drawn_ % 4 == 0 ? fmt::print(stderr, "{}", drawn_ / 4 * 10) : fmt::print(stderr, ".");
+    }
+    if (finished(progress)) fmt::print(stderr, " - done.\n");
+    std::fflush(stderr);
+  }
+
+ private:
+  static constexpr int kSteps = 40;
+  std::string stage_;
+  int drawn_ = -1;
+};
+
+void print_json(const pipeline::Progress& progress) {
+  nlohmann::ordered_json line{{"stage", progress.stage},
+                              {"done", progress.done},
+                              {"total", progress.total},
+                              {"units_per_second", progress.rate}};
+  if (const double left = seconds_left(progress); left >= 0) line["seconds_left"] = left;
+  fmt::print(stderr, "{}\n", line.dump());
+}
+
+/// Prints a line every half minute, for logs.
+class SparseLines {
+ public:
+  void operator()(const pipeline::Progress& progress) {
+    const auto now = Clock::now();
+    if (now - last_ < std::chrono::seconds(30)) return;
+    last_ = now;
+    fmt::print(stderr, "{}: {:.0f} %, {}, {} left\n", progress.stage, 100 * fraction(progress),
+               speed(progress), clock_time(seconds_left(progress)));
+  }
+
+ private:
+  Clock::time_point last_ = Clock::now();
+};
+
+/// Drops repeats: the end of a stage may be reported twice.
+std::function<void(const pipeline::Progress&)> without_repeats(
+    std::function<void(const pipeline::Progress&)> draw) {
+  return [draw = std::move(draw), last = pipeline::Progress()](const pipeline::Progress& progress) mutable {
+    if (progress.stage == last.stage && !(progress.done > last.done)) return;
+    last = progress;
+    draw(progress);
+  };
+}
+
+/// Returns a function that draws progress on standard error as `--progress` says: a bar, GDAL's dots, JSON
+/// lines or nothing. `auto` is a bar on a terminal, a line every half minute elsewhere, and nothing with
+/// --quiet. Empty if nothing is drawn.
+std::function<void(const pipeline::Progress&)> progress_renderer(const Session& session) {
+  const bool automatic = session.progress == "auto";
+  if (session.progress == "none" || (automatic && session.quiet)) return {};
+  if (session.progress == "bar" || (automatic && isatty(STDERR_FILENO))) return without_repeats(draw_bar);
+  if (session.progress == "dots") return without_repeats(Dots());
+  if (session.progress == "json") return without_repeats(print_json);
+  return SparseLines();
+}
 
 void write_message(const workflows::Message& message) {
   switch (message.kind) {

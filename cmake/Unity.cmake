@@ -3,18 +3,18 @@
 option(WAYMARK_UNITY "Compile the sources of a library a dozen at a time" OFF)
 # Files whose private names occur in other files of their library, too.
 set(alone
-  apps/commands/man.cpp apps/progress.cpp apps/waymark.cpp
+  apps/commands/man.cpp apps/waymark.cpp
   geo/terrain_pyramid.cpp
   exporters/report/histogram.cpp exporters/report/log_plot.cpp exporters/vector/ogr_output.cpp
   geodb/geopackage/geometry_blob.cpp geodb/geopackage/shape_blob.cpp
   importers/cameras/formats/opk.cpp importers/cameras/world_to_grid.cpp importers/images/find_images.cpp importers/images/sun_position.cpp
   importers/points/canopy_codec.cpp importers/points/inspect_canopy.cpp importers/rasters/mosaic.cpp importers/stages/load_dem.cpp
   importers/tables/stand_outlines.cpp importers/tables/table_number.cpp
-  localization/filters/sighting_score.cpp localization/filters/temper_weights.cpp localization/filters/particle_blocks.cpp
+  localization/filters/sighting_score.cpp localization/filters/particle_blocks.cpp
   localization/global/skyline.cpp localization/global/skyline_fit.cpp localization/identification/identification.cpp
   localization/slam/pose_graph_builder.cpp
   pipeline/craters/crater_training.cpp pipeline/craters/dem_rim.cpp pipeline/craters/find_craters_in_dem.cpp
-  pipeline/craters/rim_refinement.cpp pipeline/craters/shaded_scene.cpp pipeline/craters/tile_spectrum.cpp
+  pipeline/craters/shaded_scene.cpp pipeline/craters/tile_spectrum.cpp
   pipeline/engine/job.cpp pipeline/engine/report.cpp pipeline/engine/store/artifact_store.cpp
   pipeline/forest/canopy_model.cpp pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
   pipeline/fusion/valuation/landmark_valuation.cpp

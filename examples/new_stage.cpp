@@ -44,8 +44,7 @@ struct KeepIsolatedTops {
 int main(int argc, char** argv) try {
   const std::string dem = argc > 1 ? argv[1] : "sample_data/jacksboro/dem.tif";
   pipeline::Registry stages;
-  importers::register_importer_stages(stages);
-  pipeline::register_pipeline_stages(stages);
+  workflows::register_built_in_stages(stages);
   stages.add<KeepIsolatedTops>();
   pipeline::Pipeline mapping(stages);
   mapping.add("load_dem", R"({"files": [")" + dem + R"("], "nodata": "unknown"})").add("find_mountain_tops");

@@ -21,8 +21,7 @@ int main(int argc, char** argv) try {
   std::filesystem::remove_all(work);
 
   pipeline::Registry stages;
-  importers::register_importer_stages(stages);
-  pipeline::register_pipeline_stages(stages);
+  workflows::register_built_in_stages(stages);
   pipeline::Pipeline mapping(stages);
   mapping.add("load_dem", R"({"files": [")" + dem + R"("], "tile_cells": 128})")
       .add("find_mountain_tops", R"({"min_prominence": 50})")

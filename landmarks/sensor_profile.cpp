@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "landmarks/assessed_quality.hpp"
 
 namespace waymark::inline landmarks {

@@ -69,7 +69,7 @@ ObjectMatching by_overlap(std::span<const EvaluatedObject> found, std::span<cons
     if (std::isnan(find.diameter)) continue;
     const double reach = std::min(find.diameter, largest) / 2 + find.diameter / 2;
     int best = -1;
-    double most = 0;
+    double max_worth = 0;
     for (const std::size_t t : index.within({find.at.x(), find.at.y(), 0}, reach)) {
       if (std::isnan(truth[t].diameter)) continue;
       const double overlap = circle_overlap((find.at - truth[t].at).norm(), find.diameter, truth[t].diameter);
@@ -77,7 +77,7 @@ ObjectMatching by_overlap(std::span<const EvaluatedObject> found, std::span<cons
       pairing.near[at(f)] = true;
       // Counted objects take precedence over ignored ones.
       const double worth = overlap + (truth[t].ignored ? 0 : 1);
-      if (!taken[t] && worth > most) best = static_cast<int>(t), most = worth;
+      if (!taken[t] && worth > max_worth) best = static_cast<int>(t), max_worth = worth;
     }
     if (best < 0) continue;
     taken[at(best)] = true;

@@ -7,11 +7,15 @@
 
 namespace waymark::workflows {
 
+void register_built_in_stages(pipeline::Registry& registry) {
+  importers::register_importer_stages(registry);
+  pipeline::register_pipeline_stages(registry);
+}
+
 const pipeline::Registry& all_stages() {
   static const pipeline::Registry registry = [] {
     pipeline::Registry made;
-    importers::register_importer_stages(made);
-    pipeline::register_pipeline_stages(made);
+    register_built_in_stages(made);
     return made;
   }();
   return registry;

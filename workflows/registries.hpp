@@ -8,6 +8,9 @@ class Registry;
 
 namespace waymark::workflows {
 
+/// Registers the built-in stages in a registry that may hold others, too.
+void register_built_in_stages(pipeline::Registry& registry);
+
 /// Returns the built-in stages.
 const pipeline::Registry& all_stages();
 /// Returns the built-in landmark types.

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "apps/shortcut.hpp"
-#include "workflows/mapping/jobs.hpp"
+#include "workflows/mapping/make_map.hpp"
 
 namespace waymark::apps {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/runner.hpp"
 
 #include <iostream>
 

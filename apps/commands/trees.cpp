@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/shortcut.hpp"
-#include "workflows/mapping/jobs.hpp"
+#include "workflows/mapping/make_map.hpp"
 
 namespace waymark::apps {
 namespace {

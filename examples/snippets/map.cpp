@@ -30,7 +30,7 @@ void add_type() {
              .summary = "Street light",
              .features = {{"height", "m", Scale::ratio, 2, 20, "Ground to lamp"}},
              .drawn_as = Solid::cylinder});
-  std::cout << geodb::qml_style(types[types.id("lamp_post")]).size() << " bytes of style for QGIS\n";
+  std::cout << types[types.id("lamp_post")].summary << '\n';
   //! [type]
 }
 

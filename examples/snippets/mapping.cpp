@@ -76,8 +76,7 @@ struct KeepHighLandmarks {
 void run_own_stage(const std::string& dem) {
   //! [registry]
   pipeline::Registry stages;
-  importers::register_importer_stages(stages);
-  pipeline::register_pipeline_stages(stages);
+  workflows::register_built_in_stages(stages);
   stages.add<KeepHighLandmarks>();
   pipeline::Pipeline pipeline(stages);
   pipeline.add("load_dem", R"({"files": [")" + dem + R"("]})")
@@ -86,7 +85,7 @@ void run_own_stage(const std::string& dem) {
       .add("measure_isolation")
       .add("map_mountain_tops");
   pipeline.add<KeepHighLandmarks>({.min_height = 900_m});
-  std::cout << pipeline::run(pipeline).report << pipeline::stage_as_text(stages.at("keep_high_landmarks"));
+  std::cout << pipeline::run(pipeline).report;
   //! [registry]
 }
 

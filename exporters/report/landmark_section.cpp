@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
 

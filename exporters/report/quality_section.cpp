@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "exporters/formatting.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"

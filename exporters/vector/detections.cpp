@@ -11,7 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/principal_axes.hpp"
-#include "landmarks/uid.hpp"
+#include "landmarks/semantic_map.hpp"
 
 namespace waymark::exporters {
 namespace {

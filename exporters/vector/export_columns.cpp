@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "landmarks/assessed_quality.hpp"
 
 namespace waymark::exporters {

@@ -8,11 +8,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
 #include "exporters/staging_folder.hpp"
 
@@ -156,11 +156,10 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
 }
 
 localization::Track read_track_csv(const fs::path& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_text(file, "the track"));
   std::string line;
-  if (!in || !std::getline(in, line))
-    throw Error(ErrorCode::input, "cannot read the track", file.string(),
-                "check that it exists and is not empty");
+  if (!std::getline(in, line))
+    throw Error(ErrorCode::input, "the track is empty", file.string(), "waymark localize writes such files");
   std::vector<std::size_t> column;  // index in kColumns by column of the file; kColumns.size(): none
   std::array<bool, kColumns.size()> found{};
   std::istringstream names(line);

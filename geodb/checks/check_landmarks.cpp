@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "geodb/checks/map_checks.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/sqlite/sql_text.hpp"

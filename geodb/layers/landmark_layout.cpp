@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/error.hpp"
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/sqlite/attribute_column.hpp"
 #include "geodb/sqlite/sql_text.hpp"

@@ -86,12 +86,12 @@ CameraSet import_cameras(const std::string& path, const std::string& format, con
 
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file) {
   const ImageCamera* best = nullptr;
-  std::size_t most = 0;
+  std::size_t best_same = 0;
   for (const ImageCamera& image : set.images) {
     const std::size_t same = common_end(image.image, image_file);
-    if (same == most) best = nullptr;
-    if (same <= most) continue;
-    most = same;
+    if (same == best_same) best = nullptr;
+    if (same <= best_same) continue;
+    best_same = same;
     best = &image;
   }
   return best;

@@ -66,11 +66,11 @@ std::vector<double> numbers_in(std::string text, const YamlSection& at, const st
 }
 
 Camera camera_from_yaml(const YamlSection& s, const std::string& path) {
-  const auto values = [&](const char* key, std::size_t least) {
+  const auto values = [&](const char* key, std::size_t min_count) {
     const auto found = s.values.find(key);
     auto numbers = found == s.values.end() ? std::vector<double>{} : numbers_in(found->second, s, path);
-    if (numbers.size() < least)
-      refuse_line(path, s.line, fmt::format("camera '{}' needs {} of {} number(s)", s.name, key, least));
+    if (numbers.size() < min_count)
+      refuse_line(path, s.line, fmt::format("camera '{}' needs {} of {} number(s)", s.name, key, min_count));
     return numbers;
   };
   const auto value = [&](const char* key) {
@@ -150,10 +150,11 @@ Camera camera_from_json(const JsonValue& json) {
   camera.lens = lens == "fisheye" ? Camera::Lens::fisheye : Camera::Lens::brown;
   if (!json.has("distortion")) return camera;
   const auto numbers = json["distortion"].numbers();
-  const std::size_t most = camera.lens == Camera::Lens::fisheye ? 4 : 8;
-  if (numbers.size() > most)
-    json["distortion"].refuse(fmt::format("{} coefficients, a {} lens has {}", numbers.size(), lens, most),
-                              "brown: k1 k2 p1 p2 k3 k4 k5 k6; fisheye: k1 k2 k3 k4");
+  const std::size_t max_count = camera.lens == Camera::Lens::fisheye ? 4 : 8;
+  if (numbers.size() > max_count)
+    json["distortion"].refuse(
+        fmt::format("{} coefficients, a {} lens has {}", numbers.size(), lens, max_count),
+        "brown: k1 k2 p1 p2 k3 k4 k5 k6; fisheye: k1 k2 k3 k4");
   std::copy(numbers.begin(), numbers.end(), camera.distortion.begin());
   return camera;
 }

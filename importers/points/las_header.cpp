@@ -15,7 +15,7 @@
 namespace waymark::importers {
 namespace {
 
-constexpr std::array<int, 11> kLeastLength{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+constexpr std::array<int, 11> kMinLength{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr std::size_t kHeaderBytes = 375;  // of LAS 1.4; older ones are shorter
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem, const std::string& hint) {
@@ -133,11 +133,11 @@ void check_format(LasHeader& header, const std::vector<unsigned char>& head) {
            "is the file damaged?");
   header.point_format = format;
   header.point_length = at<std::uint16_t>(head, 105);
-  const int least = kLeastLength[static_cast<std::size_t>(format)];
-  if (header.point_length < least)
+  const int min_length = kMinLength[static_cast<std::size_t>(format)];
+  if (header.point_length < min_length)
     refuse(header.path,
-           fmt::format("a point record of format {} has {} bytes at least, the header says {}", format, least,
-                       header.point_length),
+           fmt::format("a point record of format {} has {} bytes at least, the header says {}", format,
+                       min_length, header.point_length),
            "the header is damaged: write the file again from its source");
 }
 

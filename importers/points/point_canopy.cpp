@@ -153,8 +153,8 @@ class PointCanopy final : public ImportedCanopy {
     const double left = std::floor(box.left / step), top = std::ceil(box.high / step);
     grid_.where.x0 = (left + 0.5) * step, grid_.where.y0 = (top - 0.5) * step;
     const double columns = std::floor(box.right / step) - left + 1, rows = top - std::floor(box.low / step);
-    const double most = std::max(kMinCells, kCellsPerPoint * static_cast<double>(catalogue_.points()));
-    if (!(columns * rows < std::min(most, 1e11)))
+    const double max_cells = std::max(kMinCells, kCellsPerPoint * static_cast<double>(catalogue_.points()));
+    if (!(columns * rows < std::min(max_cells, 1e11)))
       throw Error(ErrorCode::input,
                   fmt::format("{} points lie {:.3g} x {:.3g} m apart, which are {:.3g} cells of {:g} m",
                               catalogue_.points(), columns * cell, rows * cell, columns * rows, cell),

@@ -3,11 +3,23 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 #include "geo/dem_source.hpp"
 #include "geo/georeference.hpp"
 #include "importers/gdal_session.hpp"
 namespace waymark::importers {
+
+struct HeightUnit {
+  double metres = 1;
+  bool known = true;
+};
+
+/// Returns the unit of a band by any of its usual names, in any case. An empty name means metres.
+HeightUnit height_unit(std::string_view name);
+
+/// Returns the unit that a user named. Throws Error{usage} with the names for an unknown one.
+HeightUnit stated_height_unit(std::string_view name);
 
 /// Type of decoded cells: the smallest that holds every value of the band.
 enum class CellType { int16, float32, float64 };

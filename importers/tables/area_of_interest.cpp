@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,6 +16,18 @@
 
 namespace waymark::importers {
 namespace {
+
+// Counts crossings of the ray towards +x.
+bool is_inside(const std::vector<Area::Ring>& rings, double x, double y) {
+  bool inside = false;
+  for (const Area::Ring& ring : rings)
+    for (std::size_t i = 0, last = ring.size() - 1; i < ring.size(); last = i++) {
+      const Eigen::Vector2d &a = ring[last], &b = ring[i];
+      if ((a.y() > y) == (b.y() > y)) continue;
+      if (x < a.x() + (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y())) inside = !inside;
+    }
+  return inside;
+}
 
 constexpr double kEdgesPerSide = 100;  // of a polygon's bounding box, where it is transformed
 
@@ -46,6 +59,32 @@ void collect_area(const OGRGeometry& geometry, const CrsTransform* transform, co
 }
 
 }  // namespace
+
+Area::Area(std::vector<std::vector<Ring>> polygons, bool degrees) : degrees_(degrees) {
+  for (auto& rings : polygons) {
+    Part part{.rings = std::move(rings),
+              .low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()),
+              .high = Eigen::Vector2d::Constant(-std::numeric_limits<double>::infinity())};
+    for (const Ring& ring : part.rings)
+      for (const Eigen::Vector2d& corner : ring) {
+        part.low = part.low.cwiseMin(corner);
+        part.high = part.high.cwiseMax(corner);
+      }
+    parts_.push_back(std::move(part));
+  }
+}
+
+bool Area::contains(double x, double y) const {
+  for (const double turn : {0.0, -360.0, 360.0}) {
+    if (turn != 0 && !degrees_) break;
+    const double at = x + turn;
+    for (const Part& part : parts_)
+      if (at >= part.low.x() && at <= part.high.x() && y >= part.low.y() && y <= part.high.y() &&
+          is_inside(part.rings, at, y))
+        return true;
+  }
+  return false;
+}
 
 Area read_area_of_interest(const std::string& path, const Crs& into) {
   const GdalDataset dataset =

@@ -1,9 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <string>
-#include "geo/area.hpp"
+#include <vector>
 #include "geo/crs.hpp"
 namespace waymark::importers {
+
+/// Area of interest: polygons, each an outer ring and its holes, in the CRS of the map.
+class Area {
+ public:
+  using Ring = std::vector<Eigen::Vector2d>;  ///< closed or not
+
+  /// `degrees`: x is a longitude, equal modulo 360.
+  Area(std::vector<std::vector<Ring>> polygons, bool degrees);
+
+  /// Returns whether a polygon contains the point; on the boundary either answer. O(corners).
+  bool contains(double x, double y) const;
+
+ private:
+  struct Part {
+    std::vector<Ring> rings;
+    Eigen::Vector2d low, high;
+  };
+  std::vector<Part> parts_;
+  bool degrees_;
+};
 
 /// Reads all polygons of a vector file, of every layer, as one area in the CRS `into`. Long edges are divided
 /// before they are transformed. A layer without a CRS is taken to be in `into`; if `into` is local, every

@@ -12,11 +12,11 @@
 
 #include "core/covariance.hpp"
 #include "core/error.hpp"
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "importers/tables/table.hpp"
 #include "importers/tables/table_columns.hpp"
 #include "importers/tables/table_positions.hpp"
-#include "landmarks/uid.hpp"
+#include "landmarks/semantic_map.hpp"
 
 namespace waymark::importers {
 namespace {

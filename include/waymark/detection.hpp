@@ -2,7 +2,6 @@
 #pragma once
 #include "core/error.hpp"
 #include "pipeline/craters/find_craters.hpp"
-#include "pipeline/craters/find_craters_in_dem.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "workflows/detection/detect.hpp"
 #include "workflows/training/train.hpp"

@@ -6,7 +6,7 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kShare = 0.35, kLeast = 0.2;
+constexpr double kShare = 0.35, kMinExplained = 0.2;
 constexpr double kSame = 2;  // m, beside three standard deviations
 
 }  // namespace
@@ -24,7 +24,7 @@ void Convergence::count(double fit, double chance, bool unimodal) {
   explained_.add(fit, chance);
   if (!explained_.known()) return;
   if (found_)
-    found_ = explained_.value() > kLeast;
+    found_ = explained_.value() > kMinExplained;
   else
     found_ = identities_ && explained_.value() > kShare;
 }

@@ -196,15 +196,15 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
 template <class Fix>
 bool MultiHypothesisFilter::apply_fix(const Fix& measured, int rows) {
   FixGate& gate = rows == 2 ? gnss_ : heading_;
-  const auto least = [&] {
+  const auto min_squares = [&] {
     double squares = 1e300;
     for (const Component& component : components_)
       squares = std::min(squares, update_pose(component.at, measured).squares);
     return squares;
   };
-  if (!gate.pass(least(), rows)) return false;
+  if (!gate.pass(min_squares(), rows)) return false;
   if (gate.was_forced())
-    for (int i = 0; i < 40 && least() > 4; ++i) widen(2);
+    for (int i = 0; i < 40 && min_squares() > 4; ++i) widen(2);
   std::vector<double> logs;
   for (Component& component : components_) {
     const FixUpdate update = update_pose(component.at, measured);

@@ -42,10 +42,10 @@ void MultiHypothesisFilter::split() {
 
 void MultiHypothesisFilter::prune() {
   std::ranges::stable_sort(components_, std::greater<>{}, &Component::weight);
-  const double least = components_[0].weight * options_.min_weight;
+  const double min_weight = components_[0].weight * options_.min_weight;
   std::vector<Component> kept;
   for (const Component& component : components_) {
-    if (component.weight < least && !kept.empty()) break;
+    if (component.weight < min_weight && !kept.empty()) break;
     bool merged = false;
     for (Component& k : kept) {
       if (k.choice != component.choice && !component.choice.empty()) continue;

@@ -4,9 +4,9 @@
 
 #include "localization/filters/particle_blocks.hpp"
 #include "localization/filters/particle_filter.hpp"
+#include "localization/filters/particle_weights.hpp"
 #include "localization/filters/resampling.hpp"
 #include "localization/filters/sighting_score.hpp"
-#include "localization/filters/temper_weights.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -47,12 +47,12 @@ void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
   slow_ += (slow_ == 0 ? 1 : options_.recovery_slow) * (mean - slow_);
   fast_ += (fast_ == 0 ? 1 : options_.recovery_fast) * (mean - fast_);
 
-  const double least = options_.resample_below * static_cast<double>(poses_.size());
+  const double min_size = options_.resample_below * static_cast<double>(poses_.size());
   Random random(static_cast<std::uint64_t>(options_.seed) + step_, "parts");
   double left = 1;
   PoseEstimate cloud = moments(poses_, weights_);
   for (int i = 0; i < kMaxSteps && is_unimodal(cloud); ++i) {
-    TemperedWeights tempered = temper_weights(weights_, fit, left, least);
+    TemperedWeights tempered = temper_weights(weights_, fit, left, min_size);
     weights_ = std::move(tempered.weights);
     left -= tempered.exponent;
     if (!(left > 0)) return;
@@ -71,8 +71,9 @@ bool ParticleFilter::is_unimodal(const PoseEstimate& cloud) const {
 }
 
 std::size_t ParticleFilter::required_count() const {
-  const auto most = static_cast<std::size_t>(searching_ ? options_.search_particles : options_.particles);
-  if (!options_.adaptive) return most;
+  const auto max_count =
+      static_cast<std::size_t>(searching_ ? options_.search_particles : options_.particles);
+  if (!options_.adaptive) return max_count;
   const std::size_t needed = kld_count(occupied_bins(poses_, 0.25, 0.17), options_.kld_error);
   return std::clamp<std::size_t>(needed, 50, static_cast<std::size_t>(options_.search_particles));
 }

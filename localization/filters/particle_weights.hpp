@@ -6,6 +6,19 @@
 #include "core/options.hpp"
 namespace waymark::localization {
 
+/// Weights after a tempered update, and the exponent used.
+struct TemperedWeights {
+  double exponent = 0;          ///< of the likelihood
+  std::vector<double> weights;  ///< weights times exp(exponent fit); they sum to 1
+};
+
+/// Applies the largest likelihood exponent in [0, `max_exponent`] that keeps the effective sample size at or
+/// above `min_size`. `fit` holds log likelihoods; the weights sum to 1. If the exponent is less than
+/// `max_exponent`, the effective size is at most 2 % above `min_size`. Passes over the particles three to six
+/// times.
+TemperedWeights temper_weights(std::span<const double> weights, std::span<const double> fit,
+                               double max_exponent, double min_size);
+
 /// Options of the weights of particles.
 struct WeightOptions {
   /// `likelihood`: log of the probability of what was seen. `paper`: eqs. 12-14.

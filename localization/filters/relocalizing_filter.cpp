@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kWait = 5, kRestartInterval = 20;  // sets between calls of the finder, and between restarts
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
-constexpr double kLeastOfUsual = 0.5, kWell = 0.8;
+constexpr double kMinOfUsual = 0.5, kWell = 0.8;
 // Fractions of the sightings explained beyond chance, or of the usual fit where the map lacks most objects.
 constexpr double kByChance = 0.2, kExplained = 0.3, kByChanceOfUsual = 0.4, kExplainedOfUsual = 0.6;
 
@@ -30,7 +30,7 @@ void RelocalizingFilter::predict(const BodyMotion& motion) {
 }
 
 bool RelocalizingFilter::lost() const {
-  return chance_matches_ || inner_->status() == LocalizationStatus::lost || fit_ < kLeastOfUsual * usual_fit_;
+  return chance_matches_ || inner_->status() == LocalizationStatus::lost || fit_ < kMinOfUsual * usual_fit_;
 }
 
 bool RelocalizingFilter::is_explained() const {

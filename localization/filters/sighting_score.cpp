@@ -46,11 +46,11 @@ Lanes sine_of(const Lanes& angle) {
   return angle * sum;
 }
 
-double at_least(double a, double least) {
-  return std::max(a, least);
+double at_least(double a, double low) {
+  return std::max(a, low);
 }
-Lanes at_least(const Lanes& a, double least) {
-  return a.max(least);
+Lanes at_least(const Lanes& a, double low) {
+  return a.max(low);
 }
 
 }  // namespace
@@ -120,13 +120,13 @@ double SightingScore::log_unseen(std::uint32_t landmark) const {
 double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
                              std::span<const std::uint32_t> matched) const {
   double sum = 0;
-  const double least = std::cos(options_.view_angle / 2);
+  const double min_cosine = std::cos(options_.view_angle / 2);
   map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
     if (std::ranges::binary_search(hidden_, i)) return;
     const Eigen::Vector2d d = l.at - sensor;
-    if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < least * d.norm()) return;
+    if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < min_cosine * d.norm()) return;
     if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
   });
   return sum;

@@ -57,9 +57,9 @@ void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
       if (std::abs(away - *p.seen.range) > p.radius + radius) return;
     } else if (away > 2 * radius) {
       const double nearest = away - radius, sd = map_->largest_sd() / nearest;
-      const double most = std::sqrt(p.gate * (p.bearing_variance + sd * sd)) + cloud_.turn +
-                          std::asin(radius / away) + kSlack;
-      if (std::abs(std::atan2(out.x() * d.y() - out.y() * d.x(), out.dot(d))) > most) return;
+      const double max_turn = std::sqrt(p.gate * (p.bearing_variance + sd * sd)) + cloud_.turn +
+                              std::asin(radius / away) + kSlack;
+      if (std::abs(std::atan2(out.x() * d.y() - out.y() * d.x(), out.dot(d))) > max_turn) return;
     }
     if (const auto alike = pose_free_terms(p, i)) p.candidates.push_back({i, l.at, l.covariance, *alike});
   });

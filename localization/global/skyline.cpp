@@ -25,9 +25,9 @@ bool usable(const HorizonTop& t) {
          t.elevation_sd > 0 && std::isfinite(t.bearing_sd + t.elevation_sd);
 }
 
-void keep_best(std::vector<HorizonGuess>& guesses, std::size_t most) {
+void keep_best(std::vector<HorizonGuess>& guesses, std::size_t max_count) {
   std::ranges::stable_sort(guesses, std::greater<>{}, &HorizonGuess::score);
-  if (guesses.size() > most) guesses.resize(most);
+  if (guesses.size() > max_count) guesses.resize(max_count);
 }
 
 }  // namespace
@@ -93,8 +93,9 @@ class SkylineSearch {
   std::string_view verdict(const std::vector<SkylineFix>& fixes, double usable) const {
     if (fixes.empty()) return "no position has such a horizon";
     const SkylineFix& best = fixes[0];
-    const auto least = o_.heading ? std::min<std::int64_t>(o_.min_matches, 3) : o_.min_matches;
-    if (best.matched < least || best.matched < o_.min_fraction * usable) return "too few tops fit one pose";
+    const auto min_matched = o_.heading ? std::min<std::int64_t>(o_.min_matches, 3) : o_.min_matches;
+    if (best.matched < min_matched || best.matched < o_.min_fraction * usable)
+      return "too few tops fit one pose";
     if (!(best.squares < o_.max_squares * best.matched)) return "the best pose fits badly";
     if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
     if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))

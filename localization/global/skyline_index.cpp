@@ -14,7 +14,7 @@ Eigen::AlignedBox2d bounds(const std::vector<SkylineSummit>& summits) {
   return box;
 }
 
-constexpr double kMostPlaces = 60000, kFewestPlaces = 2000;
+constexpr double kMaxPlaces = 60000, kMinPlaces = 2000;
 
 }  // namespace
 
@@ -23,8 +23,8 @@ SkylineIndex::SkylineIndex(std::vector<SkylineSummit> summits, const TerrainHeig
     : summits_(std::move(summits)), options_(options), terrain_(ground, bounds(summits_), options_.reach) {
   if (summits_.size() < 3 || terrain_.area().isEmpty()) return;
   const Eigen::Vector2d size = terrain_.area().sizes();
-  options_.step = std::clamp(options_.step, std::sqrt(size.prod() / kMostPlaces),
-                             std::max(std::sqrt(size.prod() / kFewestPlaces), 2 * terrain_.cell()));
+  options_.step = std::clamp(options_.step, std::sqrt(size.prod() / kMaxPlaces),
+                             std::max(std::sqrt(size.prod() / kMinPlaces), 2 * terrain_.cell()));
   std::vector<Eigen::Vector2d> at;
   for (double y = options_.step / 2; y < size.y(); y += options_.step)
     for (double x = options_.step / 2; x < size.x(); x += options_.step)

@@ -33,11 +33,11 @@ void widen(const TerrainHeight& ground, Eigen::AlignedBox2d& box, double beyond)
 }  // namespace
 
 TerrainGrid::TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond,
-                         std::int64_t most)
+                         std::int64_t max_cells)
     : area_(box) {
   if (area_.isEmpty()) return;
   widen(ground, area_, beyond);
-  cell_ = std::max(area_.sizes().maxCoeff() / static_cast<double>(most), 1e-3);
+  cell_ = std::max(area_.sizes().maxCoeff() / static_cast<double>(max_cells), 1e-3);
   const auto columns = static_cast<std::int64_t>(area_.sizes().x() / cell_) + 2,
              rows = static_cast<std::int64_t>(area_.sizes().y() / cell_) + 2;
   columns_ = static_cast<double>(columns - 1), rows_ = static_cast<double>(rows - 1);

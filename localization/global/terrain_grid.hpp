@@ -12,8 +12,9 @@ namespace waymark::localization {
 class TerrainGrid {
  public:
   /// Samples the terrain in and around a box. Each side is moved outwards by at most `beyond` metres while
-  /// terrain is known there. At most `most` cells on the longer side.
-  TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond, std::int64_t most = 1400);
+  /// terrain is known there. At most `max_cells` cells on the longer side.
+  TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond,
+              std::int64_t max_cells = 1400);
 
   /// Bilinear; NaN if one of the four cells is unknown.
   double height(double x, double y) const {

@@ -40,7 +40,7 @@ ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, doub
   for (std::size_t r = 1; r <= n; ++r) {
     owner[0] = r;
     std::size_t j0 = 0;
-    std::vector<double> least(m + 1, std::numeric_limits<double>::infinity());
+    std::vector<double> min_reduced(m + 1, std::numeric_limits<double>::infinity());
     std::vector<bool> used(m + 1, false);
     do {
       used[j0] = true;
@@ -50,14 +50,14 @@ ChosenColumns assign_cheapest(const std::vector<std::vector<Choice>>& rows, doub
       for (std::size_t j = 1; j <= m; ++j) {
         if (used[j]) continue;
         const double reduced = cost[i0 - 1][j - 1] - u[i0] - v[j];
-        if (reduced < least[j]) least[j] = reduced, way[j] = j0;
-        if (least[j] < delta) delta = least[j], j1 = j;
+        if (reduced < min_reduced[j]) min_reduced[j] = reduced, way[j] = j0;
+        if (min_reduced[j] < delta) delta = min_reduced[j], j1 = j;
       }
       for (std::size_t j = 0; j <= m; ++j)
         if (used[j])
           u[owner[j]] += delta, v[j] -= delta;
         else
-          least[j] -= delta;
+          min_reduced[j] -= delta;
       j0 = j1;
     } while (owner[j0] != 0);
     for (; j0; j0 = way[j0]) owner[j0] = owner[way[j0]];

@@ -14,15 +14,15 @@ namespace {
 
 /// Returns quantiles of the gate by degrees of freedom, computed once per gate.
 double gate_of(const IdentificationOptions& options, int freedom) {
-  constexpr int kMost = 2 + static_cast<int>(kMaxFeatures);
+  constexpr int kMaxFreedom = 2 + static_cast<int>(kMaxFeatures);
   thread_local double last = -1;
-  thread_local std::array<double, kMost + 1> gates;
+  thread_local std::array<double, kMaxFreedom + 1> gates;
   if (last != options.gate) {
-    for (int i = 1; i <= kMost; ++i)
+    for (int i = 1; i <= kMaxFreedom; ++i)
       gates[static_cast<std::size_t>(i)] = chi_square_quantile(options.gate, i);
     last = options.gate;
   }
-  return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMost))];
+  return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMaxFreedom))];
 }
 
 double largest_sd(const Eigen::Matrix2d& c) {

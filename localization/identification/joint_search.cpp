@@ -10,7 +10,7 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kLeast = 14;  // ln of 1e6: hypotheses less probable than the best by this are omitted
+constexpr double kMaxLoss = 14;  // ln of 1e6: hypotheses less probable than the best by this are omitted
 const double kLogTurn = std::log(2 * std::numbers::pi);
 
 class CompatibilitySearch {
@@ -79,10 +79,10 @@ class HypothesisList {
     JointChoice none(sets_.size(), -1);
     max_remaining_.assign(sets_.size() + 1, 0);
     for (std::size_t i = sets_.size(); i-- > 0;) {
-      double most = unpaired(i);
+      double max_value = unpaired(i);
       for (const CandidatePair& p : sets_[i].pairings)
-        most = std::max(most, paired(i, p) - (p.evidence.log_det + p.evidence.rows * kLogTurn) / 2);
-      max_remaining_[i] = max_remaining_[i + 1] + most;
+        max_value = std::max(max_value, paired(i, p) - (p.evidence.log_det + p.evidence.rows * kLogTurn) / 2);
+      max_remaining_[i] = max_remaining_[i + 1] + max_value;
     }
     descend(0, {}, 0, none);
     return left_ >= 0;
@@ -91,7 +91,7 @@ class HypothesisList {
 
  private:
   // Branch and bound: no remaining sighting can be denser than the peak of its sensor's noise. Prunes what
-  // cannot come within kLeast of the best; it would be omitted anyway.
+  // cannot come within kMaxLoss of the best; it would be omitted anyway.
   void descend(std::size_t depth, const JointEvidence& so_far, double log_weight, JointChoice& choice) {
     if (--left_ < 0) return;
     double value = log_weight;
@@ -99,7 +99,7 @@ class HypothesisList {
       const JointDistance d = joint_distance(so_far, pose_);
       value -= (d.squares + d.log_det + so_far.rows * kLogTurn) / 2;
     }
-    if (value + max_remaining_[depth] < best_ - kLeast) return;
+    if (value + max_remaining_[depth] < best_ - kMaxLoss) return;
     if (depth == sets_.size()) {
       found.push_back({choice, so_far, value});
       best_ = std::max(best_, value);
@@ -165,7 +165,7 @@ std::optional<std::vector<JointHypothesis>> joint_hypotheses(std::span<const Can
   std::ranges::stable_sort(all.found, std::greater<>{}, &JointHypothesis::probability);
   const double best = all.found[0].probability;
   double total = 0;
-  std::erase_if(all.found, [&](const JointHypothesis& h) { return h.probability < best - kLeast; });
+  std::erase_if(all.found, [&](const JointHypothesis& h) { return h.probability < best - kMaxLoss; });
   for (JointHypothesis& h : all.found) total += h.probability = std::exp(h.probability - best);
   for (JointHypothesis& h : all.found) h.probability /= total;
   return std::move(all.found);

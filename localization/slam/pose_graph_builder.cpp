@@ -16,9 +16,9 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 /// Accepts semidefinite covariances: a robot that cannot slip has no error sideways.
 Eigen::Matrix3d root_of_covariance(const Eigen::Matrix3d& covariance) {
-  constexpr double kLeast = 1e-10;  // 10 micrometres, 10 microradians
+  constexpr double kMinVariance = 1e-10;  // 10 micrometres, 10 microradians
   return information_root(
-      Eigen::Matrix3d((covariance + kLeast * Eigen::Matrix3d::Identity()).inverse().eval()));
+      Eigen::Matrix3d((covariance + kMinVariance * Eigen::Matrix3d::Identity()).inverse().eval()));
 }
 
 }  // namespace

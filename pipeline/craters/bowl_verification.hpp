@@ -1,10 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <vector>
 #include "core/detection.hpp"
+#include "core/units.hpp"
+#include "geo/image_source.hpp"
+#include "pipeline/craters/crater_candidate.hpp"
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/filled_image.hpp"
 namespace waymark::pipeline {
+
+/// Rim measured in the image.
+struct Rim {
+  PixelEllipse ellipse;
+  double centre_sd = 0;    ///< pixels, of either coordinate
+  double diameter_sd = 0;  ///< pixels
+};
+
+/// Measures the rim crest in the image; `std::nullopt` if edges are too few or would move the rim by more
+/// than 30 % of the radius.
+/// - Along 36 azimuths the rim is at the steepest outward change of brightness, to sub-pixel precision:
+///   dark to bright on the sunward side, bright to dark opposite.
+/// - The radii are fitted by r0 + a cos + b sin + c cos 2 + d sin 2 (to first order an ellipse), reweighted
+///   against outliers (Huber), with a prior at the candidate's circle.
+/// - Two passes, the second about the centre of the first. `image` has no NaN.
+std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candidate, Radians sun_angle);
 
 /// Candidate with a measured rim.
 struct VerifiedBowl {

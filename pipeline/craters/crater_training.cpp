@@ -114,9 +114,9 @@ std::vector<CraterExample> make_crater_examples(const LabelledScene& scene, std:
     if (random.bernoulli(0.5))
       c.x += random.normal(0, 0.04) * c.diameter, c.y += random.normal(0, 0.04) * c.diameter,
           c.diameter *= std::exp(random.normal(0, 0.08));
-    const auto [best, most] = match_crater(scene, c);
-    const bool crater = most >= 0.45 && best->clarity >= kClear;
-    if (!crater && most > 0.25) continue;
+    const auto [best, common] = match_crater(scene, c);
+    const bool crater = common >= 0.45 && best->clarity >= kClear;
+    if (!crater && common > 0.25) continue;
     if (!crater && random.bernoulli(0.5)) continue;
     const double dx = best ? (best->x - c.x) / c.diameter : 0, dy = best ? (best->y - c.y) / c.diameter : 0;
     const double cosine = std::cos(scene.sun_angle.value), sine = std::sin(scene.sun_angle.value);

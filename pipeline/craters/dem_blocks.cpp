@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "geo/body.hpp"
-#include "pipeline/craters/find_craters_in_dem.hpp"
+#include "pipeline/craters/find_craters.hpp"
 
 namespace waymark::pipeline {
 namespace {

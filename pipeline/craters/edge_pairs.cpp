@@ -150,13 +150,13 @@ void search_octave(const cv::Mat1f& image, const Vector& sun, double shrink_x, d
   cv::magnitude(gx, gy, strength);
   cv::Scalar mean, sd;
   cv::meanStdDev(strength, mean, sd);
-  const double least = mean[0] + 0.3 * sd[0], contrast = mean[0] + sd[0];
+  const double min_strength = mean[0] + 0.3 * sd[0], contrast = mean[0] + sd[0];
   // Non-maximum suppression along the gradient, rounded to eight directions.
   cv::Mat1b edges(image.size(), static_cast<unsigned char>(0));
   for (int y = 1; y + 1 < image.rows; ++y)
     for (int x = 1; x + 1 < image.cols; ++x) {
       const float s = strength(y, x);
-      if (!(s > least) || along(y, x) < kAlongLight * s) continue;
+      if (!(s > min_strength) || along(y, x) < kAlongLight * s) continue;
       const int dx = cvRound(gx(y, x) / s), dy = cvRound(gy(y, x) / s);
       if (s < strength(y + dy, x + dx) || s <= strength(y - dy, x - dx)) continue;
       edges(y, x) = 255;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/craters/find_craters_in_dem.hpp"
+#include "pipeline/craters/find_craters.hpp"
 
 #include <fmt/core.h>
 

@@ -4,10 +4,15 @@
 #include <functional>
 #include <span>
 #include <vector>
+#include "geo/image_source.hpp"
 #include "pipeline/craters/crater_features.hpp"
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/shaded_scene.hpp"
 namespace waymark::pipeline {
+
+/// Applies random radiometric changes: blur, uneven brightness, noise, stripes, flat-fielding, equalisation
+/// or stretch, JPEG compression, resampling. Positions do not change. Deterministic for a seed.
+void augment_image(Pixels& image, std::uint64_t seed);
 
 /// Training example of the convolutional networks.
 struct WidePatchExample {

@@ -91,10 +91,10 @@ void add_ripples(Grid<float>& heights, Random& random, double strength) {
                rise = wave * strength * random.uniform(0.02, 0.12);
   const Grid<float> warp = fractal_field(random, static_cast<int>(side), 8 * wave, wave, 0.5);
   const Grid<float> cover = fractal_field(random, static_cast<int>(side), double(side) / 3, 20, 0.5);
-  const double least = random.uniform(0.2, 1.5);
+  const double min_cover = random.uniform(0.2, 1.5);
   for (std::int64_t y = 0; y < side; ++y)
     for (std::int64_t x = 0; x < side; ++x) {
-      const double here = std::clamp((cover(x, y) - least) * 3, 0.0, 1.0);
+      const double here = std::clamp((cover(x, y) - min_cover) * 3, 0.0, 1.0);
       if (here <= 0) continue;
       const double along =
           (double(x) * std::cos(turn) + double(y) * std::sin(turn)) / wave + 0.7 * warp(x, y);

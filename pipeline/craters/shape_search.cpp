@@ -78,9 +78,9 @@ double vertex(double before, double at, double after) {
 
 // Local maxima in `core` of a tile of squared correlations; tile coordinates to a candidate by `to_image`.
 template <class ToImage>
-void collect(const std::vector<float>& squares, const cv::Rect& core, double least, const ToImage& to_image,
-             std::vector<CraterCandidate>& found) {
-  const auto min_square = static_cast<float>(least * least);
+void collect(const std::vector<float>& squares, const cv::Rect& core, double min_correlation,
+             const ToImage& to_image, std::vector<CraterCandidate>& found) {
+  const auto min_square = static_cast<float>(min_correlation * min_correlation);
   const auto score = [](float square) {
     return std::copysign(std::sqrt(std::abs(double(square))), double(square));
   };
@@ -118,7 +118,7 @@ std::vector<const Bowl*> bowls_of_level(int level, const ShapeSearch& search, st
 }
 
 void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y,
-                  const std::vector<const Bowl*>& bowls, double least,
+                  const std::vector<const Bowl*>& bowls, double min_correlation,
                   std::vector<CraterCandidate>& candidates) {
   int widest = 0;
   for (const Bowl* bowl : bowls) widest = std::max(widest, bowl->half);
@@ -148,7 +148,7 @@ void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y,
                                (y - first + y0 + 0.5) * shrink_y - 0.5,
                                bowl->diameter * std::sqrt(shrink_x * shrink_y), s};
       };
-      collect(best.real, inside, least, to_image, found[static_cast<std::size_t>(tile_index)]);
+      collect(best.real, inside, min_correlation, to_image, found[static_cast<std::size_t>(tile_index)]);
     }
   });
   for (const auto& part : found) candidates.insert(candidates.end(), part.begin(), part.end());

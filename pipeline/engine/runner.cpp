@@ -7,10 +7,15 @@
 #include <oneapi/tbb/task_group.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <exception>
+#include <fstream>
 
+#include "core/error.hpp"
 #include "pipeline/engine/run/run.hpp"
+#include "pipeline/engine/sha256.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -26,6 +31,24 @@ void run_with_threads(int threads, Work work) {
 }
 
 }  // namespace
+
+InputFile hash_plain_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  Sha256 sum;
+  InputFile measured{.path = path, .bytes = 0, .sha256 = {}};
+  std::vector<char> block(1 << 20);
+  while (file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto count = static_cast<std::size_t>(file.gcount());
+    sum.add({block.data(), count});
+    measured.bytes += count;
+  }
+  if (!file.eof())
+    throw Error(ErrorCode::input, std::string("cannot read an input file: ") + std::strerror(errno), path,
+                "check the path in the job; it is relative to the job file");
+  measured.sha256 = sum.hex();
+  return measured;
+}
 
 RunResult run(const Pipeline& pipeline, const RunOptions& options) {
   const auto begin = std::chrono::steady_clock::now();

@@ -60,8 +60,8 @@ Grid<float> steepness(const Grid<float>& plane, float cells) {
   return out;
 }
 
-float ratio(float a, float b, float least) {
-  return (a - b) / std::max(a + b, least);
+float ratio(float a, float b, float min_sum) {
+  return (a - b) / std::max(a + b, min_sum);
 }
 
 }  // namespace

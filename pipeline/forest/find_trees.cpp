@@ -78,14 +78,14 @@ std::vector<DetectedTree> find_trees(const CanopySource& canopy, const Window& o
                                      const TreeSearch& search) {
   const Georeference& where = canopy.geometry().where;
   const double unit = where.crs.metres_per_unit();
-  const double width = where.dx * unit, height = -where.dy * unit, least = std::min(width, height);
+  const double width = where.dx * unit, height = -where.dy * unit, min_side = std::min(width, height);
   if (owned.columns <= 0 || owned.rows <= 0) return {};
-  const CanopyWindow raw = window_of(canopy, grow_window(owned, search_halo(search, least)));
+  const CanopyWindow raw = window_of(canopy, grow_window(owned, search_halo(search, min_side)));
   const CanopyWindow smooth = smooth_canopy(raw, search.forest.smoothing);
   const Grid<std::uint8_t> types =
       search.by_type.empty() ? Grid<std::uint8_t>{} : canopy.forest_types(raw.cells);
   const RulesAt rules = rules_at(search, raw.cells, types);
-  const std::int64_t beyond = needed_beyond(search, least);
+  const std::int64_t beyond = needed_beyond(search, min_side);
   const std::vector<Treetop> tops = find_treetops(smooth, grow_window(owned, beyond), rules);
   std::vector<Crown> crowns;
   if (search.crowns) crowns = find_crowns(smooth, owned, tops, search.forest.crowns);

@@ -68,8 +68,8 @@ Ring convex_hull(Ring places) {
   std::sort(places.begin(), places.end(),
             [](const Place& a, const Place& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
   Ring hull;
-  const auto extend = [&](const Place& place, std::size_t least) {
-    while (hull.size() >= least && !(cross(hull.back() - hull[hull.size() - 2], place - hull.back()) > 0))
+  const auto extend = [&](const Place& place, std::size_t min_size) {
+    while (hull.size() >= min_size && !(cross(hull.back() - hull[hull.size() - 2], place - hull.back()) > 0))
       hull.pop_back();
     hull.push_back(place);
   };
@@ -105,11 +105,11 @@ bool inside(const StandPolygon& stand, const Place& place) {
 }
 
 double distance_to_edge(const StandPolygon& stand, const Place& place) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const Ring& ring : stand.rings)
     for (std::size_t i = 0; i < ring.size(); ++i)
-      least = std::min(least, distance_to_segment(ring[i], ring[(i + 1) % ring.size()], place));
-  return least;
+      min_distance = std::min(min_distance, distance_to_segment(ring[i], ring[(i + 1) % ring.size()], place));
+  return min_distance;
 }
 
 StandPolygon clip_polygon(const StandPolygon& stand, const Eigen::AlignedBox2d& box) {

@@ -66,15 +66,15 @@ class SmallTable {
     return has(name) ? rows_[row][static_cast<std::size_t>(at)] : "";
   }
   /// Returns `otherwise` if there is no such column or value.
-  double number(std::size_t row, const std::string& name, double otherwise, double least, double most) const {
+  double number(std::size_t row, const std::string& name, double otherwise, double low, double high) const {
     const std::string word = text(row, name);
     if (word.empty()) return otherwise;
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size())
       refuse(lines_[row], fmt::format("{} is no number: '{}'", name, word), "use a point for decimals");
-    if (!(least <= value && value <= most))
-      refuse(lines_[row], fmt::format("{} = {} is outside [{}, {}]", name, value, least, most), "");
+    if (!(low <= value && value <= high))
+      refuse(lines_[row], fmt::format("{} = {} is outside [{}, {}]", name, value, low, high), "");
     return value;
   }
   [[noreturn]] void refuse(int line, const std::string& problem, const std::string& hint) const {

@@ -28,15 +28,15 @@ SurveyBlocks surveyed_blocks(const Canopies& canopies, const GridGeometry& commo
   SurveyBlocks blocks;
   blocks.side = std::max<std::int64_t>(1, (std::max(common.columns, common.rows) + kBlocks - 1) / kBlocks);
   const auto count = [&](std::int64_t cells) { return (cells + blocks.side - 1) / blocks.side; };
-  Grid<double> most(count(common.columns), count(common.rows), 0);  // known fraction by any canopy
+  Grid<double> max_known(count(common.columns), count(common.rows), 0);  // known fraction by any canopy
   for (const auto& canopy : canopies) {
     const GridGeometry& grid = canopy->geometry();
-    for (std::int64_t j = 0; j < most.rows(); ++j) {
+    for (std::int64_t j = 0; j < max_known.rows(); ++j) {
       const auto middle = static_cast<double>(std::min(j * blocks.side + blocks.side / 2, common.rows - 1));
       const std::int64_t row = std::llround((common.where.y(middle) - grid.where.y0) / grid.where.dy);
       if (row < 0 || row >= grid.rows) continue;
       const Grid<float> heights = canopy->read({0, row, grid.columns, 1});
-      for (std::int64_t i = 0; i < most.columns(); ++i) {
+      for (std::int64_t i = 0; i < max_known.columns(); ++i) {
         const std::int64_t end = std::min((i + 1) * blocks.side, common.columns);
         std::int64_t known = 0;
         for (std::int64_t c = i * blocks.side; c < end; ++c) {
@@ -44,15 +44,15 @@ SurveyBlocks surveyed_blocks(const Canopies& canopies, const GridGeometry& commo
           const std::int64_t column = std::llround((x - grid.where.x0) / grid.where.dx);
           known += heights.contains(column, 0) && heights(column, 0) > kNoCanopy;
         }
-        most(i, j) =
-            std::max(most(i, j), static_cast<double>(known) / static_cast<double>(end - i * blocks.side));
+        max_known(i, j) = std::max(max_known(i, j),
+                                   static_cast<double>(known) / static_cast<double>(end - i * blocks.side));
       }
     }
   }
-  blocks.known = Mask(most.columns(), most.rows());
-  for (std::size_t i = 0; i < most.cells().size(); ++i) {
-    blocks.known.cells()[i] = most.cells()[i] >= 0.5;
-    blocks.fraction += most.cells()[i] / static_cast<double>(most.cells().size());
+  blocks.known = Mask(max_known.columns(), max_known.rows());
+  for (std::size_t i = 0; i < max_known.cells().size(); ++i) {
+    blocks.known.cells()[i] = max_known.cells()[i] >= 0.5;
+    blocks.fraction += max_known.cells()[i] / static_cast<double>(max_known.cells().size());
   }
   return blocks;
 }

@@ -122,7 +122,7 @@ int maximum_entropy_threshold(std::span<const double> histogram) {
   const auto entropy_term = [&](double n) { return n > 0 ? -n / total * std::log(n / total) : 0; };
   double all = 0;
   for (const double n : histogram) all += entropy_term(n);
-  double below = 0, fraction = 0, most = -1;
+  double below = 0, fraction = 0, max_sum = -1;
   int best = 0;
   for (std::size_t i = 0; i + 1 < histogram.size(); ++i) {
     below += entropy_term(histogram[i]);
@@ -130,8 +130,8 @@ int maximum_entropy_threshold(std::span<const double> histogram) {
     if (!(fraction > 0) || !(fraction < 1 - 1e-12)) continue;
     const double sum =
         std::log(fraction) + below / fraction + std::log(1 - fraction) + (all - below) / (1 - fraction);
-    if (sum > most) {
-      most = sum;
+    if (sum > max_sum) {
+      max_sum = sum;
       best = static_cast<int>(i);
     }
   }

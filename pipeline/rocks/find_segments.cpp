@@ -133,14 +133,14 @@ std::vector<ShadowSegment> find_segments(const ShadowMap& map, const SegmentLimi
   const auto columns = static_cast<std::int32_t>(map.smooth.columns());
   std::vector<std::int32_t> visit(dark.cells.size(), -1);  // stamp of the last flood that reached a pixel
   std::int32_t stamp = 0;
-  const auto flood = [&](std::int32_t summit, float least) {
+  const auto flood = [&](std::int32_t summit, float min_value) {
     std::vector<std::int32_t> open{summit}, cells;
     visit[static_cast<std::size_t>(summit)] = ++stamp;
     for (std::size_t k = 0; k < open.size(); ++k) {
       cells.push_back(dark.cells[static_cast<std::size_t>(open[k])]);
       for_neighbours(dark, cells.back(), [&](std::int32_t j) {
         auto& seen = visit[static_cast<std::size_t>(j)];
-        if (seen == stamp || !(value(j) > least) || root(parent, j) != summit) return;
+        if (seen == stamp || !(value(j) > min_value) || root(parent, j) != summit) return;
         seen = stamp;
         open.push_back(j);
       });

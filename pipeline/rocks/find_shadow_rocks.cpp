@@ -238,11 +238,11 @@ std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSe
       if (one.confidence > 0.5) sum += one.confidence;
     return sum;
   };
-  double best = 0, most = -1;
+  double best = 0, max_sum = -1;
   const auto look = [&](double angle) {
     const double sum = rocks_under(angle);
-    if (sum > most) {
-      most = sum;
+    if (sum > max_sum) {
+      max_sum = sum;
       best = angle;
     }
   };
@@ -250,9 +250,9 @@ std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSe
   for (int k = 0; k < 16; ++k) look(k * kTurn / 16);
   const double coarse = best;
   for (const double step : {-0.26, -0.13, 0.13, 0.26}) look(coarse + step);
-  if (most < 2) return std::nullopt;
-  if (pooled && rocks_under(pooled->value) > 0.5 * most) return pooled;
-  if (pooled && rocks_under(pooled->value + kTurn / 2) > 0.5 * most)
+  if (max_sum < 2) return std::nullopt;
+  if (pooled && rocks_under(pooled->value) > 0.5 * max_sum) return pooled;
+  if (pooled && rocks_under(pooled->value + kTurn / 2) > 0.5 * max_sum)
     return Radians{std::remainder(pooled->value + kTurn / 2, kTurn)};
   return Radians{std::remainder(best, kTurn)};
 }

@@ -46,7 +46,7 @@ ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, c
   const Stencil stencil = stencil_of(map, segment);
   ShadowShape shape;
   shape.peak = static_cast<double>((segment.peak - segment.base) / (1 - segment.base));
-  const float least = segment.base + kOtherShadow * (segment.peak - segment.base);
+  const float max_dark = segment.base + kOtherShadow * (segment.peak - segment.base);
   double sum_x = 0, sum_y = 0, sum_tt = 0, sum_ss = 0, sum_st = 0;
   for (std::int64_t v = 0; v < stencil.role.rows(); ++v)
     for (std::int64_t u = 0; u < stencil.role.columns(); ++u) {
@@ -62,7 +62,7 @@ ShadowShape measure_shadow(const ShadowMap& map, const ShadowSegment& segment, c
         ++shape.cells;
         weight = std::min(weight, 1.15);
       } else {
-        if (map.smooth(x, y) > least) continue;  // belongs to another shadow
+        if (map.smooth(x, y) > max_dark) continue;  // belongs to another shadow
         weight -= static_cast<double>(kMeanOfClippedNoise * map.noise);
       }
       // Relative to the darkest pixel, for precision far from the origin.

@@ -5,8 +5,8 @@
 
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/checked_alignment.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
 namespace waymark::pipeline {

@@ -52,9 +52,9 @@ struct CheckSun {
     return std::abs(std::remainder(a.value - b.value, 2 * std::numbers::pi)) / kRadiansPerDegree;
   }
 
-  static Pixels central_window(const ImageSource& image, std::int64_t most) {
-    const std::int64_t columns = std::min(image.info().columns, most),
-                       rows = std::min(image.info().rows, most);
+  static Pixels central_window(const ImageSource& image, std::int64_t max_side) {
+    const std::int64_t columns = std::min(image.info().columns, max_side),
+                       rows = std::min(image.info().rows, max_side);
     return image.read({(image.info().columns - columns) / 2, (image.info().rows - rows) / 2, columns, rows});
   }
 

@@ -3,7 +3,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 
 namespace waymark::pipeline {
 namespace {

@@ -4,7 +4,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 namespace waymark::pipeline {

@@ -6,7 +6,6 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "pipeline/fusion/cleaning/rejection_counter.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark::pipeline {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/stage.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/cleaning/rejection_counter.hpp"
 #include "pipeline/fusion/cleaning/rejections.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 
 namespace waymark::pipeline {
 namespace {

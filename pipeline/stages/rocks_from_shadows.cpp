@@ -2,7 +2,7 @@
 #include "geo/image_source.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"

@@ -4,7 +4,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/tree_observations.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 
 namespace waymark::pipeline {
 namespace {

@@ -4,7 +4,6 @@
 #include "pipeline/forest/crown_names.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/association/merging.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {

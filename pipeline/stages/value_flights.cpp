@@ -5,7 +5,6 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {

@@ -4,7 +4,6 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 

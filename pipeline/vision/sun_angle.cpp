@@ -21,7 +21,7 @@ struct Pair {
 // Brightness above the local ground, in its standard deviations.
 Grid<float> excess_brightness(const Pixels& image, int tile) {
   const LocalBackground ground = local_background(image, tile);
-  const float least = std::max(noise_sd(image), 1e-6F);
+  const float min_spread = std::max(noise_sd(image), 1e-6F);
   Grid<float> excess(image.columns(), image.rows());
   std::vector<float> level(static_cast<std::size_t>(image.columns())), spread(level.size());
   for (std::int64_t y = 0; y < image.rows(); ++y) {
@@ -29,7 +29,7 @@ Grid<float> excess_brightness(const Pixels& image, int tile) {
     const auto in = image.row(y);
     const auto out = excess.row(y);
     for (std::size_t x = 0; x < level.size(); ++x) {
-      const float e = (in[x] - level[x]) / std::max(least, spread[x]);
+      const float e = (in[x] - level[x]) / std::max(min_spread, spread[x]);
       out[x] = std::isfinite(e) ? e : 0;
     }
   }
@@ -43,15 +43,15 @@ float smooth_at(const Grid<float>& g, std::int64_t x, std::int64_t y) {
 
 // Returns half the diameter of the dark spot: the distance over which its darkness exceeds a third, averaged
 // over eight directions.
-double dark_radius(const Grid<float>& excess, std::int64_t x, std::int64_t y, float floor, int most) {
+double dark_radius(const Grid<float>& excess, std::int64_t x, std::int64_t y, float floor, int max_step) {
   static constexpr int kX[] = {1, 1, 0, -1, -1, -1, 0, 1}, kY[] = {0, 1, 1, 1, 0, -1, -1, -1};
   double sum = 0;
   for (int d = 0; d < 8; ++d) {
     int step = 1;
-    while (step <= most && excess.contains(x + step * kX[d], y + step * kY[d]) &&
+    while (step <= max_step && excess.contains(x + step * kX[d], y + step * kY[d]) &&
            excess(x + step * kX[d], y + step * kY[d]) < floor / 3)
       ++step;
-    if (step > most) return most + 1.0;
+    if (step > max_step) return max_step + 1.0;
     sum += step * std::hypot(kX[d], kY[d]);
   }
   return sum / 8;

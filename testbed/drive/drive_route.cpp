@@ -62,13 +62,13 @@ bool TraversableMap::free(const Eigen::Vector2d& at) const {
 std::optional<TraversableMap::Cell> TraversableMap::nearest_free(const Cell& from) const {
   for (std::int64_t ring = 0; ring < 60; ++ring) {
     std::optional<Cell> best;
-    std::int64_t least = 0;
+    std::int64_t min_far = 0;
     for (std::int64_t r = from.row - ring; r <= from.row + ring; ++r)
       for (std::int64_t c = from.column - ring; c <= from.column + ring; ++c) {
         if (std::max(std::abs(r - from.row), std::abs(c - from.column)) != ring) continue;
         if (!free_.contains(c, r) || free_(c, r) == 0) continue;
         const std::int64_t far = (r - from.row) * (r - from.row) + (c - from.column) * (c - from.column);
-        if (!best || far < least) best = Cell{c, r}, least = far;
+        if (!best || far < min_far) best = Cell{c, r}, min_far = far;
       }
     if (best) return best;
   }

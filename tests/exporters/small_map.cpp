@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "core/text_file.hpp"
 #include "geodb/write_map.hpp"
 
 namespace waymark::test {
@@ -86,10 +87,7 @@ void write_two_type_map(const std::filesystem::path& path) {
 }
 
 std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream content;
-  content << stream.rdbuf();
-  return content.str();
+  return read_text(file, "the output");
 }
 
 std::vector<std::string> names_in(const std::filesystem::path& folder) {

@@ -5,10 +5,9 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <random>
-#include <sstream>
 
+#include "core/text_file.hpp"
 #include "geodb/sqlite/sqlite.hpp"
 #include "tests/support/dem_art.hpp"
 
@@ -131,9 +130,7 @@ DemHandle ramp_dem(const Crs& crs, std::int64_t columns, std::int64_t rows) {
 }
 
 std::string file_bytes(const std::filesystem::path& path) {
-  std::ostringstream bytes;
-  bytes << std::ifstream(path, std::ios::binary).rdbuf();
-  return bytes.str();
+  return read_text(path, "the map");
 }
 
 void execute_sql(const std::filesystem::path& map, const std::string& script) {

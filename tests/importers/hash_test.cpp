@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "pipeline/engine/file_hash.hpp"
+#include "pipeline/engine/runner.hpp"
 #include "tests/importers/raster_maker.hpp"
 #include "tests/support/dem_art.hpp"
 

@@ -3,11 +3,11 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <map>
 #include <sstream>
 
+#include "core/text_file.hpp"
 #include "localization/global/chance_matches.hpp"
 #include "localization/global/constellation.hpp"
 #include "made_look.hpp"
@@ -240,7 +240,7 @@ TEST(Constellation, NothingToGoByHasAReason) {
 const std::filesystem::path kShared = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data";
 
 std::vector<std::vector<std::string>> rows_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_text(file, "the table"));
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(in, line);) {
     std::istringstream cells(line);

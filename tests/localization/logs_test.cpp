@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <unistd.h>
-#include <cmath>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -156,24 +156,6 @@ TEST(ReplayLog, ASpeedHoldsNoLongerThanItMay) {
   EXPECT_DOUBLE_EQ(track.rows.back().at.pose.x, 2);
 }
 
-TEST(TrackScore, AlignmentTakesTurnShiftAndScaleAway) {
-  Track track;
-  std::vector<StampedPose> truth;
-  const PlaneAlignment by{{5, -3, 0.7}, 2};
-  for (int i = 0; i < 50; ++i) {
-    const Eigen::Vector2d p(i * 0.1, std::sin(i * 0.2));
-    const Eigen::Vector2d q = by(p);
-    TrackRow row;
-    row.t = i;
-    row.at = {{p.x(), p.y(), 0}, Eigen::Matrix3d::Identity()};
-    track.rows.push_back(row);
-    truth.push_back({static_cast<double>(i), {q.x(), q.y(), 0.7}});
-  }
-  EXPECT_NEAR(score(track, truth, TrackAlignment::sim2, true).ate_rmse, 0, 1e-9);
-  EXPECT_GT(score(track, truth, TrackAlignment::se2, true).ate_rmse, 0.5);
-  EXPECT_NEAR(*score(track, truth, TrackAlignment::se2, true).heading_rmse_deg, 0, 1e-6);
-}
-
 TEST(LaserStems, FindsAPostBeforeTheBackground) {
   LaserScan scan{.robot_from_sensor = {},
                  .first_angle = -1.5,
@@ -252,7 +234,7 @@ TEST_F(Mrclam, HypothesesWithoutIdentities) {
 TEST_F(Mrclam, ParticlesWithIdentities) {
   const Pooled all = follow(true, [](auto&&... given) { return std::make_unique<ParticleFilter>(given...); });
   EXPECT_LE(all.rmse, 0.35);
-  EXPECT_LT(all.anees, 1.1);  // of a consistent filter, with 97.5 %: see consistency_test
+  EXPECT_LT(all.anees, 1.1);  // of a consistent filter, with 97.5 %: see track_score_test
 }
 
 TEST_F(Mrclam, ParticlesFromNowhereWithoutIdentities) {

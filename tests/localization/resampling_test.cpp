@@ -8,7 +8,6 @@
 
 #include "core/random.hpp"
 #include "localization/filters/particle_weights.hpp"
-#include "localization/filters/temper_weights.hpp"
 
 namespace waymark::test {
 using namespace localization;

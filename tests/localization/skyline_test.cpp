@@ -3,12 +3,12 @@
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <numbers>
 #include <sstream>
 
 #include "core/random.hpp"
+#include "core/text_file.hpp"
 #include "importers/rasters/dem.hpp"
 #include "localization/global/skyline_index.hpp"
 namespace waymark::test {
@@ -90,7 +90,7 @@ Country country(const std::string& dem_file, const std::string& summit_file, dou
   const double metre = std::numbers::pi / 180 * 6371000;
   c.ground.dy = metre * std::abs(g.where.dy);
   c.ground.dx = metre * g.where.dx * std::cos((south + 0.5) * std::numbers::pi / 180);
-  std::ifstream file(dems() / summit_file);
+  std::istringstream file(read_text(dems() / summit_file, "the summits"));
   for (std::string line; std::getline(file, line);) {
     std::ranges::replace(line, ',', ' ');
     std::istringstream words(line);

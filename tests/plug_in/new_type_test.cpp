@@ -52,8 +52,7 @@ class NewType : public testing::Test {
     std::filesystem::create_directories(folder);
     register_landmark_types(types);
     register_test_types(types);
-    importers::register_importer_stages(stages);
-    pipeline::register_pipeline_stages(stages);
+    workflows::register_built_in_stages(stages);
     register_test_stages(stages);
     write_dem();
     write_images();

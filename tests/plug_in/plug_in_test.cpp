@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 #include <waymark/waymark.hpp>
+#include "geodb/layers/layer_style.hpp"
+#include "pipeline/engine/stage_pages.hpp"
 #include "tests/plug_in/stations.hpp"
 namespace waymark::test {
 
@@ -14,8 +16,7 @@ using testing::HasSubstr;
 
 pipeline::Registry all_stages() {
   pipeline::Registry stages;
-  importers::register_importer_stages(stages);
-  pipeline::register_pipeline_stages(stages);
+  workflows::register_built_in_stages(stages);
   register_test_stages(stages);
   return stages;
 }

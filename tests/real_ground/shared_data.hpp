@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/text_file.hpp"
 #include "importers/rasters/dem.hpp"
 #include "pipeline/terrain/isolation.hpp"
 #include "tests/pipeline/terrain/survey.hpp"
@@ -21,7 +21,7 @@ inline std::filesystem::path dem_data() {
   if (!std::filesystem::exists(dem_data())) GTEST_SKIP() << dem_data() << " is not on this machine"
 
 inline std::vector<std::vector<std::string>> read_rows(const std::filesystem::path& path) {
-  std::ifstream file(path);
+  std::istringstream file(read_text(path, "the table"));
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(file, line);) {
     std::vector<std::string> row;

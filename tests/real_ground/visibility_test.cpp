@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Expected visibility against viewsheds ray-cast on real tiles.
-#include "pipeline/terrain/visibility.hpp"
+#include "pipeline/terrain/mountain_tops.hpp"
 
 #include <gtest/gtest.h>
 

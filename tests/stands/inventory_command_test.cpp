@@ -10,11 +10,11 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <type_traits>
 #include <variant>
 
+#include "core/text_file.hpp"
 #include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
 
@@ -53,10 +53,7 @@ class InventoryCommand : public ::testing::Test {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder / name, std::ios::binary) << text;
   }
-  std::string read(const std::string& name) const {
-    std::ifstream file(folder / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string read(const std::string& name) const { return read_text(folder / name, "the output"); }
   Outcome waymark(const std::string& words) const {
     Outcome reported;
     const std::string line = "cd '" + folder.string() + "' && " + WAYMARK_PROGRAM + " " + words + " 2>&1";

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/text_file.hpp"
 #include "pipeline/forest/stand_inventory.hpp"
 
 namespace waymark::test {
@@ -23,7 +23,7 @@ std::filesystem::path forest_data() {
 }
 
 std::vector<std::map<std::string, std::string>> table(const std::filesystem::path& path) {
-  std::ifstream file(path);
+  std::istringstream file(read_text(path, "the table"));
   std::vector<std::string> names;
   std::vector<std::map<std::string, std::string>> rows;
   for (std::string line; std::getline(file, line);) {

@@ -9,8 +9,8 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
-#include "pipeline/forest/airborne_recall.hpp"
 #include "pipeline/forest/stand_cover.hpp"
+#include "workflows/forest/stand_figures.hpp"
 
 namespace waymark::test {
 namespace {
@@ -97,8 +97,8 @@ TEST(StandTables, SayWhatIsWrong) {
 
 TEST(AirRecall, RisesWithTheHeightOfATree) {
   for (const double crowns : {0.1, 0.194, 0.22, 0.246, 0.27, 0.295, 0.5}) {
-    EXPECT_TRUE(pipeline::airborne_recall(std::nan(""), crowns).empty());
-    const std::vector<pipeline::RecallRow> rows = pipeline::airborne_recall(30, crowns);
+    EXPECT_TRUE(workflows::airborne_recall(std::nan(""), crowns).empty());
+    const std::vector<pipeline::RecallRow> rows = workflows::airborne_recall(30, crowns);
     ASSERT_GT(rows.size(), 3u);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       EXPECT_GT(rows[i].recall, 0);
@@ -109,7 +109,7 @@ TEST(AirRecall, RisesWithTheHeightOfATree) {
         EXPECT_GE(rows[i].recall, rows[i - 1].recall);
       }
     }
-    EXPECT_NEAR(pipeline::airborne_recall(15, crowns)[2].height_from, rows[2].height_from / 2, 1e-9);
+    EXPECT_NEAR(workflows::airborne_recall(15, crowns)[2].height_from, rows[2].height_from / 2, 1e-9);
   }
 }
 

@@ -3,10 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "testbed/landing/flight.hpp"
 #include "testbed/scene_files.hpp"
 
@@ -25,11 +23,6 @@ std::string refusal(const std::string& json) {
     return error.what();
   }
   return "accepted";
-}
-
-std::string file_text(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 TEST(Scenario, DefaultsStandForWhatIsNotGiven) {
@@ -90,13 +83,13 @@ TEST(Scenario, FormerNamesAreReadWithAWarning) {
 }
 
 TEST(Scenario, TheCommittedSchemaIsUpToDate) {
-  EXPECT_EQ(file_text(WAYMARK_SOURCE_DIR "/docs/scenario.schema.json"), scenario_schema())
+  EXPECT_EQ(read_text(WAYMARK_SOURCE_DIR "/docs/scenario.schema.json", "the scenario"), scenario_schema())
       << "write scenario_schema() to docs/scenario.schema.json";
 }
 
 TEST(Scenario, TheSampleIsOne) {
-  const Scenario scenario =
-      read_scenario(file_text(WAYMARK_SOURCE_DIR "/sample_data/mars_landing/scenario.json"), "sample");
+  const Scenario scenario = read_scenario(
+      read_text(WAYMARK_SOURCE_DIR "/sample_data/mars_landing/scenario.json", "the scenario"), "sample");
   EXPECT_GE(scenario.flights.front().images, 8);
 }
 

@@ -10,7 +10,6 @@
 #include "workflows/detection/detect.hpp"
 #include "workflows/forest/inventory.hpp"
 #include "workflows/localization/localize.hpp"
-#include "workflows/mapping/jobs.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/query/query_area.hpp"

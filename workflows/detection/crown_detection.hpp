@@ -2,9 +2,19 @@
 #pragma once
 #include <vector>
 #include "pipeline/engine/progress_meter.hpp"
+#include "pipeline/forest/canopy_window.hpp"
+#include "pipeline/forest/crown_evidence.hpp"
 #include "pipeline/vision/dense_network.hpp"
 #include "workflows/detection/colour_image.hpp"
 namespace waymark::workflows {
+
+inline constexpr double kMaxCrownDiameter = 14;  ///< metres
+
+/// Returns the diameter of the crown centred at `top`, metres, [2 cells, kMaxCrownDiameter]. Rings are
+/// followed outwards until dark green (vegetation index times darkness squared, ring mean) falls below half
+/// of its central value. `image` covers kMaxCrownDiameter / 2 around. For touching crowns the result is the
+/// width of the group.
+double crown_width(const pipeline::ColourWindow& image, const pipeline::CanopyCell& top);
 
 /// A crown in a colour image.
 struct DetectedCrown {

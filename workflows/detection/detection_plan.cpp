@@ -15,17 +15,17 @@ namespace {
 
 constexpr double kMinCrater = 6, kMinRock = 1, kMinTree = 0.1;  // pixels
 
-struct Kind {
+struct SearchKind {
   const char* word;
   const char* type;
   std::vector<std::string> methods;  // the first is the default
   double min_diameter, max_diameter, smallest;
 };
 
-const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> all = {{"craters", "crater", {"bowl", "edges"}, 8, 0, kMinCrater},
-                                        {"rocks", "rock", {"shadow", "classic"}, 1.5, 100, kMinRock},
-                                        {"trees", "tree", {"imagery", "peaks", "lmf"}, 1, 0, kMinTree}};
+const std::vector<SearchKind>& kinds() {
+  static const std::vector<SearchKind> all = {{"craters", "crater", {"bowl", "edges"}, 8, 0, kMinCrater},
+                                              {"rocks", "rock", {"shadow", "classic"}, 1.5, 100, kMinRock},
+                                              {"trees", "tree", {"imagery", "peaks", "lmf"}, 1, 0, kMinTree}};
   return all;
 }
 
@@ -33,9 +33,9 @@ const std::vector<Kind>& kinds() {
   throw Error(ErrorCode::usage, problem, "", hint);
 }
 
-const Kind& find_kind(std::string word) {
+const SearchKind& find_kind(std::string word) {
   if (word == "crater" || word == "rock" || word == "tree") word += 's';
-  for (const Kind& kind : kinds())
+  for (const SearchKind& kind : kinds())
     if (kind.word == word) return kind;
   const std::string nearest = nearest_name(word, std::vector<std::string>{"craters", "rocks", "trees"});
   throw_usage(fmt::format("'{}' cannot be detected", word),
@@ -44,7 +44,7 @@ const Kind& find_kind(std::string word) {
                   : "did you mean '" + nearest + "'?");
 }
 
-void check_method(const Kind& kind, const std::string& method) {
+void check_method(const SearchKind& kind, const std::string& method) {
   if (std::ranges::count(kind.methods, method) > 0) return;
   const std::string nearest = nearest_name(method, kind.methods);
   throw_usage(
@@ -62,7 +62,7 @@ void check_range(const char* option, double value, double lowest, double highest
                 "`waymark detect --help` says what it means");
 }
 
-void check_numbers(const DetectRequest& request, const Kind& kind) {
+void check_numbers(const DetectRequest& request, const SearchKind& kind) {
   if (given(request.sun_elevation) && !(request.sun_elevation > 0))
     throw_usage(fmt::format("the sun is not above the ground: --sun-elevation is {:g} degrees",
                             request.sun_elevation),
@@ -159,7 +159,7 @@ void set_scale(DetectionPlan& plan, const DetectRequest& request) {
 }  // namespace
 
 DetectionPlan plan_detection(const DetectRequest& request) {
-  const Kind& kind = find_kind(request.kind);
+  const SearchKind& kind = find_kind(request.kind);
   check_numbers(request, kind);
   DetectionPlan plan;
   plan.type = kind.type;

@@ -7,10 +7,51 @@
 #include <chrono>
 
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 
 namespace waymark::workflows {
+
+void LocalizeSettings::describe(OptionVisitor& option) {
+  identification.describe(option);
+  kalman.describe(option);
+  hypotheses.describe(option);
+  particles.describe(option);
+  play.describe(option);
+  scans.describe(option);
+  sight.describe(option);
+  option("start_sd", start_sd, {.help = "Metres by which the start may be off", .min = 1e-6, .max = 1e6});
+  option("start_yaw_sd", start_yaw_sd,
+         {.help = "Radians by which the heading of the start may be off", .min = 1e-6, .max = 4});
+}
+
+void LocalizeSettings::check_distance(const std::string& method) const {
+  if (identification.distance != "paper") return;
+  const auto refuse = [](const std::string& what, const std::string& advice) {
+    throw Error(ErrorCode::usage, what, "--set distance=paper", advice);
+  };
+  if (!identification.distance_applies())
+    refuse(
+        fmt::format("association={} decides by its own evidence, not by eq. 11", identification.association),
+        "set association=nearest, greedy or hungarian");
+  if (method == "slam" || method == "graph")
+    refuse(fmt::format("--method {} has a data association of its own, without eq. 11", method),
+           "use --method ekf, ukf, pf or global");
+  if ((method == "pf" || method == "global") && particles.weight.weights != "paper")
+    refuse(fmt::format("weights={} has a distance of its own, not eq. 11", particles.weight.weights),
+           "add --set weights=paper");
+}
+
+std::vector<std::string> set_option(const DescribeOptions& describe, const std::string& setting) {
+  const std::size_t equals = setting.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw Error(ErrorCode::usage, "--set takes OPTION=VALUE, is '" + setting + "'", "",
+                "e.g. --set particles=1000");
+  return set_option(describe, std::string_view(setting).substr(0, equals),
+                    std::string_view(setting).substr(equals + 1),
+                    {.owner = "localize", .where = "--set " + setting});
+}
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
   const localization::DetectedTypes types = localization::detected_types(task.map.map.types());

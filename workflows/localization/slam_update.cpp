@@ -12,11 +12,11 @@
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
-#include "core/quality.hpp"
+#include "core/landmark.hpp"
 #include "geodb/update_map.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
-#include "landmarks/uid.hpp"
+#include "landmarks/semantic_map.hpp"
 #include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/slam/existence_log_odds.hpp"

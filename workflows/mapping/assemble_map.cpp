@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,12 +16,30 @@
 #include "landmarks/uid_index.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/survey_outline.hpp"
-#include "pipeline/fusion/projection/canopy_view.hpp"
+#include "pipeline/fusion/projection/image_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
 #include "workflows/mapping/summit_names.hpp"
 
 namespace waymark::workflows {
 namespace {
+
+/// Returns the view of a canopy model, treated as an orthophoto of heights whose pixels evidence refers to.
+pipeline::ImageView canopy_view(const CanopySource& canopy) {
+  const GridGeometry& grid = canopy.geometry();
+  const Georeference& where = grid.where;
+  const double unit = where.crs.metres_per_unit();
+  pipeline::ImageView view;
+  view.name = canopy.name();
+  view.columns = grid.columns, view.rows = grid.rows;
+  view.ortho = pipeline::OrthoGrid{where.x0 * unit, where.y0 * unit, where.dx * unit, where.dy * unit};
+  const double west = where.x(-0.5), east = where.x(static_cast<double>(grid.columns) - 0.5);
+  const double north = where.y(-0.5), south = where.y(static_cast<double>(grid.rows) - 0.5);
+  view.footprint = {{{west, south}, {east, south}, {east, north}, {west, north}, {west, south}}};
+  const double cell = std::abs(where.dx * where.dy) * unit * unit;
+  view.area = cell * static_cast<double>(grid.cells());
+  view.gsd = std::sqrt(cell);
+  return view;
+}
 
 geodb::ImageRecord image_record(const pipeline::ImageView& image) {
   geodb::ImageRecord record{.name = image.name,
@@ -193,8 +212,7 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry&
         [held = std::make_shared<const pipeline::CrownTable>(std::move(table))] { return held; });
   for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
     contents.layers.push_back(survey_layer(*surveys));
-    for (const auto& canopy : *surveys)
-      contents.images.push_back(image_record(pipeline::canopy_view(*canopy)));
+    for (const auto& canopy : *surveys) contents.images.push_back(image_record(canopy_view(*canopy)));
   }
   if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
   for (geodb::ShapeLayer& layer : summit_layers(types, contents.landmarks))

@@ -14,7 +14,7 @@
 #include "core/error.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/hilbert_ranges.hpp"
-#include "landmarks/uid.hpp"
+#include "landmarks/semantic_map.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 
 namespace waymark::workflows {

@@ -57,14 +57,14 @@ Body make_body(const RockScene& scene, double x, double y, double diameter, Rand
   body.tilt_y = random.normal(0, 0.15);
   double area = 0;  // the truth's diameter is that of the circle of equal area
   for (int i = 0; i < 360; ++i) area += std::pow(outline_factor(body, i * kPi / 180), 2) / 360;
-  double most = 0;  // and its height that of the highest point
+  double max_height = 0;  // and its height that of the highest point
   Body unit = body;
   for (int i = -20; i <= 20; ++i)
     for (int j = -20; j <= 20; ++j)
-      most = std::max(most, height_of(unit, i * 0.035 * diameter, j * 0.035 * diameter));
+      max_height = std::max(max_height, height_of(unit, i * 0.035 * diameter, j * 0.035 * diameter));
   body.truth.diameter = diameter * std::sqrt(area);
-  body.truth.height = most;
-  body.truth.reach = most * std::tan(to_radians(scene.incidence).value);
+  body.truth.height = max_height;
+  body.truth.reach = max_height * std::tan(to_radians(scene.incidence).value);
   return body;
 }
 

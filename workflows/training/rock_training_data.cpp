@@ -10,11 +10,23 @@
 #include "core/random.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/rocks/find_shadow_rocks.hpp"
-#include "workflows/training/rock_match.hpp"
+
 namespace waymark::workflows {
 namespace {
 
-constexpr std::size_t kMostPerImage = 400;  // examples
+bool clear_of_border(const Pixels& pixels, double x, double y, double diameter, double reach,
+                     double sun_angle) {
+  const double margin = 0.5 * diameter + 2;
+  for (const double t : {0.0, reach + 0.5 * diameter}) {
+    const double u = x - t * std::cos(sun_angle), v = y - t * std::sin(sun_angle);
+    if (u < margin || v < margin || u > static_cast<double>(pixels.columns() - 1) - margin ||
+        v > static_cast<double>(pixels.rows() - 1) - margin)
+      return false;
+  }
+  return true;
+}
+
+constexpr std::size_t kMaxPerImage = 400;  // examples
 
 /// Scene with random sun, relief, dunes, craters, haze, blur, noise and rocks.
 RockScene random_scene(int number) {
@@ -77,18 +89,18 @@ struct RockImageSource {
 };
 
 std::vector<RockImageSource> image_sources(int views) {
-  using Kind = RockImageSource::Kind;
+  using From = RockImageSource::Kind;
   const auto share = [views](int count) { return (count * views + kRockViews - 1) / kRockViews; };
   std::vector<RockImageSource> all;
-  for (int k = 0; k < views; ++k) all.push_back({Kind::view, k, k});
+  for (int k = 0; k < views; ++k) all.push_back({From::view, k, k});
   // Scenes are fewer, so each is used twice, with different knowledge of the sun.
   for (int j = 0; j < 2; ++j)
-    for (int k = 0; k < share(45); ++k) all.push_back({Kind::scene, k, k + 1000 * j, k != 18});
+    for (int k = 0; k < share(45); ++k) all.push_back({From::scene, k, k + 1000 * j, k != 18});
   for (int j = 0; j < 2; ++j)
-    for (int k = 0; k < share(24); ++k) all.push_back({Kind::low_sun, k, k + 1000 * j});
-  for (int k = 0; k < share(150); ++k) all.push_back({Kind::oblique, k, k + 100000});
-  for (int k = 0; k < share(150); ++k) all.push_back({Kind::oblique, k, k + 101000, true, false});
-  for (int k = share(150); k < share(330); ++k) all.push_back({Kind::oblique, k, k + 100000, false, true});
+    for (int k = 0; k < share(24); ++k) all.push_back({From::low_sun, k, k + 1000 * j});
+  for (int k = 0; k < share(150); ++k) all.push_back({From::oblique, k, k + 100000});
+  for (int k = 0; k < share(150); ++k) all.push_back({From::oblique, k, k + 101000, true, false});
+  for (int k = share(150); k < share(330); ++k) all.push_back({From::oblique, k, k + 100000, false, true});
   return all;
 }
 
@@ -108,7 +120,38 @@ SyntheticView render_source(const RockImageSource& source) {
 
 }  // namespace
 
-std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number, std::size_t most) {
+RockMatch match_rocks(const RockImage& image, const std::vector<Detection>& found, double sun_angle) {
+  RockMatch match{std::vector<int>(image.rocks.size(), -1), std::vector<int>(found.size(), -1), {}, {}};
+  for (std::size_t i = 0; i < image.rocks.size(); ++i) {
+    const auto& rock = image.rocks[i];
+    double best = std::max(0.75 * rock.diameter, 2.0);
+    int who = -1;
+    for (std::size_t j = 0; j < found.size(); ++j) {
+      if (match.rock_of[j] >= 0) continue;
+      const double d = std::hypot(found[j].outline.x - rock.x, found[j].outline.y - rock.y);
+      if (d <= best) {
+        best = d;
+        who = static_cast<int>(j);
+      }
+    }
+    match.detection_of[i] = who;
+    if (who >= 0) match.rock_of[static_cast<std::size_t>(who)] = static_cast<int>(i);
+    match.rock_counts.push_back(
+        clear_of_border(image.pixels, rock.x, rock.y, rock.diameter, rock.reach, sun_angle));
+  }
+  for (std::size_t j = 0; j < found.size(); ++j) {
+    const auto& d = found[j];
+    const bool clear = clear_of_border(image.pixels, d.outline.x, d.outline.y, d.outline.diameter(),
+                                       d.shadow_reach ? d.shadow_reach->value : 0, sun_angle);
+    const int rock = match.rock_of[j];
+    match.detection_counts.push_back(clear &&
+                                     (rock < 0 || match.rock_counts[static_cast<std::size_t>(rock)]));
+  }
+  return match;
+}
+
+std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number,
+                                                 std::size_t max_count) {
   const RockImage& image = view.image;
   // The name seeds the shipped network, so it stays although a word of it is not used any more.
   Random random(static_cast<std::uint64_t>(number),
@@ -165,9 +208,9 @@ std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int 
     }
     samples.push_back(sample);
   }
-  for (std::size_t i = 0; i < samples.size() && i < most; ++i)
+  for (std::size_t i = 0; i < samples.size() && i < max_count; ++i)
     std::swap(samples[i], samples[i + random.uniform_index(samples.size() - i)]);
-  if (samples.size() > most) samples.resize(most);
+  if (samples.size() > max_count) samples.resize(max_count);
   return samples;
 }
 
@@ -178,7 +221,7 @@ RockTrainingSets make_rock_examples(int views, int threads, const pipeline::Prog
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, sources.size(), [&](std::size_t i) {
-      examples[i] = rock_examples(render_source(sources[i]), sources[i].number, kMostPerImage);
+      examples[i] = rock_examples(render_source(sources[i]), sources[i].number, kMaxPerImage);
       meter.add(1);
     });
   });

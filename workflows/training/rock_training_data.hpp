@@ -1,10 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <vector>
+#include "core/detection.hpp"
 #include "pipeline/engine/progress.hpp"
 #include "pipeline/rocks/rock_training.hpp"
+#include "workflows/training/rock_scene.hpp"
 #include "workflows/training/rock_views.hpp"
 namespace waymark::workflows {
+
+/// Assignment of detections to rocks: greedy, the largest rock first, nearest free detection within
+/// max(0.75 D, 2 px). Rocks whose outline or shadow reaches the border, and detections as near to it, count
+/// neither way.
+struct RockMatch {
+  std::vector<int> detection_of;                    ///< of each rock; -1: missed
+  std::vector<int> rock_of;                         ///< of each detection; -1: none
+  std::vector<char> rock_counts, detection_counts;  ///< false: too near to the border
+};
+
+/// Matches the detections in an image whose light comes from `sun_angle`, radians. O(rocks x detections).
+RockMatch match_rocks(const RockImage& image, const std::vector<Detection>& found, double sun_angle);
 
 /// Two overlapping sets of examples, from which two networks are trained and averaged.
 struct RockTrainingSets {
@@ -23,8 +37,9 @@ inline constexpr int kRockViews = 240;  ///< vertical testbed views that the shi
 RockTrainingSets make_rock_examples(int views, int threads, const pipeline::ProgressListener& progress);
 
 /// Returns the dark spots of a view with the sun elevation known in six of ten cases and the sun direction
-/// off by a few degrees in half of them, seeded by `number`. At most `most`, chosen at random, so that scenes
-/// have equal weight.
-std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number, std::size_t most);
+/// off by a few degrees in half of them, seeded by `number`. At most `max_count`, chosen at random, so that
+/// scenes have equal weight.
+std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number,
+                                                 std::size_t max_count);
 
 }  // namespace waymark::workflows

@@ -3,9 +3,10 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "importers/images/image.hpp"
 #include "workflows/detection/crown_detection.hpp"
 #include "workflows/evaluation/scored_table.hpp"
@@ -34,11 +35,11 @@ pipeline::DenseNetwork train(const std::vector<const TreeTrainingImage*>& images
 
 /// Returns true for a table without rows, as of an image without trees.
 bool is_empty_table(const std::filesystem::path& table) {
-  std::ifstream file(table);
-  std::string line;
+  std::istringstream text(read_text(table, "the table of trees"));
   int rows = 0;
-  while (std::getline(file, line)) rows += line.find_first_not_of(" \r") != std::string::npos;
-  return file.eof() && rows <= 1;
+  for (std::string line; std::getline(text, line);)
+    rows += line.find_first_not_of(" \r") != std::string::npos;
+  return rows <= 1;
 }
 
 }  // namespace

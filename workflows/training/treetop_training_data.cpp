@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,11 +16,42 @@
 #include "core/random.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/forest/find_trees.hpp"
-#include "pipeline/forest/tree_confidence_training.hpp"
+#include "pipeline/forest/tree_confidence.hpp"
 #include "testbed/forest/forest_scan.hpp"
 #include "workflows/training/rough_forest.hpp"
+
 namespace waymark::workflows {
 namespace {
+
+/// Detected treetop and whether it is a separate tree.
+struct TreetopExample {
+  pipeline::TopEvidence evidence;
+  bool is_tree = false;
+};
+
+/// Fits the coefficients of one type of forest: logistic regression by 40 Newton steps, with a ridge of 0.01.
+/// They are rounded to three decimals, which makes them independent of the order of sums.
+pipeline::TreetopTerms fit_tree_confidence(std::span<const TreetopExample> examples) {
+  using Vector = Eigen::Matrix<double, 6, 1>;
+  constexpr double kRidge = 0.01;
+  Vector weights = Vector::Zero();
+  for (int round = 0; round < 40; ++round) {
+    Vector slope = -kRidge * weights;
+    Eigen::Matrix<double, 6, 6> curvature = kRidge * Eigen::Matrix<double, 6, 6>::Identity();
+    for (const TreetopExample& one : examples) {
+      const pipeline::TreetopTerms values = pipeline::regression_terms(one.evidence);
+      const Vector terms = Eigen::Map<const Vector>(values.data());
+      const double p = 1 / (1 + std::exp(-weights.dot(terms)));
+      slope += ((one.is_tree ? 1 : 0) - p) * terms;
+      curvature += p * (1 - p) * terms * terms.transpose();
+    }
+    weights += curvature.ldlt().solve(slope);
+  }
+  pipeline::TreetopTerms rounded{};
+  for (std::size_t i = 0; i < rounded.size(); ++i)
+    rounded[i] = std::round(1000 * weights[static_cast<Eigen::Index>(i)]) / 1000;
+  return rounded;
+}
 
 constexpr std::uint64_t kFirstTestbedForest = 70'000;  // seed
 
@@ -103,11 +135,11 @@ pipeline::TreeConfidenceModel train_tree_confidence(int forests, int threads,
         meter.add(1);
       });
     });
-    std::vector<pipeline::TreetopExample> examples;
+    std::vector<TreetopExample> examples;
     for (const auto& part : parts)
       for (const ScoredTreetop& top : part) examples.push_back({top.evidence, top.is_tree});
     tops += examples.size();
-    model.weights[type] = pipeline::fit_tree_confidence(examples);
+    model.weights[type] = fit_tree_confidence(examples);
   }
   meter.finish();
   model.trained_on =

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/runner.hpp"
 
 namespace waymark::pipeline {
 namespace {

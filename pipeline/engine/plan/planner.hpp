@@ -7,7 +7,7 @@
 #include "core/input_file.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/pipeline.hpp"
-#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/runner.hpp"
 namespace waymark::pipeline {
 
 /// Connection from a writing stage to an input of a reading stage.

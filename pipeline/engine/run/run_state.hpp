@@ -3,8 +3,8 @@
 #include <map>
 #include <string>
 #include "pipeline/engine/pipeline.hpp"
-#include "pipeline/engine/plan.hpp"
 #include "pipeline/engine/report.hpp"
+#include "pipeline/engine/runner.hpp"
 namespace waymark::pipeline {
 
 /// How a run treats a unit.

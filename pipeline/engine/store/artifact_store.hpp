@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 #include "pipeline/engine/artifact.hpp"
-#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/stage_context.hpp"
 #include "pipeline/engine/stage_spec.hpp"
 namespace waymark::pipeline {

@@ -31,11 +31,11 @@ struct TiePoint {
   ObservedObject object;  // position before alignment
 };
 
-Eigen::Matrix2d clamp_eigenvalues(const Eigen::Matrix2d& matrix, double least) {
+Eigen::Matrix2d clamp_eigenvalues(const Eigen::Matrix2d& matrix, double min_sd) {
   const PrincipalAxes axes = principal_axes(matrix);
   const Eigen::Vector2d along = axes.major_direction(), across = axes.minor_direction();
-  return std::max(axes.major, least * least) * along * along.transpose() +
-         std::max(axes.minor, least * least) * across * across.transpose();
+  return std::max(axes.major, min_sd * min_sd) * along * along.transpose() +
+         std::max(axes.minor, min_sd * min_sd) * across * across.transpose();
 }
 
 // Propagates the covariance of a pose to a horizontal shift. A single product of three matrices costs a
@@ -138,12 +138,12 @@ class BundleAdjustment {
       tie.per_pose = pose_jacobian(view, line, ground).topRows<2>();
       on_slope = pose_jacobian(view, line, {at, tie.gradient}).topRows<2>();
     }
-    const double least = std::max(0.01, body ? 0.03 * body->metres : 0);
+    const double min_sd = std::max(0.01, body ? 0.03 * body->metres : 0);
     const Eigen::Matrix2d given = o.covariance.topLeftCorner<2, 2>();
     // The same pose contribution as in position_covariance; the horizontal one leaves too much where poses
     // are uncertain.
     const Eigen::Matrix2d pose = propagate(on_slope, stated_[static_cast<std::size_t>(image)]);
-    tie.own = given.allFinite() ? clamp_eigenvalues(given - pose, least) : Eigen::Matrix2d::Identity();
+    tie.own = given.allFinite() ? clamp_eigenvalues(given - pose, min_sd) : Eigen::Matrix2d::Identity();
     tie.object.at = o.position.xyz.head<2>();
     tie.object.type = o.type;
     tie.object.source = static_cast<Index>(image);

@@ -12,7 +12,7 @@
 
 #include "core/covariance.hpp"
 #include "core/reorder.hpp"
-#include "landmarks/uid.hpp"
+#include "landmarks/semantic_map.hpp"
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/association/clustering.hpp"
 
@@ -24,12 +24,12 @@ using Index = std::uint32_t;
 // Returns an invertible covariance, limited to the smallest standard deviation of the rules; invalid input is
 // replaced.
 Eigen::Matrix2d usable_covariance(const Eigen::Matrix3d& covariance, double radius, const MergeRules& rules) {
-  const double least = std::max(rules.min_sd, rules.min_sd_per_radius * radius);
+  const double min_sd = std::max(rules.min_sd, rules.min_sd_per_radius * radius);
   Eigen::Matrix2d plane = covariance.topLeftCorner<2, 2>();
   plane = (plane + plane.transpose()).eval() / 2;
   if (!is_covariance(plane))
     plane = Eigen::Matrix2d::Identity() * std::max(radius, 1.0) * std::max(radius, 1.0);
-  return plane + Eigen::Matrix2d::Identity() * least * least;
+  return plane + Eigen::Matrix2d::Identity() * min_sd * min_sd;
 }
 
 struct ObservedObjects {

@@ -1,9 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <vector>
 #include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
 namespace waymark::pipeline {
+
+/// Radial profiles of craters from fresh to almost erased.
+/// Diffusion of a fresh bowl (landmarks/crater_degradation.hpp), as in the testbed. Diffusion is a Gaussian
+/// filter, so averaging over DEM cells only adds to its width.
+class DegradationProfiles {
+ public:
+  DegradationProfiles();
+  static const DegradationProfiles& instance();
+
+  /// State of degradation. Lengths in radii of the fresh crater.
+  struct State {
+    double depth;  ///< crest to floor, in diameters of the worn crest
+    double blur;   ///< standard deviation of the Gaussian
+    double crest;  ///< radius of the highest point of the rim
+    /// ln(crest / edge); the edge is the sharpest bend of the profile, where brightness changes fastest.
+    double crest_over_edge;
+  };
+  /// Returns the states by depth, deepest first, from 0.2 down to 0.02.
+  const std::vector<State>& states() const { return states_; }
+
+  /// Returns the height, in diameters of the fresh crater, at r of its radii, smoothed by `blur` radii.
+  double height(double blur, double r) const;
+
+ private:
+  std::vector<double> blurs_;
+  std::vector<std::vector<float>> heights_;  ///< per blur
+  std::vector<State> states_;
+};
 
 /// Distance of a crater's crest outside its outline in an image.
 struct CrestCorrection {
@@ -14,7 +43,7 @@ struct CrestCorrection {
 /// Estimates the crest of a degraded crater from the terrain; the crest lies outside the steepest change of
 /// brightness (docs/methods/craters.md).
 /// - Heights on 13 ellipses (median of 36 azimuths, minus the plane of the surroundings) are compared with
-///   degradation_profiles.hpp of every depth.
+///   DegradationProfiles of every depth.
 /// - The growth is averaged over their likelihoods with a prior that favours deep craters, as images do.
 /// - A terrain that does not resolve the crater is one of the hypotheses, with growth 0.
 /// `std::nullopt` if the crater is narrower than three cells or heights around it are unknown.

@@ -57,8 +57,8 @@ void running_sums(std::int64_t n, int radius, const Get& get, const Put& put) {
 ShadedRelief shaded_relief(const Terrain& terrain, const Eigen::Vector2d& low, const Eigen::Vector2d& high,
                            int cells, const Sun& sun) {
   const Grid<float>& fine = terrain.heights();
-  const auto within = [](double at, std::int64_t most) {
-    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(most)));
+  const auto within = [](double at, std::int64_t end) {
+    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(end)));
   };
   const std::int64_t left = within((low.x() - terrain.x0()) / terrain.step_x(), fine.columns()),
                      right = within((high.x() - terrain.x0()) / terrain.step_x() + 1, fine.columns()),

@@ -4,12 +4,17 @@
 #include <span>
 #include <vector>
 #include "core/landmark.hpp"
-#include "core/quality.hpp"
 #include "geo/terrain.hpp"
+#include "landmarks/existence_rules.hpp"
 #include "landmarks/landmark_type.hpp"
-#include "pipeline/fusion/valuation/existence.hpp"
 #include "pipeline/fusion/valuation/image_coverage.hpp"
 namespace waymark::pipeline {
+
+/// Returns the probability that a landmark exists:
+///   logit p = best + further_detection x sum of the others - missed_image x missed - prior_penalty.
+/// `confidences` in (0, 1]; `missed` is the number of images that covered it without a detection.
+double existence_probability(std::span<const double> confidences, int missed,
+                             const ExistenceRules& rules = {});
 
 /// Meaning of "the image covers L" and "at least the resolution of i_0" in eqs. 4 and 5.
 enum class CoverRule {

@@ -11,8 +11,7 @@ void register_consumer_types(waymark::TypeRegistry& types);
 int main(int, char** argv) {
   using namespace waymark;
   pipeline::Registry stages;
-  importers::register_importer_stages(stages);
-  pipeline::register_pipeline_stages(stages);
+  workflows::register_built_in_stages(stages);
   pipeline::Pipeline mapping(stages);
   mapping.add("load_dem", R"({"files": [")" + std::string(argv[1]) + R"("]})")
       .add("find_mountain_tops", R"({"min_prominence": 300})")

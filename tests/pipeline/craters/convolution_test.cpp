@@ -8,7 +8,6 @@
 #include "core/random.hpp"
 #include "pipeline/craters/convolution_training.hpp"
 #include "pipeline/craters/crater_model.hpp"
-#include "pipeline/craters/image_augmentation.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
 
 namespace waymark::test {

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "core/text_file.hpp"
 #include "importers/images/image.hpp"
 #include "importers/rasters/dem.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
@@ -27,7 +27,7 @@ std::filesystem::path crater_data() {
   if (!std::filesystem::exists(crater_data())) GTEST_SKIP() << crater_data() << " is not on this machine"
 
 std::vector<std::vector<double>> numbers_of(const std::filesystem::path& path, bool header) {
-  std::ifstream file(path);
+  std::istringstream file(read_text(path, "the catalogue"));
   std::vector<std::vector<double>> rows;
   std::string line;
   if (header) std::getline(file, line);

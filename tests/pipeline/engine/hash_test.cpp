@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fstream>
 
-#include "pipeline/engine/file_hash.hpp"
+#include "pipeline/engine/runner.hpp"
 #include "pipeline/engine/sha256.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/engine/plan.hpp"
+#include "pipeline/engine/runner.hpp"
 
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "core/text_file.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
 namespace waymark::test {
@@ -77,9 +78,7 @@ TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
   std::filesystem::permissions(work / "sbatch", std::filesystem::perms::owner_all);
   const std::string folder = std::filesystem::path(work).string();
   ASSERT_EQ(std::system(("PATH=" + folder + ":$PATH sh " + folder + "/submit.sh").c_str()), 0);
-  std::ifstream calls(work / "calls");
-  const std::string text{std::istreambuf_iterator<char>(calls), {}};
-  EXPECT_EQ(text,
+  EXPECT_EQ(read_text(work / "calls", "the calls"),
             "--parsable --job-name=list_numbers --wrap waymark run 'my job.json' --work work --unit "
             "list_numbers/map\n"
             "--parsable --job-name=square_number --dependency=afterok:1 --array=1-2 --wrap "

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "core/text_file.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
 namespace waymark::test {
@@ -18,8 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return read_text(file, "the result");
 }
 
 /// Returns the files below `folder` whose names end with `end`, sorted.

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "pipeline/forest/crown_width.hpp"
+#include "workflows/detection/crown_detection.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
+using workflows::crown_width;
+using workflows::kMaxCrownDiameter;
 namespace {
 
 constexpr double kCell = 0.6;

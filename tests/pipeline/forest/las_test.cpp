@@ -7,7 +7,7 @@
 
 #include "core/random.hpp"
 #include "importers/points/canopy.hpp"
-#include "importers/points/las_points.hpp"
+#include "importers/points/las_catalogue.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
-#include "workflows/training/synthetic_canopy.hpp"
+#include "workflows/training/rough_forest.hpp"
 namespace waymark::test {
 using workflows::SyntheticCanopy;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
 namespace waymark::test {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "pipeline/fusion/projection/degradation_profiles.hpp"
 #include "pipeline/fusion/projection/detection_projection.hpp"
 
 namespace waymark::test {

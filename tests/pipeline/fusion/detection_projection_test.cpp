@@ -8,10 +8,8 @@
 #include "core/random.hpp"
 #include "pipeline/fusion/projection/footprint.hpp"
 #include "pipeline/fusion/projection/ground_outline.hpp"
-#include "pipeline/fusion/projection/lattice_rings.hpp"
 #include "pipeline/fusion/projection/local_ground_plane.hpp"
 #include "pipeline/fusion/projection/position_covariance.hpp"
-#include "pipeline/fusion/projection/rock_height.hpp"
 #include "tests/pipeline/fusion/own_types.hpp"
 
 namespace waymark::test {

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
+#include "core/text_file.hpp"
 #include "importers/images/image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/sun_angle.hpp"
@@ -21,8 +22,8 @@ struct Annotation {
 };
 
 std::vector<Annotation> annotations() {
-  std::ifstream file(std::string(WAYMARK_SOURCE_DIR) +
-                     "/docs/evaluation/annotations/hirise_nm2020_rocks.csv");
+  const std::string path = "/docs/evaluation/annotations/hirise_nm2020_rocks.csv";
+  std::istringstream file(read_text(WAYMARK_SOURCE_DIR + path, "the annotations"));
   std::vector<Annotation> all;
   std::string line;
   std::getline(file, line);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "workflows/training/rock_match.hpp"
+#include "workflows/training/rock_training_data.hpp"
 namespace waymark::test {
 using namespace workflows;
 

@@ -2,7 +2,7 @@
 #include "core/detection.hpp"
 #include "geo/image_source.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/projection/detection_codec.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "tests/plug_in/marks.hpp"
 namespace waymark::test {
 namespace {
