@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string_view>
 namespace waymark::inline core {
 
-/// A folder PREFIX<process>-XXXXXX, removed with its content by the destructor. It is locked while the
-/// process lives; the constructor removes those of dead processes in the same folder.
+/// Prefix of every hidden file or folder that Waymark keeps beside an output or in the temporary folder.
+inline constexpr std::string_view kAsidePrefix = ".waymark-";
+
+/// A folder .waymark-<process>-<host>-XXXXXX, removed with its content by the destructor. It is locked while
+/// the process lives; the constructor removes those of dead processes in the same folder.
 class LockedFolder {
  public:
+  /// Calls `before_removal` with each folder of a dead process, which is kept if it throws.
   /// Throws std::filesystem::filesystem_error if the folder cannot be made.
-  LockedFolder(const std::filesystem::path& parent, std::string_view prefix);
+  explicit LockedFolder(const std::filesystem::path& parent,
+                        const std::function<void(const std::filesystem::path& dead)>& before_removal = {});
   ~LockedFolder();
   LockedFolder(const LockedFolder&) = delete;
   LockedFolder& operator=(const LockedFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Leaves the folder to the next process that makes one in the same parent.
+  void abandon() { abandoned_ = true; }
 
  private:
   std::filesystem::path path_;
   int lock_ = -1;
+  bool abandoned_ = false;
 };
 
 }  // namespace waymark::inline core

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "exporters/staging_folder.hpp"
+#include "core/output_error.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -43,7 +44,7 @@ std::string wkt_record(const Crs& crs) {
 
 struct LasFile::State {
   std::filesystem::path path;
-  StagingFolder staging;
+  AtomicFile aside;
   std::ofstream file;
   std::string record, buffer;
   std::array<double, 3> origin{}, low{}, high{};
@@ -51,10 +52,10 @@ struct LasFile::State {
   std::uint64_t count = 0;
 
   State(std::filesystem::path final_path, const Crs& crs, double x, double y)
-      : path(std::move(final_path)), staging(path), record(wkt_record(crs)), origin{x, y, 0} {
+      : path(std::move(final_path)), aside(path), record(wkt_record(crs)), origin{x, y, 0} {
     low.fill(std::numeric_limits<double>::infinity());
     high.fill(-std::numeric_limits<double>::infinity());
-    file.open(staging.path() / path.filename(), std::ios::binary);
+    file.open(aside.path(), std::ios::binary);
     file << std::string(kHeader, '\0') << record;
   }
 
@@ -126,7 +127,7 @@ void LasFile::close() {
   s.file << s.header();
   s.file.close();
   if (!s.file) fail_output(s.path, "the point cloud was not written");
-  s.staging.publish();
+  s.aside.commit();
 }
 
 }  // namespace waymark::exporters

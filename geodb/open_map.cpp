@@ -62,7 +62,7 @@ void check_no_view_is_read(const sqlite::Database& database) {
 }
 
 OpenMap open_private_copy(const fs::path& original) try {
-  const LockedFolder folder(fs::temp_directory_path(), "waymark-");  // files open in it outlive it
+  const LockedFolder folder(fs::temp_directory_path());  // files open in it outlive it
   const fs::path copy = folder.path() / "map.gpkg";
   try {
     fs::copy_file(original, copy);

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "geodb/atomic_file.hpp"
 #include "geodb/open_map.hpp"
+#include "geodb/replace_map.hpp"
 #include "geodb/validate_map.hpp"
 
 namespace waymark::geodb {
@@ -31,11 +32,6 @@ void copy_map(const fs::path& from, const fs::path& to) {
   }
 }
 
-void remove_companions(const fs::path& map) {
-  std::error_code ignored;
-  for (const char* suffix : {"-journal", "-wal", "-shm"}) fs::remove(map.string() + suffix, ignored);
-}
-
 /// Saves the file under a second name, by a hard link if possible.
 void save_backup(const fs::path& map, const fs::path& backup) {
   std::error_code problem;
@@ -58,6 +54,7 @@ void update_map(const fs::path& original, const fs::path& result,
   check_before_copy(original);
   std::error_code none;
   const bool in_place = fs::equivalent(original, result, none) && !none;
+  if (in_place) settle_journals(original);  // else the backup lacks the journal that makes it whole
   AtomicFile file(result);
   std::size_t run = 0;
   try {
@@ -66,13 +63,10 @@ void update_map(const fs::path& original, const fs::path& result,
     run = editor.map().runs().size() + 1;
     editor.transact([&] { changes(editor); });
   } catch (const Error& e) {
-    remove_companions(file.path());
-    throw Error(e.code(), e.problem(), e.where().ends_with(".part") ? result.string() : e.where(), e.hint());
+    throw with_final_path(e, file.path(), result);
   }
-  remove_companions(file.path());
   if (in_place) save_backup(original, backup_name(result, run));
-  file.commit();
-  remove_companions(result);
+  replace_map(file);
 }
 
 fs::path restore_map(const fs::path& map) {
@@ -82,12 +76,12 @@ fs::path restore_map(const fs::path& map) {
     throw Error(ErrorCode::input, "there is no backup of this map before its last run", map.string(),
                 fmt::format("its name would be {}", backup.string()));
   open_for_reading(backup);
+  settle_journals(map);
   std::error_code problem;
   fs::rename(backup, map, problem);
   if (problem)
     throw Error(ErrorCode::output, "cannot restore the map: " + problem.message(), map.string(),
                 "check the permissions of the folder");
-  remove_companions(map);
   return backup;
 }
 

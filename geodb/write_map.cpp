@@ -8,8 +8,8 @@
 #include <functional>
 #include <unordered_map>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "geodb/atomic_file.hpp"
 #include "geodb/geopackage/crs_table.hpp"
 #include "geodb/geopackage/dem_coverage.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
@@ -21,6 +21,7 @@
 #include "geodb/layers/landmark_layout.hpp"
 #include "geodb/layers/largest_index.hpp"
 #include "geodb/layers/layer_style.hpp"
+#include "geodb/replace_map.hpp"
 #include "geodb/rtree/landmark_order.hpp"
 #include "geodb/rtree/packed_rtree.hpp"
 #include "geodb/sqlite/sql_text.hpp"
@@ -278,9 +279,9 @@ std::map<std::string, std::int64_t> write_map(const std::filesystem::path& path,
     all.commit();
     database.close();
   } catch (const Error& e) {  // name the map, not the temporary file
-    throw Error(e.code(), e.problem(), e.where().ends_with(".part") ? path.string() : e.where(), e.hint());
+    throw with_final_path(e, file.path(), path);
   }
-  file.commit();
+  replace_map(file);
   return counts;
 }
 

@@ -5,12 +5,12 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/nameless_file.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -19,12 +19,11 @@ constexpr std::size_t kPipePiece = std::size_t{1} << 20;
 
 // Returns an open nameless file.
 int create_nameless_file() {
-  std::string name = (std::filesystem::temp_directory_path() / "waymark-stdin-XXXXXX").string();
-  const int file = ::mkstemp(name.data());
+  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const int file = open_nameless_file(folder);
   if (file < 0)
-    throw Error(ErrorCode::output, "standard input cannot be copied to a temporary file", name,
+    throw Error(ErrorCode::output, "standard input cannot be copied to a temporary file", folder.string(),
                 "set TMPDIR to a folder that may be written");
-  ::unlink(name.c_str());
   return file;
 }
 

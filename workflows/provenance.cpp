@@ -3,6 +3,8 @@
 
 #include <fmt/chrono.h>
 
+#include <utility>
+
 #include "core/source_date.hpp"
 #include "importers/hash.hpp"
 
@@ -38,7 +40,10 @@ geodb::RunRecord make_single_step_record(pipeline::StageReport stage, const std:
 void record_report(geodb::RunRecord& run, pipeline::RunReport report) {
   if (source_date()) {
     report.seconds = 0;
-    for (pipeline::StageReport& stage : report.stages) stage.seconds = 0;
+    for (pipeline::StageReport& stage : report.stages) {
+      stage.seconds = 0;
+      stage.made += std::exchange(stage.reused, 0);  // a resumed run gives the same bytes
+    }
   }
   run.seconds = report.seconds;
   run.report_json = pipeline::report_as_json(report);

@@ -14,7 +14,8 @@ std::string program_version();
 geodb::RunRecord make_run_record(const std::string& command_line,
                                  std::chrono::system_clock::time_point started);
 
-/// Stores a report and its duration in the record; durations are 0 if SOURCE_DATE_EPOCH is set.
+/// Stores a report and its duration in the record. If SOURCE_DATE_EPOCH is set, durations are 0 and reused
+/// units count as made.
 void record_report(geodb::RunRecord& run, pipeline::RunReport report);
 
 /// Returns the record of a map that one step made of one file, without a job. The time runs from `started` to

@@ -7,13 +7,15 @@
 #include <cmath>
 #include <vector>
 
+#include "core/atomic_file.hpp"
+#include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/staging_folder.hpp"
 
 namespace waymark::exporters {
 
 void write_image(const std::filesystem::path& path, const Pixels& image, int bits) {
   GdalMessages messages;
+  AtomicFile aside(path);
   const int columns = static_cast<int>(image.columns()), rows = static_cast<int>(image.rows());
   const double full = bits == 16 ? 65535 : 255;
   std::vector<std::uint16_t> values;
@@ -29,10 +31,12 @@ void write_image(const std::filesystem::path& path, const Pixels& image, int bit
     fail_output(path, messages.cause("out of memory"));
   const char* const options[] = {"ZLEVEL=6", nullptr};
   GDALDriver* png = GetGDALDriverManager()->GetDriverByName("PNG");
-  const GDALDatasetUniquePtr file(
-      png->CreateCopy(path.c_str(), picture.get(), false, const_cast<char**>(options), nullptr, nullptr));
-  if (file) file->FlushCache(true);
-  if (!file || !messages.failures().empty()) fail_output(path, messages.cause("not all of it was written"));
+  GDALDatasetUniquePtr file(png->CreateCopy(aside.path().c_str(), picture.get(), false,
+                                            const_cast<char**>(options), nullptr, nullptr));
+  if (!file) fail_output(path, messages.cause("not all of it was written"));
+  file.reset();
+  if (!messages.failures().empty()) fail_output(path, messages.cause("not all of it was written"));
+  aside.commit();
 }
 
 }  // namespace waymark::exporters

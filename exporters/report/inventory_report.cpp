@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/atomic_file.hpp"
 #include "exporters/formatting.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/report/page_style.hpp"
-#include "exporters/staging_folder.hpp"
 
 namespace waymark::exporters {
 namespace {

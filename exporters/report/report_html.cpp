@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/atomic_file.hpp"
 #include "exporters/formatting.hpp"
 #include "exporters/report/histogram.hpp"
 #include "exporters/report/image_section.hpp"
@@ -16,7 +17,6 @@
 #include "exporters/report/page_style.hpp"
 #include "exporters/report/run_section.hpp"
 #include "exporters/report/size_frequency.hpp"
-#include "exporters/staging_folder.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark::exporters {

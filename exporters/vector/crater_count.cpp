@@ -9,10 +9,10 @@
 #include <memory>
 #include <optional>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "exporters/report/counting_area.hpp"
 #include "exporters/report/landmark_section.hpp"
-#include "exporters/staging_folder.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark::exporters {

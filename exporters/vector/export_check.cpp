@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/staging_folder.hpp"
 
 namespace waymark::exporters {
 

@@ -8,8 +8,9 @@
 #include <cmath>
 #include <functional>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "exporters/staging_folder.hpp"
+#include "core/output_error.hpp"
 #include "exporters/vector/crater_count.hpp"
 #include "exporters/vector/export_check.hpp"
 #include "exporters/vector/map_subset.hpp"
@@ -94,16 +95,16 @@ void write_layers(Export& job, const std::vector<std::string>& types, const std:
   job.warn(output.close());
 }
 
-void write_staged(Export& job, const std::vector<std::string>& types, const fs::path& out) {
-  StagingFolder staging(out);
-  const std::string path = (staging.path() / out.filename()).string();
+void write_aside_first(Export& job, const std::vector<std::string>& types, const fs::path& out) {
+  AtomicFileSet aside(folder_of(out), out);
+  const std::string path = (aside.path() / out.filename()).string();
   const std::size_t before = job.summary.layers.size();
   write_layers(job, types, path, out.string());
   std::int64_t landmarks = 0;
   for (std::size_t i = before; i < job.summary.layers.size(); ++i)
     landmarks += job.summary.layers[i].landmarks;
   job.warn(check_export(job.format, path, out.string(), job.crs, landmarks));
-  for (const fs::path& file : staging.publish()) job.summary.files.push_back(file.string());
+  for (const fs::path& file : aside.commit()) job.summary.files.push_back(file.string());
 }
 
 void refuse_existing(const std::string& out, bool overwrite) {
@@ -175,7 +176,7 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
     else if (!format.is_file || file.path.starts_with("/vsi"))
       write_layers(job, file.types, file.path, file.path);
     else
-      write_staged(job, file.types, file.path);
+      write_aside_first(job, file.types, file.path);
   }
   return std::move(job.summary);
 }

@@ -9,9 +9,9 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "exporters/formatting.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/staging_folder.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "exporters/vector/placemark_text.hpp"
 

@@ -11,10 +11,12 @@
 #include <optional>
 #include <sstream>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/staging_folder.hpp"
+#include "geodb/replace_map.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -119,11 +121,10 @@ void write_track_csv(const fs::path& file, const localization::Track& track, con
 void write_track_geopackage(const fs::path& file, const localization::Track& track,
                             const TrackOutput& output) {
   const GdalMessages messages;
-  StagingFolder staging(file);
-  const fs::path staged = staging.path() / file.filename();
+  AtomicFile aside(file);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  std::unique_ptr<GDALDataset> set(driver ? driver->Create(staged.c_str(), 0, 0, 0, GDT_Unknown, nullptr)
-                                          : nullptr);
+  std::unique_ptr<GDALDataset> set(
+      driver ? driver->Create(aside.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr) : nullptr);
   if (!set) fail_output(file, messages.cause("GDAL has no GeoPackage driver"));
   OGRSpatialReference srs;
   const bool on_body = output.crs->kind() != CrsKind::local;
@@ -149,10 +150,11 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
     feature.SetGeometry(&point);
     if (layer->CreateFeature(&feature) != OGRERR_NONE) fail_output(file, messages.cause("a row was refused"));
   }
-  set->CommitTransaction();
+  if (set->CommitTransaction() != OGRERR_NONE)
+    fail_output(file, messages.cause("the track was not committed"));
   set.reset();
   if (!messages.failures().empty()) fail_output(file, messages.cause("the disk may be full"));
-  staging.publish();
+  geodb::replace_map(aside);
 }
 
 localization::Track read_track_csv(const fs::path& file) {

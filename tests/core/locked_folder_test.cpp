@@ -33,7 +33,7 @@ class LockedFolders : public testing::Test {
 
 TEST_F(LockedFolders, VanishWithTheirContent) {
   {
-    const LockedFolder folder(parent_, ".waymark-");
+    const LockedFolder folder(parent_);
     std::ofstream(folder.path() / "file") << "x";
     EXPECT_EQ(names().size(), 1U);
   }
@@ -45,31 +45,32 @@ TEST_F(LockedFolders, OfAKilledProcessAreRemovedByTheNext) {
   ASSERT_EQ(::pipe(ready), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    const LockedFolder folder(parent_, ".waymark-");
+    const LockedFolder folder(parent_);
     std::ofstream(folder.path() / "half") << "x";
     if (::write(ready[1], "r", 1) != 1) ::_exit(1);
     ::pause();
   }
   char letter = 0;
   ASSERT_EQ(::read(ready[0], &letter, 1), 1);
-  { const LockedFolder other(parent_, ".waymark-"); }
+  { const LockedFolder other(parent_); }
   EXPECT_EQ(names().size(), 1U) << "a living process keeps its folder";
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
   EXPECT_EQ(names().size(), 1U);
-  { const LockedFolder next(parent_, ".waymark-"); }
+  { const LockedFolder next(parent_); }
   EXPECT_TRUE(names().empty());
 }
 
 TEST_F(LockedFolders, OthersAreLeftAlone) {
-  for (const char* name : {".waymark-backup", ".waymark-12-notes", ".waymark-abcdef", "waymark-12-abcdef"})
+  for (const char* name : {".waymark-backup", ".waymark-12-notes", ".waymark-abcdef", ".waymark-12-abcdef",
+                           "waymark-12-h-abcdef"})
     fs::create_directory(parent_ / name);
-  { const LockedFolder folder(parent_, ".waymark-"); }
-  EXPECT_EQ(names().size(), 4U);
+  { const LockedFolder folder(parent_); }
+  EXPECT_EQ(names().size(), 5U);
 }
 
 TEST_F(LockedFolders, WithoutAParentThrow) {
-  EXPECT_THROW(LockedFolder(parent_ / "nowhere", "x"), fs::filesystem_error);
+  EXPECT_THROW(LockedFolder(parent_ / "nowhere"), fs::filesystem_error);
 }
 
 }  // namespace

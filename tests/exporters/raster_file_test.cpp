@@ -75,7 +75,7 @@ TEST_F(RasterFile, SaysWhereItCannotWrite) {
       FAIL();
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::output);
-      EXPECT_THAT(error.what(), ::testing::HasSubstr("missing/"));
+      EXPECT_THAT(error.what(), ::testing::HasSubstr("missing\n  create the folder"));
     }
 }
 

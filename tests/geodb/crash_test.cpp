@@ -11,6 +11,8 @@
 
 #include "core/error.hpp"
 #include "geodb/map_editor.hpp"
+#include "geodb/sqlite/sqlite.hpp"
+#include "geodb/update_map.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
@@ -81,6 +83,56 @@ TEST(Killed, AnEditorLeavesTheMapAsItWas) {
     ASSERT_EQ(MapStore::open(folder / "map.gpkg").count(), 1000) << step;
     ASSERT_THAT(validate_map(folder / "map.gpkg"), IsEmpty()) << step;
   }
+}
+
+/// Leaves a map whose editor was killed when half of its transaction was in the file: the journal is hot.
+void kill_editor(const std::filesystem::path& map) {
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = in_child([&] {
+    const sqlite::Database database(map, sqlite::OpenMode::update);
+    database.execute("PRAGMA cache_spill = ON; PRAGMA cache_size = 10; BEGIN IMMEDIATE");
+    database.execute(
+        "CREATE TABLE half (x); WITH n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < 2000) "
+        "INSERT INTO half SELECT randomblob(2000) FROM n; UPDATE lamp_post SET uid = uid || 'half'");
+    if (::write(ready[1], "r", 1) != 1) ::_exit(1);
+    ::pause();
+  });
+  char letter = 0;
+  ASSERT_EQ(::read(ready[0], &letter, 1), 1);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  ASSERT_GT(std::filesystem::file_size(map.string() + "-journal"), 0U);
+}
+
+// SQLite finds a journal by its name, and would roll back pages of the old map into the new one.
+TEST(Killed, AnEditorsJournalDoesNotDamageTheNextMap) {
+  const TemporaryFolder folder;
+  const auto map = folder / "map.gpkg";
+  write_map(map, scattered({}));
+  kill_editor(map);
+  write_map(map, scattered({.landmarks = 1500, .seed = 2}));
+  EXPECT_EQ(files_in(folder), 1);
+  MapEditor::open(map).remove("lp-1");
+  EXPECT_THAT(validate_map(map), IsEmpty());
+  EXPECT_EQ(MapStore::open(map).count(), 1499);
+}
+
+TEST(Killed, AnEditorsJournalIsInTheBackup) {
+  const TemporaryFolder folder;
+  const auto map = folder / "map.gpkg";
+  write_map(map, scattered({}));
+  kill_editor(map);
+  update_map(map, map, [](MapEditor& editor) {
+    editor.remove("lp-1");
+    editor.add_run(example_run());
+  });
+  EXPECT_EQ(MapStore::open(map).count(), 999);
+  kill_editor(map);
+  restore_map(map);
+  EXPECT_THAT(validate_map(map), IsEmpty());
+  EXPECT_EQ(MapStore::open(map).count(), 1000);
+  EXPECT_EQ(files_in(folder), 1);
 }
 
 TEST(Sharing, ReadersWorkDuringWrites) {

@@ -6,7 +6,6 @@
 #include <fstream>
 
 #include "core/error.hpp"
-#include "geodb/atomic_file.hpp"
 #include "geodb/map_editor.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/sqlite/sqlite.hpp"
@@ -141,14 +140,6 @@ TEST_F(HostileFile, ADamagedMapIsNotCopied) {
   EXPECT_THAT(refusal([&] { update_map(map_, copy, [](MapEditor&) {}); }),
               StartsWith("the map has errors that its copy would have, too"));
   EXPECT_FALSE(std::filesystem::exists(copy));
-}
-
-TEST_F(HostileFile, JournalsOfDeadWritersAreRemoved) {
-  const auto dead = folder_ / ".map.gpkg.1-0.part-journal", other = folder_ / ".else.gpkg.1-0.part-journal";
-  for (const auto& file : {dead, other}) std::ofstream(file) << "x";
-  { const AtomicFile file(map_); }
-  EXPECT_FALSE(std::filesystem::exists(dead));
-  EXPECT_TRUE(std::filesystem::exists(other)) << "of another map";
 }
 
 }  // namespace

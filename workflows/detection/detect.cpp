@@ -7,8 +7,9 @@
 #include <chrono>
 #include <filesystem>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "exporters/staging_folder.hpp"
+#include "core/output_error.hpp"
 #include "geodb/write_map.hpp"
 #include "workflows/detection/detection_plan.hpp"
 #include "workflows/detection/run_detection.hpp"
@@ -30,11 +31,11 @@ struct DetectionOutput {
 };
 
 void write_text(const std::string& output, const std::string& text) {
-  if (!output.starts_with("/vsi")) return exporters::write_file(output, text);
+  if (!output.starts_with("/vsi")) return write_file(output, text);
   VSILFILE* file = VSIFOpenL(output.c_str(), "wb");
-  if (file == nullptr) exporters::fail_output(output, "GDAL cannot write there");
+  if (file == nullptr) fail_output(output, "GDAL cannot write there");
   const bool written = VSIFWriteL(text.data(), 1, text.size(), file) == text.size();
-  if (VSIFCloseL(file) != 0 || !written) exporters::fail_output(output, "GDAL could not write all of it");
+  if (VSIFCloseL(file) != 0 || !written) fail_output(output, "GDAL could not write all of it");
 }
 
 geodb::RunRecord run_record(const exporters::ImageDetections& found, const DetectionOutput& output) {

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "exporters/report/track_picture.hpp"
-#include "exporters/staging_folder.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/harvested_trees.hpp"
@@ -90,7 +90,7 @@ void draw(const TrackEvaluation& request, const localization::Track& track, cons
   picture.tracks.push_back({std::filesystem::path(request.track).stem(), track});
   for (const localization::HarvestedTree& tree : localization::harvested_trees(truth.felled, track))
     picture.mapped.push_back({tree.at, tree.diameter / 2, "#b22222"});
-  exporters::write_file(request.picture, exporters::track_picture(picture));
+  write_file(request.picture, exporters::track_picture(picture));
 }
 
 ScoredTables read_truth(const LandmarkEvaluation& request) {

@@ -5,12 +5,12 @@
 
 #include <filesystem>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 #include "exporters/report/inventory_report.hpp"
-#include "exporters/staging_folder.hpp"
 #include "exporters/vector/shape_csv.hpp"
-#include "geodb/atomic_file.hpp"
+#include "geodb/replace_map.hpp"
 #include "geodb/validate_map.hpp"
 #include "workflows/forest/stand_areas.hpp"
 #include "workflows/forest/stand_figures.hpp"
@@ -82,15 +82,15 @@ geodb::ShapeLayer thinned(geodb::ShapeLayer layer, std::size_t every) {
 void write_output(const InventoryRequest& request, const geodb::ShapeLayer& stands,
                   const geodb::ShapeLayer& trees) {
   if (fs::path(request.output).extension() == ".csv")
-    return exporters::write_file(request.output, exporters::layer_to_csv(stands));
+    return write_file(request.output, exporters::layer_to_csv(stands));
   geodb::check_before_copy(request.map);
   const std::vector layers{stands, trees};
   std::error_code other;
   if (fs::equivalent(request.map, request.output, other)) return geodb::write_layers(request.output, layers);
-  geodb::AtomicFile copy(request.output);
+  AtomicFile copy(request.output);
   fs::copy_file(request.map, copy.path(), fs::copy_options::overwrite_existing);
   geodb::write_layers(copy.path(), layers, geodb::MapAccess::exclusive);
-  copy.commit();
+  geodb::replace_map(copy);
 }
 
 void write_report_page(const InventoryRequest& request, const InventoryResult& result,

@@ -130,8 +130,7 @@ std::vector<localization::MapLandmark> all_landmarks(const RobotMap& map, const 
 }
 
 OpenedMap make_empty_robot_map() try {
-  const LockedFolder folder(std::filesystem::temp_directory_path(),
-                            "waymark-");  // the open file outlives it
+  const LockedFolder folder(std::filesystem::temp_directory_path());  // the open file outlives it
   const std::filesystem::path file = folder.path() / "none.gpkg";
   geodb::MapContents contents;
   contents.types = all_types();

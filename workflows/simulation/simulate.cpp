@@ -5,14 +5,16 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "core/random.hpp"
 #include "core/text_file.hpp"
 #include "exporters/raster/image_file.hpp"
 #include "exporters/raster/raster_file.hpp"
-#include "exporters/staging_folder.hpp"
 #include "geo/crs.hpp"
 #include "testbed/drive/drive_log.hpp"
 #include "testbed/landing/lit_terrain.hpp"
@@ -48,11 +50,12 @@ Crs scenario_crs(const testbed::Scenario& scenario, const std::string& file) {
 void make_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) exporters::fail_output(folder, failed.message());
+  if (failed) fail_output(folder, failed.message());
 }
 
 /// Throws if the folder has images of an older scene, which would be taken for images of this one.
 void check_other_images(const fs::path& images, const std::vector<testbed::Shot>& shots) {
+  if (!fs::is_directory(images)) return;
   for (const auto& entry : fs::directory_iterator(images)) {
     const std::string name = entry.path().filename();
     if (std::ranges::none_of(shots, [&](const testbed::Shot& shot) { return shot.name == name; }))
@@ -64,7 +67,6 @@ void check_other_images(const fs::path& images, const std::vector<testbed::Shot>
 void write_site(const fs::path& folder, const testbed::Scenario& scenario, const testbed::Scene& scene,
                 const std::vector<testbed::Shot>& shots, const Crs& crs) {
   for (const char* part : {"images", "truth"}) make_folder(folder / part);
-  check_other_images(folder / "images", shots);
   const testbed::SimulatedDem dem = testbed::simulate_dem(scenario, scene);
   const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
   exporters::write_raster(folder / "dem.tif", dem.heights,
@@ -77,13 +79,13 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
     exporters::write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
   }
   const testbed::TruthTables truth = testbed::truth_tables(scenario, scene, shots);
-  exporters::write_file(folder / "cameras.json", testbed::camera_file(scenario, shots, false));
-  exporters::write_file(folder / "job.json", testbed::job_file(scenario));
-  exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
-  exporters::write_file(folder / "truth/cameras.json", testbed::camera_file(scenario, shots, true));
-  exporters::write_file(folder / "truth/landmarks.csv", truth.landmarks);
-  exporters::write_file(folder / "truth/ignored.csv", truth.ignored);
-  exporters::write_file(folder / "truth/detections.csv", truth.detections);
+  write_file(folder / "cameras.json", testbed::camera_file(scenario, shots, false));
+  write_file(folder / "job.json", testbed::job_file(scenario));
+  write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+  write_file(folder / "truth/cameras.json", testbed::camera_file(scenario, shots, true));
+  write_file(folder / "truth/landmarks.csv", truth.landmarks);
+  write_file(folder / "truth/ignored.csv", truth.ignored);
+  write_file(folder / "truth/detections.csv", truth.detections);
 }
 
 // Makes the drive of a scenario and writes log.jsonl, truth/track.csv and, in a forest, truth/trees.csv and
@@ -103,11 +105,11 @@ std::string write_drive(const fs::path& folder, const testbed::Scenario& scenari
   const testbed::LogCrs place{scenario.crs,
                               scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
   make_folder(folder / "truth");
-  exporters::write_file(folder / "log.jsonl", testbed::drive_log(world, place));
-  exporters::write_file(folder / "truth/track.csv", testbed::true_track(world, place));
+  write_file(folder / "log.jsonl", testbed::drive_log(world, place));
+  write_file(folder / "truth/track.csv", testbed::true_track(world, place));
   if (!world.trees.empty()) {
-    exporters::write_file(folder / "truth/trees.csv", testbed::standing_table(world, place));
-    exporters::write_file(folder / "truth/felled.csv", testbed::felled_table(world, place));
+    write_file(folder / "truth/trees.csv", testbed::standing_table(world, place));
+    write_file(folder / "truth/felled.csv", testbed::felled_table(world, place));
   }
   return fmt::format("drive of a {}: {:.0f} m in {:.0f} s{}", drive.vehicle, world.steps.back().distance,
                      world.steps.back().t,
@@ -116,15 +118,31 @@ std::string write_drive(const fs::path& folder, const testbed::Scenario& scenari
                          : fmt::format(", {} trees, {} felled", world.trees.size(), world.felled.size()));
 }
 
+/// Writes the files of a scene aside with `write`, and replaces an older scene by all of them together.
+void write_scene(const fs::path& folder, const std::function<void(const fs::path& aside)>& write) {
+  make_folder(folder);
+  AtomicFileSet files(folder, folder / "scenario.json");
+  try {
+    write(files.path());
+  } catch (const Error& error) {
+    throw with_final_path(error, files.path(), folder);
+  }
+  files.commit();
+}
+
 SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Scenario& scenario,
                                const Crs& crs, const Callbacks& callbacks) {
-  const fs::path folder = request.folder;
-  make_folder(folder / "truth");
   const testbed::Scene scene = make_forest_terrain(scenario);
-  const WrittenForest forest = write_forest(folder, scenario, scene, crs);
-  exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
-  if (scenario.drive.on)
-    callbacks.summary(write_drive(folder, scenario, scene, forest.trees, request.scenario) + "\n");
+  WrittenForest forest;
+  std::string drive;
+  write_scene(request.folder, [&](const fs::path& folder) {
+    make_folder(folder / "truth");
+    forest = write_forest(folder, scenario, scene, crs);
+    write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+    if (scenario.drive.on)
+      drive = write_drive(folder, scenario, scene, forest.trees, request.scenario) + "\n";
+  });
+  if (!drive.empty()) callbacks.summary(drive);
   callbacks.summary(fmt::format("{}: {}\n", request.folder, forest.summary));
   return {.trees = forest.trees.size()};
 }
@@ -141,16 +159,22 @@ SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbac
       testbed::make_scene(scenario.ground, static_cast<std::uint64_t>(scenario.seed));
   testbed::check_footprints(scene, shots);
 
-  const fs::path folder = request.folder;
+  std::string drive;
+  const auto add_drive = [&](const fs::path& folder) {
+    drive = write_drive(folder, scenario, scene, {}, request.scenario);
+    write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+  };
   if (request.drive_only) {
-    make_folder(folder);
-    const std::string drive = write_drive(folder, scenario, scene, {}, request.scenario);
-    exporters::write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+    write_scene(request.folder, add_drive);
     callbacks.summary(fmt::format("{}: {}\n", request.folder, drive));
     return {.rocks = scene.rocks.size(), .craters = scene.craters.size()};
   }
-  write_site(folder, scenario, scene, shots, crs);
-  if (scenario.drive.on) callbacks.summary(write_drive(folder, scenario, scene, {}, request.scenario) + "\n");
+  check_other_images(fs::path(request.folder) / "images", shots);
+  write_scene(request.folder, [&](const fs::path& folder) {
+    write_site(folder, scenario, scene, shots, crs);
+    if (scenario.drive.on) add_drive(folder);
+  });
+  if (!drive.empty()) callbacks.summary(drive + "\n");
   callbacks.summary(fmt::format("{}: {:.0f} x {:.0f} m, {} images, {} rocks, {} craters\n", request.folder,
                                 scenario.ground.width, scenario.ground.height, shots.size(),
                                 scene.rocks.size(), scene.craters.size()));

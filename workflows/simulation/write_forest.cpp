@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/atomic_file.hpp"
 #include "exporters/las_file.hpp"
 #include "exporters/raster/raster_file.hpp"
-#include "exporters/staging_folder.hpp"
 #include "testbed/forest/forest_scan.hpp"
 
 namespace waymark::workflows {
@@ -116,10 +116,10 @@ WrittenForest write_forest(const std::filesystem::path& folder, const testbed::S
   exporters::write_raster(folder / "chm.tif", rasters.chm, where);
   const ForestTruth truth =
       forest_truth(law, forest, testbed::visible_crown_fraction(law, forest, seed), unit);
-  exporters::write_file(folder / "truth/landmarks.csv", truth.trees);
-  exporters::write_file(folder / "truth/understory.csv", truth.understory);
-  exporters::write_file(folder / "stands.geojson", stands_geojson(forest, crs, unit));
-  exporters::write_file(folder / "job.json", forest_job(scenario.name, law, scenario.crs));
+  write_file(folder / "truth/landmarks.csv", truth.trees);
+  write_file(folder / "truth/understory.csv", truth.understory);
+  write_file(folder / "stands.geojson", stands_geojson(forest, crs, unit));
+  write_file(folder / "job.json", forest_job(scenario.name, law, scenario.crs));
   std::string summary = fmt::format("{:.0f} x {:.0f} m of forest, {} stands, {} trees, {} laser returns",
                                     law.width, law.height, law.stands, forest.trees.size(), returns);
   return {std::move(forest.trees), std::move(summary)};

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "exporters/staging_folder.hpp"
 #include "pipeline/forest/allometry_fit.hpp"
 
 namespace waymark::workflows {
@@ -51,7 +51,7 @@ std::vector<pipeline::Allometry> fit_allometry(const AllometryRequest& request, 
         fmt::format("{:12} {:12} a {:.4g} b {:.4g}  {} trees  RMSE {:.2f} cm, held out {:.2f} cm\n",
                     row.species, to_string(row.form), row.a, row.b, row.trees, row.rmse, row.held_out_rmse));
   if (request.output.empty()) return table;
-  exporters::write_file(request.output, pipeline::allometry_as_csv(table));
+  write_file(request.output, pipeline::allometry_as_csv(table));
   return table;
 }
 

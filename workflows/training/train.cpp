@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
-#include "exporters/staging_folder.hpp"
 #include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
 #include "pipeline/engine/progress_meter.hpp"
@@ -58,7 +58,7 @@ std::string model_as_source(const std::string& text, const ModelSource& source) 
 
 // Writes a model, as source if the name ends in .cpp. Throws Error{output}.
 void write_model(const std::string& path, const std::string& text, const ModelSource& source) {
-  exporters::write_file(path, path.ends_with(".cpp") ? model_as_source(text, source) : text);
+  write_file(path, path.ends_with(".cpp") ? model_as_source(text, source) : text);
 }
 
 struct CraterExamples {

@@ -2,17 +2,11 @@
 #include "pipeline/engine/store/artifact_store.hpp"
 
 #include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
 
-#include <array>
-#include <atomic>
-#include <cerrno>
-#include <charconv>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/text_file.hpp"
@@ -25,53 +19,22 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kManifest = "manifest.json";
-constexpr std::string_view kPrefix = ".part-";
 
-std::string host_name() {
-  std::array<char, 256> name{};
-  gethostname(name.data(), name.size() - 1);
-  return name.data();
-}
-
-// Returns the process of this machine that created a name of temporary_path, else 0.
-pid_t local_owner(std::string_view name) {
-  const std::string suffix = "-" + host_name();
-  if (!name.starts_with(kPrefix) || !name.ends_with(suffix)) return 0;
-  pid_t process = 0;
-  std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), process);
-  return process;
-}
-
-bool is_gone(pid_t process) {
-  return kill(process, 0) != 0 && errno == ESRCH;
-}
-
-// Returns a path in `folder` that no other thread, process or machine uses, for a file to be renamed later.
-// The name identifies the process, so that files left by killed processes are recognised.
-fs::path temporary_path(const fs::path& folder) {
-  static std::atomic<int> counter = 0;
-  return folder / fmt::format("{}{}-{}-{}", kPrefix, getpid(), counter++, host_name());
-}
-
-// Removes temporary files that killed processes of this machine left in `folder`.
-void remove_stale_files(const fs::path& folder) {
-  std::error_code ignored;  // another process may be cleaning the same folder
-  for (fs::directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
-    const pid_t owner = local_owner(entry->path().filename().string());
-    if (owner > 0 && is_gone(owner)) fs::remove_all(entry->path(), ignored);
-  }
+[[noreturn]] void fail_work(const fs::path& path, const std::string& reason) {
+  throw Error(ErrorCode::output, "cannot write into the work folder: " + reason, path.string(),
+              "free some space or choose another folder with --work; finished results are kept");
 }
 
 // Throws Error{output} with the system's reason.
-void write_file(const fs::path& path, std::string_view bytes) {
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file)
-    throw Error(ErrorCode::output, std::string("cannot write into the work folder: ") + std::strerror(errno),
-                path.string(),
-                "free some space or choose another folder with --work; finished results are kept");
+void write_result(const fs::path& path, std::string_view bytes) {
+  if (const int failed = write_aside(path, bytes)) fail_work(path, std::strerror(failed));
+}
+
+/// Folder beside the results of an item, and removes those of killed processes.
+LockedFolder make_aside(const fs::path& item_folder) try {
+  return LockedFolder(item_folder);
+} catch (const fs::filesystem_error& error) {
+  fail_work(item_folder, error.code().message());
 }
 
 std::string read_file(const fs::path& path) {
@@ -108,15 +71,6 @@ Json intact_manifest(const fs::path& result) try {
   return nullptr;
 }
 
-/// Removes the files of a failed save. After a rename the path no longer exists.
-struct Undo {
-  fs::path path;
-  ~Undo() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
-
 Artifact::Value load(const fs::path& file, const ErasedCodec& codec, const std::string& stage) try {
   return codec.decode(read_file(file));
 } catch (const std::exception& problem) {
@@ -124,17 +78,16 @@ Artifact::Value load(const fs::path& file, const ErasedCodec& codec, const std::
               "compute it again with --rerun-from " + stage);
 }
 
-/// Renames a complete result to its final path. If another process was first, its equal result stays.
-void publish(const fs::path& temporary, const fs::path& result) {
+/// Renames a complete result in `aside` to its final path. If another process was first, its equal result
+/// stays.
+void publish(const fs::path& complete, const fs::path& result, const LockedFolder& aside) {
   std::error_code problem;
   for (int attempt = 0; attempt < 8; ++attempt) {
-    fs::rename(temporary, result, problem);
+    fs::rename(complete, result, problem);
     if (!problem) return;
     if (!intact_manifest(result).is_null()) return;
     std::error_code ignored;
-    const fs::path damaged = temporary_path(result.parent_path());
-    fs::rename(result, damaged, ignored);
-    fs::remove_all(damaged, ignored);
+    fs::rename(result, aside.path() / fmt::format("damaged-{}", attempt), ignored);
   }
   throw Error(ErrorCode::output, "cannot move a result to its final path: " + problem.message(),
               result.string(), "check the write permissions, or choose another folder with --work");
@@ -189,10 +142,9 @@ ArtifactPtr ArtifactStore::artifact(const Unit& unit, const StageSpec& spec, con
 void ArtifactStore::save(const Unit& unit, const StageSpec& spec, const UnitOutcome& outcome) const {
   const fs::path folder = item_folder(unit);
   make_folder(folder);
-  remove_stale_files(folder);
-  const fs::path temporary = temporary_path(folder);
-  make_folder(temporary);
-  const Undo undo{temporary};
+  const LockedFolder aside = make_aside(folder);
+  const fs::path complete = aside.path() / "result";  // has the permissions of any new folder
+  make_folder(complete);
   Json manifest{{"stage", unit.stage},
                 {"item", unit.item},
                 {"fingerprint", unit.fingerprint},
@@ -204,29 +156,30 @@ void ArtifactStore::save(const Unit& unit, const StageSpec& spec, const UnitOutc
                 {"outputs", Json::object()}};
   for (const OutputPort& port : spec.outputs) {
     const std::string bytes = port.codec->encode(outcome.outputs.find(port.name)->second.get());
-    write_file(payload_file(temporary, port.name), bytes);
+    write_result(payload_file(complete, port.name), bytes);
     manifest["outputs"][port.name] = sha256(bytes);
   }
-  write_file(temporary / kManifest, manifest.dump(2, ' ', false, Json::error_handler_t::replace));
-  publish(temporary, result_folder(unit));
+  write_result(complete / kManifest, manifest.dump(2, ' ', false, Json::error_handler_t::replace));
+  publish(complete, result_folder(unit), aside);
   std::error_code ignored;
   fs::remove(failure_file(unit), ignored);
 }
 
 void ArtifactStore::remove(const Unit& unit) const {
-  std::error_code ignored;  // a missing result need not be removed
-  const fs::path temporary = temporary_path(item_folder(unit));
-  fs::rename(result_folder(unit), temporary, ignored);
-  fs::remove_all(temporary, ignored);
+  if (!is_there(result_folder(unit))) return;
+  const LockedFolder aside = make_aside(item_folder(unit));
+  std::error_code ignored;  // another process may have removed it
+  fs::rename(result_folder(unit), aside.path() / "removed", ignored);
 }
 
 void ArtifactStore::save_failure(const Unit& unit, std::string_view message) const {
   make_folder(item_folder(unit));
-  const fs::path temporary = temporary_path(item_folder(unit));
-  write_file(temporary, Json{{"unit", unit.id()}, {"message", message}}.dump(2, ' ', false,
-                                                                             Json::error_handler_t::replace));
+  const LockedFolder aside = make_aside(item_folder(unit));
+  const fs::path file = aside.path() / "failure.json";
+  write_result(file, Json{{"unit", unit.id()}, {"message", message}}.dump(2, ' ', false,
+                                                                          Json::error_handler_t::replace));
   std::error_code ignored;  // the report holds the failure as well
-  fs::rename(temporary, failure_file(unit), ignored);
+  fs::rename(file, failure_file(unit), ignored);
 }
 
 }  // namespace waymark::pipeline

@@ -20,8 +20,7 @@ struct StoredUnit {
 };
 
 /// Work folder with the layout <stage>/<item>/<fingerprint>/{<port>.bin, manifest.json}.
-/// - A result is written under a temporary name and renamed, so it is complete or absent if the process is
-///   killed.
+/// - A result is written in a LockedFolder and renamed, so it is complete or absent if the process is killed.
 /// - The manifest holds the SHA-256 of every file, so damage is detected.
 /// - Processes may share the folder: the first to finish a unit wins, the others drop their equal copy.
 /// - Files are not synced to the device: results damaged by a power loss are computed again.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/store/scratch_file.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/nameless_file.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -19,16 +19,6 @@ namespace {
               full ? std::string("the disk is full: tile results do not fit")
                    : std::string("cannot write temporary results: ") + std::strerror(cause),
               folder.string(), "free some space, or write to another disk");
-}
-
-// Uses O_TMPFILE; on file systems without it, creates a file and unlinks it at once.
-int open_nameless(const std::filesystem::path& folder) {
-  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR)) return file;
-  std::string name = (folder / ".waymark-XXXXXX").string();
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
 }
 
 }  // namespace
@@ -42,7 +32,7 @@ ScratchFile::~ScratchFile() {
 }
 
 void ScratchFile::open() {
-  file_ = open_nameless(folder_);
+  file_ = open_nameless_file(folder_);
   if (file_ < 0) cannot_write(folder_, errno);
 }
 

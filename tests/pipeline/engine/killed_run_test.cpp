@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "core/locked_folder.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
 
 namespace waymark::test {
@@ -69,7 +70,7 @@ class KilledRun : public ToyTest {
  protected:
   std::string sum_in_memory() const { return sum_of(run(long_pipeline(registry))); }
   std::string resumed_sum() const { return sum_of(run(long_pipeline(registry), {.work = work})); }
-  int leftovers() const { return count_below(work, ".part-"); }
+  int leftovers() const { return count_below(work, ".waymark-"); }
   int results() const { return count_below(work, "manifest.json"); }
 
  private:
@@ -110,15 +111,12 @@ TEST_F(KilledRun, GoesOnWhereItWas) {
 
 TEST_F(KilledRun, LeavesNothingForGood) {
   fs::create_directories(work / "sum_squares/map");
-  std::array<char, 256> host{};
-  gethostname(host.data(), host.size() - 1);
-  const std::string leftover = ".part-" + std::to_string(999'999'999) + "-0-" + host.data();
-  fs::create_directories(work / "sum_squares/map" / leftover);
-  fs::create_directories(work / "sum_squares/map/.part-999999999-0-another-machine");
+  const fs::path dead = work / "sum_squares/map/.waymark-999999999-a-host-abcdef";
+  fs::create_directories(dead / "result");
+  const LockedFolder alive(work / "sum_squares/map");
   resumed_sum();
-  EXPECT_FALSE(fs::exists(work / "sum_squares/map" / leftover));
-  EXPECT_TRUE(fs::exists(work / "sum_squares/map/.part-999999999-0-another-machine"))
-      << "it may be alive there";
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(alive.path()));
 }
 
 TEST_F(KilledRun, TwoProcessesFinishTheSameFolder) {
