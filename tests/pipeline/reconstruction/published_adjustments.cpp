@@ -22,7 +22,7 @@ std::vector<std::vector<double>> number_rows(const std::filesystem::path& path) 
     for (std::string word; words >> word;) {
       char* end = nullptr;
       const double value = std::strtod(word.c_str(), &end);
-      row.push_back(*end == '\0' || *end == '.' ? value : std::nan(""));  // 8811.jpg is 8811
+      row.push_back(*end == '\0' || std::string(end) == "jpg" ? value : std::nan(""));  // 8811.jpg is 8811
     }
     if (!row.empty() && !std::isnan(row[0])) rows.push_back(row);
   }

@@ -139,16 +139,17 @@ TEST(PublishedAdjustments, CalibrationInTheFrameOfTheFirstPair) {
   for (const auto& [id, point] : tie_points(number_rows(folder / "measurements/markpts.txt"), 1))
     scene.points.push_back(point);
   place(scene, *lens);
-  // The longest base to the first camera, and its largest component, are held.
+  // The largest component of a base to the first camera is held.
   const Eigen::Vector3d first = scene.images[0].world_from_camera->translation();
-  std::size_t far = 1;
-  const auto base = [&](std::size_t i) -> Eigen::Vector3d {
-    return scene.images[i].world_from_camera->translation() - first;
-  };
-  for (std::size_t i = 1; i < scene.images.size(); ++i)
-    if (base(i).norm() > base(far).norm()) far = i;
+  std::size_t far = 0;
   Eigen::Index axis = 0;
-  base(far).cwiseAbs().maxCoeff(&axis);
+  double largest = 0;
+  for (std::size_t i = 1; i < scene.images.size(); ++i) {
+    const Eigen::Vector3d base = scene.images[i].world_from_camera->translation() - first;
+    if (base.cwiseAbs().maxCoeff() <= largest) continue;
+    largest = base.cwiseAbs().maxCoeff(&axis);
+    far = i;
+  }
   Eigen::Vector3d sd = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   sd[axis] = 0;
   Observations seen;
