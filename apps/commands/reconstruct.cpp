@@ -28,6 +28,11 @@ class Reconstruct final : public Command {
                  .offering(Offer::folder),
              Argument{"--cameras", "FILE", &request_.cameras,
                       "Camera file with the poses, in any format that load_images reads"}
+                 .or_else("poses are solved from the images")
+                 .offering(Offer::file),
+             Argument{"--lens", "FILE", &request_.lens,
+                      "Camera file whose lens is kept, e.g. cameras.json of an earlier flight"}
+                 .or_else("the lens is calibrated from the images")
                  .offering(Offer::file),
              Argument{"--dem", "COARSE", &request_.dem, "Coarse DEM at which the search for heights starts"}
                  .or_else("heights are searched below the cameras")

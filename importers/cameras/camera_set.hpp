@@ -55,6 +55,10 @@ std::vector<std::string> camera_formats();
 /// without a similarity.
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import);
 
+/// Returns the distinct lenses of a camera file in its order, for images of the same cameras. Poses and their
+/// frame do not matter. Throws Error{input} for a file without lenses.
+std::vector<Camera> import_lenses(const std::string& path);
+
 /// Returns the entry with the most path components, counted from the end, in common with an image file; the
 /// last one may lack its extension. Null if there is none, or if two agree equally.
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file);

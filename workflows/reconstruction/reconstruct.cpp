@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "exporters/staging_folder.hpp"
 #include "workflows/output_path.hpp"
+#include "workflows/reconstruction/pose_photos.hpp"
 #include "workflows/reconstruction/posed_images.hpp"
 
 namespace waymark::workflows {
@@ -19,7 +20,12 @@ namespace fs = std::filesystem;
 void check_request(const ReconstructRequest& request) {
   if (request.folder.empty())
     throw Error(ErrorCode::usage, "no folder is given for the products", "", "pass -o DIR");
-  if (request.cameras.empty()) throw Error(ErrorCode::usage, "no poses are given", "", "pass --cameras FILE");
+  if (request.cameras.empty() && request.images.empty())
+    throw Error(ErrorCode::usage, "neither images nor poses are given", "",
+                "name a folder of images, or pass --cameras FILE");
+  if (!request.cameras.empty() && !request.lens.empty())
+    throw Error(ErrorCode::usage, "--lens and --cameras are both given, but poses come with their lens", "",
+                "leave out --lens");
   if (!(request.cell >= 0 && std::isfinite(request.cell)))
     throw Error(ErrorCode::usage, fmt::format("--cell {} is not a size in metres", request.cell), "",
                 "pass a number above 0, or leave it out");
@@ -43,6 +49,15 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   check_request(request);
   const fs::path folder = request.folder;
   make_output_folder(folder);
+  if (request.cameras.empty()) {
+    const PosedPhotos made = pose_photos({.images = request.images,
+                                          .folder = request.folder,
+                                          .lens = request.lens,
+                                          .crs = request.crs,
+                                          .threads = request.threads},
+                                         callbacks);
+    return {.images = made.posed, .failed = made.failures.size()};
+  }
   const PosedImages posed = read_posed_images(
       {.images = request.images, .cameras = request.cameras, .crs = request.crs}, callbacks);
   exporters::write_file(folder / "cameras.json", camera_file(posed));

@@ -19,7 +19,8 @@ enum class ReconstructUntil {
 struct ReconstructRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders; empty: those the camera file names
   std::string folder = {};               ///< for the products; may exist
-  std::string cameras = {};              ///< camera file with the poses
+  std::string cameras = {};              ///< camera file with the poses; empty: they are solved
+  std::string lens = {};                 ///< camera file whose lens holds for poses to be solved
   std::string dem = {};                  ///< coarse DEM, start of the heights; empty: they are searched
   std::string crs = {};                  ///< of the map; empty: that of the camera file
   double cell = 0;                       ///< of the DEM, metres; 0: twice the median ground sample distance
@@ -32,11 +33,12 @@ struct ReconstructRequest {
 /// What was made.
 struct ReconstructResult {
   std::size_t images = 0;             ///< with poses
+  std::size_t failed = 0;             ///< without
   std::int64_t cells = 0, kept = 0;   ///< of the DEM; with a height
   std::optional<MapResult> map = {};  ///< if a map was requested
 
   /// Exit code of interface.md.
-  int exit_code() const { return map ? map->exit_code() : 0; }
+  int exit_code() const { return map ? map->exit_code() : failed > 0 ? 3 : 0; }
 };
 
 /// Makes a DEM with its accuracy, an orthophoto and a job from images, and the map of landmarks on request.

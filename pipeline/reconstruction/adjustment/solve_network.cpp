@@ -75,7 +75,7 @@ ceres::Solver::Options solver_options(const SolveOptions& options, bool points) 
   solver.dense_linear_algebra_library_type = ceres::EIGEN;  // no BLAS: the same bits everywhere
   solver.num_threads = 1;
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = 1e-14;
+  solver.function_tolerance = options.function_tolerance;
   solver.parameter_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-14;
   solver.initial_trust_region_radius = 1e6;

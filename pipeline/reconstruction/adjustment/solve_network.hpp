@@ -6,6 +6,7 @@ namespace waymark::pipeline {
 struct SolveOptions {
   double cauchy = 0;  ///< width of the Cauchy loss of all terms, standard deviations; 0: plain squares
   int max_iterations = 100;
+  double function_tolerance = 1e-14;  ///< relative change of the cost that ends the iterations
 };
 
 struct SolveReport {

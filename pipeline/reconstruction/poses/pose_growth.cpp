@@ -27,7 +27,8 @@ void solve_scene(Reconstruction& scene, const Observations& observations, const 
       {std::vector<bool>(observations.control.size()), std::vector<bool>(observations.positions.size()),
        std::vector<bool>(observations.attitudes.size()), std::vector<bool>(observations.ups.size()),
        std::vector<bool>(observations.heights.size())});
-  const SolveReport report = solve(built.network, {.cauchy = kGrowthCauchy, .max_iterations = iterations});
+  const SolveReport report = solve(
+      built.network, {.cauchy = kGrowthCauchy, .max_iterations = iterations, .function_tolerance = 1e-5});
   if (report.usable) write_back(built, scene);
 }
 

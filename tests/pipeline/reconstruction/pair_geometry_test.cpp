@@ -121,11 +121,12 @@ TEST(PairGeometry, TheSameSeedGivesTheSameBits) {
   EXPECT_EQ(a.inliers, b.inliers);
 }
 
-TEST(FocalVote, ConvergingViewsGiveTheFocalLength) {
+// Axes that meet in a point would leave the focal length open.
+TEST(FocalVote, TurnedViewsGiveTheFocalLength) {
   std::vector<FocalEvidence> votes;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const Eigen::Vector3d turn(0.05 * double(seed), -0.3, 0.1);
-    const RayMatches rays = make_rays({.motion = {0.3, 0.05 * double(seed), 0.05}, .turn = turn}, seed);
+    const Eigen::Vector3d turn(0.1 + 0.05 * double(seed), -0.1, 0.3);
+    const RayMatches rays = make_rays({.motion = {0.3, 0.1 * double(seed) - 0.3, 0.1}, .turn = turn}, seed);
     std::vector<Eigen::Vector2d> a, b;
     for (const Eigen::Vector3d& r : rays.first) a.emplace_back(kFocal * r.hnormalized());
     for (const Eigen::Vector3d& r : rays.second) b.emplace_back(kFocal * r.hnormalized());
