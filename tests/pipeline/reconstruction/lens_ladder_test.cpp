@@ -35,7 +35,7 @@ CalibratedAdjustment calibrate(MadeScene& made, const Observations& seen) {
 }
 
 TEST(LensLadder, ObliqueImagesOverReliefDetermineTheLens) {
-  MadeScene made = made_scene({.seed = 3, .tilt = 0.4, .points = 800, .camera = truth_of_lens()});
+  MadeScene made = made_scene({.seed = 3, .tilt = 0.4, .points = 400, .camera = truth_of_lens()});
   const Observations seen{.positions = made_positions(made.truth, 0.1, 4)};
   const CalibratedAdjustment found = calibrate(made, seen);
   for (const char* name : {"f", "k1"}) {
@@ -84,7 +84,7 @@ TEST(LensLadder, FisheyesAreCalibrated) {
   Camera camera{.columns = 1000, .rows = 1000, .fx = 500, .fy = 500, .cx = 499.5, .cy = 499.5};
   camera.lens = Camera::Lens::fisheye;
   camera.distortion = {0.1203, 0.0337};  // the lander camera of Mars 2020
-  MadeScene made = made_scene({.seed = 6, .tilt = 0.3, .points = 800, .camera = camera});
+  MadeScene made = made_scene({.seed = 6, .tilt = 0.3, .points = 400, .camera = camera});
   const Observations seen{.positions = made_positions(made.truth, 0.1, 7)};
   made.start.lenses[0].camera.fx = made.start.lenses[0].camera.fy = 510;
   made.start.lenses[0].camera.distortion[0] = 0.08;
