@@ -5,8 +5,8 @@
 #include <vector>
 #include "geo/camera.hpp"
 #include "geo/crs.hpp"
+#include "geo/similarity.hpp"
 #include "geo/sun.hpp"
-#include "importers/cameras/similarity.hpp"
 namespace waymark::importers {
 
 /// Options for information that a camera file may lack.

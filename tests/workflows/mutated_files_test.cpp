@@ -175,7 +175,7 @@ TEST_F(MutatedFiles, OfLaserPoints) {
 }
 
 importers::CameraImport map_frame() {
-  return {.crs = "EPSG:32651", .camera_crs = "EPSG:32651", .map_from_frame = importers::Similarity{}};
+  return {.crs = "EPSG:32651", .camera_crs = "EPSG:32651", .map_from_frame = Similarity{}};
 }
 
 constexpr const char* kCameras = R"({

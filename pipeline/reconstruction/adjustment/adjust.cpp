@@ -39,20 +39,19 @@ class Adjustment {
     }
     for (int round = 0; round < kRounds; ++round) {
       solve_with(0);
-      const bool testable = options_.robust && round + 1 < kRounds;
-      if (testable && remove(outlying_marks(built_.network, options_.outlier_limit))) {
-        build();
-        continue;
-      }
-      const double sigma0 = sigma0_of(built_.network, 0);
-      covariance_ = options_.covariance || options_.robust ? covariance(built_.network) : NetworkCovariance{};
-      if (testable && leave_out_blunder(sigma0)) {
-        build();
-        continue;
-      }
-      break;
+      if (options_.covariance)
+        covariance_ = covariance(built_.network);
+      else
+        covariance_.free_datum = static_cast<int>(free_frame_changes(built_.network).cols());
+      if (!options_.robust || round + 1 == kRounds) break;
+      // A wrong coordinate bends its marks: it goes first.
+      const double sigma0 = sigma0_of(built_.network, covariance_.free_datum);
+      if (!leave_out_blunder(sigma0) && !remove(outlying_marks(built_.network, options_.outlier_limit)))
+        break;
+      build();
     }
     report(scene_, seen_, built_, covariance_, left_out_, result_);
+    if (!options_.covariance) result_.determined = true;  // as far as is known
     return std::move(result_);
   }
 
@@ -136,6 +135,7 @@ class Adjustment {
 
   // Leaves out the observation of the largest statistic, if that leaves the frame as well determined.
   bool leave_out_blunder(double sigma0) {
+    if (!covariance_.determined) return false;
     const Term* worst = nullptr;
     double largest = options_.blunder_limit;
     for (const auto& term : built_.network.terms) {

@@ -18,7 +18,7 @@ struct AdjustmentOptions {
   double outlier_limit = 3;  ///< marks of larger residuals are removed, standard deviations
   double blunder_limit = 4;  ///< other observations of larger test statistics are removed (Baarda 1968)
   int max_iterations = 100;
-  bool covariance = true;
+  bool covariance = true;  ///< and, with `robust`, the blunder test, which needs it
   /// Models that replace lens_model(), by lens; empty pointers do not.
   std::vector<std::shared_ptr<const LensModel>> lens_models = {};
 };
@@ -72,7 +72,7 @@ struct AdjustmentResult {
   std::size_t unknowns = 0;      ///< scalar ones
   /// Freedoms of the frame that no observation fixes, of 7; covariances then hold for inner constraints.
   int free_datum = 0;
-  bool determined = true;  ///< false: more unknowns are undetermined than the frame; no covariance
+  bool determined = true;  ///< false: more unknowns than the frame are undetermined; no covariance
   std::vector<RemovedMark> removed = {};
   std::vector<ControlResult> control = {};  ///< as `Observations::control`
   std::vector<ObservationResult> others = {};

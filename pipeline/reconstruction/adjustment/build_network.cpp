@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "pipeline/reconstruction/adjustment/terms.hpp"
+#include "pipeline/reconstruction/adjustment/triangulate.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -166,13 +167,29 @@ class Builder {
         add_block(Block::Kind::pose, value, fixed ? std::vector<int>{} : std::vector<int>{0, 1, 2, 3, 4, 5});
   }
 
+  // Median of observed minus current heights.
+  double median_bias() const {
+    std::vector<double> all;
+    const auto add = [&](std::size_t image, double height, double sd) {
+      const auto& pose = scene_.images[image].world_from_camera;
+      if (pose && std::isfinite(sd)) all.push_back(height - pose->translation().z());
+    };
+    for (const auto& o : seen_.positions)
+      if (o.biased_height) add(o.image, o.position.z(), o.sd.z());
+    for (const auto& o : seen_.heights)
+      if (o.biased) add(o.image, o.height, o.sd);
+    if (all.empty()) return 0;
+    std::ranges::sort(all);
+    return all[all.size() / 2];
+  }
+
   void add_bias() {
     const auto posed = [&](const auto& o) { return scene_.images[o.image].world_from_camera.has_value(); };
     const bool needed =
         std::ranges::any_of(seen_.positions, [&](const auto& o) { return o.biased_height && posed(o); }) ||
         std::ranges::any_of(seen_.heights, [&](const auto& o) { return o.biased && posed(o); });
     if (!needed || !(seen_.height_bias_sd > 0)) return;
-    built_.bias_block = add_block(Block::Kind::bias, Eigen::VectorXd::Zero(1), {0});
+    built_.bias_block = add_block(Block::Kind::bias, Eigen::VectorXd::Constant(1, median_bias()), {0});
     if (std::isfinite(seen_.height_bias_sd))
       network().terms.push_back(
           component_term({Kind::bias}, *built_.bias_block, 0, 1, 0, seen_.height_bias_sd));
@@ -204,9 +221,21 @@ class Builder {
       const std::size_t block = add_block(Block::Kind::point, *point.position - network().origin, {0, 1, 2});
       built_.point_blocks[i] = block;
       add_marks(Kind::tie_mark, i, point.marks, marks, block);
-      if (seen_.surface)
+      if (seen_.surface && seen_.surface->height(point.position->x(), point.position->y()))
         network().terms.push_back(surface_term({Kind::surface, i}, block, *seen_.surface, network().origin));
     }
+  }
+
+  // Where its marks place the point: a start at wrong coordinates would make outliers of the marks. Fixed
+  // components, and all of a point that its marks do not place, start at the coordinates.
+  Eigen::Vector3d control_start(const ControlPoint& point, const std::vector<RankedMark>& ranked) {
+    std::vector<Mark> marks;
+    for (const RankedMark& m : ranked) marks.push_back(point.marks[m.index]);
+    Eigen::Vector3d start = point.position;
+    const auto found = triangulate(scene_, marks);
+    for (int axis = 0; axis < 3 && found; ++axis)
+      if (!(point.sd[axis] <= 0)) start[axis] = found->position[axis];
+    return start - network().origin;
   }
 
   void add_control() {
@@ -221,10 +250,10 @@ class Builder {
       std::vector<int> free;
       for (int axis = 0; axis < 3; ++axis)
         if (!(point.sd[axis] <= 0)) free.push_back(axis);
-      const Eigen::Vector3d value = point.position - network().origin;
-      const std::size_t block = add_block(Block::Kind::point, value, free);
+      const std::size_t block = add_block(Block::Kind::point, control_start(point, marks), free);
       built_.control_blocks[i] = block;
       add_marks(Kind::control_mark, i, point.marks, marks, block);
+      const Eigen::Vector3d value = point.position - network().origin;
       if (auto term = position_term({Kind::control, i}, {block}, false, value, point.sd))
         network().terms.push_back(std::move(term));
     }

@@ -3,6 +3,8 @@
 
 #include <ceres/ceres.h>
 
+#include "pipeline/reconstruction/adjustment/frame_changes.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -69,7 +71,7 @@ class FreeChanges final : public ceres::Manifold {
   std::vector<int> free_;
 };
 
-ceres::Solver::Options solver_options(const SolveOptions& options, bool points) {
+ceres::Solver::Options solver_options(const SolveOptions& options, bool points, bool free_frame) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = points ? ceres::DENSE_SCHUR : ceres::DENSE_QR;
   solver.dense_linear_algebra_library_type = ceres::EIGEN;  // no BLAS: the same bits everywhere
@@ -79,6 +81,8 @@ ceres::Solver::Options solver_options(const SolveOptions& options, bool points) 
   solver.parameter_tolerance = 1e-12;
   solver.gradient_tolerance = 1e-14;
   solver.initial_trust_region_radius = 1e6;
+  // Damping of at least this fraction keeps the matrix regular where the frame is free.
+  solver.max_trust_region_radius = free_frame ? 1e8 : 1e12;
   solver.logging_type = ceres::SILENT;
   return solver;
 }
@@ -86,6 +90,14 @@ ceres::Solver::Options solver_options(const SolveOptions& options, bool points) 
 }  // namespace
 
 SolveReport solve(Network& network, const SolveOptions& options) {
+  // One array for all values: Ceres orders unknowns by their addresses.
+  std::vector<double> storage;
+  std::vector<std::size_t> first;
+  for (const Block& block : network.blocks) {
+    first.push_back(storage.size());
+    storage.insert(storage.end(), block.value.begin(), block.value.end());
+  }
+  const auto values_of = [&](std::size_t block) { return storage.data() + first[block]; };
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ownership.disable_all_safety_checks = true;
@@ -93,27 +105,30 @@ SolveReport solve(Network& network, const SolveOptions& options) {
   ceres::Problem problem(ownership);
   bool points = false;
   auto order = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (Block& block : network.blocks) {
-    problem.AddParameterBlock(block.value.data(), static_cast<int>(block.value.size()));
+  for (std::size_t i = 0; i < network.blocks.size(); ++i) {
+    const Block& block = network.blocks[i];
+    problem.AddParameterBlock(values_of(i), static_cast<int>(block.value.size()));
     if (block.free.empty()) {
-      problem.SetParameterBlockConstant(block.value.data());
+      problem.SetParameterBlockConstant(values_of(i));
     } else if (block.kind == Block::Kind::pose ||
                block.free.size() < static_cast<std::size_t>(block.value.size())) {
-      problem.SetManifold(block.value.data(), new FreeChanges(block));
+      problem.SetManifold(values_of(i), new FreeChanges(block));
     }
     const bool point = block.kind == Block::Kind::point;
     points = points || (point && !block.free.empty());
-    order->AddElementToGroup(block.value.data(), point ? 0 : 1);
+    order->AddElementToGroup(values_of(i), point ? 0 : 1);
   }
   for (const auto& term : network.terms) {
     std::vector<double*> values;
-    for (const std::size_t i : term->blocks) values.push_back(network.blocks[i].value.data());
+    for (const std::size_t i : term->blocks) values.push_back(values_of(i));
     problem.AddResidualBlock(new TermCost(network, *term), options.cauchy > 0 ? &cauchy : nullptr, values);
   }
-  ceres::Solver::Options solver = solver_options(options, points);
+  ceres::Solver::Options solver = solver_options(options, points, free_frame_changes(network).cols() > 0);
   if (points) solver.linear_solver_ordering = order;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
+  for (std::size_t i = 0; i < network.blocks.size(); ++i)
+    network.blocks[i].value = Eigen::Map<const Eigen::VectorXd>(values_of(i), network.blocks[i].value.size());
   return {summary.IsSolutionUsable(), summary.termination_type == ceres::CONVERGENCE,
           static_cast<int>(summary.iterations.size())};
 }
