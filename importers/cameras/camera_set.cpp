@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -82,6 +83,22 @@ CameraSet import_cameras(const std::string& path, const std::string& format, con
     throw Error(error.code(), error.problem(),
                 error.where().empty() ? path : fmt::format("{}, at {}", path, error.where()), error.hint());
   }
+}
+
+std::vector<Camera> import_lenses(const std::string& path) {
+  const CameraSource source{.path = path, .head = head_of_source(path), .interior = {}};
+  std::vector<Camera> lenses;
+  for (const CameraRecord& image : recognised(source).read(source).images) {
+    if (!image.camera || image.camera->columns <= 0) continue;
+    Camera camera = *image.camera;
+    if (std::isnan(camera.cx)) camera.cx = double(camera.columns - 1) / 2;
+    if (std::isnan(camera.cy)) camera.cy = double(camera.rows - 1) / 2;
+    if (std::ranges::find(lenses, camera) == lenses.end()) lenses.push_back(camera);
+  }
+  if (lenses.empty())
+    throw Error(ErrorCode::input, "the camera file has no lens with its image size", path,
+                "name a camera file of the same camera, e.g. cameras.json of an earlier reconstruction");
+  return lenses;
 }
 
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file) {

@@ -5,8 +5,8 @@
 #include <vector>
 #include "geo/camera.hpp"
 #include "geo/crs.hpp"
+#include "geo/similarity.hpp"
 #include "geo/sun.hpp"
-#include "importers/cameras/similarity.hpp"
 namespace waymark::importers {
 
 /// Options for information that a camera file may lack.
@@ -54,6 +54,10 @@ std::vector<std::string> camera_formats();
 /// whose distortion does not invert anywhere in the image, duplicate image names, a frame without scale and
 /// without a similarity.
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import);
+
+/// Returns the distinct lenses of a camera file in its order, for images of the same cameras. Poses and their
+/// frame do not matter. Throws Error{input} for a file without lenses.
+std::vector<Camera> import_lenses(const std::string& path);
 
 /// Returns the entry with the most path components, counted from the end, in common with an image file; the
 /// last one may lack its extension. Null if there is none, or if two agree equally.

@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 #include <vector>
+#include "geo/similarity.hpp"
 #include "importers/cameras/camera_file.hpp"
-#include "importers/cameras/similarity.hpp"
 namespace waymark::importers {
 
 /// Similarity from a camera frame to the map, as estimated from control points.

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 #include "geo/crs.hpp"
+#include "geo/similarity.hpp"
 #include "importers/cameras/camera_file.hpp"
-#include "importers/cameras/similarity.hpp"
 namespace waymark::importers {
 
 /// Transforms a point from the frame of a camera file to the grid frame. NaN for a point outside the domain

@@ -7,7 +7,7 @@
 
 #include "importers/cameras/camera_set.hpp"
 #include "importers/cameras/control_points.hpp"
-#include "importers/cameras/similarity.hpp"
+#include "geo/similarity.hpp"
 #include "importers/images/image.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"

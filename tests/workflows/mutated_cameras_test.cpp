@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 
 importers::CameraImport map_frame() {
-  return {.crs = "EPSG:32651", .camera_crs = "EPSG:32651", .map_from_frame = importers::Similarity{}};
+  return {.crs = "EPSG:32651", .camera_crs = "EPSG:32651", .map_from_frame = Similarity{}};
 }
 
 constexpr const char* kCameras = R"({

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/cameras/similarity.hpp"
+#include "geo/similarity.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 
-namespace waymark::importers {
+namespace waymark::inline geo {
 namespace {
 
 Eigen::Matrix3Xd columns_of(const std::vector<Eigen::Vector3d>& points) {
@@ -58,4 +58,4 @@ double residual(const Similarity& similarity, const std::vector<Eigen::Vector3d>
   return frame.empty() ? 0 : std::sqrt(sum / static_cast<double>(frame.size()));
 }
 
-}  // namespace waymark::importers
+}  // namespace waymark::inline geo

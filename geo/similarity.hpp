@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
-namespace waymark::importers {
+namespace waymark::inline geo {
 
 /// Similarity transform: map = scale * rotation * frame + shift.
 struct Similarity {
@@ -23,4 +23,4 @@ Similarity estimate_similarity(const std::vector<Eigen::Vector3d>& frame,
 double residual(const Similarity& similarity, const std::vector<Eigen::Vector3d>& frame,
                 const std::vector<Eigen::Vector3d>& map);
 
-}  // namespace waymark::importers
+}  // namespace waymark::inline geo

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/reconstruction/reconstruct.hpp"
+#include "apps/command.hpp"
+#include "apps/console.hpp"
+
+namespace waymark::apps {
+namespace {
+
+class Reconstruct final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "reconstruct",
+        .group = Group::make,
+        .summary = "Make a DEM, an orthophoto and a map from overlapping images",
+        .about =
+            "Writes into a folder: cameras.json (poses), dem.tif (height, its standard deviation, that of "
+            "the "
+            "poses, number of views, convergence angle, score, reason of no data), orthophoto.tif and "
+            "job.json, which `waymark run` turns into the map.\n\n"
+            "Heights are measured where two or more images agree. Every other cell has no data and a reason "
+            "(docs/methods/reconstruction.md).",
+        .arguments =
+            {Argument{"", "IMAGES...", &request_.images,
+                      "Images, patterns or folders; default: those the camera file names"},
+             Argument{"-o,--output", "DIR", &request_.folder, "Folder for the products; it may exist"}
+                 .needed()
+                 .offering(Offer::folder),
+             Argument{"--cameras", "FILE", &request_.cameras,
+                      "Camera file with the poses, in any format that load_images reads"}
+                 .or_else("poses are solved from the images")
+                 .offering(Offer::file),
+             Argument{"--lens", "FILE", &request_.lens,
+                      "Camera file whose lens is kept, e.g. cameras.json of an earlier flight"}
+                 .or_else("the lens is calibrated from the images")
+                 .offering(Offer::file),
+             Argument{"--dem", "COARSE", &request_.dem, "Coarse DEM at which the search for heights starts"}
+                 .or_else("heights are searched below the cameras")
+                 .offering(Offer::file),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else("that of the camera file"),
+             Argument{"--cell", "M", &request_.cell, "Size of a cell of the DEM"}.or_else(
+                 "twice the median size of a pixel on the terrain"),
+             Argument{"--until", "PRODUCT", &until_, "Last product to make"}
+                 .one_of({"poses", "dem", "ortho"})
+                 .or_else("ortho"),
+             Argument{"--map-landmarks", "MAP.gpkg", &request_.map,
+                      "Run job.json as well and write the map of rocks, craters and mountain tops"}
+                 .offering(Offer::file)},
+        .examples = {
+            {"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
+            {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
+             "The map in one command"},
+            {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif --until "
+             "dem -o site",
+             "A DEM from poses of COLMAP, started at a coarse one"}}};
+  }
+
+  int run(const Session& session) override {
+    using workflows::ReconstructUntil;
+    request_.until = until_ == "poses" ? ReconstructUntil::poses
+                     : until_ == "dem" ? ReconstructUntil::dem
+                                       : ReconstructUntil::ortho;
+    request_.threads = static_cast<int>(session.threads);
+    request_.command_line = session.command_line;
+    return workflows::reconstruct(request_, console_callbacks(session)).exit_code();
+  }
+
+ private:
+  workflows::ReconstructRequest request_;
+  std::string until_;
+};
+
+}  // namespace
+
+void register_command_reconstruct(CommandTable& commands);
+void register_command_reconstruct(CommandTable& commands) {
+  commands.add<Reconstruct>();
+}
+
+}  // namespace waymark::apps

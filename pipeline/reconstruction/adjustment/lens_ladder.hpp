@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "pipeline/reconstruction/adjustment/adjust.hpp"
+namespace waymark::pipeline {
+
+/// Decision about one parameter of a lens.
+struct LadderStep {
+  std::size_t lens = 0;
+  std::string parameter = {};
+  bool admitted = false;
+  double value = 0, sd = 0, prior_sd = 0;
+  double correlation = 0;                          ///< largest, to a parameter already in
+  std::string correlated_with = {};                ///< that parameter
+  double left_out_before = 0, left_out_after = 0;  ///< residuals of left-out points, standard deviations
+  std::string reason = {};                         ///< why it stays at its prior value; empty if admitted
+};
+
+struct LadderOptions {
+  double max_sd = 0.3;  ///< of an admitted parameter, by that of its prior
+  double max_correlation = 0.95;
+};
+
+struct CalibratedAdjustment {
+  AdjustmentResult adjustment = {};
+  std::vector<LadderStep> steps = {};
+  std::vector<LensPrior> priors = {};  ///< used: those given, and defaults for the other parameters
+};
+
+/// Adjusts, with self-calibration: f, k1, k2, (cx, cy), (p1, p2) in this order; no p1, p2 for a fisheye. A
+/// group enters only if the data determine it (LadderOptions) and the residuals of left-out tie points fall.
+/// Otherwise its parameters keep their values. `options.free_lens_parameters` are free from the start.
+CalibratedAdjustment adjust_with_ladder(Reconstruction& scene, const Observations& observations,
+                                        AdjustmentOptions options = {}, const LadderOptions& ladder = {});
+
+/// Returns the prior of a parameter when nothing is known: its value, with a standard deviation of 10 % for
+/// f, 2 % of the width for cx and cy, 0.2 for k1 to k4, 0.005 for p1 and p2.
+LensPrior default_prior(const Camera& camera, std::size_t lens, const std::string& parameter, double value);
+
+}  // namespace waymark::pipeline

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/reconstruction/photo_priors.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "geo/crs.hpp"
+#include "importers/cameras/camera_file.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+constexpr double kPriorDegree = std::numbers::pi / 180;
+
+// Angle from grid north to true north, clockwise, radians.
+double convergence(const CrsTransform& to_grid, double lon, double lat) {
+  const auto here = to_grid(lon, lat), north = to_grid(lon, lat + (lat > 89 ? -1e-4 : 1e-4));
+  return std::atan2(north.x - here.x, north.y - here.y);
+}
+
+// Turn of the stored picture against the upright one about the view, radians clockwise; EXIF 2.32, table 6.
+std::optional<double> stored_turn(int orientation) {
+  switch (orientation) {
+    case 1:
+      return 0;
+    case 3:
+      return std::numbers::pi;
+    case 6:
+      return -std::numbers::pi / 2;
+    case 8:
+      return std::numbers::pi / 2;
+    default:
+      return std::nullopt;
+  }
+}
+
+Eigen::Matrix3d attitude_of(const importers::GimbalAngles& gimbal, double grid_yaw, double turn) {
+  Eigen::Matrix3d level;  // looks north: x east, y down, z north
+  level << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  return Eigen::AngleAxisd(-grid_yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level *
+         Eigen::AngleAxisd(gimbal.pitch * kPriorDegree, Eigen::Vector3d::UnitX()).toRotationMatrix() *
+         Eigen::AngleAxisd(gimbal.roll * kPriorDegree + turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+Crs grid_crs(const std::string& text) {
+  const Crs crs = Crs::from_text(text);
+  if (crs.kind() == CrsKind::geographic)
+    throw Error(ErrorCode::usage, fmt::format("{} is in degrees; poses need metres", crs.id()), "--crs",
+                "pass a projected CRS, e.g. --crs EPSG:32651");
+  if (crs.kind() == CrsKind::local || crs.body().name != earth().name)
+    throw Error(ErrorCode::usage,
+                fmt::format("{} is not on Earth, but the images have GPS positions", crs.id()), "--crs",
+                "pass a projected CRS of Earth, or leave it out");
+  return crs;
+}
+
+}  // namespace
+
+PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const PriorAccuracy& accuracy) {
+  PhotoPriors out;
+  std::optional<CrsTransform> to_grid;
+  bool relative = true;  // heights of all pictures are above the take-off
+  for (const Photo& photo : photos.photos)
+    relative = relative && (!photo.metadata.position || photo.metadata.height_above_takeoff);
+  for (std::size_t i = 0; i < photos.photos.size(); ++i) {
+    const importers::PhotoMetadata& m = photos.photos[i].metadata;
+    if (!m.position) continue;
+    if (!to_grid) {
+      out.crs = crs.empty() ? importers::utm_zone(m.position->lon, m.position->lat) : crs;
+      const Crs grid = grid_crs(out.crs);
+      to_grid.emplace(geographic_crs(grid), grid);
+    }
+    const auto at = (*to_grid)(m.position->lon, m.position->lat);
+    if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
+    const std::optional<double> height = relative ? m.height_above_takeoff : m.position->altitude;
+    const double height_sd = !height    ? std::numeric_limits<double>::infinity()
+                             : relative ? accuracy.height_above_takeoff
+                                        : accuracy.altitude;
+    out.positions.push_back({.image = i,
+                             .position = {at.x, at.y, height.value_or(0)},
+                             .sd = {accuracy.horizontal, accuracy.horizontal, height_sd},
+                             .biased_height = true});
+    const auto turn = stored_turn(m.orientation);
+    if (!m.gimbal || !turn) continue;
+    const double yaw = m.gimbal->yaw * kPriorDegree + convergence(*to_grid, m.position->lon, m.position->lat);
+    const bool steep = std::abs(m.gimbal->pitch) > 45;
+    out.attitudes.push_back(
+        {.image = i,
+         .world_from_camera = Eigen::Quaterniond(attitude_of(*m.gimbal, yaw, *turn)),
+         .sd = kPriorDegree * (steep ? Eigen::Vector3d(accuracy.tilt, accuracy.tilt, accuracy.yaw)
+                                     : Eigen::Vector3d(accuracy.tilt, accuracy.yaw, accuracy.tilt))});
+  }
+  return out;
+}
+
+}  // namespace waymark::workflows

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+#include "workflows/callbacks.hpp"
+#include "workflows/mapping/make_map.hpp"
+namespace waymark::workflows {
+
+/// Last product of a reconstruction; each needs those before it.
+enum class ReconstructUntil {
+  poses,  ///< cameras.json
+  dem,    ///< and dem.tif
+  ortho,  ///< and orthophoto.tif, job.json
+};
+
+/// Images and what to make of them.
+struct ReconstructRequest {
+  std::vector<std::string> images = {};  ///< files, patterns or folders; empty: those the camera file names
+  std::string folder = {};               ///< for the products; may exist
+  std::string cameras = {};              ///< camera file with the poses; empty: they are solved
+  std::string lens = {};                 ///< camera file whose lens holds for poses to be solved
+  std::string dem = {};                  ///< coarse DEM, start of the heights; empty: they are searched
+  std::string crs = {};                  ///< of the map; empty: that of the camera file
+  double cell = 0;                       ///< of the DEM, metres; 0: twice the median ground sample distance
+  ReconstructUntil until = ReconstructUntil::ortho;
+  std::string map = {};           ///< GeoPackage of landmarks; empty: none
+  int threads = 0;                ///< 0: one per processor
+  std::string command_line = {};  ///< recorded in the map
+};
+
+/// What was made.
+struct ReconstructResult {
+  std::size_t images = 0;             ///< with poses
+  std::size_t failed = 0;             ///< without
+  std::int64_t cells = 0, kept = 0;   ///< of the DEM; with a height
+  std::optional<MapResult> map = {};  ///< if a map was requested
+
+  /// Exit code of interface.md.
+  int exit_code() const { return map ? map->exit_code() : failed > 0 ? 3 : 0; }
+};
+
+/// Makes a DEM with its accuracy, an orthophoto and a job from images, and the map of landmarks on request.
+/// Throws Error{usage} for a request in conflict, Error{input} for images that cannot be reconstructed,
+/// Error{output} before any work is done for a folder that cannot be written.
+/// Messages: warnings of the images, a summary per product.
+ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows
