@@ -45,6 +45,33 @@ Eigen::Matrix3d attitude_of(const importers::GimbalAngles& gimbal, double grid_y
          Eigen::AngleAxisd(gimbal.roll * kPriorDegree + turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
+// Heights above take-off where all pictures have them, since they are more exact. The altitudes, of which one
+// is enough, then give the height of the take-off.
+struct HeightSource {
+  bool relative = true;
+  double takeoff = 0;
+
+  std::optional<double> of(const importers::PhotoMetadata& m) const {
+    return relative ? std::optional(*m.height_above_takeoff + takeoff) : m.position->altitude;
+  }
+};
+
+HeightSource height_source(const Photos& photos) {
+  HeightSource out;
+  double sum = 0;
+  int count = 0;
+  for (const Photo& photo : photos.photos) {
+    const importers::PhotoMetadata& m = photo.metadata;
+    if (!m.position) continue;
+    out.relative = out.relative && m.height_above_takeoff.has_value();
+    if (!m.height_above_takeoff || !m.position->altitude) continue;
+    sum += *m.position->altitude - *m.height_above_takeoff;
+    ++count;
+  }
+  if (count > 0) out.takeoff = sum / count;
+  return out;
+}
+
 Crs grid_crs(const std::string& text) {
   const Crs crs = Crs::from_text(text);
   if (crs.kind() == CrsKind::geographic)
@@ -62,9 +89,7 @@ Crs grid_crs(const std::string& text) {
 PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const PriorAccuracy& accuracy) {
   PhotoPriors out;
   std::optional<CrsTransform> to_grid;
-  bool relative = true;  // heights of all pictures are above the take-off
-  for (const Photo& photo : photos.photos)
-    relative = relative && (!photo.metadata.position || photo.metadata.height_above_takeoff);
+  const HeightSource heights = height_source(photos);
   for (std::size_t i = 0; i < photos.photos.size(); ++i) {
     const importers::PhotoMetadata& m = photos.photos[i].metadata;
     if (!m.position) continue;
@@ -75,10 +100,10 @@ PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const Pri
     }
     const auto at = (*to_grid)(m.position->lon, m.position->lat);
     if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
-    const std::optional<double> height = relative ? m.height_above_takeoff : m.position->altitude;
-    const double height_sd = !height    ? std::numeric_limits<double>::infinity()
-                             : relative ? accuracy.height_above_takeoff
-                                        : accuracy.altitude;
+    const std::optional<double> height = heights.of(m);
+    const double height_sd = !height            ? std::numeric_limits<double>::infinity()
+                             : heights.relative ? accuracy.height_above_takeoff
+                                                : accuracy.altitude;
     out.positions.push_back({.image = i,
                              .position = {at.x, at.y, height.value_or(0)},
                              .sd = {accuracy.horizontal, accuracy.horizontal, height_sd},

@@ -17,11 +17,14 @@ struct PriorAccuracy {
   double horizontal = 3;              ///< metres, navigation receivers
   double altitude = 10;               ///< metres, besides the bias of all
   double height_above_takeoff = 0.5;  ///< metres, besides the bias of all
+  double height_bias = 20;            ///< metres, of all heights
   double tilt = 2, yaw = 4;           ///< degrees, gimbals
 };
 
 /// Converts positions and gimbal angles to observations.
-/// - Heights are those above take-off, else the altitudes; both have one bias for all images.
+/// - Heights are those above take-off plus the mean altitude of the take-off, else the altitudes. Both have
+/// one
+///   bias for all images.
 /// - `crs` empty: the UTM zone of the first position. Yaw is turned by the meridian convergence.
 /// - EXIF orientations that turn the picture turn the attitude, too; mirrored pictures give none.
 /// Throws Error{usage} for a CRS in degrees or on another body than Earth.

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,8 +17,10 @@
 #include "core/error.hpp"
 #include "exporters/cameras/camera_file.hpp"
 #include "exporters/staging_folder.hpp"
-#include "pipeline/reconstruction/adjustment/adjust.hpp"
+#include "pipeline/reconstruction/adjustment/georeference.hpp"
+#include "pipeline/reconstruction/adjustment/lens_ladder.hpp"
 #include "pipeline/reconstruction/poses/solve_poses.hpp"
+#include "workflows/reconstruction/photo_priors.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -125,23 +128,67 @@ std::vector<pipeline::ImageToMatch> to_match(const Photos& photos) {
   throw Error(ErrorCode::input, problem, photos.photos[0].path, hint);
 }
 
-pipeline::AdjustmentResult adjust_finally(pipeline::Reconstruction& scene,
-                                          const std::vector<pipeline::LensGuess>& lenses) {
+// Names of the lens parameters that the adjustment may free: none of a lens that is given.
+std::vector<std::vector<std::string>> admitted_parameters(const pipeline::CalibratedAdjustment& calibrated,
+                                                          std::size_t lenses) {
+  std::vector<std::vector<std::string>> free(lenses);
+  for (const pipeline::LadderStep& step : calibrated.steps)
+    if (step.admitted) free[step.lens].push_back(step.parameter);
+  return free;
+}
+
+// Self-calibration starts at the lens that was guessed, so that a parameter that is not admitted keeps its
+// prior.
+pipeline::CalibratedAdjustment calibrate(pipeline::Reconstruction& scene,
+                                         const std::vector<pipeline::LensGuess>& lenses) {
   pipeline::Observations observations;
   observations.lenses = pipeline::PoseGrowth::lens_priors(lenses);
-  pipeline::AdjustmentOptions options;
-  for (const pipeline::LensGuess& lens : lenses)
-    options.free_lens_parameters.push_back(
-        lens.focal_sd > 0 ? std::vector<std::string>{"f", "cx", "cy", "k1", "k2", "p1", "p2"}
-                          : std::vector<std::string>{});
-  if (scene.images.size() < 6)
-    for (auto& names : options.free_lens_parameters)
-      if (!names.empty()) names = {"f", "k1"};
-  std::erase_if(observations.lenses, [&](const pipeline::LensPrior& p) {
-    return std::ranges::find(options.free_lens_parameters[p.lens], p.parameter) ==
-           options.free_lens_parameters[p.lens].end();
-  });
-  return pipeline::adjust(scene, observations, options);
+  if (std::ranges::all_of(lenses, [](const pipeline::LensGuess& lens) { return !(lens.focal_sd > 0); }))
+    return {.adjustment = pipeline::adjust(scene, observations), .steps = {}, .priors = observations.lenses};
+  return pipeline::adjust_with_ladder(scene, observations);
+}
+
+// Moves the scene into a CRS by the positions of the pictures, if they have any.
+void georeference_by_positions(PosedPhotos& posed, const Photos& photos,
+                               const pipeline::CalibratedAdjustment& calibrated, const std::string& crs,
+                               const Callbacks& callbacks) {
+  const PhotoPriors priors = photo_priors(photos, crs);
+  pipeline::Observations observations;
+  observations.lenses = calibrated.priors;
+  observations.height_bias_sd = PriorAccuracy{}.height_bias;
+  for (const pipeline::ObservedPosition& p : priors.positions)
+    if (posed.scene.images[p.image].world_from_camera) observations.positions.push_back(p);
+  for (const pipeline::ObservedAttitude& a : priors.attitudes)
+    if (posed.scene.images[a.image].world_from_camera) observations.attitudes.push_back(a);
+  if (observations.positions.size() < 3) {
+    posed.messages.push_back(
+        fmt::format("{} posed images have a GPS position; three not in line are needed for a metric frame",
+                    observations.positions.size()));
+    return;
+  }
+  pipeline::Reconstruction moved = posed.scene;
+  const pipeline::Georeferenced result = pipeline::georeference(
+      moved, observations,
+      {.free_lens_parameters = admitted_parameters(calibrated, posed.scene.lenses.size())});
+  for (const std::string& message : result.messages) posed.messages.push_back(message);
+  if (!result.metric) return;
+  posed.scene = std::move(moved);
+  posed.crs = priors.crs;
+  double squares = 0;
+  std::size_t used = 0, looking_up = 0;
+  for (const pipeline::ObservationResult& seen : result.adjustment.others)
+    if (seen.kind == "position" && seen.used) {
+      squares += seen.error.head<2>().squaredNorm();
+      ++used;
+    }
+  for (const pipeline::AdjustedImage& image : posed.scene.images)
+    looking_up += image.world_from_camera && image.world_from_camera->linear()(2, 2) > 0.5;
+  posed.gps_rms = used > 0 ? std::sqrt(squares / double(used)) : 0;
+  if (2 * looking_up > posed.posed || posed.gps_rms > 30 || 2 * used < observations.positions.size())
+    callbacks.warning(fmt::format(
+        "the GPS positions do not fit the images: {} of {} agree, with {:.1f} m RMS, and {} cameras "
+        "look up; check that latitude and longitude are not exchanged and the hemispheres right",
+        used, observations.positions.size(), posed.gps_rms, looking_up));
 }
 
 struct ResidualSummary {
@@ -219,6 +266,20 @@ std::string lens_line(const pipeline::AdjustedLens& lens, std::size_t index, std
   return text + (lens.parameters.empty() ? "; kept fixed\n" : "\n");
 }
 
+// Largest axis of the error ellipsoid of each centre.
+double median_centre_sd(const pipeline::Reconstruction& scene) {
+  std::vector<double> all;
+  for (const pipeline::AdjustedImage& image : scene.images)
+    if (image.covariance)
+      all.push_back(std::sqrt(image.covariance->bottomRightCorner<3, 3>()
+                                  .selfadjointView<Eigen::Lower>()
+                                  .eigenvalues()
+                                  .maxCoeff()));
+  if (all.empty()) return 0;
+  std::ranges::sort(all);
+  return all[all.size() / 2];
+}
+
 std::string table_of(const PosedPhotos& posed, const Photos& photos, const pipeline::ImageMatches& matches,
                      const ResidualSummary& residuals) {
   std::string text = fmt::format("{} of {} images posed", posed.posed, photos.photos.size());
@@ -235,6 +296,11 @@ std::string table_of(const PosedPhotos& posed, const Photos& photos, const pipel
         [&](const pipeline::AdjustedImage& i) { return i.lens == lens && i.world_from_camera; }));
     text += lens_line(posed.scene.lenses[lens], lens, images);
   }
+  if (!posed.crs.empty())
+    text +=
+        fmt::format("  frame: {}; residuals of GPS {:.2f} m RMS in plan; median sd of the centres {:.3f} m\n",
+                    posed.crs, posed.gps_rms, median_centre_sd(posed.scene));
+  for (const std::string& message : posed.messages) text += fmt::format("  {}\n", message);
   if (posed.crs.empty()) text += "  frame: arbitrary position, direction and scale\n";
   for (const UnusedPhoto& failure : posed.failures)
     text += fmt::format("  not posed: {}: {}\n", failure.name, failure.reason);
@@ -267,13 +333,17 @@ PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callb
   for (const pipeline::SolvedComponent& component : solved.components)
     out.components.push_back(component.posed);
   out.scene = std::move(solved.components[0].scene);
-  adjust_finally(out.scene, matches.lenses);
+  for (const pipeline::AdjustedImage& image : out.scene.images)
+    out.posed += image.world_from_camera.has_value();
+  const pipeline::CalibratedAdjustment calibrated = calibrate(out.scene, matches.lenses);
+  for (const pipeline::LadderStep& step : calibrated.steps)
+    if (!step.admitted)
+      out.messages.push_back(fmt::format("lens {}: {} stays at {:.6g}: {}", step.lens + 1, step.parameter,
+                                         step.value, step.reason));
+  georeference_by_positions(out, photos, calibrated, request.crs, callbacks);
   out.failures = photos.unused;
   for (std::size_t i = 0; i < out.scene.images.size(); ++i) {
-    if (out.scene.images[i].world_from_camera) {
-      ++out.posed;
-      continue;
-    }
+    if (out.scene.images[i].world_from_camera) continue;
     std::string reason =
         !found.faults[i].empty() ? found.faults[i]
         : !solved.failures[i].empty()

@@ -21,6 +21,8 @@ struct PosedPhotos {
   pipeline::Reconstruction scene = {};  ///< of the largest component
   std::string crs = {};                 ///< empty: the frame is arbitrary
   std::size_t posed = 0;
+  double gps_rms = 0;                        ///< residuals of the positions in plan, metres
+  std::vector<std::string> messages = {};    ///< about lens and frame
   std::vector<UnusedPhoto> failures = {};    ///< images without a pose
   std::vector<std::size_t> components = {};  ///< images of each, largest first
 };

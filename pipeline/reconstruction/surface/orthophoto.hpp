@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <vector>
+#include "pipeline/reconstruction/surface/surface_grid.hpp"
+#include "pipeline/reconstruction/surface/surface_view.hpp"
+namespace waymark::pipeline {
+
+/// Mosaic of images on the heights of a DEM.
+struct Orthophoto {
+  SurfaceGrid grid;            ///< of the pixels
+  Grid<float> brightness;      ///< in the units of the images; NaN: none
+  Grid<std::uint16_t> source;  ///< index into the views plus 1; 0: none
+  std::vector<double> gains;   ///< factor of each view
+};
+
+/// Rectifies images on a DEM. Each cell takes the visible view with the least foreshortening and pixels no
+/// coarser than needed; visibility is a ray against the DEM. `pixel` divides the cell. Cells without height
+/// stay empty. Gains level the seams by least squares over the overlaps. The result depends on neither
+/// threads nor memory. Throws Error{input} if an image cannot be read.
+Orthophoto make_orthophoto(const std::vector<SurfaceView>& views, const SurfaceGrid& grid,
+                           const Grid<float>& heights, int pixels_per_cell, std::size_t image_bytes);
+
+/// Returns factors near 1 that equalize brightness: log differences between views i and j, `sums(i, j)` of
+/// log(i) - log(j) over `counts(i, j)` points, are adjusted by least squares with a weak pull to 1.
+std::vector<double> balance_gains(const Grid<double>& sums, const Grid<double>& counts);
+
+}  // namespace waymark::pipeline
