@@ -303,9 +303,12 @@ TEST_P(Faults, OfWritesLeaveTheOldOrTheNew) {
     if (failed.code == 1) {
       EXPECT_NE(failed.err, "") << when;
     }
-    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
+    if (!GetParam().edits_map) {  // SQLite needs its journal until the disk has room to roll it back
+      EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
+    }
     const Outcome again = run(GetParam().newer);
     EXPECT_EQ(again.code, 0) << when << ": " << again.err;
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when << " and run again";
     if (!GetParam().edits_map) {
       EXPECT_EQ(files(), newer_) << when;
     }
