@@ -42,25 +42,22 @@ void check_query_columns(const MapQuery& query, const Tables& tables) {
   check(query.largest_first);
 }
 
-/// Visits the rows with the largest values, largest first, by the index of write_map. Returns whether they
-/// are all that the query can need; if not, `best` is unusable.
+/// Visits the rows with the largest values in their final order, by the index of write_map: equal values by
+/// row. Returns whether they are all that the query can need; if not, `best` is unusable.
 bool visit_largest(const MapStore::Connection& map, const LandmarkTable& table, const MapQuery& query,
                    const LandmarkSearch& search, BestLandmarks& best) {
-  const auto column = number_column(table.layout, query.largest_first);
-  const std::string condition =
-      largest_condition(map.database, table.layout.type().name, query.largest_first);
-  if (!column || condition.empty()) return false;
-  sqlite::Statement row = map.database.prepare(table.layout.select(
-      "WHERE t." + condition + " ORDER BY t." + quote_identifier(query.largest_first) + " DESC"));
+  const LargestConditions largest =
+      largest_conditions(map.database, table.layout.type().name, query.largest_first);
+  if (largest.indexed.empty()) return false;
   std::size_t found = 0;
-  double last = std::numeric_limits<double>::infinity();
-  while (row.step()) {
-    const double value = row.real(*column);
-    if (found >= best.limit() && value < last) return true;
-    if (!search.examine(row, best)) continue;
-    if (++found == best.limit()) last = value;  // equal values are ranked by row
-  }
-  return false;
+  const auto visit = [&](const std::string& rest) {
+    sqlite::Statement row = map.database.prepare(table.layout.select(rest));
+    while (found < best.limit() && row.step()) found += search.examine(row, best);
+  };
+  visit("WHERE t." + largest.indexed + " ORDER BY t." + quote_identifier(query.largest_first) +
+        " DESC, t.id");
+  if (!largest.equal.empty()) visit("WHERE t." + largest.equal + " ORDER BY t.id");
+  return found >= best.limit();
 }
 
 BestLandmarks search(MapStore::Connection& map, const Tables& tables, const MapQuery& query,

@@ -43,8 +43,8 @@ struct TypeStatistics {
   LargestValues largest{0};
 };
 
-void add_statistics(std::vector<TypeStatistics>& of_type, const std::vector<Landmark>& landmarks,
-                    bool in_memory) {
+void add_statistics(std::vector<TypeStatistics>& of_type, const TypeRegistry& types,
+                    const std::vector<Landmark>& landmarks, bool in_memory) {
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& landmark = landmarks[i];
     if (landmark.uid.empty()) refuse("a landmark has no uid", fmt::format("landmark {}", i));
@@ -53,7 +53,7 @@ void add_statistics(std::vector<TypeStatistics>& of_type, const std::vector<Land
     TypeStatistics& statistics = of_type.at(landmark.type);
     ++statistics.count;
     statistics.extent.add(landmark.position.xyz.x(), landmark.position.xyz.y());
-    statistics.largest.add(landmark.features);
+    add_landmark(statistics.largest, types[landmark.type], landmark);
     if (in_memory) statistics.in_memory.push_back(i);
   }
 }
@@ -61,10 +61,10 @@ void add_statistics(std::vector<TypeStatistics>& of_type, const std::vector<Land
 std::vector<TypeStatistics> type_statistics(const MapContents& contents) {
   std::vector<TypeStatistics> of_type(contents.types.size());
   for (TypeId id = 0; id < of_type.size(); ++id)
-    of_type[id].largest = LargestValues(contents.types[id].features.size());
-  add_statistics(of_type, contents.landmarks, true);
+    of_type[id].largest = LargestValues(largest_columns(contents.types[id]).size());
+  add_statistics(of_type, contents.types, contents.landmarks, true);
   for (std::size_t part = 0; part < contents.parts.count; ++part)
-    add_statistics(of_type, *contents.parts.landmarks(part), false);
+    add_statistics(of_type, contents.types, *contents.parts.landmarks(part), false);
   return of_type;
 }
 

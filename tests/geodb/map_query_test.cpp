@@ -155,6 +155,27 @@ TEST(MapQuery, LargestFirstGivesTheLargest) {
   EXPECT_TRUE(twin.map->query({.limit = 0}).empty());
 }
 
+// The most common value of all: an index of it would be one of the whole map, and a scan may stop early.
+TEST(MapQuery, ManyEqualLargestValuesNeedNoIndexOfAll) {
+  MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
+  for (std::size_t i = 0; i < contents.landmarks.size(); ++i)
+    contents.landmarks[i].confidence = i % 100 == 7 ? 1 : i % 3 == 0 ? 0.5 : 0.9;
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", contents);
+  EXPECT_EQ(query_text(folder / "map.gpkg",
+                       "SELECT count(*) FROM lamp_post INDEXED BY lamp_post_confidence_largest "
+                       "WHERE confidence > 0.90000000000000002"),
+            "600");
+  write_map(folder / "scan.gpkg", contents);
+  execute_sql(folder / "scan.gpkg", "DROP INDEX lamp_post_confidence_largest");
+  const MapStore indexed = MapStore::open(folder / "map.gpkg"),
+                 scanned = MapStore::open(folder / "scan.gpkg");
+  for (const std::int64_t limit : {0, 1, 599, 600, 601, 9'000, 50'000}) {
+    const MapQuery query{.largest_first = "confidence", .limit = limit};
+    EXPECT_EQ(uids(indexed.query(query)), uids(scanned.query(query))) << limit;
+  }
+}
+
 // Maps of 50,000 landmarks and more have an index of the largest values. Rounded heights make many ties.
 TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
   MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
@@ -162,17 +183,20 @@ TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
     l.features[0].value = std::round(100 * l.features[0].value) / 100;
     l.confidence = std::round(10 * l.features[1].value) / 10;
     if (std::isnan(l.confidence)) l.confidence = 0;
+    l.quality.seen = static_cast<int>(100 * l.features[0].value) % 10;
+    l.quality.visible = 10;
   }
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", contents);
   EXPECT_EQ(query_text(folder / "map.gpkg", "SELECT count(*) FROM sqlite_schema WHERE name LIKE '%_largest'"),
-            "2");
+            "4");
   write_map(folder / "scan.gpkg", contents);
   execute_sql(folder / "scan.gpkg",
-              "DROP INDEX lamp_post_height_largest; DROP INDEX lamp_post_diameter_largest");
+              "DROP INDEX lamp_post_height_largest; DROP INDEX lamp_post_diameter_largest; "
+              "DROP INDEX lamp_post_quality_largest; DROP INDEX lamp_post_confidence_largest");
   const MapStore indexed = MapStore::open(folder / "map.gpkg"),
                  scanned = MapStore::open(folder / "scan.gpkg");
-  for (const std::string feature : {"height", "diameter"})
+  for (const std::string feature : {"height", "diameter", "quality", "confidence"})
     for (const std::int64_t limit : {0, 1, 7, 300, 9'000, 20'000})
       for (const double confidence : {0.0, 0.4}) {
         const MapQuery query{.min_confidence = confidence, .largest_first = feature, .limit = limit};

@@ -171,7 +171,7 @@ TEST(WriteMap, NamesTheFolderThatIsMissing) {
     write_map("/nowhere/at/all/map.gpkg", scattered({.landmarks = 1}));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("No such file or directory\n  /nowhere/at/all/map.gpkg"));
+    EXPECT_THAT(error.what(), HasSubstr("its folder does not exist\n  /nowhere/at/all\n"));
     EXPECT_EQ(error.code(), ErrorCode::output);
   }
 }

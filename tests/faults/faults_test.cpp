@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every command that writes replaces its outputs whole, or leaves the older ones as they were.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <map>
+#include <random>
+
+#include "made_dem.hpp"
+#include "made_drive.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::Each;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+bool is_slow() {
+  return std::getenv("WAYMARK_SLOW_TESTS") != nullptr;
+}
+
+/// Kills and failing writes per command.
+int rounds() {
+  return is_slow() ? 40 : 3;
+}
+
+/// A command with two versions, whose outputs go to the folder `out`. $OUT is that folder, $IN that of the
+/// inputs.
+struct Command {
+  std::string name;
+  std::string older, newer;
+  bool edits_map = false;  ///< SQLite changes a map in place: the older state is kept in a journal
+};
+
+void PrintTo(const Command& command, std::ostream* out) {
+  *out << command.name;
+}
+
+const std::vector<Command>& commands() {
+  const auto with = [](const std::string& line, const std::string& older, const std::string& newer) {
+    const auto filled = [&](const std::string& by) {
+      std::string text = line;
+      for (std::size_t at; (at = text.find('%')) != std::string::npos;) text.replace(at, 1, by);
+      return text;
+    };
+    return std::pair{filled(older), filled(newer)};
+  };
+  static const std::vector<Command> all = [&] {
+    std::vector<Command> made;
+    const auto add = [&](const std::string& name, const std::string& line, const std::string& older,
+                         const std::string& newer, bool edits_map = false) {
+      const auto [first, second] = with(line, older, newer);
+      made.push_back({name, first, second, edits_map});
+    };
+    add("import", "import $IN/%.csv -o $OUT/map.gpkg --type rock --map-crs EPSG:32632", "few", "many");
+    add("run", "peaks $IN/%.tif -o $OUT/map.gpkg --work $OUT/work --tile-cells 64", "small", "large");
+    for (const char* ending : {"gpkg", "csv", "geojson", "kml", "shp", "fgb", "gml", "gdb", "tab", "mif"})
+      add(std::string("export_") + ending,
+          std::string("export $IN/%.gpkg $OUT/rocks.") + ending + " --overwrite", "few", "many");
+    add("report", "report $IN/%.gpkg -o $OUT/report.html", "few", "many");
+    add("inventory_csv", "inventory $IN/trees.gpkg --grid % -o $OUT/stands.csv --report $OUT/stands.html",
+        "80", "40");
+    add("inventory_copy", "inventory $IN/trees.gpkg --grid % -o $OUT/trees.gpkg", "80", "40");
+    add("inventory_in_place", "inventory $OUT/trees.gpkg --grid % -o $OUT/trees.gpkg", "80", "40", true);
+    add("localize_csv", "localize $IN/few.gpkg $IN/%.jsonl -o $OUT/track.csv --method ekf", "short", "long");
+    add("localize_gpkg", "localize $IN/few.gpkg $IN/%.jsonl -o $OUT/track.gpkg --method ekf", "short",
+        "long");
+    add("localize_live",
+        "localize $OUT/few.gpkg $IN/%.jsonl -o $OUT/track.csv --method ekf --layers $OUT/few.gpkg --live 5",
+        "short", "long", true);
+    add("slam_map",
+        "localize $IN/few.gpkg $IN/%.jsonl -o $OUT/track.csv --method slam --write-map $OUT/map.gpkg",
+        "short", "long");
+    add("simulate_site", "simulate $IN/site.json -o $OUT --seed %", "1", "2");
+    add("simulate_forest", "simulate $IN/forest.json -o $OUT --seed %", "1", "2");
+    add("allometry", "allometry fit $IN/%.trees.csv -o $OUT/table.csv", "few", "many");
+    if (is_slow()) add("train", "train craters -o $OUT/model.txt --scenes 2 --rounds 1 --seed %", "1", "2");
+    add("detect_csv", "detect craters $IN/%.pgm -o $OUT/craters.csv --image-sun-angle 0", "small", "large");
+    add("detect_gpkg", "detect craters $IN/%.pgm -o $OUT/craters.gpkg --image-sun-angle 0", "small", "large");
+    add("picture", "evaluate track $IN/track.csv --truth $IN/%.jsonl --picture $OUT/track.svg", "short",
+        "long");
+    return made;
+  }();
+  return all;
+}
+
+/// Size and hash of each file by its path.
+using Files = std::map<std::string, std::string>;
+
+std::string digest(const std::string& content) {
+  return std::to_string(content.size()) + " bytes, " + std::to_string(std::hash<std::string>{}(content));
+}
+
+/// Writes the inputs of all commands.
+void write_inputs(const TempFolder& in) {
+  for (const auto& [name, count] : {std::pair{"few", 300}, std::pair{"many", 1500}}) {
+    std::string rocks = "x,y,radius\n", trees = "height,dbh_cm,species\n";
+    for (int i = 0; i < count; ++i) {
+      rocks += std::to_string(500000 + i % 40 * 7) + "," + std::to_string(5200000 + i / 40 * 7) + "," +
+               std::to_string(0.2 + i % 50 * 0.05) + "\n";
+      trees += std::to_string(8 + i % 20) + "," + std::to_string(10 + i % 20 * 1.5 + i % 3) + ",spruce\n";
+    }
+    write_text(in / (std::string(name) + ".csv"), rocks);
+    write_text(in / (std::string(name) + ".trees.csv"), trees);
+  }
+  std::string stems = "uid,x,y,height,diameter,crown_diameter\n";
+  for (int i = 0; i < 100; ++i)
+    stems += "t" + std::to_string(i) + "," + std::to_string(440005 + 10 * (i % 10)) + "," +
+             std::to_string(5400005 + 10 * (i / 10)) + ",20,0.3,4\n";
+  write_text(in / "stems.csv", stems);
+  write_text(in / "drive_rocks.csv", rocks_csv());
+  write_text(in / "short.jsonl", drive_log({.steps = 60}));
+  write_text(in / "long.jsonl", drive_log({.steps = 120}));
+  MadeDem small = hills(150, 120), large = hills(200, 160);
+  make_dem(in / "small.tif", small);
+  make_dem(in / "large.tif", large);
+  write_text(in / "site.json", R"({"waymark_scenario": 1, "crs": "local", "ground": {"cell": 0.5},
+    "camera": {"columns": 64, "rows": 64, "field_of_view": 45},
+    "flights": [{"name": "descent", "images": 2, "from_east": -5, "from_north": -5, "from_altitude": 40,
+      "to_east": 5, "to_north": 5, "to_altitude": 30, "tilt": 4}]})");
+  write_text(in / "forest.json", R"({"waymark_scenario": 1, "crs": "EPSG:32632", "seed": 5,
+    "ground": {"cell": 1, "east": 440000, "north": 5400000, "up": 520},
+    "forest": {"width": 40, "height": 30, "stands": 2, "density": 300, "cell": 0.5, "pulses": 2, "points": true}})");
+  for (const auto& [name, side] : {std::pair{"small", 96}, std::pair{"large", 128}}) {
+    std::string pixels;
+    for (int i = 0; i < side * side; ++i) {
+      const double x = i % side - side / 2.0, y = i / side - side / 2.0, r = std::hypot(x, y);
+      pixels += static_cast<char>(static_cast<unsigned char>(110 + (r < 20 ? -x * 4 : 0) + i * 7919 % 5));
+    }
+    write_text(in / (std::string(name) + ".pgm"),
+               "P5 " + std::to_string(side) + " " + std::to_string(side) + " 255\n" + pixels);
+  }
+}
+
+class Faults : public ::testing::TestWithParam<Command> {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "a sanitizer must be loaded first";
+#endif
+    write_inputs(in_);
+    fs::create_directory(out_);
+    make_inputs();
+    start_ = run_older();
+    fs::copy(out_, kept_, fs::copy_options::recursive);
+    const Outcome done = run(GetParam().newer, "WAYMARK_FAULT=kill WAYMARK_FAULT_COUNT=" + in_ / "count");
+    ASSERT_EQ(done.code, 0) << done.err;
+    newer_ = files();
+    calls_ = std::stol(text_of(in_ / "count"));
+    ASSERT_GT(calls_, 2) << "the calls are not seen";
+    ASSERT_NE(newer_, start_);
+  }
+
+  /// Runs a command with faults; the times and dates in its outputs are fixed.
+  Outcome run(std::string line, const std::string& faults = "") const {
+    for (const auto& [word, path] : {std::pair{std::string("$OUT"), out_.string()},
+                                     std::pair{std::string("$IN"), fs::canonical(in_.path()).string()}})
+      for (std::size_t at; (at = line.find(word)) != std::string::npos;) line.replace(at, word.size(), path);
+    const std::string preload =
+        faults.empty() ? ""
+                       : "LD_PRELOAD=" INJECT_FAULTS " WAYMARK_FAULT_FOLDER=" + out_.string() + " " + faults;
+    return bash("export SOURCE_DATE_EPOCH=1700000000 OGR_CURRENT_DATE=2026-01-01T00:00:00Z; exec env " +
+                preload + " $WAYMARK --threads 1 -q " + line);
+  }
+  static std::string at(const char* fault, long call) {
+    return std::string("WAYMARK_FAULT=") + fault + " WAYMARK_FAULT_AT=" + std::to_string(call);
+  }
+
+  /// Outputs by path. Stored results of a run are not outputs.
+  Files files() const {
+    Files all;
+    for (const auto& entry : fs::recursive_directory_iterator(out_)) {
+      const std::string name = fs::relative(entry.path(), out_).string();
+      if (!entry.is_regular_file() || name.starts_with("work/")) continue;
+      // GDAL gives each File Geodatabase other identifiers.
+      all[name] = name.find(".gdb/") != std::string::npos ? std::to_string(entry.file_size()) + " bytes"
+                                                          : digest(text_of(entry.path()));
+    }
+    return all;
+  }
+  std::vector<std::string> hidden() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(out_)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(".") || name.ends_with("-journal") || name.ends_with("-wal"))
+        names.push_back(entry.path().string());
+    }
+    return names;
+  }
+  void restore() const {
+    fs::remove_all(out_);
+    fs::copy(kept_, out_, fs::copy_options::recursive);
+  }
+  /// Writes something else into the folder, as the next run of any command does.
+  void write_other() const {
+    const Outcome other = run("import $IN/few.csv -o $OUT/other.gpkg --type rock --map-crs EPSG:32632");
+    ASSERT_EQ(other.code, 0) << other.err;
+    fs::remove(out_ / "other.gpkg");
+  }
+  void expect_whole(const std::string& when) const {
+    if (GetParam().edits_map) {
+      for (const auto& [name, content] : files())
+        if (name.ends_with(".gpkg")) {
+          const Outcome checked = run("validate $OUT/" + name);
+          EXPECT_EQ(checked.code, 0) << when << ": " << checked.err;
+        }
+      return;
+    }
+    const Files now = files();
+    std::string changed;
+    for (const auto& [name, content] : now) {
+      const bool old = start_.contains(name) && start_.at(name) == content;
+      if (!old && !(newer_.contains(name) && newer_.at(name) == content)) changed += " " + name;
+    }
+    EXPECT_EQ(changed, "") << when << ": neither old nor new";
+    for (const auto& [name, content] : start_)
+      EXPECT_TRUE(now.contains(name) || !newer_.contains(name)) << when << ": " << name << " is gone";
+    const bool is_set = GetParam().name.starts_with("export_") || GetParam().name.starts_with("simulate_");
+    if (is_set && now != start_) {
+      EXPECT_EQ(now, newer_) << when << ": parts of two";
+    }
+  }
+
+  /// Returns a folder in memory where there is one: flushing thousands of files to a disk takes minutes.
+  static void use_memory() {
+    if (fs::is_directory("/dev/shm")) ::setenv("TEST_TMPDIR", "/dev/shm", 1);
+  }
+
+  const int memory_ = (use_memory(), 0);
+  TempFolder in_;
+  fs::path out_ = fs::canonical(in_.path()) / "out", kept_ = in_.path() / "kept";
+  Files start_, newer_;
+  long calls_ = 0;
+
+ private:
+  void make_inputs() const {
+    const std::string &older = GetParam().older, &line = older, both = older + GetParam().newer;
+    const bool drive = line.starts_with("localize") || line.starts_with("evaluate");
+    for (const std::string map : {"few", "many"})
+      if (!drive && both.find(map + ".gpkg") != std::string::npos)
+        make("import $IN/" + map + ".csv -o $IN/" + map + ".gpkg --type rock --map-crs EPSG:32632");
+    if (drive) make("import $IN/drive_rocks.csv -o $IN/few.gpkg --type rock --map-crs local");
+    if (line.find("trees.gpkg") != std::string::npos)
+      make("import $IN/stems.csv -o $IN/trees.gpkg --type tree --map-crs EPSG:32632");
+    if (line.starts_with("evaluate"))
+      make("localize $IN/few.gpkg $IN/long.jsonl -o $IN/track.csv --method ekf");
+    for (const char* map : {"trees.gpkg", "few.gpkg"})
+      if (line.find(std::string("$OUT/") + map) != std::string::npos && GetParam().edits_map)
+        fs::copy(in_ / map, out_ / map);
+  }
+  void make(const std::string& line) const {
+    const Outcome done = run(line);
+    ASSERT_EQ(done.code, 0) << line << ": " << done.err;
+  }
+  Files run_older() const {
+    make(GetParam().older);
+    return files();
+  }
+};
+
+TEST_P(Faults, OfAKilledProcessLeaveTheOldOrTheNew) {
+  std::mt19937 random(11);
+  for (int round = 0; round < rounds(); ++round) {
+    restore();
+    // Each round has its part of the calls; the first and the last call are among them.
+    const long from = 1 + calls_ * round / rounds(), to = std::max(from, calls_ * (round + 1) / rounds());
+    const long call = round == rounds() - 1 ? calls_ : from + static_cast<long>(random()) % (to - from + 1);
+    const std::string when = "killed at call " + std::to_string(call) + " of " + std::to_string(calls_);
+    EXPECT_EQ(run(GetParam().newer, at("kill", call)).code, 128 + 9) << when;
+    write_other();
+    expect_whole(when);
+    if (!GetParam().edits_map && GetParam().name != "run") {
+      EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
+    }
+    const Outcome again = run(GetParam().newer);
+    EXPECT_EQ(again.code, 0) << when << ": " << again.err;
+    if (!GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+    expect_whole(when + " and run again");
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when << " and run again";
+  }
+}
+
+TEST_P(Faults, OfWritesLeaveTheOldOrTheNew) {
+  std::mt19937 random(12);
+  for (int round = 0; round < rounds(); ++round) {
+    restore();
+    const long from = 1 + calls_ * round / rounds(), to = std::max(from, calls_ * (round + 1) / rounds());
+    const long call = from + static_cast<long>(random()) % (to - from + 1);
+    const char* fault = round % 2 == 0 ? "full" : "once";
+    const std::string when =
+        std::string(fault) + " at call " + std::to_string(call) + " of " + std::to_string(calls_);
+    const Outcome failed = run(GetParam().newer, at(fault, call));
+    expect_whole(when);
+    EXPECT_THAT(failed.code, ::testing::AnyOf(0, 1, 3)) << when << ": " << failed.err;
+    if (failed.code == 0 && !GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+    if (failed.code == 1) {
+      EXPECT_NE(failed.err, "") << when;
+    }
+    if (!GetParam().edits_map) {  // SQLite needs its journal until the disk has room to roll it back
+      EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
+    }
+    const Outcome again = run(GetParam().newer);
+    EXPECT_EQ(again.code, 0) << when << ": " << again.err;
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when << " and run again";
+    if (!GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, Faults, ::testing::ValuesIn(commands()),
+                         [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace waymark::test
