@@ -6,8 +6,9 @@
 #include <array>
 #include <limits>
 
+#include "core/atomic_file.hpp"
+#include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "exporters/staging_folder.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -45,8 +46,7 @@ GDALDatasetUniquePtr memory_raster(const std::vector<RasterBand>& bands, const G
 
 void write_cog(const std::filesystem::path& path, const std::vector<RasterBand>& bands,
                const Georeference& where, const std::map<std::string, std::string>& metadata) {
-  StagingFolder staged(path);
-  const std::filesystem::path file = staged.path() / path.filename();
+  AtomicFile aside(path);
   {
     GdalMessages messages;
     const GDALDatasetUniquePtr raster = memory_raster(bands, where);
@@ -56,12 +56,12 @@ void write_cog(const std::filesystem::path& path, const std::vector<RasterBand>&
         "BIGTIFF=IF_SAFER", "NUM_THREADS=1", nullptr};
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
     const GDALDatasetUniquePtr written(driver->CreateCopy(
-        file.c_str(), raster.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
+        aside.path().c_str(), raster.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
     if (written) written->FlushCache(true);
     if (!written || !messages.failures().empty())
       fail_output(path, messages.cause("not all of it was written"));
   }
-  staged.publish();
+  aside.commit();
 }
 
 }  // namespace waymark::exporters

@@ -14,9 +14,10 @@
 #include <mutex>
 #include <numbers>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "exporters/cameras/camera_file.hpp"
-#include "exporters/staging_folder.hpp"
 #include "pipeline/reconstruction/adjustment/georeference.hpp"
 #include "pipeline/reconstruction/adjustment/lens_ladder.hpp"
 #include "pipeline/reconstruction/poses/solve_poses.hpp"
@@ -244,15 +245,15 @@ exporters::CameraFileContent camera_content(const PosedPhotos& posed, const Phot
 void write_products(const PosedPhotos& posed, const Photos& photos,
                     const std::vector<exporters::SparsePoint>& points, const fs::path& folder) {
   const exporters::CameraFileContent content = camera_content(posed, photos);
-  exporters::write_file(folder / "cameras.json", exporters::camera_file_text(content));
-  exporters::write_file(folder / "points.ply", exporters::ply_text(points));
+  write_file(folder / "cameras.json", exporters::camera_file_text(content));
+  write_file(folder / "points.ply", exporters::ply_text(points));
   std::error_code failed;
   fs::create_directories(folder / "colmap", failed);
-  if (failed) exporters::fail_output(folder / "colmap", failed.message());
+  if (failed) fail_output(folder / "colmap", failed.message());
   const exporters::ColmapModel model = exporters::colmap_model(content, points);
-  exporters::write_file(folder / "colmap" / "cameras.txt", model.cameras);
-  exporters::write_file(folder / "colmap" / "images.txt", model.images);
-  exporters::write_file(folder / "colmap" / "points3D.txt", model.points);
+  write_file(folder / "colmap" / "cameras.txt", model.cameras);
+  write_file(folder / "colmap" / "images.txt", model.images);
+  write_file(folder / "colmap" / "points3D.txt", model.points);
 }
 
 std::string lens_line(const pipeline::AdjustedLens& lens, std::size_t index, std::size_t images) {

@@ -11,9 +11,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/output_error.hpp"
 #include "exporters/raster/cog_file.hpp"
-#include "exporters/staging_folder.hpp"
 #include "geo/crs.hpp"
 #include "importers/rasters/dem.hpp"
 #include "pipeline/reconstruction/surface/orthophoto.hpp"
@@ -50,7 +51,7 @@ void check_request(const ReconstructRequest& request) {
 void make_output_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) exporters::fail_output(folder, failed.message());
+  if (failed) fail_output(folder, failed.message());
 }
 
 pipeline::CoarseHeights read_coarse_dem(const std::string& file, const PosedImages& posed) {
@@ -309,7 +310,7 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
       read_posed_images({.images = request.images, .cameras = cameras, .crs = request.crs}, callbacks);
   posed.points = std::move(points);
   ReconstructResult result{.images = posed.images.size(), .failed = failed};
-  exporters::write_file(folder / "cameras.json", camera_file(posed));
+  write_file(folder / "cameras.json", camera_file(posed));
   callbacks.summary(
       fmt::format("{}: {} images with poses\n", (folder / "cameras.json").string(), result.images));
   if (request.until == ReconstructUntil::poses) return result;
@@ -339,7 +340,7 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   write_orthophoto(folder / "orthophoto.tif", ortho, views, posed.crs);
   callbacks.summary(fmt::format("{}: {} x {} pixels of {:.3g} m\n", (folder / "orthophoto.tif").string(),
                                 ortho.grid.columns, ortho.grid.rows, ortho.grid.cell));
-  exporters::write_file(folder / "job.json", job_text(posed, dem, folder));
+  write_file(folder / "job.json", job_text(posed, dem, folder));
   if (request.map.empty()) return result;
   result.map = make_map(
       load_job(folder / "job.json"),
