@@ -250,7 +250,9 @@ class Builder {
       std::vector<int> free;
       for (int axis = 0; axis < 3; ++axis)
         if (!(point.sd[axis] <= 0)) free.push_back(axis);
-      const std::size_t block = add_block(Block::Kind::point, control_start(point, marks), free);
+      const Eigen::Vector3d start = control_start(point, marks);
+      if (!start.allFinite()) continue;  // height unknown, and too few marks
+      const std::size_t block = add_block(Block::Kind::point, start, free);
       built_.control_blocks[i] = block;
       add_marks(Kind::control_mark, i, point.marks, marks, block);
       const Eigen::Vector3d value = point.position - network().origin;

@@ -195,6 +195,24 @@ TEST(Adjust, AHeightBiasIsEstimated) {
   EXPECT_EQ(loose.free_datum, 1);
 }
 
+// A control point without a height still fixes its place in plan; one with a single mark cannot be placed.
+TEST(Adjust, HeightsOfControlMayBeUnknown) {
+  const MadeSceneOptions options{.seed = 41};
+  MadeScene made = made_scene(options);
+  Observations seen{.control = made_control(made, options, 3, 2, 0.02)};
+  for (const std::size_t i : {0u, 4u}) {
+    seen.control[i].position.z() = std::nan("");
+    seen.control[i].sd.z() = std::numeric_limits<double>::infinity();
+  }
+  seen.control[4].marks.resize(1);
+  const AdjustmentResult found = adjust(made.start, seen);
+  EXPECT_EQ(found.free_datum, 0);
+  EXPECT_TRUE(found.control[0].used);
+  EXPECT_LT(found.control[0].error.head<2>().norm(), 0.1);
+  EXPECT_FALSE(found.control[4].used);
+  EXPECT_THAT(found.control[4].note, HasSubstr("marks in two or more images"));
+}
+
 TEST(Adjust, CountsTheFreedomsOfTheFrame) {
   const MadeScene made = made_scene({.seed = 33});
   const auto free = [&](const Observations& seen, AdjustmentOptions options = {}) {
