@@ -116,6 +116,20 @@ std::optional<Eigen::Vector3d> probe_pixel(const Probe& probe, const Eigen::Vect
   return at(static_cast<int>(best));
 }
 
+// Chance matches lie at any depth: the middle half of their heights spans much of the way to the cameras.
+bool scattered(const std::vector<Eigen::Vector3d>& points, const std::vector<SurfaceView>& views) {
+  constexpr double kMaxSpread = 0.5;  // of the height of the cameras above the points
+  if (points.empty()) return false;
+  std::vector<double> heights, cameras;
+  for (const Eigen::Vector3d& point : points) heights.push_back(point.z());
+  for (const SurfaceView& view : views) cameras.push_back(view.view.centre().xyz.z());
+  std::ranges::sort(heights);
+  std::ranges::sort(cameras);
+  const std::size_t n = heights.size();
+  const double altitude = cameras[cameras.size() / 2] - heights[n / 2];
+  return !(heights[n - 1 - n / 4] - heights[n / 4] <= kMaxSpread * altitude);
+}
+
 }  // namespace
 
 std::optional<HeightRange> height_range(std::span<const Eigen::Vector3d> points) {
@@ -132,6 +146,7 @@ std::optional<HeightRange> height_range(std::span<const Eigen::Vector3d> points)
 std::vector<Eigen::Vector3d> probe_heights(const std::vector<SurfaceView>& views, ImageLevels& images) {
   constexpr std::size_t kViews = 16, kPartners = 4;
   constexpr int kPixels = 10;
+  constexpr double kLeastFound = 0.08;  // of the pixels
   std::vector<ProbeImage> small;
   for (std::size_t v = 0; v < views.size(); ++v) small.push_back(probe_image(views, v, images));
   const std::size_t used = std::min(kViews, views.size());
@@ -159,7 +174,9 @@ std::vector<Eigen::Vector3d> probe_heights(const std::vector<SurfaceView>& views
   });
   std::vector<Eigen::Vector3d> all;
   for (const auto& points : found) all.insert(all.end(), points.begin(), points.end());
-  return all;
+  const bool few =
+      static_cast<double>(all.size()) < kLeastFound * static_cast<double>(used) * kPixels * kPixels;
+  return few || scattered(all, views) ? std::vector<Eigen::Vector3d>{} : all;
 }
 
 std::optional<SurfaceGrid> overlap_grid(const std::vector<SurfaceView>& views, const HeightRange& range,

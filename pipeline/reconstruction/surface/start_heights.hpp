@@ -19,7 +19,7 @@ std::optional<HeightRange> height_range(std::span<const Eigen::Vector3d> points)
 
 /// Measures heights along the rays of a grid of pixels in small images: the depth at which level patches
 /// correlate best with the images of the nearest cameras. Searches depths of 1/3 to 20 baselines, uniformly
-/// in inverse depth. Returns the points found, in the order of views and pixels.
+/// in inverse depth. Points so few or so scattered that chance explains them are no result.
 std::vector<Eigen::Vector3d> probe_heights(const std::vector<SurfaceView>& views, ImageLevels& images);
 
 /// Returns the grid of the terrain that two or more views see between two heights, aligned to multiples of

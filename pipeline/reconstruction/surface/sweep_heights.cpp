@@ -74,7 +74,7 @@ class HeightSweep {
 
   double first_half_range(const SurfaceGrid& grid) const {
     const double least = 4 * first_step(grid);
-    if (plan_.coarse) return std::max(4 * plan_.coarse->sd, 2 * least);
+    if (plan_.coarse) return std::max(4 * plan_.coarse->sd, least);
     return std::max((plan_.range.high - plan_.range.low) / 2, least);
   }
 
