@@ -260,8 +260,8 @@ std::string job_text(const PosedImages& posed, const pipeline::SurfaceHeights& d
     files.push_back(path_from(folder, image->info().path));
     suns = suns && (image->info().sun || image->info().image_sun_angle);
   }
-  JobJson stages =
-      Json::array({load, JobJson{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
+  JobJson stages = JobJson::array(
+      {load, JobJson{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
   std::vector<const char*> names{"rocks_from_shadows", "craters_from_bowls", "project_to_ground",
                                  "reject_implausible"};
   if (suns) names.push_back("reject_terrain_shadows");
