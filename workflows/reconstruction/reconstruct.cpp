@@ -250,25 +250,25 @@ std::string path_from(const fs::path& folder, const std::string& file) {
 }
 
 std::string job_text(const PosedImages& posed, const pipeline::SurfaceHeights& dem, const fs::path& folder) {
-  using Json = nlohmann::ordered_json;
+  using JobJson = nlohmann::ordered_json;
   std::vector<float> sds;
   for (const float sd : dem.sd.cells())
     if (!std::isnan(sd)) sds.push_back(sd);
   std::ranges::nth_element(sds, sds.begin() + static_cast<std::ptrdiff_t>(sds.size() / 2));
-  Json load{{"stage", "load_dem"},
-            {"files", {"dem.tif"}},
-            {"band", 1},
-            {"nodata", "unknown"},
-            {"height_sd", static_cast<double>(sds[sds.size() / 2])}};
+  JobJson load{{"stage", "load_dem"},
+               {"files", {"dem.tif"}},
+               {"band", 1},
+               {"nodata", "unknown"},
+               {"height_sd", static_cast<double>(sds[sds.size() / 2])}};
   if (posed.crs.kind() == CrsKind::local) load["crs"] = "local";
-  Json files = Json::array();
+  JobJson files = JobJson::array();
   bool suns = true;
   for (const ImageHandle& image : posed.images) {
     files.push_back(path_from(folder, image->info().path));
     suns = suns && (image->info().sun || image->info().image_sun_angle);
   }
-  Json stages =
-      Json::array({load, Json{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
+  JobJson stages = JobJson::array(
+      {load, JobJson{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
   std::vector<const char*> names{"rocks_from_shadows", "craters_from_bowls", "project_to_ground",
                                  "reject_implausible"};
   if (suns) names.push_back("reject_terrain_shadows");
@@ -277,7 +277,7 @@ std::string job_text(const PosedImages& posed, const pipeline::SurfaceHeights& d
         "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
     names.push_back(name);
   for (const char* name : names) stages.push_back({{"stage", name}});
-  return Json{{"name", "Map from pictures"}, {"stages", stages}}.dump(2) + "\n";
+  return JobJson{{"name", "Map from pictures"}, {"stages", stages}}.dump(2) + "\n";
 }
 
 }  // namespace
