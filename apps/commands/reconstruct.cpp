@@ -19,7 +19,7 @@ class Reconstruct final : public Command {
             "poses, number of views, convergence angle, score, reason of no data), orthophoto.tif and "
             "job.json, which `waymark run` turns into the map.\n\n"
             "Heights are measured where two or more images agree. Every other cell has no data and a reason "
-            "(docs/methods/reconstruction.md).",
+            "(docs/methods/heights_from_images.md).",
         .arguments =
             {Argument{"", "IMAGES...", &request_.images,
                       "Images, patterns or folders; default: those the camera file names"},

@@ -29,7 +29,7 @@ inline constexpr int kNoHeightReasons = 12;
 /// Returns the text of a reason for reports: "texture below noise".
 const char* reason_text(NoHeight reason);
 
-/// Numbers that decide which heights are kept; see docs/methods/reconstruction.md.
+/// Numbers that decide which heights are kept; see docs/methods/heights_from_images.md.
 struct SweepRules {
   ViewRules views = {};
   PathPenalties penalties = {};

@@ -42,9 +42,9 @@ struct SurfaceHeights {
 };
 
 /// Measures heights by sweeping a surface through object space, coarse to fine, with semi-global matching
-/// over the height steps (docs/methods/reconstruction.md). Nodes lie at half the cell; a cell is the mean of
-/// its four. The result depends on neither threads, memory nor the order of the images. Throws Error{input}
-/// if an image cannot be read.
+/// over the height steps (docs/methods/heights_from_images.md). Nodes lie at half the cell; a cell is the
+/// mean of its four. The result depends on neither threads, memory nor the order of the images. Throws
+/// Error{input} if an image cannot be read.
 SurfaceHeights sweep_heights(const std::vector<SurfaceView>& views, const SweepPlan& plan);
 
 }  // namespace waymark::pipeline
