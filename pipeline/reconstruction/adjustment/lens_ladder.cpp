@@ -42,7 +42,8 @@ class Ladder {
     adjust(best_, seen_, options_);
     residual_ = left_out_residual(best_, left_out_);
     for (std::size_t lens = 0; lens < scene_.lenses.size(); ++lens)
-      for (const Group& group : groups_of(scene_.lenses[lens].camera)) try_group(lens, group);
+      while (climb_once(lens)) {
+      }
     scene_.lenses = best_.lenses;
     for (std::size_t i = 0; i < scene_.images.size(); ++i)
       if (best_.images[i].world_from_camera)
@@ -77,10 +78,27 @@ class Ladder {
                                  [&](const LensPrior& p) { return p.lens == lens && p.parameter == name; });
   }
 
-  // Admits a group as a whole, or not at all.
-  void try_group(std::size_t lens, const Group& group) {
+  // Returns whether a term was refused although another one entered after it: the refusal may no longer hold.
+  // The focal length, tried first, can fit worse as long as the distortion is not modelled.
+  bool climb_once(std::size_t lens) {
+    bool refused = false, again = false;
+    for (const Group& group : groups_of(scene_.lenses[lens].camera)) {
+      if (is_free(lens, group)) continue;
+      const bool admitted = try_group(lens, group);
+      again = again || (admitted && refused);
+      refused = refused || !admitted;
+    }
+    return again;
+  }
+
+  bool is_free(std::size_t lens, const Group& group) const {
+    return std::ranges::all_of(
+        group, [&](const std::string& n) { return contains(options_.free_lens_parameters[lens], n); });
+  }
+
+  // Admits a group as a whole, or not at all. Returns whether it was admitted.
+  bool try_group(std::size_t lens, const Group& group) {
     auto& free = options_.free_lens_parameters[lens];
-    if (std::ranges::all_of(group, [&](const std::string& n) { return contains(free, n); })) return;
     const std::vector<std::string> already = free;
     for (const std::string& name : group)
       if (!contains(free, name)) free.push_back(name);
@@ -97,14 +115,18 @@ class Ladder {
       if (!step.admitted && step.reason.empty())
         step.reason = fmt::format("it enters together with {}", refused->parameter);
       if (!step.admitted) step.value = prior(lens, step.parameter).value;
+      std::erase_if(out_.steps, [&](const LadderStep& earlier) {
+        return earlier.lens == step.lens && earlier.parameter == step.parameter;
+      });
       out_.steps.push_back(step);
     }
     if (refused != steps.end()) {
       free = already;
-      return;
+      return false;
     }
     best_ = std::move(trial);
     residual_ = after;
+    return true;
   }
 
   LadderStep judge(const Reconstruction& trial, const AdjustmentResult& result, std::size_t lens,
