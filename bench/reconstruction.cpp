@@ -49,3 +49,5 @@ BENCHMARK(triangulate_points)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench
+
+BENCHMARK_MAIN();

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "geo/similarity.hpp"
 #include "importers/cameras/camera_set.hpp"
 #include "importers/cameras/control_points.hpp"
-#include "geo/similarity.hpp"
 #include "importers/images/image.hpp"
 #include "tests/importers/camera_data.hpp"
 #include "tests/importers/raster_maker.hpp"

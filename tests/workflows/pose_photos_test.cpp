@@ -6,12 +6,12 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <sstream>
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "core/text_file.hpp"
 #include "workflows/reconstruction/photo_priors.hpp"
 
 namespace waymark::test {
@@ -129,7 +129,7 @@ TEST(PosePhotos, TheFountainIsPosedToMillimetres) {
                                          .lens = (folder / "lens.json").string()});
   ASSERT_EQ(posed.posed, 11u);
   Eigen::Matrix3Xd estimated(3, 11), truth(3, 11);
-  std::ifstream table(data / "truth_poses.csv");
+  std::istringstream table(read_text(data / "truth_poses.csv", "poses"));
   std::string line;
   std::getline(table, line);
   for (Eigen::Index i = 0; i < 11 && std::getline(table, line); ++i) {

@@ -146,6 +146,7 @@ pipeline::CalibratedAdjustment calibrate(pipeline::Reconstruction& scene,
   observations.lenses = pipeline::PoseGrowth::lens_priors(lenses);
   if (std::ranges::all_of(lenses, [](const pipeline::LensGuess& lens) { return !(lens.focal_sd > 0); }))
     return {.adjustment = pipeline::adjust(scene, observations), .steps = {}, .priors = observations.lenses};
+  for (std::size_t lens = 0; lens < lenses.size(); ++lens) scene.lenses[lens].camera = lenses[lens].camera;
   return pipeline::adjust_with_ladder(scene, observations);
 }
 

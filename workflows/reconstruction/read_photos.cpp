@@ -50,15 +50,15 @@ pipeline::LensGuess guess_of(const Photo& photo, const std::vector<Camera>& know
           .focal_sd = m.focal_sd};
 }
 
-std::vector<importers::FoundImage> thin_files(std::vector<importers::FoundImage> found, std::size_t most,
-                                              const Callbacks& callbacks) {
-  if (found.size() <= most) return found;
+std::vector<importers::FoundImage> thin_files(std::vector<importers::FoundImage> found,
+                                              std::size_t max_images, const Callbacks& callbacks) {
+  if (found.size() <= max_images) return found;
   std::vector<importers::FoundImage> kept;
-  for (std::size_t i = 0; i < most; ++i) kept.push_back(found[i * found.size() / most]);
+  for (std::size_t i = 0; i < max_images; ++i) kept.push_back(found[i * found.size() / max_images]);
   callbacks.warning(
       fmt::format("{} of {} images are taken, evenly in the order of their names; pass fewer images to "
                   "choose them yourself",
-                  most, found.size()));
+                  max_images, found.size()));
   return kept;
 }
 
@@ -69,7 +69,7 @@ Photos read_photos(const PhotosRequest& request, const Callbacks& callbacks) {
       request.lens.empty() ? std::vector<Camera>{} : importers::import_lenses(request.lens);
   Photos out;
   for (const importers::FoundImage& found :
-       thin_files(importers::find_images(request.images, nullptr, ""), request.most, callbacks))
+       thin_files(importers::find_images(request.images, nullptr, ""), request.max_images, callbacks))
     try {
       Photo photo = read_photo(found);
       if (photo.metadata.is_orthophoto) {

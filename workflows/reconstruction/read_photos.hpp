@@ -32,7 +32,7 @@ struct Photos {
 struct PhotosRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders
   std::string lens = {};                 ///< camera file whose lens of the same image size holds; empty: none
-  std::size_t most = 400;  ///< images taken; more are thinned evenly in the order of their names
+  std::size_t max_images = 400;  ///< images taken; more are thinned evenly in the order of their names
 };
 
 /// Lists pictures and reads their metadata. Files that are no pictures are passed over.

@@ -147,7 +147,7 @@ std::vector<std::string> flat_images(const std::vector<pipeline::SurfaceView>& v
   return flat;
 }
 
-constexpr double kLeastKept = 0.01;  // of the cells; with less the heights are chance
+constexpr double kMinKept = 0.01;  // of the cells; with less the heights are chance
 constexpr std::size_t kImageBytes = std::size_t{1} << 30;
 
 pipeline::SweepPlan plan_sweep(const ReconstructRequest& request, const PosedImages& posed,
@@ -325,7 +325,7 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   const pipeline::SurfaceHeights dem = pipeline::sweep_heights(views, plan);
   result.cells = dem.grid.columns * dem.grid.rows;
   result.kept = dem.kept();
-  if (static_cast<double>(result.kept) < kLeastKept * static_cast<double>(result.cells) || result.kept == 0)
+  if (static_cast<double>(result.kept) < kMinKept * static_cast<double>(result.cells) || result.kept == 0)
     throw Error(ErrorCode::input,
                 fmt::format("{} of {} cells of the DEM have a height: the images share hardly any terrain",
                             result.kept, result.cells),

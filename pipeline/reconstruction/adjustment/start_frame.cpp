@@ -105,14 +105,14 @@ std::optional<Similarity> by_surface(const Reconstruction& scene, const Observat
   if (!(frame.norm() > 0) || !(map.norm() > from->sd + to->sd)) return std::nullopt;
   const Eigen::Matrix3d start = Eigen::Quaterniond::FromTwoVectors(frame, map).toRotationMatrix();
   std::optional<Similarity> best;
-  double least = 0;
+  double lowest = 0;
   for (int step = 0; step < 360; ++step) {
     Similarity trial{.scale = map.norm() / frame.norm()};
     trial.rotation =
         Eigen::AngleAxisd(step * std::numbers::pi / 180, map.normalized()).toRotationMatrix() * start;
     trial.shift = from->map - trial.scale * (trial.rotation * from->frame);
     const auto fit = misfit(scene, component, trial, *seen.surface);
-    if (fit && (!best || *fit < least)) best = trial, least = *fit;
+    if (fit && (!best || *fit < lowest)) best = trial, lowest = *fit;
   }
   return best;
 }

@@ -47,7 +47,7 @@ void add_promising(std::span<const ImageFeatures> images, const PairChoice& choi
     for (std::size_t j = 0; j < n; ++j)
       if (j != i) others.push_back({-double(counts[i * n + j]), j});
     std::ranges::sort(others);
-    for (std::size_t k = 0; k < std::min(choice.most, others.size()); ++k)
+    for (std::size_t k = 0; k < std::min(choice.max_pairs, others.size()); ++k)
       if (k < choice.best || -others[k].rank >= double(choice.min_preview))
         add_pair(pairs, i, others[k].other);
   }

@@ -21,7 +21,7 @@ struct PairChoice {
   std::size_t best = 4;          ///< pairs of most preview matches that each image has in any case
   std::size_t sequence = 2;      ///< following images by name that each image is matched with
   std::size_t near = 8;          ///< nearest images by position that each image is matched with
-  std::size_t most = 24;         ///< promising pairs per image, best first
+  std::size_t max_pairs = 24;    ///< promising pairs per image, best first
 };
 
 /// Chooses the pairs worth matching in full, sorted. A union, since any source may fail: sequence by name,

@@ -30,17 +30,17 @@ std::optional<double> vote_focal_length(std::span<const FocalEvidence> evidence,
   if (evidence.empty() || !(low > 0) || !(high > low)) return std::nullopt;
   constexpr int kSteps = 400;
   const double step = std::pow(high / low, 1.0 / kSteps);
-  double best = low, least = std::numeric_limits<double>::infinity();
+  double best = low, lowest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kSteps; ++i) {
     const double focal = low * std::pow(step, i), cost = cost_at(evidence, focal);
-    if (cost < least) {
-      least = cost;
+    if (cost < lowest) {
+      lowest = cost;
       best = focal;
     }
   }
   if (best <= low * step || best >= high / step) return std::nullopt;
   const double beside = std::min(cost_at(evidence, best * 1.3), cost_at(evidence, best / 1.3));
-  return beside > least + kVoteContrast ? std::optional(best) : std::nullopt;
+  return beside > lowest + kVoteContrast ? std::optional(best) : std::nullopt;
 }
 
 }  // namespace waymark::pipeline

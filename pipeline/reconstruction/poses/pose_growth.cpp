@@ -96,7 +96,7 @@ bool PoseGrowth::place_point(TiePoint& point) {
     }
   }
   if (seen.size() < 3) return false;
-  std::optional<std::vector<std::size_t>> fewest;
+  std::optional<std::vector<std::size_t>> smallest;
   Eigen::Vector3d best = Eigen::Vector3d::Zero();
   const std::size_t tried = std::min<std::size_t>(seen.size(), 8);
   for (std::size_t i = 0; i < tried; ++i)
@@ -105,13 +105,13 @@ bool PoseGrowth::place_point(TiePoint& point) {
       if (!two || two->angle < settings_.min_angle) continue;
       trial.position = two->position;
       std::vector<std::size_t> against = disagreeing(seen);
-      if (seen.size() - against.size() < 3 || (fewest && against.size() >= fewest->size())) continue;
-      fewest = std::move(against);
+      if (seen.size() - against.size() < 3 || (smallest && against.size() >= smallest->size())) continue;
+      smallest = std::move(against);
       best = two->position;
     }
-  if (!fewest) return false;
+  if (!smallest) return false;
   std::erase_if(point.marks,
-                [&](const Mark& m) { return std::ranges::find(*fewest, m.image) != fewest->end(); });
+                [&](const Mark& m) { return std::ranges::find(*smallest, m.image) != smallest->end(); });
   point.position = best;
   return true;
 }
@@ -257,7 +257,7 @@ bool PoseGrowth::seed(const ImagePair& images, const RelativePose& pose) {
 // Points known in an image count by the cells that they occupy, in grids of 2, 4 and 8 (COLMAP).
 std::optional<std::size_t> PoseGrowth::next() const {
   std::optional<std::size_t> best;
-  double most = 0;
+  double highest = 0;
   for (std::size_t i = 0; i < scene_.images.size(); ++i) {
     if (scene_.images[i].world_from_camera) continue;
     const std::size_t known = known_points(i);
@@ -275,8 +275,8 @@ std::optional<std::size_t> PoseGrowth::next() const {
       }
       score += side * double(cells.size());
     }
-    if (score > most) {
-      most = score;
+    if (score > highest) {
+      highest = score;
       best = i;
     }
   }

@@ -126,7 +126,7 @@ std::optional<Resection> resect(const Camera& camera, std::span<const ImagedPoin
   if (usable.size() < kMinAgreeing) return std::nullopt;
   Random random(settings.seed);
   Eigen::Isometry3d best = Eigen::Isometry3d::Identity();
-  Agreement most;
+  Agreement widest;
   double needed = settings.max_samples;
   for (int sample = 0; sample < std::min(double(settings.max_samples), needed); ++sample) {
     std::array<std::size_t, 3> at{};
@@ -136,14 +136,14 @@ std::optional<Resection> resect(const Camera& camera, std::span<const ImagedPoin
          three_point_poses({points[at[0]].position, points[at[1]].position, points[at[2]].position},
                            {rays[at[0]], rays[at[1]], rays[at[2]]})) {
       Agreement there = agreement(camera, pose, points, settings.threshold);
-      if (!(there.score > most.score)) continue;
-      most = std::move(there);
+      if (!(there.score > widest.score)) continue;
+      widest = std::move(there);
       best = pose;
-      const double fraction = double(most.inliers.size()) / double(usable.size());
+      const double fraction = double(widest.inliers.size()) / double(usable.size());
       needed = std::max(30.0, std::log(1e-4) / std::log(std::max(1e-12, 1 - std::pow(fraction, 3))));
     }
   }
-  if (most.inliers.size() < kMinAgreeing) return std::nullopt;
+  if (widest.inliers.size() < kMinAgreeing) return std::nullopt;
   best = refine_resection(camera, best, points, settings.threshold);
   return Resection{best.inverse(), agreement(camera, best, points, settings.threshold).inliers};
 }

@@ -18,7 +18,7 @@ struct Neighbour {
 };
 
 // Height and slopes at the middle, with Huber weights; `scale` becomes the robust spread of the residuals.
-Eigen::Vector3d robust_plane(const std::vector<Neighbour>& cells, double least, double& scale) {
+Eigen::Vector3d robust_plane(const std::vector<Neighbour>& cells, double min_scale, double& scale) {
   Eigen::Vector3d plane = Eigen::Vector3d::Zero();
   std::vector<double> weight(cells.size(), 1), residual(cells.size());
   for (int round = 0; round < 4; ++round) {
@@ -34,7 +34,7 @@ Eigen::Vector3d robust_plane(const std::vector<Neighbour>& cells, double least, 
       residual[i] = std::abs(cells[i].h - plane.x() - plane.y() * cells[i].x - plane.z() * cells[i].y);
     std::vector<double> sorted = residual;
     std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-    scale = std::max(least, 1.4826 * sorted[sorted.size() / 2]);
+    scale = std::max(min_scale, 1.4826 * sorted[sorted.size() / 2]);
     for (std::size_t i = 0; i < cells.size(); ++i)
       weight[i] = residual[i] <= 1.5 * scale ? 1 : 1.5 * scale / residual[i];
   }

@@ -12,15 +12,15 @@ using Cost = std::uint16_t;
 
 // L(p, k) = C(p, k) + min(L(q, k), L(q, k +- 1) + P1, min L(q) + P2) - min L(q), eq. 13. `before` has one
 // more entry on each side, larger than any cost. Returns the smallest L(p).
-Cost extend_path(const std::uint8_t* cost, const Cost* before, Cost least, const PathPenalties& p, int steps,
+Cost extend_path(const std::uint8_t* cost, const Cost* before, Cost lowest, const PathPenalties& p, int steps,
                  Cost* out, Cost* total) {
   const auto small = static_cast<Cost>(p.small);
-  const auto jump = static_cast<Cost>(least + p.large);
+  const auto jump = static_cast<Cost>(lowest + p.large);
   Cost smallest = 0xffff;
   for (int k = 0; k < steps; ++k) {
     const Cost step = static_cast<Cost>(std::min(before[k - 1], before[k + 1]) + small);
     const Cost best = std::min(std::min(before[k], step), jump);
-    const Cost value = static_cast<Cost>(cost[k] + best - least);
+    const Cost value = static_cast<Cost>(cost[k] + best - lowest);
     out[k] = value;
     total[k] = static_cast<Cost>(total[k] + value);
     smallest = std::min(smallest, value);
@@ -58,8 +58,8 @@ class PathSweep {
 
  private:
   struct Paths {
-    std::vector<Cost> cost;   ///< per node: a guard, the steps, a guard
-    std::vector<Cost> least;  ///< per node
+    std::vector<Cost> cost;    ///< per node: a guard, the steps, a guard
+    std::vector<Cost> lowest;  ///< per node
   };
 
   std::vector<Cost> empty(std::size_t nodes) const { return std::vector<Cost>(nodes * stride_, kGuard); }
@@ -85,15 +85,15 @@ class PathSweep {
             std::size_t node) {
     Cost* to = &out.cost[node * stride_ + 1];
     if (in) {
-      out.least[node] = extend_path(cost, &in->cost[source * stride_ + 1], in->least[source], penalties_,
-                                    volume_.steps, to, total);
+      out.lowest[node] = extend_path(cost, &in->cost[source * stride_ + 1], in->lowest[source], penalties_,
+                                     volume_.steps, to, total);
       return;
     }
     for (int k = 0; k < volume_.steps; ++k) {
       to[k] = cost[k];
       total[k] = static_cast<Cost>(total[k] + cost[k]);
     }
-    out.least[node] = *std::min_element(to, to + volume_.steps);
+    out.lowest[node] = *std::min_element(to, to + volume_.steps);
   }
 
   static constexpr Cost kGuard = 0x7fff;

@@ -63,8 +63,8 @@ bool sample_patch(const PosedCamera& view, const ProbeImage& probe, const Eigen:
     squares += value * value;
   }
   const double variance = squares / kPatchSize - sum / kPatchSize * sum / kPatchSize;
-  const double least = 2 * probe.image->noise;
-  if (!(variance > least * least)) return false;
+  const double min_sd = 2 * probe.image->noise;
+  if (!(variance > min_sd * min_sd)) return false;
   for (double& value : patch) value = (value - sum / kPatchSize) / std::sqrt(variance * kPatchSize);
   return true;
 }
@@ -146,7 +146,7 @@ std::optional<HeightRange> height_range(std::span<const Eigen::Vector3d> points)
 std::vector<Eigen::Vector3d> probe_heights(const std::vector<SurfaceView>& views, ImageLevels& images) {
   constexpr std::size_t kViews = 16, kPartners = 4;
   constexpr int kPixels = 10;
-  constexpr double kLeastFound = 0.08;  // of the pixels
+  constexpr double kMinFound = 0.08;  // of the pixels
   std::vector<ProbeImage> small;
   for (std::size_t v = 0; v < views.size(); ++v) small.push_back(probe_image(views, v, images));
   const std::size_t used = std::min(kViews, views.size());
@@ -175,7 +175,7 @@ std::vector<Eigen::Vector3d> probe_heights(const std::vector<SurfaceView>& views
   std::vector<Eigen::Vector3d> all;
   for (const auto& points : found) all.insert(all.end(), points.begin(), points.end());
   const bool few =
-      static_cast<double>(all.size()) < kLeastFound * static_cast<double>(used) * kPixels * kPixels;
+      static_cast<double>(all.size()) < kMinFound * static_cast<double>(used) * kPixels * kPixels;
   return few || scattered(all, views) ? std::vector<Eigen::Vector3d>{} : all;
 }
 

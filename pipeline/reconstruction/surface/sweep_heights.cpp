@@ -73,9 +73,9 @@ class HeightSweep {
   }
 
   double first_half_range(const SurfaceGrid& grid) const {
-    const double least = 4 * first_step(grid);
-    if (plan_.coarse) return std::max(4 * plan_.coarse->sd, least);
-    return std::max((plan_.range.high - plan_.range.low) / 2, least);
+    const double min_range = 4 * first_step(grid);
+    if (plan_.coarse) return std::max(4 * plan_.coarse->sd, min_range);
+    return std::max((plan_.range.high - plan_.range.low) / 2, min_range);
   }
 
   Grid<float> first_base(const SurfaceGrid& grid) const {

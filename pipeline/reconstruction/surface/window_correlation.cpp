@@ -40,10 +40,10 @@ WindowScores correlate_windows(std::span<const Resampled> views, std::span<const
   for (std::size_t v = 0; v < views.size(); ++v) {
     level.emplace_back(views[v] - level_of(views[v]));
     sums.push_back(window_sums(level[v]));
-    const auto least = static_cast<float>(min_sd[v] * min_sd[v]) * kCount;
+    const auto min_variance = static_cast<float>(min_sd[v] * min_sd[v]) * kCount;
     // 1 / sqrt(sum of squares about the mean); NaN without texture.
     scale.emplace_back(window_sums(level[v].square()) - sums[v].square() / kCount);
-    scale[v] = (scale[v] > std::max(least, 1e-6f)).select(1.0f / scale[v].sqrt(), kNoScore);
+    scale[v] = (scale[v] > std::max(min_variance, 1e-6f)).select(1.0f / scale[v].sqrt(), kNoScore);
   }
   scores.textured = scores.complete = Eigen::ArrayXXf::Zero(scale[0].rows(), scale[0].cols());
   for (std::size_t v = 0; v < views.size(); ++v) {

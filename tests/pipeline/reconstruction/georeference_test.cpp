@@ -41,8 +41,8 @@ double largest_error(const Reconstruction& found, const Reconstruction& truth) {
 double largest_chi2(const Reconstruction& found, const Reconstruction& truth) {
   double largest = 0;
   for (std::size_t i = 0; i < found.images.size(); ++i) {
-    const Eigen::Vector3d error = found.images[i].world_from_camera->translation() -
-                                  truth.images[i].world_from_camera->translation();
+    const Eigen::Vector3d error =
+        found.images[i].world_from_camera->translation() - truth.images[i].world_from_camera->translation();
     const Eigen::Matrix3d covariance = found.images[i].covariance->bottomRightCorner<3, 3>();
     largest = std::max(largest, error.dot(covariance.ldlt().solve(error)));
   }

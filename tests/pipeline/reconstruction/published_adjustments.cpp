@@ -2,8 +2,9 @@
 #include "published_adjustments.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <sstream>
+
+#include "core/text_file.hpp"
 
 namespace waymark::test {
 
@@ -13,7 +14,7 @@ std::filesystem::path reconstruction_data() {
 
 std::vector<std::vector<double>> number_rows(const std::filesystem::path& path) {
   std::vector<std::vector<double>> rows;
-  std::ifstream in(path);
+  std::istringstream in(read_text(path, "published adjustment"));
   for (std::string line; std::getline(in, line);) {
     for (char& c : line)
       if (c == ',' || c == '\t') c = ' ';
@@ -48,7 +49,7 @@ Eigen::Matrix3d flip() {
 
 std::map<int, std::map<std::string, Printed>> read_report(const std::filesystem::path& path) {
   std::map<int, std::map<std::string, Printed>> out;
-  std::ifstream in(path);
+  std::istringstream in(read_text(path, "published adjustment"));
   int photo = 0;
   std::string name;
   for (std::string line; std::getline(in, line);) {
