@@ -268,10 +268,12 @@ std::vector<fs::path> AtomicFileSet::commit() {
 }
 
 Error with_final_path(const Error& error, const fs::path& aside, const fs::path& final_path) {
+  // A library may name the whole path of what it was given from the working folder.
   const std::string& where = error.where();
-  if (!where.starts_with(aside.string())) return error;
-  return {error.code(), error.problem(), final_path.string() + where.substr(aside.string().size()),
-          error.hint()};
+  for (const std::string& name : {aside.string(), fs::absolute(aside).lexically_normal().string()})
+    if (where.starts_with(name))
+      return {error.code(), error.problem(), final_path.string() + where.substr(name.size()), error.hint()};
+  return error;
 }
 
 int write_aside(const fs::path& file, std::string_view content) {

@@ -150,6 +150,10 @@ TEST_F(AtomicFiles, ErrorsNameTheFinalPath) {
   const Error inside(ErrorCode::output, "full", "/d/.waymark-1-h-abcdef/m.gpkg, table x");
   EXPECT_EQ(with_final_path(inside, "/d/.waymark-1-h-abcdef/m.gpkg", "/d/m.gpkg").where(),
             "/d/m.gpkg, table x");
+  const std::string whole = (std::filesystem::current_path() / "d/.waymark-1/m.gpkg-journal").string();
+  EXPECT_EQ(
+      with_final_path(Error(ErrorCode::output, "full", whole), "d/.waymark-1/m.gpkg", "d/m.gpkg").where(),
+      "d/m.gpkg-journal");
   EXPECT_EQ(with_final_path(Error(ErrorCode::output, "full", "/e"), "/d/x", "/d/m").where(), "/e");
 }
 

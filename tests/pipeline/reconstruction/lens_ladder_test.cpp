@@ -44,7 +44,7 @@ TEST(LensLadder, ObliqueImagesOverReliefDetermineTheLens) {
     EXPECT_LT(step.left_out_after, step.left_out_before);
   }
   EXPECT_NEAR(step_of(found, "f").value, 1000, 4 * step_of(found, "f").sd);
-  EXPECT_LT(step_of(found, "f").sd, 1);
+  EXPECT_LT(step_of(found, "f").sd, 1.5);
   EXPECT_NEAR(step_of(found, "k1").value, -0.1, 4 * step_of(found, "k1").sd);
   EXPECT_NEAR(found.adjustment.sigma0, 1, 0.1);
   // The made lens has no more terms; what enters by chance is small.
