@@ -45,14 +45,14 @@ std::vector<double> round_values(const Histogram& histogram) {
 }
 
 std::string svg_bars(const Histogram& histogram, const NumberFormat& read) {
-  const auto most = *std::max_element(histogram.counts.begin(), histogram.counts.end());
+  const auto highest = *std::max_element(histogram.counts.begin(), histogram.counts.end());
   std::string bars;
   for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
     if (histogram.counts[i] == 0) continue;
     const double left = place(histogram, histogram.edges[i]),
                  right = place(histogram, histogram.edges[i + 1]);
     const double height =
-        std::max(1.0, kHeight * static_cast<double>(histogram.counts[i]) / static_cast<double>(most));
+        std::max(1.0, kHeight * static_cast<double>(histogram.counts[i]) / static_cast<double>(highest));
     bars += fmt::format(
         "<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}'><title>{} \u2013 {}: {}</title></rect>",
         left + 0.5, kHeight - height, std::max(1.0, right - left - 1), height,
@@ -111,8 +111,8 @@ std::string figure(const LandmarkSection& section, std::size_t f) {
 }  // namespace
 
 Histogram histogram_of(const std::vector<double>& values, Scale scale) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  const double low = *least, high = *most;
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  const double low = *lowest, high = *highest;
   Histogram histogram;
   histogram.logarithmic = scale == Scale::ratio && low > 0 && high / low > kLogSpan;
   const auto wanted =

@@ -44,7 +44,7 @@ struct ImageObservations {
 /// images are counted only.
 std::vector<ImageObservations> observed_images(const geodb::MapStore& map,
                                                const std::vector<geodb::ImageRecord>& images,
-                                               std::size_t most) {
+                                               std::size_t max_images) {
   std::map<std::string, ImageObservations> by_name;
   for (const geodb::ImageRecord& image : images) by_name[image.name].record = &image;
   map.visit_observations([&](Observation&& one) {
@@ -58,7 +58,7 @@ std::vector<ImageObservations> observed_images(const geodb::MapStore& map,
     if (image.count > 0) all.push_back(std::move(image));
   std::ranges::stable_sort(
       all, [](const ImageObservations& a, const ImageObservations& b) { return a.used > b.used; });
-  all.resize(std::min(all.size(), most));
+  all.resize(std::min(all.size(), max_images));
   map.visit_observations([&](Observation&& one) {
     const auto image = std::ranges::find_if(
         all, [&](const ImageObservations& shown) { return shown.record->name == one.source; });
@@ -97,9 +97,9 @@ Window densest_window(const ImageObservations& image, const Window& extent) {
     if (one.rejected.empty())
       ++counts[{std::llround(one.pixel->x()) / kDetail, std::llround(one.pixel->y()) / kDetail}];
   std::pair<std::int64_t, std::int64_t> best{0, 0};
-  int most = -1;
+  int highest = -1;
   for (const auto& [cell, count] : counts)
-    if (count > most) best = cell, most = count;
+    if (count > highest) best = cell, highest = count;
   const std::int64_t columns = std::min(kDetail, extent.columns), rows = std::min(kDetail, extent.rows);
   return {std::clamp<std::int64_t>(best.first * kDetail, 0, extent.columns - columns),
           std::clamp<std::int64_t>(best.second * kDetail, 0, extent.rows - rows), columns, rows};
@@ -178,10 +178,10 @@ std::string image_html(const geodb::MapStore& map, const ImageObservations& imag
 
 }  // namespace
 
-std::string image_figures(const geodb::MapStore& map, std::int64_t most) {
+std::string image_figures(const geodb::MapStore& map, std::int64_t max_images) {
   const auto records = map.images();
-  if (records.empty() || most < 1) return {};
-  const auto images = observed_images(map, records, static_cast<std::size_t>(most));
+  if (records.empty() || max_images < 1) return {};
+  const auto images = observed_images(map, records, static_cast<std::size_t>(max_images));
   if (images.empty()) return {};
   std::string html = "<p>";
   if (images.size() < records.size())

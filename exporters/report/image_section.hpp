@@ -14,6 +14,6 @@ namespace waymark::exporters {
 /// - Shows the `most` images with the most used observations.
 /// - Files are searched at the paths of the run, and beside the map.
 /// Empty if the map has no image with observations.
-std::string image_figures(const geodb::MapStore& map, std::int64_t most);
+std::string image_figures(const geodb::MapStore& map, std::int64_t max_images);
 
 }  // namespace waymark::exporters

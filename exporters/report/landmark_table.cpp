@@ -28,10 +28,10 @@ double real_attribute(const Landmark& landmark, std::size_t i) {
 }
 
 double largest(const std::vector<Landmark>& rows, const std::function<double(const Landmark&)>& value) {
-  double most = 0;
+  double largest = 0;
   for (const Landmark& row : rows)
-    if (const double v = std::abs(value(row)); v > most) most = v;
-  return most;
+    if (const double v = std::abs(value(row)); v > largest) largest = v;
+  return largest;
 }
 
 std::string with_unit(const std::string& title, const NumberFormat& read) {

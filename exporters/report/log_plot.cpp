@@ -22,8 +22,8 @@ struct Axis {
   double place(double value) const { return length * (std::log10(value) - from) / (to - from); }
 };
 
-Axis axis_of(double least, double most, double length) {
-  const double low = std::log10(least), high = std::log10(most);
+Axis axis_of(double lowest, double highest, double length) {
+  const double low = std::log10(lowest), high = std::log10(highest);
   const double room = std::max(0.08 * (high - low), 0.12);
   return {low - room, high + room, length};
 }
@@ -100,8 +100,8 @@ std::string svg_points(const Axis& x, const Axis& y, const LogPlot& plot) {
 std::string log_plot_figure(const LogPlot& plot) {
   if (plot.points.size() < 2) return {};
   const auto [left, right] = std::ranges::minmax(plot.points, {}, &LogPoint::x);
-  const auto [least, most] = std::ranges::minmax(plot.points, {}, &LogPoint::y);
-  const Axis x = axis_of(left.x, right.x, kWidth), y = axis_of(least.y, most.y, kHeight);
+  const auto [lowest, highest] = std::ranges::minmax(plot.points, {}, &LogPoint::y);
+  const Axis x = axis_of(left.x, right.x, kWidth), y = axis_of(lowest.y, highest.y, kHeight);
   return fmt::format(
       "<figure class='histogram plot' style='--type:{}'><figcaption><b>{}</b> {}</figcaption>"
       "<svg viewBox='{} {} {} {}' role='img' aria-label='{}'>{}<g class='points'>{}</g></svg></figure>\n",

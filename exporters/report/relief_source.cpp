@@ -53,8 +53,8 @@ struct Part {
 Part part_of(const Relief& relief, const Raster& raster) {
   const double px = relief.extent.width() / static_cast<double>(relief.heights.columns());
   const double py = relief.extent.height() / static_cast<double>(relief.heights.rows());
-  const auto clamp = [](double at, std::int64_t most) {
-    return std::clamp<std::int64_t>(std::llround(at), 0, most);
+  const auto clamp = [](double at, std::int64_t limit) {
+    return std::clamp<std::int64_t>(std::llround(at), 0, limit);
   };
   Part part;
   part.pixels.column = clamp((raster.extent.west - relief.extent.west) / px, relief.heights.columns());

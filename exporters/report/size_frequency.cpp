@@ -37,8 +37,8 @@ std::vector<SizeBin> size_bins(const std::vector<double>& diameters) {
     return static_cast<int>(std::floor(2 * std::log2(metres / 1000)));
   };
   const auto edge = [](int step) { return 1000 * std::exp2(step / 2.0); };
-  const auto [least, most] = std::ranges::minmax(diameters);
-  const int first = step_of(least), last = step_of(most);
+  const auto [smallest, largest] = std::ranges::minmax(diameters);
+  const int first = step_of(smallest), last = step_of(largest);
   std::vector<SizeBin> bins;
   for (int step = first; step <= last; ++step) bins.push_back({edge(step), edge(step + 1), 0, 0});
   for (const double diameter : diameters) ++bins[static_cast<std::size_t>(step_of(diameter) - first)].count;
@@ -67,7 +67,7 @@ std::string size_frequency_figures(const LandmarkSection& section, const std::op
   LogPlot cumulative{.title = "Cumulative size-frequency",
                      .about = "",
                      .x_label = x_label,
-                     .y_label = area ? "At least as large, per km\u00b2" : "At least as large",
+                     .y_label = area ? "At smallest as large, per km\u00b2" : "At smallest as large",
                      .colour = section.type.colour,
                      .points = {}};
   LogPlot relative{
@@ -88,7 +88,7 @@ std::string size_frequency_figures(const LandmarkSection& section, const std::op
     const std::string range = length_text(bin.from) + " \u2013 " + length_text(bin.to);
     cumulative.points.push_back(
         {bin.from / unit, larger * per_area, std::sqrt(larger) * per_area,
-         fmt::format("{} of at least {}", number_text(larger), length_text(bin.from))});
+         fmt::format("{} of at smallest {}", number_text(larger), length_text(bin.from))});
     if (!area) continue;
     const double r = relative_density(bin, area->square_metres);
     relative.points.push_back(

@@ -165,10 +165,10 @@ class Drawing {
     if (picture_.truth.size() < 2) return;
     const double top = 30 + height_ + 30, width = kWidth - 2 * kBorder;
     const double from = picture_.truth.front().t, span = picture_.truth.back().t - from;
-    double most = 1;
+    double largest = 1;
     for (const PictureTrack& t : picture_.tracks)
-      for (const auto& [time, error] : errors(t.track)) most = std::max(most, error);
-    const double decades = std::ceil(std::log10(most / kMinError));
+      for (const auto& [time, error] : errors(t.track)) largest = std::max(largest, error);
+    const double decades = std::ceil(std::log10(largest / kMinError));
     const auto height = [&](double error) {
       return top + kChart * (1 - std::log10(std::max(error, kMinError) / kMinError) / decades);
     };

@@ -86,7 +86,7 @@ const char* pragmas(OpenMode mode) {
 constexpr std::uint64_t kStepsPerByte = 100, kMinSteps = 20'000'000;
 constexpr int kStepsPerCheck = 100'000;
 
-std::uint64_t most_steps(const std::filesystem::path& path) {
+std::uint64_t max_steps(const std::filesystem::path& path) {
   std::error_code unknown;
   const auto bytes = std::filesystem::file_size(path, unknown);
   return kMinSteps + (unknown ? 0 : kStepsPerByte * bytes);
@@ -96,7 +96,7 @@ std::uint64_t most_steps(const std::filesystem::path& path) {
 int count_steps(void* data) {
   auto& limit = *static_cast<StepLimit*>(data);
   limit.steps += kStepsPerCheck;
-  return limit.steps > limit.most;
+  return limit.steps > limit.max_steps;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ bool Statement::step() {
   if (limit_) {
     steps_ += static_cast<std::uint32_t>(
         sqlite3_stmt_status(statement_.get(), SQLITE_STMTSTATUS_VM_STEP, /*reset=*/1));
-    if (result == SQLITE_ROW && steps_ > limit_->most) {
+    if (result == SQLITE_ROW && steps_ > limit_->max_steps) {
       sqlite3_reset(statement_.get());
       fail_endless(sqlite3_db_handle(statement_.get()));
     }
@@ -189,7 +189,7 @@ Database::Database(const std::filesystem::path& path, OpenMode mode) {
   sqlite3_busy_handler(handle, wait_for_lock, nullptr);
   add_geometry_functions(handle);
   if (mode != OpenMode::create) {
-    limit_ = std::make_unique<StepLimit>(StepLimit{.most = most_steps(path)});
+    limit_ = std::make_unique<StepLimit>(StepLimit{.max_steps = max_steps(path)});
     sqlite3_progress_handler(handle, kStepsPerCheck, count_steps, limit_.get());
   }
   execute(pragmas(mode));

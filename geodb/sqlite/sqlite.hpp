@@ -17,7 +17,7 @@ namespace waymark::geodb::sqlite {
 /// Instructions of SQLite's virtual machine that one execution of a statement may take. A foreign file may
 /// hold views and triggers that never end.
 struct StepLimit {
-  std::uint64_t most = 0;
+  std::uint64_t max_steps = 0;
   std::uint64_t steps = 0;  ///< of the statement that is being executed
 };
 

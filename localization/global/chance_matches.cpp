@@ -9,8 +9,8 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kStep = 0.5, kMostInformation = 12, kEqualWeight = 4;  // nats
-constexpr std::size_t kShells = 6;                                      // of equal area in the gate
+constexpr double kStep = 0.5, kMaxInformation = 12, kEqualWeight = 4;  // nats
+constexpr std::size_t kShells = 6;                                     // of equal area in the gate
 
 struct Trial {
   double probability = 0, weight = 0;
@@ -54,7 +54,7 @@ double tail(std::span<const Trial> trials, double gate) {
 double chance_of_matches(std::span<const ChanceMatch> sightings, double gate) {
   std::vector<Trial> equal, informed;
   for (const ChanceMatch& s : sightings) {
-    const double p = std::clamp(s.probability, std::exp(-kMostInformation), 1 - 1e-9);
+    const double p = std::clamp(s.probability, std::exp(-kMaxInformation), 1 - 1e-9);
     const double squares = middle_of_shell(s.squares, gate);
     const auto trial = [&](double weight) {
       return Trial{p, weight, s.is_matched ? steps(weight, squares, gate) : 0};

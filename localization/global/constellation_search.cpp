@@ -8,10 +8,10 @@
 namespace waymark::localization {
 namespace {
 
-constexpr std::size_t kMostSightings = 40;  // the nearest ones; more only cost time
+constexpr std::size_t kMaxSightings = 40;  // the nearest ones; more only cost time
 constexpr std::size_t kSeenNeighbours = 7;
-constexpr double kMostCells = 3000;  // of one triangle; with more its lengths are too uncertain to look up
-constexpr std::size_t kMostGuesses = 30000;  // from the triangles with the fewest hits
+constexpr double kMaxCells = 3000;  // of one triangle; with more its lengths are too uncertain to look up
+constexpr std::size_t kMaxGuesses = 30000;  // from the triangles with the fewest hits
 
 }  // namespace
 
@@ -34,7 +34,7 @@ ConstellationSearch::ConstellationSearch(const ConstellationIndex& index, const 
     : index_(index), o_(index.options_) {
   for (std::size_t i = 0; i < seen.sightings.size(); ++i) add(seen, i);
   std::ranges::stable_sort(points_, {}, [](const Seen& s) { return s.range; });
-  if (points_.size() > kMostSightings) points_.resize(kMostSightings);
+  if (points_.size() > kMaxSightings) points_.resize(kMaxSightings);
   for (Seen& s : points_) s.rarity = rarity(s);
   for (const Seen& s : points_) middle_ += s.at / static_cast<double>(points_.size());
   for (const Seen& s : points_) extent_ = std::max(extent_, (s.at - middle_).norm());
@@ -155,7 +155,7 @@ void ConstellationSearch::guess_by_triangles() {
   for (const auto& hits : all) {
     const double weight = 1 / static_cast<double>(hits.size());
     for (const auto& [seen, corners] : hits) guess(corners[0], seen, corners, 3, weight);
-    if (guesses_.size() > kMostGuesses) break;
+    if (guesses_.size() > kMaxGuesses) break;
   }
 }
 
@@ -184,7 +184,7 @@ void ConstellationSearch::look_up(const std::array<const Seen*, 3>& c) {
   const double cell = index_.length_cell_;
   const auto low = [&](std::size_t i) { return std::floor(std::max(0.0, side[i] - slack[i]) / cell); };
   const auto high = [&](std::size_t i) { return std::floor((side[i] + slack[i]) / cell); };
-  if ((high(0) - low(0) + 1) * (high(1) - low(1) + 1) > kMostCells || index_.corners_.empty()) return;
+  if ((high(0) - low(0) + 1) * (high(1) - low(1) + 1) > kMaxCells || index_.corners_.empty()) return;
   for (const auto& types : possible_types(c))
     for (double x = low(0); x <= high(0); ++x)
       for (double y = low(1); y <= std::min(high(1), x); ++y) {
@@ -237,8 +237,8 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
   if (fixes.empty()) return "no such constellation in the map";
   const ConstellationFix& best = fixes[0];
   if (named >= 2) {
-    const double least = std::max(2.0, 0.6 * static_cast<double>(named));
-    return best.matched >= least ? "" : "the identities contradict the distances";
+    const double min_matched = std::max(2.0, 0.6 * static_cast<double>(named));
+    return best.matched >= min_matched ? "" : "the identities contradict the distances";
   }
   if (best.matched < o_.min_matches) return "too few sightings fit one pose";
   if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";

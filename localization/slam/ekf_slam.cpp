@@ -131,7 +131,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
                                    state_.pose().yaw + set.robot_from_sensor.yaw, state_.covariance()(2, 2));
   last_.assign(matches.size(), std::nullopt);
   std::vector<Pair> pairs;
-  std::vector<double> least(matches.size(), 1e9), closest(matches.size(), 1e9);
+  std::vector<double> lowest(matches.size(), 1e9), closest(matches.size(), 1e9);
   std::vector<bool> differs(matches.size(), false);
   const auto named = [&](const SeenLandmark& s) {
     return options_.identification.use_identities && s.identity;
@@ -164,7 +164,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
         // An identity is accepted unless the landmark lies where it cannot be.
         const Eigen::Matrix2d wide = base + sensor_noise(s);
         const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
-        least[k] = squares, closest[k] = 0;
+        lowest[k] = squares, closest[k] = 0;
         if (squares < options_.fresh) pairs.push_back({squares, k, l});
         continue;
       }
@@ -178,7 +178,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
       closest[k] = std::min(closest[k], std::hypot(v[0], v[1] * e.value[0]));
       const Eigen::Matrix2d wide = base + sensor_noise(s);
       const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
-      least[k] = std::min(least[k], squares);
+      lowest[k] = std::min(lowest[k], squares);
       if (squares < options_.match) pairs.push_back({squares + std::max(features, 0.0), k, l});
     }
   }
@@ -213,7 +213,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
     else if (s.range && *s.range > options_.max_range)
       matches[k].verdict = Verdict::too_far;
     else if (s.range && (named(s) ? !landmark_by_key_.contains(*s.identity)
-                                  : least[k] > options_.fresh && closest[k] > options_.nearest)) {
+                                  : lowest[k] > options_.fresh && closest[k] > options_.nearest)) {
       add(s, seen.robot_from_sensor);
       last_[k] = landmarks_.size() - 1;
       matches[k].verdict = differs[k] ? Verdict::features_differ : Verdict::nothing_near;
@@ -258,11 +258,11 @@ std::vector<EkfSlam::Pair> EkfSlam::jointly_compatible(const SightingSet& seen, 
   while (chosen.size() > 1 &&
          state_.joint_squares(corrections) > chi_square_quantile(kJointGate, static_cast<double>(rows))) {
     std::size_t worst = 0;
-    double least = std::numeric_limits<double>::infinity();
+    double lowest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       std::vector<SlamState::Correction> rest = corrections;
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
-      if (const double squares = state_.joint_squares(rest); squares < least) least = squares, worst = k;
+      if (const double squares = state_.joint_squares(rest); squares < lowest) lowest = squares, worst = k;
     }
     rows -= seen.sightings[chosen[worst].sighting].range ? 2 : 1;
     chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(worst));

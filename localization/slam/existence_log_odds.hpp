@@ -19,8 +19,8 @@ inline double probability_from_log_odds(double log_odds) {
 
 /// Returns the log odds that a missed detection adds to a landmark's existence: at least `most` (< 0), less
 /// in magnitude for a sensor that often misses. `detection`: detection probability, (0, 1).
-inline double unseen_evidence(double detection, double most) {
-  return std::max(most, std::log(1 - std::clamp(detection, 0.01, 0.99)));
+inline double unseen_evidence(double detection, double min_evidence) {
+  return std::max(min_evidence, std::log(1 - std::clamp(detection, 0.01, 0.99)));
 }
 
 }  // namespace waymark::localization

@@ -71,7 +71,7 @@ std::vector<InitializationStep> initialization_order(const PoseGraph& graph) {
     placed[pose] = true;
     // Prefers the step from the pose before: that is odometry, loops come later.
     std::optional<std::size_t> best;
-    std::size_t least = kNone;
+    std::size_t nearest = kNone;
     for (const std::size_t i : near.steps[pose]) {
       const std::size_t other = graph.steps[i].from == pose ? graph.steps[i].to : graph.steps[i].from;
       if (!placed[other] || other == pose) {
@@ -79,7 +79,7 @@ std::vector<InitializationStep> initialization_order(const PoseGraph& graph) {
         continue;
       }
       const std::size_t away = other < pose ? pose - other : other - pose;
-      if (away < least) least = away, best = i;
+      if (away < nearest) nearest = away, best = i;
     }
     order.push_back({pose, order.empty() ? std::nullopt : best});
     for (const std::size_t i : near.sightings[pose]) {
@@ -145,9 +145,9 @@ std::optional<Pose2> resect_pose(const PoseGraph& graph, const std::vector<std::
 }
 
 std::optional<Eigen::Vector2d> intersect_rays(const Pose2& a, const Pose2& b) {
-  constexpr double kLeastSine = 0.1;
+  constexpr double kMinSine = 0.1;
   const double sine = std::sin(b.yaw - a.yaw);
-  if (std::abs(sine) < kLeastSine) return {};
+  if (std::abs(sine) < kMinSine) return {};
   const Eigen::Vector2d between = b.at() - a.at(), along(std::cos(a.yaw), std::sin(a.yaw));
   const double far = (between.x() * std::sin(b.yaw) - between.y() * std::cos(b.yaw)) / sine;
   if (!(far > 0)) return {};
