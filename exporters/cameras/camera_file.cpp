@@ -66,6 +66,10 @@ std::string camera_file_text(const CameraFileContent& content) {
       entry["rotation"] = matrix_json(pose->linear());
       if (image.covariance) entry["covariance"] = matrix_json(*image.covariance);
     }
+    if (image.sun)
+      entry["sun"] = {{"azimuth", image.sun->azimuth.value},
+                      {"elevation", image.sun->elevation.value},
+                      {"sd", image.sun->sd.value}};
     if (!image.taken_utc.empty()) entry["taken_utc"] = image.taken_utc;
     file["images"].push_back(std::move(entry));
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "geo/camera.hpp"
+#include "geo/sun.hpp"
 namespace waymark::exporters {
 
 /// Image of a camera file.
@@ -13,7 +14,8 @@ struct CameraFileImage {
   std::size_t lens = 0;                                        ///< index into `CameraFileContent::lenses`
   std::optional<Eigen::Isometry3d> world_from_camera = {};     ///< OpenCV axes
   std::optional<Eigen::Matrix<double, 6, 6>> covariance = {};  ///< as in PosedCamera
-  std::string taken_utc = {};                                  ///< ISO 8601; empty: unknown
+  std::optional<Sun> sun = {};
+  std::string taken_utc = {};  ///< ISO 8601; empty: unknown
 };
 
 /// Content of a camera file.

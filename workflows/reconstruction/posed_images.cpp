@@ -5,16 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "exporters/cameras/camera_file.hpp"
 #include "importers/images/image_set.hpp"
 #include "importers/images/list_images.hpp"
 
 namespace waymark::workflows {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string some_names(const std::vector<std::string>& names) {
   constexpr std::size_t kShown = 5;
@@ -34,42 +32,6 @@ Crs map_crs(const PosedImagesRequest& request, const std::vector<ImageInfo>& ima
                 request.crs.empty() ? request.cameras : "--crs",
                 "pass a projected CRS, e.g. --crs EPSG:32651");
   return crs;
-}
-
-Json json_matrix(const Eigen::MatrixXd& m) {
-  Json rows = Json::array();
-  for (Eigen::Index r = 0; r < m.rows(); ++r) {
-    Json row = Json::array();
-    for (Eigen::Index c = 0; c < m.cols(); ++c) row.push_back(m(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-Json json_lens(const Camera& camera) {
-  std::size_t used = camera.distortion.size();
-  while (used > 0 && camera.distortion[used - 1] == 0) --used;
-  Json lens{{"columns", camera.columns}, {"rows", camera.rows}, {"fx", camera.fx},
-            {"fy", camera.fy},           {"cx", camera.cx},     {"cy", camera.cy}};
-  if (camera.skew != 0) lens["skew"] = camera.skew;
-  lens["lens"] = camera.lens == Camera::Lens::fisheye ? "fisheye" : "brown";
-  lens["distortion"] = std::vector<double>(camera.distortion.begin(),
-                                           camera.distortion.begin() + static_cast<std::ptrdiff_t>(used));
-  return lens;
-}
-
-Json json_image(const ImageInfo& info) {
-  const Eigen::Isometry3d& pose = info.view->grid_from_camera.transform;
-  Json image{{"name", info.name}};
-  image["centre"] = {pose.translation().x(), pose.translation().y(), pose.translation().z()};
-  image["rotation"] = json_matrix(pose.linear());
-  if (!info.view->covariance.isZero()) image["covariance"] = json_matrix(info.view->covariance);
-  if (info.sun)
-    image["sun"] = {{"azimuth", info.sun->azimuth.value},
-                    {"elevation", info.sun->elevation.value},
-                    {"sd", info.sun->sd.value}};
-  if (!info.taken_utc.empty()) image["taken_utc"] = info.taken_utc;
-  return image;
 }
 
 }  // namespace
@@ -97,28 +59,23 @@ PosedImages read_posed_images(const PosedImagesRequest& request, const Callbacks
 }
 
 std::string camera_file(const PosedImages& posed) {
-  Json file{{"waymark_cameras", 1}};
-  const Crs& crs = posed.crs;
-  file["frame"] = {{"axes", "grid"},
-                   {"crs", crs.kind() == CrsKind::local ? "local"
-                           : crs.authority().empty()    ? crs.wkt2()
-                                                        : crs.id()}};
-  file["cameras"] = Json::object();
-  file["images"] = Json::array();
-  std::vector<Camera> lenses;
-  for (const ImageHandle& image : posed.images) {
-    const Camera& camera = image->info().view->camera;
-    const auto known = std::ranges::find(lenses, camera);
-    const std::string name = fmt::format("lens_{}", known - lenses.begin() + 1);
-    if (known == lenses.end()) {
-      file["cameras"][name] = json_lens(camera);
-      lenses.push_back(camera);
-    }
-    Json entry = json_image(image->info());
-    entry["camera"] = name;
-    file["images"].push_back(std::move(entry));
+  exporters::CameraFileContent content;
+  content.crs = posed.crs.kind() == CrsKind::local ? "local"
+                : posed.crs.authority().empty()    ? posed.crs.wkt2()
+                                                   : posed.crs.id();
+  for (const ImageHandle& handle : posed.images) {
+    const ImageInfo& info = handle->info();
+    const auto lens = std::ranges::find(content.lenses, info.view->camera) - content.lenses.begin();
+    if (lens == std::ssize(content.lenses)) content.lenses.push_back(info.view->camera);
+    exporters::CameraFileImage& image = content.images.emplace_back();
+    image.name = info.name;
+    image.lens = static_cast<std::size_t>(lens);
+    image.world_from_camera = info.view->grid_from_camera.transform;
+    if (!info.view->covariance.isZero()) image.covariance = info.view->covariance;
+    image.sun = info.sun;
+    image.taken_utc = info.taken_utc;
   }
-  return file.dump(1) + "\n";
+  return exporters::camera_file_text(content);
 }
 
 }  // namespace waymark::workflows
