@@ -161,7 +161,7 @@ class JsonScanner {
         ++at_;
         return true;
       }
-      if (c < 0x20) return fail("a control character in a text must be written as \\n, \\t or \\u0025");
+      if (c < 0x20) return fail("a control character in a text must be written as \\n, \\t or \\u00XX");
       if (!(c == '\\' ? escape() : character())) return false;
     }
     return fail("a text has no closing quote");

@@ -68,8 +68,11 @@ std::vector<TypeStatistics> type_statistics(const MapContents& contents) {
   return of_type;
 }
 
-constexpr std::int64_t kLarge = 50'000;                       // landmarks of a large map
-constexpr const char* kCache = "PRAGMA cache_size = -65536";  // kB
+constexpr std::int64_t kLarge = 50'000;  // landmarks of a large map
+
+// In kB. A larger cache does not write a map faster. SQLite's sorter works in runs of its size, which a
+// second thread sorts while the first one scans.
+constexpr const char* kCache = "PRAGMA cache_size = -8192";
 
 // Large pages save a quarter of the time for large maps; small pages save space for small maps. SQLite
 // converts the cache size to pages when it is set, so it is set again after the page size.
@@ -169,11 +172,9 @@ class MapWriter {
     return new_id_.at(old_id) * kRowsPerType + 1 + row_index;
   }
 
-  /// Sets a small cache: the sorter works in runs of its size, which a second thread sorts during the scan.
   void create_index(const std::string& definition) {
-    database_->execute("PRAGMA threads = 2; PRAGMA cache_size = -8192");
+    database_->execute("PRAGMA threads = 2");
     database_->execute("CREATE " + definition);
-    database_->execute(kCache);
   }
 
   void create_uid_index(const std::string& table) {

@@ -129,7 +129,7 @@ TEST(Memory, OfMapsDoesNotGrowWithTheirLandmarks) {
     RecordProperty(what, static_cast<int>(megabytes));
     EXPECT_GT(megabytes, 20) << "MB, " << what;
     // GDAL's index of FlatGeobuf holds about 270 bytes a landmark.
-    const double more = what == "export to FlatGeobuf" ? 40 : 30;
+    const double more = what == "export to FlatGeobuf" ? 40 : 20;
     EXPECT_LT(large.at(what), megabytes + more) << "MB, " << what << ": " << megabytes << " for a sixth";
   }
 }

@@ -49,7 +49,7 @@ TEST(JsonText, FaultsHaveLineAndColumn) {
   EXPECT_EQ(fault_of("\"\\x\""), "1:3 a backslash must be written twice");
   EXPECT_EQ(fault_of("\"\\ud800\""), "1:8 a high surrogate without a low one");
   EXPECT_EQ(fault_of("\"\xff\""), "1:2 this is not UTF-8");
-  EXPECT_EQ(fault_of("\"\t\""), "1:2 a control character in a text must be written as \\n, \\t or \\u0025");
+  EXPECT_EQ(fault_of("\"\t\""), "1:2 a control character in a text must be written as \\n, \\t or \\u00XX");
   EXPECT_EQ(fault_of(std::string_view("1\0", 2)), "1:2 there is more text after the end of the value");
 }
 
