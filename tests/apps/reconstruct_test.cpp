@@ -60,7 +60,7 @@ TEST_F(ReconstructCommand, MakesTheMapInOneCommand) {
   EXPECT_EQ(again.code, 0) << again.err;
 }
 
-TEST_F(ReconstructCommand, StopsWhereToldAndStartsAtACoarseDem) {
+TEST_F(ReconstructCommand, StopsAtTheStageAskedAndStartsAtACoarseDem) {
   const Outcome poses = run((flight() / "truth/cameras.json").string(), {"--until", "poses"});
   ASSERT_EQ(poses.code, 0) << poses.err;
   EXPECT_TRUE(fs::exists(folder_ / "out/cameras.json"));

@@ -189,7 +189,7 @@ TEST(Adjust, AHeightBiasIsEstimated) {
   EXPECT_EQ(found.free_datum, 0);
   EXPECT_NEAR(found.height_bias, 42, 4 * found.height_bias_sd);
   EXPECT_LT(found.height_bias_sd, 0.2);
-  // Without control the bias and the height of the frame cannot be told apart.
+  // Without control the bias and the height of the frame cannot be separated.
   seen.control.clear();
   const AdjustmentResult loose = adjust(made.start, seen);
   EXPECT_EQ(loose.free_datum, 1);

@@ -55,7 +55,7 @@ TEST(LensLadder, ObliqueImagesOverReliefDetermineTheLens) {
     }
 }
 
-// Vertical images of a plane without known positions: focal length and height cannot be told apart.
+// Vertical images of a plane without known positions: focal length and height cannot be separated.
 TEST(LensLadder, NadirOverAPlaneKeepsThePrior) {
   MadeScene made = made_scene({.seed = 5, .relief = 0, .points = 400, .camera = truth_of_lens()});
   for (AdjustedImage& image : made.truth.images) {
