@@ -76,16 +76,16 @@ std::string as_markdown(const LandmarkType& type) {
 }
 
 std::string as_json(const LandmarkType& type) {
-  Json json{{"name", type.name},
-            {"summary", type.summary},
-            {"features", Json::array()},
-            {"attributes", Json::array()},
-            {"drawn_as", word(type.drawn_as)},
-            {"colour", type.colour},
-            {"evidence", to_string(type.evidence)},
-            {"identification_reach", type.identification_reach}};
+  Json object{{"name", type.name},
+              {"summary", type.summary},
+              {"features", Json::array()},
+              {"attributes", Json::array()},
+              {"drawn_as", word(type.drawn_as)},
+              {"colour", type.colour},
+              {"evidence", to_string(type.evidence)},
+              {"identification_reach", type.identification_reach}};
   if (!type.body.feature.empty())
-    json["body"] = {{"feature", type.body.feature}, {"radius_per_value", type.body.radius_per_value}};
+    object["body"] = {{"feature", type.body.feature}, {"radius_per_value", type.body.radius_per_value}};
   for (const FeatureSpec& feature : type.features) {
     Json entry{{"name", feature.name},
                {"unit", feature.unit},
@@ -93,14 +93,14 @@ std::string as_json(const LandmarkType& type) {
                {"summary", feature.summary}};
     if (std::isfinite(feature.min_value)) entry["lowest"] = feature.min_value;
     if (std::isfinite(feature.max_value)) entry["highest"] = feature.max_value;
-    json["features"].push_back(entry);
+    object["features"].push_back(entry);
   }
   for (const AttributeSpec& attribute : type.attributes)
-    json["attributes"].push_back({{"name", attribute.name},
-                                  {"unit", attribute.unit},
-                                  {"kind", word(attribute.kind)},
-                                  {"summary", attribute.summary}});
-  return json.dump(2);
+    object["attributes"].push_back({{"name", attribute.name},
+                                    {"unit", attribute.unit},
+                                    {"kind", word(attribute.kind)},
+                                    {"summary", attribute.summary}});
+  return object.dump(2);
 }
 
 /// Of a landmark as `waymark query --format json` prints it; a value that is not known is null.

@@ -4,7 +4,7 @@ target_compile_options(waymark_build_rules INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Wold-style-cast -Werror
   -Wno-restrict -Wno-stringop-overflow  # false alarms of g++ 12 on std::string (bug 105651)
   -ffp-contract=off)  # the same bits on a machine with and without fused multiply-add
-# Memory instead of time: a unit of a dozen sources spends a twelfth of its time collecting garbage otherwise.
+# Memory instead of time: a unit of two dozen sources spends a twelfth of its time collecting garbage otherwise.
 set(waymark_compiler_memory $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=200$<SEMICOLON>--param=ggc-min-heapsize=262144>)
 find_program(CCACHE ccache)
 if(CCACHE)

@@ -23,4 +23,5 @@ void @arg_FUNCTION@([[maybe_unused]] @arg_REGISTRY@& registry) {
 }
 ")
   target_sources(${arg_TARGET} PRIVATE ${files} ${generated})
+  set_source_files_properties(${generated} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -1,11 +1,11 @@
-# Compiles the sources of a library a dozen at a time, so that their headers are parsed once: a clean build takes half
-# the time. The presets for development leave it off, since an edited file would rebuild its whole dozen.
-option(WAYMARK_UNITY "Compile the sources of a library a dozen at a time" OFF)
+# Compiles the sources of a library two dozen at a time, so that their headers are parsed once: a clean build takes half
+# the time. The presets for development leave it off, since an edited file would rebuild its whole unit.
+option(WAYMARK_UNITY "Compile the sources of a library two dozen at a time" OFF)
 # Files whose private names occur in other files of their library, too.
 set(alone
   apps/commands/man.cpp apps/waymark.cpp
   geo/terrain_pyramid.cpp
-  exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/vector/ogr_output.cpp
+  exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/report/track_picture.cpp exporters/vector/ogr_output.cpp
   geodb/geopackage/geometry_blob.cpp geodb/geopackage/shape_blob.cpp
   importers/cameras/formats/opk.cpp importers/logs/log_line.cpp importers/cameras/world_to_grid.cpp importers/images/find_images.cpp importers/images/sun_position.cpp
   importers/points/canopy_codec.cpp importers/points/inspect_canopy.cpp importers/rasters/mosaic.cpp importers/stages/load_dem.cpp
@@ -14,7 +14,7 @@ set(alone
   localization/global/skyline.cpp localization/global/skyline_fit.cpp localization/identification/identification.cpp
   localization/slam/pose_graph_builder.cpp
   pipeline/craters/crater_training.cpp pipeline/craters/dem_rim.cpp pipeline/craters/find_craters_in_dem.cpp
-  pipeline/craters/shaded_scene.cpp pipeline/craters/tile_spectrum.cpp
+  pipeline/craters/shaded_scene.cpp pipeline/craters/tile_correlation.cpp pipeline/craters/tile_spectrum.cpp
   pipeline/engine/job.cpp pipeline/engine/report.cpp pipeline/engine/store/artifact_store.cpp
   pipeline/forest/canopy_model.cpp pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
   pipeline/fusion/valuation/landmark_valuation.cpp
@@ -22,7 +22,7 @@ set(alone
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp)
 
 function(waymark_unity TARGET)
-  set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${WAYMARK_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+  set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${WAYMARK_UNITY} UNITY_BUILD_BATCH_SIZE 24)
   list(TRANSFORM alone PREPEND ${PROJECT_SOURCE_DIR}/)
   set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

@@ -27,7 +27,8 @@ struct NamedUnit {
 
 using GeoTransform = std::array<double, 6>;
 
-[[noreturn]] void refuse(const std::string& problem, const std::string& path, const std::string& hint) {
+[[noreturn]] void refuse_raster(const std::string& problem, const std::string& path,
+                                const std::string& hint) {
   throw Error(ErrorCode::input, problem, path, hint);
 }
 
@@ -35,25 +36,27 @@ int band_of_heights(GDALDataset& dataset, const std::string& path, int wanted) {
   const int bands = dataset.GetRasterCount();
   if (bands == 0) {
     const char* first = CSLFetchNameValue(dataset.GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
-    refuse("the file itself contains no raster", path,
-           first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows its content");
+    refuse_raster(
+        "the file itself contains no raster", path,
+        first ? fmt::format("name one of its data sets, e.g. {}", first) : "`gdalinfo` shows its content");
   }
   if (wanted > bands)
-    refuse(fmt::format("there is no band {}: this file has {}", wanted, bands), path,
-           "`gdalinfo` lists the bands; pass --band with one of them");
+    refuse_raster(fmt::format("there is no band {}: this file has {}", wanted, bands), path,
+                  "`gdalinfo` lists the bands; pass --band with one of them");
   const bool height_and_alpha =
       bands == 2 && dataset.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
   if (wanted == 0 && bands > 1 && !height_and_alpha)
-    refuse(fmt::format("a DEM has one band of heights, this file has {}", bands), path,
-           fmt::format("name the right one: `waymark peaks --band 1`, load_dem.band in a job; or extract it: "
-                       "gdal_translate -b 1 '{}' dem.tif",
-                       path));
+    refuse_raster(
+        fmt::format("a DEM has one band of heights, this file has {}", bands), path,
+        fmt::format("name the right one: `waymark peaks --band 1`, load_dem.band in a job; or extract it: "
+                    "gdal_translate -b 1 '{}' dem.tif",
+                    path));
   const int number = std::max(1, wanted);
   GDALRasterBand& band = *dataset.GetRasterBand(number);
   if (GDALDataTypeIsComplex(band.GetRasterDataType()))
-    refuse(fmt::format("heights are real numbers, this file holds complex ones ({})",
-                       GDALGetDataTypeName(band.GetRasterDataType())),
-           path, "use the DEM derived from the interferogram");
+    refuse_raster(fmt::format("heights are real numbers, this file holds complex ones ({})",
+                              GDALGetDataTypeName(band.GetRasterDataType())),
+                  path, "use the DEM derived from the interferogram");
   return number;
 }
 
@@ -61,17 +64,17 @@ std::optional<GeoTransform> transform_of(GDALDataset& dataset, const std::string
   GeoTransform t{};
   if (dataset.GetGeoTransform(t.data()) != CE_None) {
     if (dataset.GetGCPCount() > 0)
-      refuse("the file is georeferenced by ground control points, not by a grid", path,
-             fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
+      refuse_raster("the file is georeferenced by ground control points, not by a grid", path,
+                    fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
     return std::nullopt;
   }
   const double tiny = 1e-6 * std::abs(t[1]);
   if (std::abs(t[2]) > tiny || std::abs(t[4]) > tiny)
-    refuse("the grid is rotated against the axes of its CRS", path,
-           fmt::format("turn it north up: gdalwarp '{}' dem.tif", path));
+    refuse_raster("the grid is rotated against the axes of its CRS", path,
+                  fmt::format("turn it north up: gdalwarp '{}' dem.tif", path));
   if (!(t[1] > 0) || t[5] == 0)
-    refuse(fmt::format("the cells measure {} x {}: columns must run from west to east", t[1], t[5]), path,
-           fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
+    refuse_raster(fmt::format("the cells measure {} x {}: columns must run from west to east", t[1], t[5]),
+                  path, fmt::format("resample it first: gdalwarp '{}' dem.tif", path));
   return t;
 }
 
@@ -86,17 +89,18 @@ Crs crs_of(const GDALDataset& dataset, const std::string& path, const std::strin
   CPLFree(wkt);
   if (!definition.empty()) return Crs::from_text(definition);
   const bool like_degrees = t && std::abs((*t)[0]) <= 360 && std::abs((*t)[3]) <= 90 && (*t)[1] < 0.1;
-  refuse("the file has no coordinate reference system", path,
-         like_degrees ? "its numbers look like degrees: pass --crs EPSG:4326 if this is Earth, --crs "
-                        "IAU_2015:49900 if Mars, --crs IAU_2015:30100 if the Moon"
-                      : "pass --crs, e.g. --crs EPSG:32611, or --crs local for metres on no body");
+  refuse_raster("the file has no coordinate reference system", path,
+                like_degrees ? "its numbers look like degrees: pass --crs EPSG:4326 if this is Earth, --crs "
+                               "IAU_2015:49900 if Mars, --crs IAU_2015:30100 if the Moon"
+                             : "pass --crs, e.g. --crs EPSG:32611, or --crs local for metres on no body");
 }
 
 // Converts the corner-based transform of GDAL to centres, here and nowhere else; flips a south-up file.
 Georeference place(const Crs& crs, const std::optional<GeoTransform>& transform, std::int64_t rows,
                    const std::string& path) {
   if (!transform && crs.kind() != CrsKind::local)
-    refuse("the file has no geotransform", path, "add one: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE");
+    refuse_raster("the file has no geotransform", path,
+                  "add one: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH FILE");
   const GeoTransform t = transform.value_or(GeoTransform{0, 1, 0, static_cast<double>(rows), 0, -1});
   const double top = t[5] < 0 ? t[3] : t[3] + t[5] * static_cast<double>(rows);
   const double dy = -std::abs(t[5]);
@@ -111,12 +115,12 @@ void check_coordinates(const RasterHeader& header) {
   const double furthest_y = std::max(std::abs(north), std::abs(south));
   const std::string extent = fmt::format("x {:.6g} to {:.6g}, y {:.6g} to {:.6g}", west, east, south, north);
   if (where.crs.kind() == CrsKind::geographic && (furthest_y > 90 - 2 * where.dy || furthest_x > 720))
-    refuse(fmt::format("{} is in degrees, but these are none: {}", where.crs.id(), extent), header.path,
-           "pass --crs with the projection these coordinates are in");
+    refuse_raster(fmt::format("{} is in degrees, but these are none: {}", where.crs.id(), extent),
+                  header.path, "pass --crs with the projection these coordinates are in");
   if (where.crs.kind() == CrsKind::projected && furthest_x <= 360 && furthest_y <= 91 && where.dx < 0.1)
-    refuse(fmt::format("{} is in metres, but these look like degrees: {}", where.crs.id(), extent),
-           header.path,
-           "pass --crs with the geographic CRS, e.g. --crs EPSG:4326, or --crs local if they are metres");
+    refuse_raster(
+        fmt::format("{} is in metres, but these look like degrees: {}", where.crs.id(), extent), header.path,
+        "pass --crs with the geographic CRS, e.g. --crs EPSG:4326, or --crs local if they are metres");
 }
 
 double nodata_of(GDALRasterBand& band) {
@@ -154,8 +158,8 @@ HeightScale height_scale(GDALRasterBand& band, const RasterReading& reading, Ras
   heights.scale = band.GetScale() * metres;
   heights.offset = band.GetOffset() * metres;
   if (!(std::abs(heights.scale) > 0) || !std::isfinite(heights.scale) || !std::isfinite(heights.offset))
-    refuse(fmt::format("heights would be {} times the cell plus {}", heights.scale, heights.offset),
-           header.path, "correct the band: gdal_edit.py -scale 1 -offset 0 FILE");
+    refuse_raster(fmt::format("heights would be {} times the cell plus {}", heights.scale, heights.offset),
+                  header.path, "correct the band: gdal_edit.py -scale 1 -offset 0 FILE");
   heights.whole_metres =
       GDALDataTypeIsInteger(type) && heights.scale == 1 && heights.offset == std::floor(heights.offset);
   return heights;

@@ -7,14 +7,14 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kKept = 1 - 1.0 / 50;            // of the past, per set
+constexpr double kPastKept = 1 - 1.0 / 50;        // of the past, per set
 constexpr double kMinRange = 1, kMinTurn = 0.35;  // m, rad: of a view
 constexpr double kPrior = 1;                      // sightings of the map, and not of it, before any is known
 
 }  // namespace
 
 void ClutterEstimate::add_sightings(const SightingSet& seen) {
-  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &squared_bearing_}) *sum *= kKept;
+  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &squared_bearing_}) *sum *= kPastKept;
   ++sets_;
   for (const SeenLandmark& s : seen.sightings) {
     if (!s.is_valid()) continue;
@@ -27,8 +27,8 @@ void ClutterEstimate::add_sightings(const SightingSet& seen) {
 }
 
 void ClutterEstimate::add_unmapped(double unmapped, double count) {
-  unmapped_ = kKept * unmapped_ + unmapped;
-  matched_ = kKept * matched_ + count - unmapped;
+  unmapped_ = kPastKept * unmapped_ + unmapped;
+  matched_ = kPastKept * matched_ + count - unmapped;
 }
 
 double ClutterEstimate::density(double bearing_reach) const {

@@ -15,7 +15,7 @@ namespace {
 using Patch = std::array<float, kPatchSide * kPatchSide>;
 
 // Zero mean, unit deviation, clipped to 3; returns the deviation.
-double normalise(Patch& patch) {
+double normalise_patch(Patch& patch) {
   double sum = 0, squares = 0;
   for (const float v : patch) sum += v;
   const double mean = sum / double(patch.size());
@@ -159,7 +159,7 @@ std::array<float, 3> PatchSource::scalar_inputs(double correlation, double devia
 CraterFeatures PatchSource::features(const CraterCandidate& c, double correlation, bool mirrored) const {
   CraterFeatures result{};
   Patch seen = patch(c, mirrored);
-  const double deviation = normalise(seen);
+  const double deviation = normalise_patch(seen);
   thumbnail(seen, result.data());
   gradients(seen, result.data() + kThumbSide * kThumbSide);
   const auto rest = scalar_inputs(correlation, deviation, c.diameter);
@@ -170,7 +170,7 @@ CraterFeatures PatchSource::features(const CraterCandidate& c, double correlatio
 WidePatch PatchSource::wide_patch(const CraterCandidate& c, double correlation) const {
   WidePatch wide;
   read<kWidePatchSide>(c, kWidePatchReach, false, wide.patch.data());
-  wide.scalars = scalar_inputs(correlation, waymark::pipeline::normalise(wide.patch), c.diameter);
+  wide.scalars = scalar_inputs(correlation, normalise(wide.patch), c.diameter);
   return wide;
 }
 

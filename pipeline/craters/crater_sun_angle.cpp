@@ -18,13 +18,13 @@ constexpr double kBowl = 11;    // diameter of a bowl, pixels of its pyramid lev
 constexpr double kClear = 0.7;  // minimum correlation
 constexpr int kSectors = 72;
 
-struct Bowl {
+struct LitBowl {
   double angle, weight;
 };
 
 // The slope template is linear in the direction of the light, so correlations along x and along y give that
 // of every direction, and the best direction of each bowl.
-void bowls_of_level(const cv::Mat1f& image, std::vector<Bowl>& bowls) {
+void bowls_of_level(const cv::Mat1f& image, std::vector<LitBowl>& bowls) {
   const auto shape_x = bowl_template(kBowl, Radians{0}, BowlLight::slope),
              shape_y = bowl_template(kBowl, Radians{kPi / 2}, BowlLight::slope);
   const int side = static_cast<int>(shape_x.columns());
@@ -62,9 +62,9 @@ double apart(double a, double b) {
 }
 
 // Sum of weights near a direction.
-double support(const std::vector<Bowl>& bowls, double angle) {
+double support(const std::vector<LitBowl>& bowls, double angle) {
   double sum = 0;
-  for (const Bowl& bowl : bowls) {
+  for (const LitBowl& bowl : bowls) {
     const double off = apart(bowl.angle, angle) / 0.35;  // 20 degrees
     if (off < 3) sum += bowl.weight * std::exp(-0.5 * off * off);
   }
@@ -79,7 +79,7 @@ std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image) {
   cv::Mat1f level = cv::Mat1f(static_cast<int>(image.rows()), static_cast<int>(image.columns()),
                               const_cast<float*>(whole.pixels.cells().data()))
                         .clone();
-  std::vector<Bowl> bowls;
+  std::vector<LitBowl> bowls;
   // Half-octave steps from the finest that is at most 2 Mpx.
   while (level.total() > 2'000'000) cv::resize(level, level, {}, 0.5, 0.5, cv::INTER_AREA);
   for (; std::min(level.cols, level.rows) >= 3 * kBowl;
@@ -95,7 +95,7 @@ std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image) {
   for (int round = 0; round < 3; ++round) {
     double sum = 0, squares = 0, total = 0;
     count = 0;
-    for (const Bowl& bowl : bowls) {
+    for (const LitBowl& bowl : bowls) {
       const double off = std::remainder(bowl.angle - angle, 2 * kPi);
       if (std::abs(off) > 0.7) continue;
       sum += bowl.weight * off, squares += bowl.weight * off * off, total += bowl.weight, ++count;

@@ -80,7 +80,7 @@ void compress_jpeg(cv::Mat1f& image, double coarseness) {
     }
 }
 
-constexpr double kClear = 0.25;  // minimum clarity of a crater that annotators mark
+constexpr double kMinClarity = 0.25;  // minimum clarity of a crater that annotators mark
 constexpr double kPositionWeight = 0.3;
 
 ConvolutionNet untrained_network() {
@@ -191,8 +191,8 @@ std::vector<WidePatchExample> make_patch_examples(const LabelledScene& scene, st
     }
     const auto [best, common] = match_crater(scene, c);
     WidePatchExample e;
-    e.crater = common >= 0.5 && best->clarity >= kClear;
-    if (!e.crater && common > 0.3 && !(common >= 0.5 && best->clarity < kClear / 2)) continue;
+    e.crater = common >= 0.5 && best->clarity >= kMinClarity;
+    if (!e.crater && common > 0.3 && !(common >= 0.5 && best->clarity < kMinClarity / 2)) continue;
     if (!e.crater && random.bernoulli(0.5)) continue;
     e.wide = source.wide_patch(c, correlation);
     if (e.crater) {

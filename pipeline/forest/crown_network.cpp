@@ -13,7 +13,7 @@ namespace {
 constexpr double kSmoothing = 0.9;  // metres
 constexpr double kBell = 1.2;       // metres: about the precision of annotated crown centres
 // Fractions of the pixels near and far from trees that are used for training.
-constexpr double kNear = 0.6, kFar = 0.12;
+constexpr double kNearKept = 0.6, kFarKept = 0.12;
 
 /// Target probability of each pixel.
 Grid<float> target_probability(const ColourWindow& image, const std::vector<MarkedTree>& trees) {
@@ -83,7 +83,8 @@ void add_crown_examples(NetworkExamples& examples, const ColourWindow& image,
     examples.inputs = static_cast<int>(evidence.size());
     for (std::size_t i = 0; i < wanted.cells().size(); ++i) {
       const bool near = wanted.cells()[i] > 0.05F;
-      if (!random.bernoulli(fraction * (near ? kNear : kFar)) || std::isnan(evidence[0].cells()[i])) continue;
+      if (!random.bernoulli(fraction * (near ? kNearKept : kFarKept)) || std::isnan(evidence[0].cells()[i]))
+        continue;
       for (const Grid<float>& plane : evidence) examples.values.push_back(plane.cells()[i]);
       examples.targets.push_back(wanted.cells()[i]);
     }

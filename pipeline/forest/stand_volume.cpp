@@ -13,7 +13,7 @@
 namespace waymark::pipeline {
 namespace {
 
-std::string lower(std::string_view text) {
+std::string lower_case(std::string_view text) {
   std::string out(text);
   for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
@@ -41,7 +41,7 @@ class SmallTable {
       if (line.empty() || line.starts_with('#')) continue;
       std::vector<std::string> cells = split(line);
       if (names_.empty()) {
-        for (std::string& name : cells) names_.push_back(lower(name));
+        for (std::string& name : cells) names_.push_back(lower_case(name));
         check_names(known);
         continue;
       }
@@ -121,9 +121,9 @@ const std::vector<VolumeRow>& built_in_volume() {
 }
 
 const VolumeRow* volume_of(std::span<const VolumeRow> table, std::string_view species) {
-  for (const std::string& wanted : {lower(species), std::string("all")})
+  for (const std::string& wanted : {lower_case(species), std::string("all")})
     for (const VolumeRow& row : table)
-      if (lower(row.species) == wanted) return &row;
+      if (lower_case(row.species) == wanted) return &row;
   return nullptr;
 }
 

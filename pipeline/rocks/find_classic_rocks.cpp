@@ -10,7 +10,7 @@
 namespace waymark::pipeline {
 namespace {
 
-constexpr std::int64_t kTile = 500;
+constexpr std::int64_t kTileSide = 500;
 constexpr double kGamma = 1.2;                       // ROSCO's default for HiRISE
 constexpr std::size_t kMinArea = 3, kMaxArea = 800;  // pixels
 constexpr double kMaxElongation = 4;                 // major / minor
@@ -141,21 +141,21 @@ int maximum_entropy_threshold(std::span<const double> histogram) {
 std::vector<Detection> find_classic_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
   const LightFrame light = LightFrame::of(sun_angle);
   Grid<char> shade(image.columns(), image.rows(), light_);
-  const std::int64_t tile_columns = (image.columns() + kTile - 1) / kTile;
+  const std::int64_t tile_columns = (image.columns() + kTileSide - 1) / kTileSide;
   std::vector<double> range;
-  for (std::int64_t row = 0; row < image.rows(); row += kTile)
-    for (std::int64_t column = 0; column < image.columns(); column += kTile)
-      range.push_back(mark_dark(
-          image,
-          {column, row, std::min(kTile, image.columns() - column), std::min(kTile, image.rows() - row)},
-          shade));
+  for (std::int64_t row = 0; row < image.rows(); row += kTileSide)
+    for (std::int64_t column = 0; column < image.columns(); column += kTileSide)
+      range.push_back(mark_dark(image,
+                                {column, row, std::min(kTileSide, image.columns() - column),
+                                 std::min(kTileSide, image.rows() - row)},
+                                shade));
   std::vector<Detection> found;
   for (std::int64_t y = 0; y < image.rows(); ++y)
     for (std::int64_t x = 0; x < image.columns(); ++x) {
       if (shade(x, y) != dark_) continue;
       const auto area = dark_area(shade, {x, y});
       auto rock = rock_of(image, area, light,
-                          range[static_cast<std::size_t>((y / kTile) * tile_columns + x / kTile)]);
+                          range[static_cast<std::size_t>((y / kTileSide) * tile_columns + x / kTileSide)]);
       if (!rock) continue;
       const double diameter = rock->outline.diameter();
       if (diameter < search.min_diameter || diameter > search.max_diameter ||

@@ -22,16 +22,16 @@
 namespace waymark::importers {
 namespace {
 
-using Node = const CPLXMLNode*;
+using XmlNode = const CPLXMLNode*;
 
-std::string value(Node node, const char* path) {
+std::string value(XmlNode node, const char* path) {
   return CPLGetXMLValue(node, path, "");
 }
 
 // Returns the children of that name.
-std::vector<Node> children(Node parent, const char* name) {
-  std::vector<Node> found;
-  for (Node child = parent ? parent->psChild : nullptr; child; child = child->psNext)
+std::vector<XmlNode> children(XmlNode parent, const char* name) {
+  std::vector<XmlNode> found;
+  for (XmlNode child = parent ? parent->psChild : nullptr; child; child = child->psNext)
     if (child->eType == CXT_Element && std::string(child->pszValue) == name) found.push_back(child);
   return found;
 }
@@ -42,7 +42,7 @@ class MetashapeReader {
     const std::string content = read_vsi_text(path_);
     const GdalListener gdal;
     document_.reset(CPLParseXMLString(content.c_str()));
-    Node root = document_ ? CPLGetXMLNode(document_.get(), "=document") : nullptr;
+    XmlNode root = document_ ? CPLGetXMLNode(document_.get(), "=document") : nullptr;
     const auto chunks = children(root, "chunk");
     if (chunks.size() > 1) file_.warnings.push_back(path_ + ": it has several chunks, the first is used");
     chunk_ = chunks.empty() ? nullptr : chunks.front();
@@ -52,7 +52,7 @@ class MetashapeReader {
   }
 
   CameraFile read() {
-    for (Node sensor : children(CPLGetXMLNode(chunk_, "sensors"), "sensor")) add_sensor(sensor);
+    for (XmlNode sensor : children(CPLGetXMLNode(chunk_, "sensors"), "sensor")) add_sensor(sensor);
     read_world();
     add_cameras(CPLGetXMLNode(chunk_, "cameras"));
     if (without_pose_ > 0)
@@ -66,7 +66,7 @@ class MetashapeReader {
     throw Error(ErrorCode::input, problem, path_ + ", " + place, "export the cameras again");
   }
 
-  double number(Node node, const char* name, double otherwise) const {
+  double number(XmlNode node, const char* name, double otherwise) const {
     const std::string text = value(node, name);
     double found = otherwise;
     if (!text.empty() && !parse_number(text, found))
@@ -89,11 +89,11 @@ class MetashapeReader {
 
   // Uses the adjusted calibration if there is one, else the initial one, else a plain lens of the nominal
   // focal length.
-  void add_sensor(Node sensor) {
+  void add_sensor(XmlNode sensor) {
     const std::string label = "sensor " + value(sensor, "label");
     const auto calibrations = children(sensor, "calibration");
-    Node best = calibrations.empty() ? nullptr : calibrations.front();
-    for (Node calibration : calibrations)
+    XmlNode best = calibrations.empty() ? nullptr : calibrations.front();
+    for (XmlNode calibration : calibrations)
       if (value(calibration, "class") == "adjusted") best = calibration;
     const std::string type = value(best ? best : sensor, "type");
     if (type != "frame" && type != "fisheye") return;  // refused if a camera uses it
@@ -121,13 +121,13 @@ class MetashapeReader {
     sensors_[value(sensor, "id")] = camera;
   }
 
-  double nominal_focal(Node sensor) const {
+  double nominal_focal(XmlNode sensor) const {
     const double pixel = property(sensor, "pixel_width");
     return pixel > 0 ? property(sensor, "focal_length") / pixel : 0;
   }
 
-  double property(Node sensor, const char* name) const {
-    for (Node property : children(sensor, "property"))
+  double property(XmlNode sensor, const char* name) const {
+    for (XmlNode property : children(sensor, "property"))
       if (value(property, "name") == name) return number(property, "value", 0);
     return 0;
   }
@@ -153,7 +153,7 @@ class MetashapeReader {
 
   void read_world() {
     const std::string reference = value(chunk_, "reference");
-    Node transform = CPLGetXMLNode(chunk_, "transform");
+    XmlNode transform = CPLGetXMLNode(chunk_, "transform");
     if (!transform || value(transform, "rotation").empty()) return;
     const auto r = numbers(value(transform, "rotation"), 9, "chunk transform, rotation");
     const auto t = numbers(value(transform, "translation"), 3, "chunk transform, translation");
@@ -166,9 +166,9 @@ class MetashapeReader {
     if (local) file_.world.crs = "local";
   }
 
-  void add_cameras(Node parent) {
-    for (Node group : children(parent, "group")) add_cameras(group);
-    for (Node node : children(parent, "camera")) {
+  void add_cameras(XmlNode parent) {
+    for (XmlNode group : children(parent, "group")) add_cameras(group);
+    for (XmlNode node : children(parent, "camera")) {
       CameraRecord record;
       record.image = value(node, "label");
       record.location = "camera " + value(node, "id");
@@ -202,7 +202,7 @@ class MetashapeReader {
 
   const std::string& path_;
   std::unique_ptr<CPLXMLNode, Destroy> document_;
-  Node chunk_ = nullptr;
+  XmlNode chunk_ = nullptr;
   std::map<std::string, Camera> sensors_;
   Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d shift_ = Eigen::Vector3d::Zero();

@@ -9,7 +9,7 @@
 namespace waymark::pipeline {
 namespace {
 
-[[noreturn]] void refuse(std::string problem, std::string hint) {
+[[noreturn]] void refuse_division(std::string problem, std::string hint) {
   throw Error(ErrorCode::usage, std::move(problem), {}, std::move(hint));
 }
 
@@ -24,8 +24,8 @@ void select_unit(const Plan& plan, const std::string& id, std::vector<UnitState>
   if (wanted == plan.units.end()) {
     std::vector<std::string> ids;
     for (const Unit& unit : plan.units) ids.push_back(unit.id());
-    refuse(fmt::format("the job has no unit '{}'{}", id, did_you_mean(id, ids)),
-           "waymark plan lists the units");
+    refuse_division(fmt::format("the job has no unit '{}'{}", id, did_you_mean(id, ids)),
+                    "waymark plan lists the units");
   }
   for (UnitState& state : states) state.assignment = UnitAssignment::none;
   for (const std::size_t read : wanted->after) states[read].assignment = UnitAssignment::foreign;
@@ -36,19 +36,20 @@ void select_unit(const Plan& plan, const std::string& id, std::vector<UnitState>
 
 void check_run_options(const RunOptions& options, const Pipeline& pipeline) {
   if (options.threads < 0)
-    refuse(fmt::format("cannot run with {} threads", options.threads), "0 uses all threads of the machine");
+    refuse_division(fmt::format("cannot run with {} threads", options.threads),
+                    "0 uses all threads of the machine");
   if (options.work.empty() && (options.shard || !options.unit.empty() || !options.rerun_from.empty()))
-    refuse("--shard, --unit and --rerun-from need the results of other runs",
-           "add --work DIR, the same for all of them");
+    refuse_division("--shard, --unit and --rerun-from need the results of other runs",
+                    "add --work DIR, the same for all of them");
   if (options.shard && !(1 <= options.shard->index && options.shard->index <= options.shard->count))
-    refuse(fmt::format("shard {}/{} does not exist", options.shard->index, options.shard->count),
-           "shards count from 1: 1/8 to 8/8");
+    refuse_division(fmt::format("shard {}/{} does not exist", options.shard->index, options.shard->count),
+                    "shards count from 1: 1/8 to 8/8");
   std::vector<std::string> names;
   for (const auto& step : pipeline.steps()) names.push_back(step->spec().name);
   if (!options.rerun_from.empty() && std::ranges::find(names, options.rerun_from) == names.end())
-    refuse(fmt::format("the job has no stage '{}' to rerun from{}", options.rerun_from,
-                       did_you_mean(options.rerun_from, names)),
-           fmt::format("its stages: {}", fmt::join(names, ", ")));
+    refuse_division(fmt::format("the job has no stage '{}' to rerun from{}", options.rerun_from,
+                                did_you_mean(options.rerun_from, names)),
+                    fmt::format("its stages: {}", fmt::join(names, ", ")));
 }
 
 void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitState>& states) {
