@@ -30,11 +30,23 @@ class Reconstruct final : public Command {
                       "Camera file with the poses, in any format that load_images reads"}
                  .or_else("poses are solved from the images")
                  .offering(Offer::file),
-             Argument{"--lens", "FILE", &request_.lens,
+             Argument{"--lens,--camera", "FILE", &request_.lens,
                       "Camera file whose lens is kept, e.g. cameras.json of an earlier flight"}
                  .or_else("the lens is calibrated from the images")
                  .offering(Offer::file),
-             Argument{"--dem", "COARSE", &request_.dem, "Coarse DEM at which the search for heights starts"}
+             Argument{"--control", "POINTS", &request_.control,
+                      "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
+                      "names that "
+                      "begin with check are check points"}
+                 .or_else("GPS positions of the images, else --dem")
+                 .offering(Offer::file),
+             Argument{"--marks", "TABLE", &request_.marks,
+                      "Table with the columns point,image,column,row: where images show the surveyed points"}
+                 .offering(Offer::file),
+             Argument{
+                 "--dem", "COARSE", &request_.dem,
+                 "Coarse DEM at which the search for heights starts; images without any position are placed "
+                 "in it by their relief"}
                  .or_else("heights are searched below the cameras")
                  .offering(Offer::file),
              Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else("that of the camera file"),
@@ -50,6 +62,8 @@ class Reconstruct final : public Command {
             {"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
             {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
              "The map in one command"},
+            {"waymark reconstruct images --control gcp_list.txt -o site",
+             "From pictures and surveyed points"},
             {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif --until "
              "dem -o site",
              "A DEM from poses of COLMAP, started at a coarse one"}}};
