@@ -85,6 +85,7 @@ class Ladder {
     for (const Group& group : groups_of(scene_.lenses[lens].camera)) {
       if (is_free(lens, group)) continue;
       const bool admitted = try_group(lens, group);
+      if (limits_.progress) limits_.progress();
       again = again || (admitted && refused);
       refused = refused || !admitted;
     }
@@ -159,6 +160,16 @@ class Ladder {
     else if (!(step.correlation <= limits_.max_correlation))
       step.reason = fmt::format("its correlation to {} is {:.3f}, more than {:.2f}", step.correlated_with,
                                 step.correlation, limits_.max_correlation);
+    else if (const double off =
+                 std::abs(step.value - prior(lens, name).value) / std::hypot(step.sd, step.prior_sd);
+             !(off <= limits_.max_deviation || after <= (1 - limits_.min_fall) * residual_))
+      step.reason = fmt::format(
+          "its estimate of {:.6g} is {:.1f} standard deviations from what is known, but the residuals of "
+          "left-out "
+          "points hardly fall, from {:.3f} to {:.3f} sd: unmodelled errors (rolling shutter), or a wrong "
+          "focal length "
+          "in the metadata",
+          step.value, off, residual_, after);
     else if (!(after < residual_))
       step.reason = fmt::format("the residuals of left-out points do not fall: {:.4f}, then {:.4f} sd",
                                 residual_, after);
@@ -176,6 +187,10 @@ class Ladder {
 };
 
 }  // namespace
+
+std::size_t ladder_groups(const Camera& camera) {
+  return groups_of(camera).size();
+}
 
 LensPrior default_prior(const Camera& camera, std::size_t lens, const std::string& parameter, double value) {
   LensPrior prior{lens, parameter, value, 0.2};
