@@ -9,7 +9,7 @@ namespace waymark::importers {
 struct GroundControlMark {
   std::string image = {};
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< (0, 0) is the centre of the first pixel
-  double sd = 0.5;                                  ///< of each coordinate, pixels
+  double sd = 1;                                    ///< of each coordinate, pixels
 };
 
 /// Surveyed point with its marks.
