@@ -14,10 +14,14 @@ class Reconstruct final : public Command {
         .group = Group::make,
         .summary = "Make a DEM, an orthophoto and a map from overlapping images",
         .about =
-            "Writes into a folder: cameras.json (poses), dem.tif (height, its standard deviation, that of "
-            "the "
-            "poses, number of views, convergence angle, score, reason of no data), orthophoto.tif and "
-            "job.json, which `waymark run` turns into the map.\n\n"
+            "Writes into a folder: cameras.json (poses), points.las and points.ply (tie points), colmap, "
+            "dem.tif "
+            "(height, its standard deviation, that of the poses, number of views, convergence angle, score, "
+            "reason of "
+            "no data), orthophoto.tif, report.html and job.json, which `waymark run` turns into the map.\n\n"
+            "Poses without control points, GPS positions or a coarse DEM have an arbitrary scale and end "
+            "there. Images "
+            "without a pose are named with the reason; the exit code is then 3.\n\n"
             "Heights are measured where two or more images agree. Every other cell has no data and a reason "
             "(docs/methods/heights_from_images.md).",
         .arguments =
@@ -49,7 +53,8 @@ class Reconstruct final : public Command {
                  "in it by their relief"}
                  .or_else("heights are searched below the cameras")
                  .offering(Offer::file),
-             Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else("that of the camera file"),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else(
+                 "that of the camera file, control points or DEM, else the UTM zone of the images"),
              Argument{"--cell", "M", &request_.cell, "Size of a cell of the DEM"}.or_else(
                  "twice the median size of a pixel on the terrain"),
              Argument{"--until", "PRODUCT", &until_, "Last product to make"}

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exporters/formatting.hpp"
 #include "exporters/report/page_style.hpp"
 

@@ -173,7 +173,7 @@ void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoCo
   const pipeline::Georeferenced result =
       pipeline::georeference(moved, references.seen, {.free_lens_parameters = admitted_parameters(posed)});
   if (!result.metric) {
-    if (!request.dem.empty() && control.points.empty() && references.seen.positions.empty())
+    if (!request.dem.empty() && control.points.empty() && references.seen.positions.size() < 3)
       return georeference_on_dem(posed, references.seen, request);
     for (const std::string& message : result.messages) posed.messages.push_back(message);
     return;

@@ -86,10 +86,10 @@ pipeline::SolvedPoses solve_photo_poses(const std::vector<pipeline::ImageToMatch
                                         const PhotoFeatures& found, const pipeline::ImageMatches& matches,
                                         const Callbacks& callbacks) {
   pipeline::ProgressMeter meter(callbacks.progress, "solve_poses", static_cast<std::int64_t>(images.size()));
-  std::size_t most = 0;  // several starts are tried: the furthest counts
+  std::size_t furthest = 0;  // of several starts
   pipeline::PoseSettings settings;
   settings.progress = [&](std::size_t posed) {
-    if (posed > most) meter.add(double(posed - most)), most = posed;
+    if (posed > furthest) meter.add(double(posed - furthest)), furthest = posed;
   };
   pipeline::SolvedPoses solved = pipeline::solve_poses(images, found.features, matches, settings);
   meter.finish();

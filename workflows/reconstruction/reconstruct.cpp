@@ -2,6 +2,7 @@
 #include "workflows/reconstruction/reconstruct.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -75,6 +76,23 @@ std::vector<std::string> flat_images(const std::vector<pipeline::SurfaceView>& v
 constexpr double kMinKept = 0.01;  // of the cells; with less the heights are chance
 constexpr std::size_t kImageBytes = std::size_t{1} << 30;
 
+// DEM, bands and orthophoto are held in memory: 85 bytes a cell were measured.
+void check_memory(double cells, double cell) {
+  constexpr double kBytesPerCell = 100;
+  const double needed = kBytesPerCell * cells + static_cast<double>(kImageBytes);
+  const double present =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (!(present > 0) || needed <= present) return;
+  const double fitting = std::max(1.0, (present - static_cast<double>(kImageBytes)) / kBytesPerCell);
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("a DEM of {:.0f} million cells needs {:.1f} GB of memory, but the machine has {:.1f} GB",
+                  cells / 1e6, needed / 1e9, present / 1e9),
+      "",
+      fmt::format("pass --cell {:.2g} or larger, or reconstruct parts of the images",
+                  cell * std::sqrt(cells / fitting)));
+}
+
 pipeline::SweepPlan plan_sweep(const ReconstructRequest& request, const PosedImages& posed,
                                const std::vector<pipeline::SurfaceView>& views) {
   constexpr double kMaxCells = 4e8;
@@ -118,6 +136,7 @@ pipeline::SweepPlan plan_sweep(const ReconstructRequest& request, const PosedIma
   if (cells > kMaxCells)
     throw Error(ErrorCode::usage, fmt::format("--cell {:g} makes {:.0f} million cells", cell, cells / 1e6),
                 "", fmt::format("pass a cell of {:.2g} m or more", cell * std::sqrt(cells / kMaxCells)));
+  check_memory(cells, cell);
   plan.grid = *grid;
   return plan;
 }

@@ -23,6 +23,12 @@ bool contains(const std::vector<std::string>& all, const std::string& name) {
   return std::ranges::count(all, name) > 0;
 }
 
+// Difference of an estimate from the prior that is part of it, as a normal variable.
+double deviation_from_prior(double value, double sd, const LensPrior& prior) {
+  const double variance = prior.sd * prior.sd - sd * sd;
+  return variance > 0 ? std::abs(value - prior.value) / std::sqrt(variance) : 0;
+}
+
 /// Climbs the ladder with a scene whose left-out points are set apart.
 class Ladder {
  public:
@@ -160,8 +166,7 @@ class Ladder {
     else if (!(step.correlation <= limits_.max_correlation))
       step.reason = fmt::format("its correlation to {} is {:.3f}, more than {:.2f}", step.correlated_with,
                                 step.correlation, limits_.max_correlation);
-    else if (const double off =
-                 std::abs(step.value - prior(lens, name).value) / std::hypot(step.sd, step.prior_sd);
+    else if (const double off = deviation_from_prior(step.value, step.sd, prior(lens, name));
              !(off <= limits_.max_deviation || after <= (1 - limits_.min_fall) * residual_))
       step.reason = fmt::format(
           "its estimate of {:.6g} is {:.1f} standard deviations from what is known, but the residuals of "

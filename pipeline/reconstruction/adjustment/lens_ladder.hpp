@@ -21,7 +21,7 @@ struct LadderStep {
 struct LadderOptions {
   double max_sd = 0.3;  ///< of an admitted parameter, by that of its prior
   double max_correlation = 0.95;
-  /// Of a term from its prior, in standard deviations of both, unless the residuals of left-out points fall
+  /// Of a term from its prior, in standard deviations, unless the residuals of left-out points fall
   /// by `min_fall` as well: unmodelled errors, such as those of a rolling shutter, move weakly determined
   /// terms.
   double max_deviation = 3;
