@@ -14,10 +14,14 @@ class Reconstruct final : public Command {
         .group = Group::make,
         .summary = "Make a DEM, an orthophoto and a map from overlapping images",
         .about =
-            "Writes into a folder: cameras.json (poses), dem.tif (height, its standard deviation, that of "
-            "the "
-            "poses, number of views, convergence angle, score, reason of no data), orthophoto.tif and "
-            "job.json, which `waymark run` turns into the map.\n\n"
+            "Writes into a folder: cameras.json (poses), points.las and points.ply (tie points), colmap, "
+            "dem.tif "
+            "(height, its standard deviation, that of the poses, number of views, convergence angle, score, "
+            "reason of "
+            "no data), orthophoto.tif, report.html and job.json, which `waymark run` turns into the map.\n\n"
+            "Poses without control points, GPS positions or a coarse DEM have an arbitrary scale and end "
+            "there. Images "
+            "without a pose are named with the reason; the exit code is then 3.\n\n"
             "Heights are measured where two or more images agree. Every other cell has no data and a reason "
             "(docs/methods/heights_from_images.md).",
         .arguments =
@@ -30,14 +34,27 @@ class Reconstruct final : public Command {
                       "Camera file with the poses, in any format that load_images reads"}
                  .or_else("poses are solved from the images")
                  .offering(Offer::file),
-             Argument{"--lens", "FILE", &request_.lens,
+             Argument{"--lens,--camera", "FILE", &request_.lens,
                       "Camera file whose lens is kept, e.g. cameras.json of an earlier flight"}
                  .or_else("the lens is calibrated from the images")
                  .offering(Offer::file),
-             Argument{"--dem", "COARSE", &request_.dem, "Coarse DEM at which the search for heights starts"}
+             Argument{"--control", "POINTS", &request_.control,
+                      "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
+                      "names that "
+                      "begin with check are check points"}
+                 .or_else("GPS positions of the images, else --dem")
+                 .offering(Offer::file),
+             Argument{"--marks", "TABLE", &request_.marks,
+                      "Table with the columns point,image,column,row: where images show the surveyed points"}
+                 .offering(Offer::file),
+             Argument{
+                 "--dem", "COARSE", &request_.dem,
+                 "Coarse DEM at which the search for heights starts; images without any position are placed "
+                 "in it by their relief"}
                  .or_else("heights are searched below the cameras")
                  .offering(Offer::file),
-             Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else("that of the camera file"),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else(
+                 "that of the camera file, control points or DEM, else the UTM zone of the images"),
              Argument{"--cell", "M", &request_.cell, "Size of a cell of the DEM"}.or_else(
                  "twice the median size of a pixel on the terrain"),
              Argument{"--until", "PRODUCT", &until_, "Last product to make"}
@@ -50,6 +67,8 @@ class Reconstruct final : public Command {
             {"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
             {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
              "The map in one command"},
+            {"waymark reconstruct images --control gcp_list.txt -o site",
+             "From pictures and surveyed points"},
             {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif --until "
              "dem -o site",
              "A DEM from poses of COLMAP, started at a coarse one"}}};

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "core/error.hpp"
@@ -46,7 +48,7 @@ GroundControlPoint& point_of(GroundControl& all, const std::string& name, const 
   });
   if (found == all.points.end()) {
     const std::string given = name.empty() ? fmt::format("point {}", all.points.size() + 1) : name;
-    all.points.push_back({given, position});
+    all.points.push_back({.name = given, .position = position, .check = is_check_name(given)});
     return all.points.back();
   }
   if (!same(found->position, position))
@@ -56,6 +58,22 @@ GroundControlPoint& point_of(GroundControl& all, const std::string& name, const 
 }
 
 }  // namespace
+
+bool is_check_name(const std::string& name) {
+  const std::string_view word = "check";
+  return name.size() >= word.size() && std::equal(word.begin(), word.end(), name.begin(), [](char w, char c) {
+           return w == std::tolower(static_cast<unsigned char>(c));
+         });
+}
+
+GroundControl read_ground_control(const std::string& points, const std::string& marks) {
+  if (!marks.empty()) return read_control_layer(points, marks);
+  const std::string extension = std::filesystem::path(points).extension().string();
+  if (extension != ".txt" && extension != ".lst")
+    throw Error(ErrorCode::usage, "the marks of the control points are not given", points,
+                "pass --marks FILE, a table with the columns point,image,column,row, or a gcp_list.txt");
+  return read_gcp_list(points);
+}
 
 GroundControl read_gcp_list(const std::string& path) {
   const std::vector<TextRow> rows = text_rows(path);
@@ -73,7 +91,8 @@ GroundControl read_gcp_list(const std::string& path) {
       refuse_line(path, row->line,
                   fmt::format("the point '{}' has two marks in the image '{}'", point.name, image),
                   "remove one, or give each point its own name");
-    point.marks.push_back({image, {number_at(*row, 3, path, "column"), number_at(*row, 4, path, "row")}});
+    point.marks.push_back(
+        {.image = image, .pixel = {number_at(*row, 3, path, "column"), number_at(*row, 4, path, "row")}});
   }
   return all;
 }

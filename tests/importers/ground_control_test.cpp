@@ -63,5 +63,56 @@ TEST(GroundControl, RefusesWithTheLine) {
               HasSubstr("'P' has two marks in the image 'a.jpg'"));
 }
 
+std::string table(const std::string& what, const std::string& text) {
+  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+  const auto path = std::filesystem::path(::testing::TempDir()) / ("control_" + name + what + ".csv");
+  std::ofstream(path) << text;
+  return path.string();
+}
+
+std::string layer_message(const std::string& points, const std::string& marks) {
+  try {
+    read_control_layer(table("points", points), table("marks", marks));
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(ControlLayer, ReadsPointsAndMarks) {
+  const GroundControl found = read_control_layer(
+      table("points", "Name,Easting,Northing,Height,x_sd,z_sd,check\nA,1,2,3,0.02,0.04,\nB,4,5,,,,yes\n"),
+      table("marks", "point,image,column,row,sd\nA,a.jpg,10,20,\nB,a.jpg,30,40,2\nA,b.jpg,1,2,1\n"));
+  ASSERT_EQ(found.points.size(), 2u);
+  EXPECT_EQ(found.crs, "");
+  EXPECT_EQ(found.points[0].position, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(found.points[0].sd, Eigen::Vector3d(0.02, 0.05, 0.04));
+  EXPECT_FALSE(found.points[0].check);
+  ASSERT_EQ(found.points[0].marks.size(), 2u);
+  EXPECT_EQ(found.points[0].marks[1].pixel, Eigen::Vector2d(1, 2));
+  EXPECT_TRUE(found.points[1].check);
+  EXPECT_TRUE(std::isnan(found.points[1].position.z()));
+  EXPECT_EQ(found.points[1].marks[0].sd, 2);
+}
+
+TEST(ControlLayer, RefusesWithTheRow) {
+  const std::string points = "name,x,y,z\nA,1,2,3\n", marks = "point,image,column,row\n";
+  EXPECT_THAT(layer_message("name,x,z\nA,1,2\n", marks), HasSubstr("the table has no column 'y'"));
+  EXPECT_THAT(layer_message("name,x,y,z\nA,1,two,3\n", marks), HasSubstr("'two' is not a number"));
+  EXPECT_THAT(layer_message(points + "A,1,2,3\n", marks), HasSubstr("two control points have the name 'A'"));
+  EXPECT_THAT(layer_message("name,x,y,z,sd\nA,1,2,3,-1\n", marks), HasSubstr("is not above 0"));
+  EXPECT_THAT(layer_message(points, "point,image,row\nA,a.jpg,1\n"), HasSubstr("no column 'column'"));
+  EXPECT_THAT(layer_message(points, marks + "B,a.jpg,1,2\n"), HasSubstr("there is no control point 'B'"));
+  EXPECT_THAT(layer_message(points, marks + "A,a.jpg,1,2\nA,a.jpg,3,4\n"),
+              HasSubstr("two marks in the image"));
+}
+
+TEST(GroundControl, NamesThatBeginWithCheckAreCheckPoints) {
+  EXPECT_TRUE(is_check_name("check_7"));
+  EXPECT_TRUE(is_check_name("CheckPoint"));
+  EXPECT_FALSE(is_check_name("recheck"));
+  EXPECT_FALSE(is_check_name("che"));
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -84,19 +84,37 @@ Crs grid_crs(const std::string& text) {
   return crs;
 }
 
+// A gimbal knows the vertical, and a barometer heights, without any position.
+void add_without_position(PhotoPriors& out, std::size_t image, const importers::PhotoMetadata& m,
+                          const PriorAccuracy& accuracy) {
+  if (m.height_above_takeoff)
+    out.heights.push_back(
+        {.image = image, .height = *m.height_above_takeoff, .sd = accuracy.height_above_takeoff});
+  const auto turn = stored_turn(m.orientation);
+  if (!m.gimbal || !turn) return;
+  out.ups.push_back({.image = image,
+                     .up_in_camera = attitude_of(*m.gimbal, 0, *turn).transpose() * Eigen::Vector3d::UnitZ(),
+                     .sd = accuracy.tilt * kPriorDegree});
+}
+
 }  // namespace
 
 PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const PriorAccuracy& accuracy) {
   PhotoPriors out;
   std::optional<CrsTransform> to_grid;
+  double unit = 1;
   const HeightSource heights = height_source(photos);
   for (std::size_t i = 0; i < photos.photos.size(); ++i) {
     const importers::PhotoMetadata& m = photos.photos[i].metadata;
-    if (!m.position) continue;
+    if (!m.position) {
+      add_without_position(out, i, m, accuracy);
+      continue;
+    }
     if (!to_grid) {
       out.crs = crs.empty() ? importers::utm_zone(m.position->lon, m.position->lat) : crs;
       const Crs grid = grid_crs(out.crs);
       to_grid.emplace(geographic_crs(grid), grid);
+      unit = grid.metres_per_unit();
     }
     const auto at = (*to_grid)(m.position->lon, m.position->lat);
     if (!std::isfinite(at.x) || !std::isfinite(at.y)) continue;
@@ -105,7 +123,7 @@ PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const Pri
                              : heights.relative ? accuracy.height_above_takeoff
                                                 : accuracy.altitude;
     out.positions.push_back({.image = i,
-                             .position = {at.x, at.y, height.value_or(0)},
+                             .position = {at.x * unit, at.y * unit, height.value_or(0)},
                              .sd = {accuracy.horizontal, accuracy.horizontal, height_sd},
                              .biased_height = true});
     const auto turn = stored_turn(m.orientation);

@@ -10,6 +10,8 @@ struct PhotoPriors {
   std::string crs = {};  ///< "AUTHORITY:CODE" or as given; empty: no picture has a position
   std::vector<pipeline::ObservedPosition> positions = {};  ///< `image`: index into `Photos::photos`
   std::vector<pipeline::ObservedAttitude> attitudes = {};
+  std::vector<pipeline::ObservedUp> ups = {};          ///< of pictures with a gimbal, but without a position
+  std::vector<pipeline::ObservedHeight> heights = {};  ///< of these, above take-off
 };
 
 /// Standard deviations of what cameras write.
@@ -26,6 +28,7 @@ struct PriorAccuracy {
 /// one
 ///   bias for all images.
 /// - `crs` empty: the UTM zone of the first position. Yaw is turned by the meridian convergence.
+/// - Pictures without a position give the vertical by their gimbals and heights above take-off.
 /// - EXIF orientations that turn the picture turn the attitude, too; mirrored pictures give none.
 /// Throws Error{usage} for a CRS in degrees or on another body than Earth.
 PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const PriorAccuracy& accuracy = {});

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 #include <vector>
+#include "pipeline/reconstruction/adjustment/lens_ladder.hpp"
 #include "pipeline/reconstruction/reconstruction.hpp"
 #include "workflows/callbacks.hpp"
 #include "workflows/reconstruction/read_photos.hpp"
@@ -11,9 +12,12 @@ struct PosePhotosRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders
   std::string folder = {};               ///< for the products; exists
   std::string lens = {};                 ///< camera file whose lens is kept fixed; empty: self-calibration
-  std::string crs = {};                  ///< of the poses; empty: UTM zone of the first position
-  double max_pixels = 8e6;               ///< larger images are reduced to find features
-  int threads = 0;                       ///< 0: one per processor
+  std::string control = {};              ///< surveyed points; empty: none
+  std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
+  std::string dem = {};                  ///< coarse DEM, the reference if there is no other; empty: none
+  std::string crs = {};     ///< of the poses; empty: that of the references, or the UTM zone of the first
+  double max_pixels = 8e6;  ///< larger images are reduced to find features
+  int threads = 0;          ///< 0: one per processor
 };
 
 /// Poses of a set of pictures.
@@ -21,14 +25,18 @@ struct PosedPhotos {
   pipeline::Reconstruction scene = {};  ///< of the largest component
   std::string crs = {};                 ///< empty: the frame is arbitrary
   std::size_t posed = 0;
-  double gps_rms = 0;                        ///< residuals of the positions in plan, metres
+  double gps_rms = 0;                        ///< residuals of the positions in plan, metres; 0: none are used
   std::vector<std::string> messages = {};    ///< about lens and frame
   std::vector<UnusedPhoto> failures = {};    ///< images without a pose
   std::vector<std::size_t> components = {};  ///< images of each, largest first
+  std::vector<pipeline::LadderStep> ladder = {};
+  std::vector<pipeline::ControlResult> control = {};  ///< empty if the frame is arbitrary
+  std::size_t pairs_tried = 0, pairs_matched = 0;
 };
 
-/// Solves the poses of pictures and writes cameras.json, colmap/ and points.ply into the folder.
-/// Throws Error{input} if no two images can be oriented, with what to do.
+/// Solves the poses of pictures and writes cameras.json, colmap/, points.ply and, in a metric frame,
+/// points.las into the folder. Throws Error{input} if no two images can be oriented, with what to do, and as
+/// photo_control() does.
 PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

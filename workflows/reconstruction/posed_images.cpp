@@ -58,11 +58,13 @@ PosedImages read_posed_images(const PosedImagesRequest& request, const Callbacks
   return {.crs = map_crs(request, posed), .images = importers::image_set(posed)};
 }
 
+std::string text_of_crs(const Crs& crs) {
+  return crs.kind() == CrsKind::local ? "local" : crs.authority().empty() ? crs.wkt2() : crs.id();
+}
+
 std::string camera_file(const PosedImages& posed) {
   exporters::CameraFileContent content;
-  content.crs = posed.crs.kind() == CrsKind::local ? "local"
-                : posed.crs.authority().empty()    ? posed.crs.wkt2()
-                                                   : posed.crs.id();
+  content.crs = text_of_crs(posed.crs);
   for (const ImageHandle& handle : posed.images) {
     const ImageInfo& info = handle->info();
     const auto lens = std::ranges::find(content.lenses, info.view->camera) - content.lenses.begin();

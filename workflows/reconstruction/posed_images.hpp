@@ -26,6 +26,9 @@ struct PosedImagesRequest {
 /// Throws Error{usage} for a map in degrees, Error{input} if fewer than two images remain.
 PosedImages read_posed_images(const PosedImagesRequest& request, const Callbacks& callbacks = {});
 
+/// Returns the text of a CRS for a camera file: "local", its code, else its WKT.
+std::string text_of_crs(const Crs& crs);
+
 /// Returns the camera file (docs/reference/camera_file.md) of posed images, with covariances and suns.
 std::string camera_file(const PosedImages& posed);
 

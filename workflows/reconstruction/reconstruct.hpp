@@ -21,7 +21,10 @@ struct ReconstructRequest {
   std::string folder = {};               ///< for the products; may exist
   std::string cameras = {};              ///< camera file with the poses; empty: they are solved
   std::string lens = {};                 ///< camera file whose lens holds for poses to be solved
-  std::string dem = {};                  ///< coarse DEM, start of the heights; empty: they are searched
+  std::string control = {};              ///< surveyed points for poses to be solved; empty: none
+  std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
+  std::string dem = {};                  ///< coarse DEM, start of the heights, and reference of poses without
+                                         ///< another; empty: none
   std::string crs = {};                  ///< of the map; empty: that of the camera file
   double cell = 0;                       ///< of the DEM, metres; 0: twice the median ground sample distance
   ReconstructUntil until = ReconstructUntil::ortho;
@@ -38,7 +41,10 @@ struct ReconstructResult {
   std::optional<MapResult> map = {};  ///< if a map was requested
 
   /// Exit code of interface.md.
-  int exit_code() const { return map ? map->exit_code() : failed > 0 ? 3 : 0; }
+  int exit_code() const {
+    const int of_map = map ? map->exit_code() : 0;
+    return of_map != 0 ? of_map : failed > 0 ? 3 : 0;
+  }
 };
 
 /// Makes a DEM with its accuracy, an orthophoto and a job from images, and the map of landmarks on request.

@@ -74,12 +74,14 @@ class Adjustment {
     std::vector<std::pair<std::size_t, std::size_t>> tie, control;  // point, mark
     for (const MarkResidual& m : outliers)
       (m.term->kind == Term::Kind::tie_mark ? tie : control).emplace_back(m.term->index, m.term->mark_index);
-    for (const MarkResidual& m : outliers)
-      if (m.term->kind == Term::Kind::tie_mark) {
-        const Mark& mark = scene_.points[m.term->index].marks[m.term->mark_index];
-        result_.removed.push_back(
-            {m.term->index, mark, std::isfinite(m.size) ? m.size * mark.sd : std::nan("")});
-      }
+    for (const MarkResidual& m : outliers) {
+      const bool is_tie = m.term->kind == Term::Kind::tie_mark;
+      const std::size_t index = m.term->index;
+      const Mark& mark =
+          (is_tie ? scene_.points[index].marks : seen_.control[index].marks)[m.term->mark_index];
+      (is_tie ? result_.removed : result_.removed_control)
+          .push_back({index, mark, std::isfinite(m.size) ? m.size * mark.sd : std::nan("")});
+    }
     std::ranges::sort(tie, std::greater());  // later marks first, so that indices stay right
     for (const auto& [point, mark] : tie) {
       auto& marks = scene_.points[point].marks;

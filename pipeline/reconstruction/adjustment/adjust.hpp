@@ -74,7 +74,8 @@ struct AdjustmentResult {
   int free_datum = 0;
   bool determined = true;  ///< false: more unknowns than the frame are undetermined; no covariance
   std::vector<RemovedMark> removed = {};
-  std::vector<ControlResult> control = {};  ///< as `Observations::control`
+  std::vector<RemovedMark> removed_control = {};  ///< `point`: index into `Observations::control`
+  std::vector<ControlResult> control = {};        ///< as `Observations::control`
   std::vector<ObservationResult> others = {};
   std::vector<std::vector<LensParameter>> lenses = {};  ///< adjusted parameters by lens
   double height_bias = 0, height_bias_sd = 0;           ///< metres

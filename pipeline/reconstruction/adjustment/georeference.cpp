@@ -46,6 +46,27 @@ bool start(Reconstruction& scene, const Observations& seen, std::vector<std::str
   return true;
 }
 
+// Adds a message for each observation that the adjustment left out, unless the start has named it.
+void name_left_out(const Reconstruction& scene, const Observations& seen, Georeferenced& result) {
+  const std::vector<std::string> named = result.messages;
+  const auto add = [&](const std::string& what, const std::string& text) {
+    if (std::ranges::none_of(named, [&](const std::string& m) { return m.starts_with(what + " is "); }))
+      result.messages.push_back(what + text);
+  };
+  for (const ControlResult& point : result.adjustment.control)
+    if (!point.note.empty())
+      add((point.check ? "check point " : "control point ") + point.name, ": " + point.note);
+  for (const RemovedMark& removed : result.adjustment.removed_control)
+    add(fmt::format("mark of control point {} in image {}", seen.control[removed.point].name,
+                    scene.images[removed.mark.image].name),
+        fmt::format(" at column {:.1f}, row {:.1f} contradicts the others by {:.1f} pixels and was left out",
+                    removed.mark.pixel.x(), removed.mark.pixel.y(), removed.residual));
+  for (const ObservationResult& one : result.adjustment.others)
+    if (!one.used && scene.images[one.image].world_from_camera)
+      add(fmt::format("{} of image {}", one.kind, scene.images[one.image].name),
+          " contradicts the other observations and was left out");
+}
+
 }  // namespace
 
 void transform(Reconstruction& scene, std::size_t component, const Similarity& similarity) {
@@ -82,13 +103,7 @@ Georeferenced georeference(Reconstruction& scene, const Observations& observatio
         "the frame is arbitrary: {} of its 7 freedoms are not determined; add control points or positions",
         out.adjustment.free_datum));
   }
-  for (const ControlResult& point : out.adjustment.control)
-    if (!point.note.empty())
-      out.messages.push_back(fmt::format("control point {}: {}", point.name, point.note));
-  for (const ObservationResult& one : out.adjustment.others)
-    if (!one.used && scene.images[one.image].world_from_camera)
-      out.messages.push_back(fmt::format("{} of image {} contradicts the other observations and was left out",
-                                         one.kind, scene.images[one.image].name));
+  name_left_out(scene, observations, out);
   return out;
 }
 

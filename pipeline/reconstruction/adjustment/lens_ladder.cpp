@@ -23,6 +23,12 @@ bool contains(const std::vector<std::string>& all, const std::string& name) {
   return std::ranges::count(all, name) > 0;
 }
 
+// Difference of an estimate from the prior that is part of it, as a normal variable.
+double deviation_from_prior(double value, double sd, const LensPrior& prior) {
+  const double variance = prior.sd * prior.sd - sd * sd;
+  return variance > 0 ? std::abs(value - prior.value) / std::sqrt(variance) : 0;
+}
+
 /// Climbs the ladder with a scene whose left-out points are set apart.
 class Ladder {
  public:
@@ -85,6 +91,7 @@ class Ladder {
     for (const Group& group : groups_of(scene_.lenses[lens].camera)) {
       if (is_free(lens, group)) continue;
       const bool admitted = try_group(lens, group);
+      if (limits_.progress) limits_.progress();
       again = again || (admitted && refused);
       refused = refused || !admitted;
     }
@@ -159,6 +166,15 @@ class Ladder {
     else if (!(step.correlation <= limits_.max_correlation))
       step.reason = fmt::format("its correlation to {} is {:.3f}, more than {:.2f}", step.correlated_with,
                                 step.correlation, limits_.max_correlation);
+    else if (const double off = deviation_from_prior(step.value, step.sd, prior(lens, name));
+             !(off <= limits_.max_deviation || after <= (1 - limits_.min_fall) * residual_))
+      step.reason = fmt::format(
+          "its estimate of {:.6g} is {:.1f} standard deviations from what is known, but the residuals of "
+          "left-out "
+          "points hardly fall, from {:.3f} to {:.3f} sd: unmodelled errors (rolling shutter), or a wrong "
+          "focal length "
+          "in the metadata",
+          step.value, off, residual_, after);
     else if (!(after < residual_))
       step.reason = fmt::format("the residuals of left-out points do not fall: {:.4f}, then {:.4f} sd",
                                 residual_, after);
@@ -176,6 +192,10 @@ class Ladder {
 };
 
 }  // namespace
+
+std::size_t ladder_groups(const Camera& camera) {
+  return groups_of(camera).size();
+}
 
 LensPrior default_prior(const Camera& camera, std::size_t lens, const std::string& parameter, double value) {
   LensPrior prior{lens, parameter, value, 0.2};

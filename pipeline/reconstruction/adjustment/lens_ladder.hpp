@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 #include "pipeline/reconstruction/adjustment/adjust.hpp"
@@ -20,6 +21,12 @@ struct LadderStep {
 struct LadderOptions {
   double max_sd = 0.3;  ///< of an admitted parameter, by that of its prior
   double max_correlation = 0.95;
+  /// Of a term from its prior, in standard deviations, unless the residuals of left-out points fall
+  /// by `min_fall` as well: unmodelled errors, such as those of a rolling shutter, move weakly determined
+  /// terms.
+  double max_deviation = 3;
+  double min_fall = 0.3;
+  std::function<void()> progress = {};  ///< after each group that is tried
 };
 
 struct CalibratedAdjustment {
@@ -29,10 +36,14 @@ struct CalibratedAdjustment {
 };
 
 /// Adjusts, with self-calibration: f, k1, k2, (cx, cy), (p1, p2) in this order; no p1, p2 for a fisheye. A
-/// group enters only if the data determine it (LadderOptions) and the residuals of left-out tie points fall.
+/// group enters only if the data determine it, do not contradict what is known of it (LadderOptions), and the
+/// residuals of left-out tie points fall.
 /// Otherwise its parameters keep their values. `options.free_lens_parameters` are free from the start.
 CalibratedAdjustment adjust_with_ladder(Reconstruction& scene, const Observations& observations,
                                         AdjustmentOptions options = {}, const LadderOptions& ladder = {});
+
+/// Returns the number of groups that are tried for a camera if none is tried again.
+std::size_t ladder_groups(const Camera& camera);
 
 /// Returns the prior of a parameter when nothing is known: its value, with a standard deviation of 10 % for
 /// f, 2 % of the width for cx and cy, 0.2 for k1 to k4, 0.005 for p1 and p2.

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr std::int64_t kOrthoTile = 128;   // cells; images are used tile by tile
 constexpr std::int64_t kGainSpacing = 4;   // cells
+constexpr std::int64_t kGainRows = 32;     // summed at a time
 constexpr double kMaxLogDifference = 0.7;  // a factor of 2: beyond it, one of the two is a shadow
 
 float sample_level(const ImageLevel& image, double x, double y) {
@@ -33,8 +35,13 @@ float sample_level(const ImageLevel& image, double x, double y) {
 class Rectifier {
  public:
   Rectifier(const std::vector<SurfaceView>& views, const SurfaceGrid& grid, const Grid<float>& heights,
-            int split, std::size_t image_bytes)
-      : views_(views), grid_(grid), heights_(heights), split_(split), images_(views, image_bytes) {
+            int split, std::size_t image_bytes, std::function<void(double)> progress)
+      : views_(views),
+        grid_(grid),
+        heights_(heights),
+        split_(split),
+        images_(views, image_bytes),
+        progress_(std::move(progress)) {
     if (grid.columns > 1 && grid.rows > 1) relief_ = terrain_of(median_filter(heights), grid);
     out_.grid = grid.with_cell(grid.cell / split);
     out_.brightness = Grid<float>(out_.grid.columns, out_.grid.rows, std::numeric_limits<float>::quiet_NaN());
@@ -49,6 +56,7 @@ class Rectifier {
       const std::int64_t c0 = n % across * kOrthoTile, r0 = n / across * kOrthoTile;
       for (std::int64_t r = r0; r < std::min(r0 + kOrthoTile, grid_.rows); ++r)
         for (std::int64_t c = c0; c < std::min(c0 + kOrthoTile, grid_.columns); ++c) fill_cell(c, r);
+      if (progress_) progress_(0.5 / double(across * down));
     });
     return std::move(out_);
   }
@@ -92,18 +100,23 @@ class Rectifier {
       Grid<double> sums, counts;
     };
     const std::int64_t rows = (grid_.rows + kGainSpacing - 1) / kGainSpacing;
-    std::vector<Row> found(static_cast<std::size_t>(rows), Row{Grid<double>(n, n, 0), Grid<double>(n, n, 0)});
-    tbb::parallel_for(std::int64_t{0}, rows, [&](std::int64_t row) {
-      Row& here = found[static_cast<std::size_t>(row)];
-      for (std::int64_t c = 0; c < grid_.columns; c += kGainSpacing)
-        compare_views(c, row * kGainSpacing, here.sums, here.counts);
-    });
     Row all{Grid<double>(n, n, 0), Grid<double>(n, n, 0)};
-    for (const Row& row : found)
-      for (std::size_t i = 0; i < all.sums.cells().size(); ++i) {
-        all.sums.cells()[i] += row.sums.cells()[i];
-        all.counts.cells()[i] += row.counts.cells()[i];
-      }
+    for (std::int64_t begin = 0; begin < rows; begin += kGainRows) {  // bounds the memory of the sums
+      const std::int64_t count = std::min(kGainRows, rows - begin);
+      std::vector<Row> found(static_cast<std::size_t>(count),
+                             Row{Grid<double>(n, n, 0), Grid<double>(n, n, 0)});
+      tbb::parallel_for(std::int64_t{0}, count, [&](std::int64_t row) {
+        Row& here = found[static_cast<std::size_t>(row)];
+        for (std::int64_t c = 0; c < grid_.columns; c += kGainSpacing)
+          compare_views(c, (begin + row) * kGainSpacing, here.sums, here.counts);
+        if (progress_) progress_(0.5 / double(rows));
+      });
+      for (const Row& row : found)
+        for (std::size_t i = 0; i < all.sums.cells().size(); ++i) {
+          all.sums.cells()[i] += row.sums.cells()[i];
+          all.counts.cells()[i] += row.counts.cells()[i];
+        }
+    }
     out_.gains = balance_gains(all.sums, all.counts);
   }
 
@@ -156,6 +169,7 @@ class Rectifier {
   const Grid<float>& heights_;
   int split_;
   ImageLevels images_;
+  std::function<void(double)> progress_;
   std::optional<Terrain> relief_;
   Orthophoto out_;
 };
@@ -186,8 +200,9 @@ std::vector<double> balance_gains(const Grid<double>& sums, const Grid<double>& 
 }
 
 Orthophoto make_orthophoto(const std::vector<SurfaceView>& views, const SurfaceGrid& grid,
-                           const Grid<float>& heights, int pixels_per_cell, std::size_t image_bytes) {
-  return Rectifier(views, grid, heights, pixels_per_cell, image_bytes).run();
+                           const Grid<float>& heights, int pixels_per_cell, std::size_t image_bytes,
+                           const std::function<void(double)>& progress) {
+  return Rectifier(views, grid, heights, pixels_per_cell, image_bytes, progress).run();
 }
 
 }  // namespace waymark::pipeline

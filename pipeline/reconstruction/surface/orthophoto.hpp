@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 #include "pipeline/reconstruction/surface/surface_grid.hpp"
 #include "pipeline/reconstruction/surface/surface_view.hpp"
@@ -17,9 +18,11 @@ struct Orthophoto {
 /// Rectifies images on a DEM. Each cell takes the visible view with the least foreshortening and pixels no
 /// coarser than needed; visibility is a ray against the DEM. `pixel` divides the cell. Cells without height
 /// stay empty. Gains level the seams by least squares over the overlaps. The result depends on neither
-/// threads nor memory. Throws Error{input} if an image cannot be read.
+/// threads nor memory. `progress` receives parts that add up to 1, from several threads at a time. Throws
+/// Error{input} if an image cannot be read.
 Orthophoto make_orthophoto(const std::vector<SurfaceView>& views, const SurfaceGrid& grid,
-                           const Grid<float>& heights, int pixels_per_cell, std::size_t image_bytes);
+                           const Grid<float>& heights, int pixels_per_cell, std::size_t image_bytes,
+                           const std::function<void(double)>& progress = {});
 
 /// Returns factors near 1 that equalize brightness: log differences between views i and j, `sums(i, j)` of
 /// log(i) - log(j) over `counts(i, j)` points, are adjusted by least squares with a weak pull to 1.

@@ -3,16 +3,10 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include "pipeline/reconstruction/surface/coarse_heights.hpp"
 #include "pipeline/reconstruction/surface/start_heights.hpp"
 #include "pipeline/reconstruction/surface/sweep_chunk.hpp"
 namespace waymark::pipeline {
-
-/// Heights known coarsely, at which the first pass starts.
-struct CoarseHeights {
-  SurfaceGrid grid = {};
-  Grid<float> heights = {};  ///< NaN: unknown
-  double sd = 0;             ///< metres; 0: unknown
-};
 
 /// Where heights are searched, and how.
 struct SweepPlan {

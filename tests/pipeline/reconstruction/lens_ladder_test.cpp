@@ -80,6 +80,42 @@ TEST(LensLadder, NadirOverAPlaneKeepsThePrior) {
   std::printf("f stays: %s\n", f.reason.c_str());
 }
 
+// Vertical images of little relief: residuals hardly depend on the focal length, so that small unmodelled
+// errors decide.
+TEST(LensLadder, WeakGeometryDoesNotOverruleWhatIsKnown) {
+  const MadeSceneOptions flight{.seed = 11, .columns = 6, .relief = 4, .points = 500, .mark_sd = 0.3};
+  const Observations known{.lenses = {{0, "f", 1080, 12}}};
+  const auto focal_length = [&](const LadderOptions& options, CalibratedAdjustment& found) {
+    MadeScene made = made_scene(flight);
+    Camera& camera = made.start.lenses[0].camera;
+    camera.fx = camera.fy = 1080;
+    found = adjust_with_ladder(made.start, known, {}, options);
+    return made.start.lenses[0].camera.fx;
+  };
+  CalibratedAdjustment trusting, found;
+  const LadderOptions no_limits{.max_sd = 2, .max_deviation = 1e9};
+  EXPECT_LT(focal_length(no_limits, trusting), 1060) << step_of(trusting, "f").reason;
+  EXPECT_EQ(focal_length({.max_sd = 2}, found), 1080) << step_of(found, "f").value;
+  EXPECT_THAT(step_of(found, "f").reason, HasSubstr("standard deviations from what is known"));
+}
+
+// Metadata that lie are overruled where images determine the focal length well.
+TEST(LensLadder, StrongGeometryOverrulesAWrongPrior) {
+  MadeScene made = made_scene({.seed = 3, .tilt = 0.4, .points = 400, .camera = truth_of_lens()});
+  Observations seen{.positions = made_positions(made.truth, 0.1, 4)};
+  seen.lenses = {{0, "f", 1150, 30}};
+  Camera& camera = made.start.lenses[0].camera;
+  camera.fx = camera.fy = 1150;
+  camera.distortion = {};
+  for (TiePoint& point : made.start.points) {
+    point.position.reset();
+    if (const auto found = triangulate(made.start, point.marks)) point.position = found->position;
+  }
+  const CalibratedAdjustment found = adjust_with_ladder(made.start, seen);
+  EXPECT_TRUE(step_of(found, "f").admitted) << step_of(found, "f").reason;
+  EXPECT_NEAR(made.start.lenses[0].camera.fx, 1000, 10);
+}
+
 TEST(LensLadder, FisheyesAreCalibrated) {
   Camera camera{.columns = 1000, .rows = 1000, .fx = 500, .fy = 500, .cx = 499.5, .cy = 499.5};
   camera.lens = Camera::Lens::fisheye;

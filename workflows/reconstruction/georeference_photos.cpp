@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/reconstruction/georeference_photos.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "pipeline/reconstruction/adjustment/georeference.hpp"
+#include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
+#include "workflows/reconstruction/coarse_dem.hpp"
+#include "workflows/reconstruction/photo_priors.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+// Names of the lens parameters that the adjustment may free: none of a lens that is given.
+std::vector<std::vector<std::string>> admitted_parameters(const PosedPhotos& posed) {
+  std::vector<std::vector<std::string>> free(posed.scene.lenses.size());
+  for (const pipeline::LadderStep& step : posed.ladder)
+    if (step.admitted) free[step.lens].push_back(step.parameter);
+  return free;
+}
+
+/// References of the pictures, and the CRS they are in.
+struct PhotoReferences {
+  std::string crs = {};
+  pipeline::Observations seen = {};
+};
+
+PhotoReferences references_of(const PosedPhotos& posed, const Photos& photos, const PhotoControl& control,
+                              const std::string& crs, std::vector<std::string>& messages) {
+  PhotoReferences out{.crs = control.crs};
+  const auto is_posed = [&](std::size_t image) {
+    return posed.scene.images[image].world_from_camera.has_value();
+  };
+  for (pipeline::ControlPoint point : control.points) {
+    std::erase_if(point.marks, [&](const pipeline::Mark& m) { return !is_posed(m.image); });
+    out.seen.control.push_back(std::move(point));
+  }
+  const std::string contradiction = control.points.empty() ? "" : contradiction_of_positions(control, photos);
+  if (!contradiction.empty()) {
+    messages.push_back(contradiction);
+    return out;
+  }
+  const PhotoPriors priors = photo_priors(photos, control.crs.empty() ? crs : control.crs);
+  if (out.crs.empty()) out.crs = priors.crs;
+  out.seen.height_bias_sd = PriorAccuracy{}.height_bias;
+  for (const pipeline::ObservedPosition& p : priors.positions)
+    if (is_posed(p.image)) out.seen.positions.push_back(p);
+  for (const pipeline::ObservedAttitude& a : priors.attitudes)
+    if (is_posed(a.image)) out.seen.attitudes.push_back(a);
+  for (const pipeline::ObservedUp& up : priors.ups)
+    if (is_posed(up.image)) out.seen.ups.push_back(up);
+  for (const pipeline::ObservedHeight& h : priors.heights)
+    if (is_posed(h.image)) out.seen.heights.push_back(h);
+  return out;
+}
+
+std::size_t cameras_looking_up(const pipeline::Reconstruction& scene) {
+  std::size_t count = 0;
+  for (const pipeline::AdjustedImage& image : scene.images)
+    count += image.world_from_camera && image.world_from_camera->linear()(2, 2) > 0.5;
+  return count;
+}
+
+// A plane and its mirror image differ only by the side from which they are seen.
+std::string mirrored(const PhotoReferences& references, std::size_t looking_up, std::size_t posed) {
+  const bool by_control = references.seen.control.size() >= 3;
+  return fmt::format(
+      "the frame is arbitrary: {} fit the images only if {} of {} cameras look up, as a mirror image would; "
+      "{}",
+      by_control ? "the control points" : "the GPS positions", looking_up, posed,
+      by_control ? "check that easting comes before northing and that the marks are columns and rows"
+                 : "check that latitude and longitude are not exchanged and that the hemispheres are right");
+}
+
+double rms_in_plan(const pipeline::AdjustmentResult& adjustment) {
+  double squares = 0, used = 0;
+  for (const pipeline::ObservationResult& seen : adjustment.others)
+    if (seen.kind == "position" && seen.used) squares += seen.error.head<2>().squaredNorm(), ++used;
+  return used > 0 ? std::sqrt(squares / used) : 0;
+}
+
+/// Parts of a reconstruction that are searched in a DEM.
+struct FreeRelief {
+  std::vector<Eigen::Vector3d> points = {}, centres = {};
+  std::optional<Eigen::Vector3d> up = {};  // by the gimbals
+};
+
+FreeRelief free_relief(const pipeline::Reconstruction& scene, const pipeline::Observations& seen) {
+  FreeRelief out;
+  for (const pipeline::TiePoint& point : scene.points)
+    if (point.position) out.points.push_back(*point.position);
+  for (const pipeline::AdjustedImage& image : scene.images)
+    if (image.world_from_camera) out.centres.push_back(image.world_from_camera->translation());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const pipeline::ObservedUp& up : seen.ups)
+    sum += scene.images[up.image].world_from_camera->linear() * up.up_in_camera;
+  if (sum.norm() > 0.9 * double(seen.ups.size()) && !seen.ups.empty()) out.up = sum.normalized();
+  return out;
+}
+
+// Tie points within one cell of the DEM share its error: each then counts for its part only.
+double deviation_of_surface(const std::vector<Eigen::Vector3d>& points, const Similarity& map_from_frame,
+                            const pipeline::CoarseHeights& dem, double residual) {
+  std::set<std::pair<std::int64_t, std::int64_t>> cells;
+  for (const Eigen::Vector3d& point : points) {
+    const Eigen::Vector3d at = map_from_frame * point;
+    cells.emplace(std::llround(dem.grid.column(at.x())), std::llround(dem.grid.row(at.y())));
+  }
+  return std::max(dem.sd, residual) * std::sqrt(double(points.size()) / double(cells.size()));
+}
+
+// Places images without another reference in the coarse DEM, and adjusts them with it.
+void georeference_on_dem(PosedPhotos& posed, pipeline::Observations seen, const PosePhotosRequest& request) {
+  constexpr std::int64_t kNodes = 1024;  // across
+  std::optional<Crs> map;
+  if (!request.crs.empty()) map = request.crs == "local" ? Crs::local() : Crs::from_text(request.crs);
+  const CoarseDem dem(request.dem, map);
+  const pipeline::CoarseHeights heights = dem.sample_all(kNodes);
+  const FreeRelief relief = free_relief(posed.scene, seen);
+  const pipeline::DemPlacementResult placed =
+      pipeline::place_on_dem({.points = relief.points, .centres = relief.centres, .up = relief.up}, heights);
+  if (!placed.found) {
+    posed.messages.push_back("the frame is arbitrary: " + placed.message +
+                             "; control points or GPS positions give it for certain");
+    return;
+  }
+  pipeline::Reconstruction moved = posed.scene;
+  for (const pipeline::AdjustedImage& image : moved.images)
+    if (image.world_from_camera) {
+      pipeline::transform(moved, image.component, placed.found->map_from_frame);
+      break;
+    }
+  moved.frame = pipeline::ReconstructionFrame::metric;
+  seen.surface =
+      pipeline::ObservedSurface{.height =
+                                    [&heights](double x, double y) {
+                                      const double h = heights.at(x, y);
+                                      return std::isfinite(h) ? std::optional(h) : std::nullopt;
+                                    },
+                                .sd = deviation_of_surface(relief.points, placed.found->map_from_frame,
+                                                           heights, placed.found->residual),
+                                .step = heights.grid.cell / 2};
+  const pipeline::Georeferenced result =
+      pipeline::georeference(moved, seen, {.free_lens_parameters = admitted_parameters(posed)});
+  if (!result.metric) {
+    for (const std::string& message : result.messages) posed.messages.push_back(message);
+    return;
+  }
+  posed.scene = std::move(moved);
+  posed.crs = text_of_crs(dem.map());
+  const double scale_sd = std::sqrt(placed.found->covariance(6, 6));
+  posed.messages.push_back(fmt::format(
+      "placed in the coarse DEM by its relief of {:.3g} m: residuals {:.3g} m, the next best place {:.3g} m; "
+      "scale "
+      "+- {:.2g} %",
+      placed.found->relief, placed.found->residual, placed.found->next_best_residual, 100 * scale_sd));
+}
+
+}  // namespace
+
+void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoControl& control,
+                         const pipeline::CalibratedAdjustment& calibrated, const PosePhotosRequest& request,
+                         const Callbacks& callbacks) {
+  for (const std::string& warning : control.warnings) callbacks.warning(warning);
+  PhotoReferences references = references_of(posed, photos, control, request.crs, posed.messages);
+  references.seen.lenses = calibrated.priors;
+  pipeline::Reconstruction moved = posed.scene;
+  const pipeline::Georeferenced result =
+      pipeline::georeference(moved, references.seen, {.free_lens_parameters = admitted_parameters(posed)});
+  if (!result.metric) {
+    if (!request.dem.empty() && control.points.empty() && references.seen.positions.size() < 3)
+      return georeference_on_dem(posed, references.seen, request);
+    for (const std::string& message : result.messages) posed.messages.push_back(message);
+    return;
+  }
+  for (const std::string& message : result.messages) callbacks.warning(message);
+  if (const std::size_t up = cameras_looking_up(moved); 2 * up > posed.posed) {
+    posed.messages.push_back(mirrored(references, up, posed.posed));
+    return;
+  }
+  posed.scene = std::move(moved);
+  posed.crs = references.crs;
+  posed.control = result.adjustment.control;
+  posed.gps_rms = rms_in_plan(result.adjustment);
+}
+
+}  // namespace waymark::workflows

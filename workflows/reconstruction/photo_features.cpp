@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/reconstruction/photo_features.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "pipeline/engine/progress_meter.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+constexpr std::size_t kFewFeatures = 60;
+
+std::string fault_of(const ReducedPixels& image, const pipeline::ImageFeatures& features) {
+  if (features.features.size() >= kFewFeatures) return "";
+  float low = std::numeric_limits<float>::infinity(), high = -low;
+  for (const float v : image.pixels.cells())
+    if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+  if (!(high > low)) return "all its pixels have one value: leave it out";
+  return fmt::format("it has only {} distinct points: it is blurred, dark or without texture; leave it out",
+                     features.features.size());
+}
+
+}  // namespace
+
+PhotoFeatures find_photo_features(const Photos& photos, double max_pixels, const Callbacks& callbacks) {
+  PhotoFeatures out{std::vector<pipeline::ImageFeatures>(photos.photos.size()),
+                    std::vector<std::string>(photos.photos.size())};
+  pipeline::ProgressMeter meter(callbacks.progress, "read_folder",
+                                static_cast<std::int64_t>(photos.photos.size()));
+  tbb::parallel_for(
+      std::size_t{0}, photos.photos.size(),
+      [&](std::size_t i) {
+        try {
+          const ReducedPixels image = read_reduced(photos.photos[i], max_pixels);
+          out.features[i] = pipeline::find_features(image.pixels, {.saturated = photos.photos[i].saturated});
+          out.faults[i] = fault_of(image, out.features[i]);
+          for (pipeline::Feature& f : out.features[i].features) {
+            f.pixel = image.factor * (f.pixel.array() + 0.5) - 0.5;
+            f.scale *= image.factor;
+          }
+        } catch (const Error& error) {
+          out.faults[i] = error.problem();
+        }
+        meter.add(1);
+      },
+      tbb::simple_partitioner());
+  meter.finish();
+  return out;
+}
+
+std::vector<pipeline::ImageToMatch> images_to_match(const Photos& photos) {
+  std::vector<pipeline::ImageToMatch> images;
+  std::optional<importers::PhotoPosition> origin;
+  for (const Photo& photo : photos.photos) {
+    pipeline::ImageToMatch image{.name = photo.name, .lens = photo.lens};
+    if (const auto& at = photo.metadata.position) {
+      if (!origin) origin = at;
+      const double metres = 111'000, shrink = std::cos(at->lat * std::numbers::pi / 180);
+      image.position =
+          Eigen::Vector3d((at->lon - origin->lon) * metres * shrink, (at->lat - origin->lat) * metres,
+                          photo.metadata.height_above_takeoff.value_or(0));
+    }
+    images.push_back(std::move(image));
+  }
+  return images;
+}
+
+}  // namespace waymark::workflows

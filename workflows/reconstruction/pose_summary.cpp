@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/reconstruction/pose_summary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace waymark::workflows {
+namespace {
+
+double largest_axis(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
+}
+
+std::string lens_line(const pipeline::AdjustedLens& lens, std::size_t index, std::size_t images) {
+  const Camera& c = lens.camera;
+  std::string text =
+      fmt::format("  lens {}: {} images of {} x {}, f {:.2f} px", index + 1, images, c.columns, c.rows, c.fx);
+  for (std::size_t k = 0; k < lens.parameters.size(); ++k) {
+    const double sd = std::sqrt(lens.covariance(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)));
+    text += fmt::format("{} {} +- {:.2g}", k == 0 ? "; adjusted:" : ",", lens.parameters[k], sd);
+  }
+  return text + (lens.parameters.empty() ? "; kept fixed\n" : "\n");
+}
+
+double median_position_sd(const pipeline::Reconstruction& scene) {
+  std::vector<double> all;
+  for (const PoseFigures& image : pose_figures(scene))
+    if (image.position_sd > 0) all.push_back(image.position_sd);
+  if (all.empty()) return 0;
+  std::ranges::sort(all);
+  return all[all.size() / 2];
+}
+
+std::string control_text(const PosedPhotos& posed) {
+  std::string text;
+  for (const bool check : {false, true}) {
+    const ControlFigures figures = control_figures(posed.control, check);
+    const auto all = std::ranges::count(posed.control, check, &pipeline::ControlResult::check);
+    if (all == 0) continue;
+    text += fmt::format("  {} of {} {} points: RMS {:.3f} m in plan, {:.3f} m in height\n", figures.used, all,
+                        check ? "check" : "control", figures.plan(), figures.rms.z());
+  }
+  for (const pipeline::ControlResult& point : posed.control) {
+    text += fmt::format("    {:<7} {:<12}", point.check ? "check" : "control", point.name);
+    text += point.position ? fmt::format(" {:8.3f} {:8.3f} {:8.3f} m, marks {:.2f} px", point.error.x(),
+                                         point.error.y(), point.error.z(), point.mark_rms)
+                           : " no position";
+    text += point.check || point.used ? "\n" : ", not used\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene) {
+  std::vector<PoseFigures> out(scene.images.size());
+  for (const pipeline::TiePoint& tie : scene.points) {
+    if (!tie.position) continue;
+    for (const pipeline::Mark& m : tie.marks) {
+      const pipeline::AdjustedImage& image = scene.images[m.image];
+      if (!image.world_from_camera) continue;
+      const auto seen = project(scene.lenses[image.lens].camera,
+                                Point<CameraFrame>{image.world_from_camera->inverse() * *tie.position});
+      if (!seen) continue;
+      ++out[m.image].points;
+      out[m.image].rms += (*seen - m.pixel).squaredNorm();
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out[i].points > 0) out[i].rms = std::sqrt(out[i].rms / double(2 * out[i].points));
+    if (const auto& covariance = scene.images[i].covariance) {
+      out[i].attitude_sd = largest_axis(covariance->topLeftCorner<3, 3>()) * 180 / std::numbers::pi;
+      out[i].position_sd = largest_axis(covariance->bottomRightCorner<3, 3>());
+    }
+  }
+  return out;
+}
+
+ControlFigures control_figures(std::span<const pipeline::ControlResult> control, bool check) {
+  ControlFigures out;
+  for (const pipeline::ControlResult& point : control) {
+    if (point.check != check || !point.position || !(point.check || point.used)) continue;
+    out.rms += point.error.cwiseAbs2();
+    ++out.used;
+  }
+  if (out.used > 0) out.rms = (out.rms / double(out.used)).cwiseSqrt();
+  return out;
+}
+
+std::string pose_summary(const PosedPhotos& posed, const std::vector<exporters::SparsePoint>& points) {
+  double squares = 0, marks = 0;
+  for (const exporters::SparsePoint& point : points) {
+    squares += 2 * double(point.marks.size()) * point.error * point.error;
+    marks += double(point.marks.size());
+  }
+  std::string text = fmt::format("{} of {} images posed", posed.posed, posed.scene.images.size());
+  if (posed.components.size() > 1)
+    text += fmt::format("; the images form {} groups without common points: {}", posed.components.size(),
+                        fmt::join(posed.components, ", "));
+  text += fmt::format("\n  {} of {} pairs matched; {} tie points, {:.1f} marks each\n", posed.pairs_matched,
+                      posed.pairs_tried, points.size(), points.empty() ? 0 : marks / double(points.size()));
+  text += fmt::format("  residuals {:.2f} px RMS, sigma0 {:.2f}\n",
+                      marks > 0 ? std::sqrt(squares / (2 * marks)) : 0, posed.scene.sigma0);
+  for (std::size_t lens = 0; lens < posed.scene.lenses.size(); ++lens) {
+    const auto images = static_cast<std::size_t>(std::ranges::count_if(
+        posed.scene.images,
+        [&](const pipeline::AdjustedImage& i) { return i.lens == lens && i.world_from_camera; }));
+    text += lens_line(posed.scene.lenses[lens], lens, images);
+  }
+  if (!posed.crs.empty()) {
+    text += fmt::format("  frame: {}; median sd of the centres {:.3f} m", posed.crs,
+                        median_position_sd(posed.scene));
+    if (posed.gps_rms > 0) text += fmt::format("; residuals of GPS {:.2f} m RMS in plan", posed.gps_rms);
+    text += "\n" + control_text(posed);
+  }
+  for (const std::string& message : posed.messages) text += fmt::format("  {}\n", message);
+  if (posed.crs.empty()) text += "  frame: arbitrary position, direction and scale\n";
+  for (const UnusedPhoto& failure : posed.failures)
+    text += fmt::format("  not posed: {}: {}\n", failure.name, failure.reason);
+  return text;
+}
+
+}  // namespace waymark::workflows
