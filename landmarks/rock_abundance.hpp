@@ -7,6 +7,8 @@ namespace waymark::inline landmarks {
 
 /// Height of a rock over its diameter on average (Golombek & Rapp 1997).
 inline constexpr double kRockHeightPerDiameter = 0.5;
+/// Its standard deviation among rocks; an assumption for maps that do not measure it.
+inline constexpr double kRockHeightPerDiameterSd = 0.15;
 
 /// Returns the number of rocks per square metre of diameters from `min_diameter` to `max_diameter` metres.
 /// Their cumulative fractional area is k exp(-(1.79 + 0.152 / k) D) (Golombek & Rapp 1997); k is the fraction

@@ -242,43 +242,71 @@ BaseRelief fit_base_directly(const HeightWindow& heights, std::int64_t column, s
           static_cast<float>(std::sqrt(squares / double(base.cells()))), static_cast<float>(step)};
 }
 
-Grid<BaseRelief> fit_base(const HeightWindow& heights, const Window& inner, const BaseFootprint& base) {
+namespace {
+
+// Blocks whose grids fit into the second-level cache.
+constexpr std::int64_t kBlock = 128;
+
+// The range of heights and the voids of the box that begins at each cell.
+struct BoxChecks {
+  bool has_voids = false, is_steep = false;  // anywhere in the block
+  Grid<float> missing, top, negative_bottom;
+
+  BoxChecks(const RoundedHeights& rounded, const BaseFootprint& base, double max_range) {
+    const auto heights = rounded.heights.cells();
+    const auto known = rounded.known.cells();
+    has_voids = std::ranges::find(known, 0.0F) != known.end();
+    const auto [low, high] = std::ranges::minmax(heights);
+    is_steep = !(double(high) - double(low) < max_range);
+    const std::int64_t columns = rounded.heights.columns(), rows = rounded.heights.rows();
+    const auto slide = [&](Grid<float>& grid, auto&& value) {
+      grid = Grid<float>(columns, rows);
+      for (Index i = 0; i < heights.size(); ++i) grid.cells()[i] = value(i);
+      slide_max(grid, 2 * base.half_columns + 1, true);
+      slide_max(grid, 2 * base.half_rows + 1, false);
+    };
+    if (has_voids) slide(missing, [&](Index i) { return 1 - known[i]; });
+    if (!is_steep) return;
+    slide(top, [&](Index i) { return static_cast<float>(heights[i]); });
+    slide(negative_bottom, [&](Index i) { return -static_cast<float>(heights[i]); });
+  }
+
+  bool is_missing(std::int64_t c, std::int64_t r) const { return has_voids && missing(c, r) > 0; }
+  bool exceeds(std::int64_t c, std::int64_t r, double range) const {
+    return is_steep && !(double(top(c, r)) + double(negative_bottom(c, r)) < range);
+  }
+};
+
+void fit_block(const HeightWindow& all, const Window& inner, const Window& block, const BaseFootprint& base,
+               Grid<BaseRelief>& relief) {
+  const std::int64_t mx = base.half_columns, my = base.half_rows;
+  HeightWindow heights(block.columns + 2 * mx, block.rows + 2 * my);
+  for (std::int64_t r = 0; r < heights.rows(); ++r)
+    std::ranges::copy(all.row(block.row - my + r).subspan(at(block.column - mx), at(heights.columns())),
+                      heights.row(r).begin());
   const RoundedHeights rounded = round_heights(heights, base.quantum);
   const RowSums rows(rounded.heights);
   const auto all_lags = lags(base);
   std::vector<DifferenceRange> ranges;
   for (const Lag& lag : all_lags) ranges.push_back(difference_range(rounded.heights, lag, base));
 
-  // Of the box about a cell: whether a height is missing, and the range of heights.
-  Grid<float> missing(heights.columns(), heights.rows()), top = missing, bottom = missing;
-  for (Index i = 0; i < missing.cells().size(); ++i) {
-    missing.cells()[i] = 1 - rounded.known.cells()[i];
-    top.cells()[i] = static_cast<float>(rounded.heights.cells()[i]);
-    bottom.cells()[i] = -top.cells()[i];
-  }
-  for (Grid<float>* grid : {&missing, &top, &bottom}) {
-    slide_max(*grid, 2 * base.half_columns + 1, true);
-    slide_max(*grid, 2 * base.half_rows + 1, false);
-  }
-
   const auto n = static_cast<double>(base.cells());
   const double xx = base.xx(), yy = base.yy(), q = base.quantum;
   const double max_range = 0x1p32 / n;  // beyond, n sum(h^2) - sum(h)^2 may exceed 64 bits
-  Grid<BaseRelief> relief(inner.columns, inner.rows, {kNan, kNan, kNan, kNan});
-  DiscSums sums(inner.columns);
-  for (std::int64_t y = 0; y < inner.rows; ++y) {
-    const std::int64_t r = inner.row + y, box_row = r - base.half_rows;
-    sum_discs(rows, inner, r, base, sums);
-    for (std::int64_t x = 0; x < inner.columns; ++x) {
-      const std::int64_t c = inner.column + x, box_column = c - base.half_columns;
-      if (missing(box_column, box_row) > 0) continue;
-      BaseRelief& cell = relief(x, y);
-      if (!(top(box_column, box_row) + bottom(box_column, box_row) < max_range)) {
-        cell = fit_base_directly(heights, c, r, base);
+  const BoxChecks checks(rounded, base, max_range);
+  DiscSums sums(block.columns);
+  const Window in_block{mx, my, block.columns, block.rows};
+  for (std::int64_t y = 0; y < block.rows; ++y) {
+    sum_discs(rows, in_block, my + y, base, sums);
+    BaseRelief* const out = &relief(block.column - inner.column, block.row - inner.row + y);
+    for (std::int64_t x = 0; x < block.columns; ++x) {
+      if (checks.is_missing(x, y)) continue;
+      if (checks.exceeds(x, y, max_range)) {
+        out[x] = fit_base_directly(heights, mx + x, my + y, base);
         continue;
       }
       const Index i = at(x);
-      const double xh = signed_sum(sums.xh[i] - static_cast<Sum>(c) * sums.h[i]);
+      const double xh = signed_sum(sums.xh[i] - static_cast<Sum>(mx + x) * sums.h[i]);
       const double yh = signed_sum(sums.yh[i]);
       const auto spread =
           static_cast<double>(static_cast<Sum>(base.cells()) * sums.hh[i] - sums.h[i] * sums.h[i]);
@@ -287,13 +315,25 @@ Grid<BaseRelief> fit_base(const HeightWindow& heights, const Window& inner, cons
       double step = 0;
       for (Index k = 0; k < ranges.size(); ++k) {
         const double plane = a * double(all_lags[k].columns) - b * double(all_lags[k].rows);
-        step = std::max({step, double(ranges[k].max(box_column, box_row)) - plane,
-                         double(ranges[k].negative_min(box_column, box_row)) + plane});
+        step = std::max(
+            {step, double(ranges[k].max(x, y)) - plane, double(ranges[k].negative_min(x, y)) + plane});
       }
-      cell = {static_cast<float>(a * q / base.cell_x), static_cast<float>(b * q / base.cell_y),
-              static_cast<float>(std::sqrt(squares / n) * q), static_cast<float>(step * q)};
+      out[x] = {static_cast<float>(a * q / base.cell_x), static_cast<float>(b * q / base.cell_y),
+                static_cast<float>(std::sqrt(squares / n) * q), static_cast<float>(step * q)};
     }
   }
+}
+
+}  // namespace
+
+Grid<BaseRelief> fit_base(const HeightWindow& heights, const Window& inner, const BaseFootprint& base) {
+  Grid<BaseRelief> relief(inner.columns, inner.rows, {kNan, kNan, kNan, kNan});
+  for (std::int64_t row = inner.row; row < inner.end_row(); row += kBlock)
+    for (std::int64_t column = inner.column; column < inner.end_column(); column += kBlock)
+      fit_block(heights, inner,
+                {column, row, std::min(kBlock, inner.end_column() - column),
+                 std::min(kBlock, inner.end_row() - row)},
+                base, relief);
   return relief;
 }
 

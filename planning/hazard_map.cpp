@@ -46,8 +46,14 @@ HazardClass class_of(double probability, const HazardRequest& request) {
 Uncertain undetected_density(const UndetectedRocks& rocks, bool surveyed) {
   if (!rocks.known) return {};
   const double end = surveyed ? rocks.detected_diameter : std::numeric_limits<double>::infinity();
+  // Rocks of each diameter are as high as the height per diameter is spread; bins grow by 5 %.
   const auto density = [&](double k) {
-    return k > 0 ? rocks_per_square_metre(k, rocks.min_diameter, end) : 0;
+    double sum = 0;
+    for (double d = rocks.min_height / 3; k > 0 && d < std::min(end, 40 * rocks.min_height); d *= 1.05) {
+      const double high = probability_above(rocks.height_per_diameter, rocks.min_height / (1.025 * d));
+      if (high > 0) sum += high * rocks_per_square_metre(k, d, std::min(end, 1.05 * d));
+    }
+    return sum;
   };
   const double value = density(rocks.cover.k), high = density(rocks.cover.k + rocks.cover.sd);
   return {value, std::abs(high - value)};
@@ -118,7 +124,7 @@ HazardTile HazardMap::compute(const Window& window) const {
       const bool surveyed = inside[static_cast<std::size_t>(c)] != 0;
       double probability = std::nan("");
       if (const BaseRelief& fit = relief(c, r); !std::isnan(fit.step)) {
-        const ReliefHazard hazard = assess_relief(fit, base_, errors_, request_.vehicle);
+        const ReliefHazard hazard = assess_relief(fit, errors_, request_.vehicle);
         const auto set = [&](HazardBand b, const Uncertain& value) {
           tile[static_cast<std::size_t>(b)](c, r) = static_cast<float>(value.value);
           tile[static_cast<std::size_t>(b) + 1](c, r) = static_cast<float>(value.sd);

@@ -14,9 +14,10 @@ enum class HazardClass { safe = 0, uncertain = 1, hazard = 2, unknown = 3 };
 
 /// Rocks that the map cannot show.
 struct UndetectedRocks {
-  bool known = false;            ///< false: no estimate, nothing is added
-  RockCover cover = {};          ///< of the site
-  double min_diameter = 0;       ///< metres, of the smallest rock that stops the vehicle
+  bool known = false;     ///< false: no estimate, nothing is added
+  RockCover cover = {};   ///< of the site
+  double min_height = 0;  ///< metres, of the smallest rock that stops the vehicle
+  Uncertain height_per_diameter{kRockHeightPerDiameter, kRockHeightPerDiameterSd};  ///< of the rocks
   double detected_diameter = 0;  ///< metres, rocks at least this wide are in the map where it was surveyed
   std::vector<std::vector<Eigen::Vector2d>> surveyed =
       {};  ///< rings, even-odd rule, DEM axes; empty: everywhere

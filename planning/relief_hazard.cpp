@@ -32,7 +32,11 @@ double correlation_at(double distance, const HeightErrors& errors) {
 }  // namespace
 
 FitErrors propagate_errors(const BaseFootprint& base, const HeightErrors& errors) {
-  FitErrors fit;
+  FitErrors fit{.spread_x = base.xx() * base.cell_x * base.cell_x,
+                .spread_y = base.yy() * base.cell_y * base.cell_y};
+  // Relief within a cell is that of the base, scaled by their sizes with a Hurst exponent of 1/2.
+  fit.unresolved =
+      std::max(base.cell_x, base.cell_y) / (static_cast<double>(base.half_widths[0]) * base.cell_x);
   if (!(errors.sd > 0)) return fit;
   const std::vector<DiscCell> cells = disc_cells(base);
   const auto n = double(cells.size());
@@ -72,15 +76,14 @@ double probability_above(const Uncertain& value, double limit) {
   return 0.5 * std::erfc(-z * std::numbers::sqrt2 / 2);
 }
 
-ReliefHazard assess_relief(const BaseRelief& relief, const BaseFootprint& base, const FitErrors& errors,
-                           const Vehicle& vehicle) {
+ReliefHazard assess_relief(const BaseRelief& relief, const FitErrors& errors, const Vehicle& vehicle) {
   constexpr double degree = std::numbers::pi / 180;
   ReliefHazard hazard;
   const double gx = relief.gradient_x, gy = relief.gradient_y, square = gx * gx + gy * gy;
   const double ms = double(relief.roughness) * double(relief.roughness);
   // The vehicle's supports rest on single heights of a rough base: its slope is not that of the plane.
-  const double vx = std::max(errors.variance_x, ms / (base.xx() * base.cell_x * base.cell_x));
-  const double vy = std::max(errors.variance_y, ms / (base.yy() * base.cell_y * base.cell_y));
+  const double vx = std::max(errors.variance_x, ms / errors.spread_x);
+  const double vy = std::max(errors.variance_y, ms / errors.spread_y);
   const double variance = square > 1e-12 ? (gx * gx * vx + gy * gy * vy) / square : std::max(vx, vy);
   hazard.slope = {std::atan(std::sqrt(square)) / degree, std::sqrt(variance) / (1 + square) / degree};
   const double true_ms = std::max(0.0, ms - errors.mean_square);
@@ -88,7 +91,9 @@ ReliefHazard assess_relief(const BaseRelief& relief, const BaseFootprint& base, 
   const double roughness = std::sqrt(true_ms);
   hazard.roughness = {roughness, std::sqrt(true_ms + sd_ms) - roughness};
   const double raw = relief.step;
-  hazard.step = {std::sqrt(std::max(0.0, raw * raw - errors.step_bias * errors.step_bias)), errors.step_sd};
+  const double unresolved = true_ms * errors.unresolved;
+  hazard.step = {std::sqrt(std::max(0.0, raw * raw - errors.step_bias * errors.step_bias)),
+                 std::sqrt(errors.step_sd * errors.step_sd + unresolved)};
   if (std::isnan(raw)) {  // std::max drops NaN
     hazard.roughness = hazard.step = {std::nan(""), std::nan("")};
     hazard.probability = std::nan("");

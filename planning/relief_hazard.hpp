@@ -10,8 +10,10 @@ struct HeightErrors {
   double correlation = 0;  ///< metres, distance at which the correlation of two errors has fallen to 1/e
 };
 
-/// What the errors of the heights do to a fit of the base: constants of the footprint.
+/// Effects of the errors of the heights on a fit of the base: constants of the footprint.
 struct FitErrors {
+  double spread_x = 0, spread_y = 0;  ///< square metres, sums of x^2 and y^2 over the disc
+  double unresolved = 0;              ///< fraction of the base's mean square relief that lies within a cell
   double variance_x = 0, variance_y = 0;  ///< of the plane's gradient
   double mean_square = 0;                 ///< square metres, expected square of the residuals
   double mean_square_sd = 0;              ///< square metres, of that square in one base
@@ -36,8 +38,7 @@ struct ReliefHazard {
 
 /// Returns the hazard of one cell; NaN where the relief is. The probabilities of slope, roughness and step
 /// are combined as if they were independent, which errs on the safe side.
-ReliefHazard assess_relief(const BaseRelief& relief, const BaseFootprint& base, const FitErrors& errors,
-                           const Vehicle& vehicle);
+ReliefHazard assess_relief(const BaseRelief& relief, const FitErrors& errors, const Vehicle& vehicle);
 
 /// Returns the probability that a Gaussian value exceeds a limit; 0 or 1 for sd = 0.
 double probability_above(const Uncertain& value, double limit);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
+#include <ogrsf_frmts.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -66,7 +67,7 @@ TEST_F(Hazards, WallIsAHazardAndTheVoidUnknown) {
   OGRLayer* layer = set->GetLayerByName("hazard");
   ASSERT_NE(layer, nullptr);
   double area = 0, expected = 0;
-  for (const auto& feature : layer)
+  for (const auto& feature : *layer)
     if (std::string(feature->GetFieldAsString("class")) == "hazard")
       area += feature->GetFieldAsDouble("area");
   for (const float c : classes) expected += c == 2 ? 0.25 : 0;

@@ -32,7 +32,8 @@ TEST(BaseFit, PlaneHasItsSlopeAndNoRoughnessOrStep) {
   const BaseFootprint base = make_base_footprint(0.5, 0.5, 2, 0.5);
   // Multiples of the quantum, so that nothing is rounded: 0.25 m and -0.125 m per cell of half a metre.
   const auto heights = surface(20, [](double x, double y) { return 7 + 0.25 * x - 0.125 * y; });
-  for (const BaseRelief& cell : fit_base(heights, inner_of(heights, base), base).cells()) {
+  const Grid<BaseRelief> fit = fit_base(heights, inner_of(heights, base), base);
+  for (const BaseRelief& cell : fit.cells()) {
     EXPECT_FLOAT_EQ(cell.gradient_x, 0.5);
     EXPECT_FLOAT_EQ(cell.gradient_y, -0.25);
     EXPECT_FLOAT_EQ(cell.roughness, 0);

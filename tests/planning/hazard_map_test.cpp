@@ -82,7 +82,7 @@ TEST(HazardMap, TilesDoNotChangeTheBytes) {
                        .probability = uniform(random)});
   UndetectedRocks undetected{.known = true,
                              .cover = {0.1, 0.02},
-                             .min_diameter = 0.3,
+                             .min_height = 0.15,
                              .detected_diameter = 0.8,
                              .surveyed = {{{103, 30}, {120, 33}, {115, 48}}}};
   const HazardMap map(dem, {.vehicle = cart(), .errors = {0.02, 0.5}, .undetected = undetected}, objects);

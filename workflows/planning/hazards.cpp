@@ -84,7 +84,7 @@ SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const plann
 planning::UndetectedRocks undetected_rocks(const HazardMapRequest& request, const SiteObjects& site,
                                            const geodb::MapStore* map, const planning::Vehicle& vehicle,
                                            const Crs& dem, double cell, const Callbacks& callbacks) {
-  planning::UndetectedRocks rocks{.min_diameter = vehicle.obstacle_height() / kRockHeightPerDiameter};
+  planning::UndetectedRocks rocks{.min_height = vehicle.obstacle_height()};
   const double complete = completeness_diameter(site.rock_diameters);
   rocks.detected_diameter = request.detection_limit > 0 ? request.detection_limit
                             : std::isfinite(complete)   ? complete
