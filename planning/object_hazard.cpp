@@ -20,7 +20,8 @@ std::optional<Uncertain> feature(const Landmark& landmark, const LandmarkType& t
         landmark.features[i].observations > 0) {
       const FeatureValue& f = landmark.features[i];
       const double spread = std::sqrt(std::max(0.0, f.variance));
-      return Uncertain{f.value, spread > 0 ? spread : kUnknownSpread * std::abs(f.value)};
+      const double size = std::abs(f.value);
+      return Uncertain{f.value, spread > 0 ? std::hypot(spread, kCommonError * size) : kUnknownSpread * size};
     }
   return {};
 }

@@ -19,12 +19,17 @@ struct HazardObject {
   double probability = 1;                                ///< that it exists and is too high or too steep
 };
 
+/// Relative error of a feature that all its observations share: measured on a simulated landing
+/// (docs/evaluation/2026-11-23-hazard-calibration.md).
+inline constexpr double kCommonError = 0.14;
+/// Relative sd of a feature of one observation.
+inline constexpr double kUnknownSpread = 0.2;
+
 /// Returns the landmark as an object; its probability is 0 if it is no hazard to the vehicle.
 /// - Shadow casters: P(height > vehicle.obstacle_height()); without a height half the diameter.
 /// - Bowls: P(4 depth / diameter > tan of the steepest slope), the slope of a paraboloid at its rim.
 /// - Canopies and poles: the stem. Other types are no objects on the terrain.
-/// A feature without a spread has an sd of `kUnknownSpread` of its value.
-inline constexpr double kUnknownSpread = 0.2;  ///< see hazard_object()
+/// The sd of a feature is its spread and `kCommonError` of its value, or `kUnknownSpread` without a spread.
 HazardObject hazard_object(const Landmark& landmark, const LandmarkType& type, const Vehicle& vehicle);
 
 /// Returns the distance from an object beyond which its probability counts as 0, metres.

@@ -40,7 +40,7 @@ struct ReliefHazard {
 /// are combined as if they were independent, which errs on the safe side.
 ReliefHazard assess_relief(const BaseRelief& relief, const FitErrors& errors, const Vehicle& vehicle);
 
-/// Returns the probability that a Gaussian value exceeds a limit; 0 or 1 for sd = 0.
+/// Returns the probability that a Gaussian value exceeds a limit, to 2e-6; 0 or 1 for sd = 0.
 double probability_above(const Uncertain& value, double limit);
 
 }  // namespace waymark::planning

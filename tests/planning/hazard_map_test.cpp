@@ -149,11 +149,11 @@ TEST(HazardObject, TypesSayWhatTheyAre) {
     for (const double v : values) landmark.features.push_back({v, 1e-8, 2});
     return hazard_object(landmark, types[landmark.type], vehicle);
   };
-  EXPECT_NEAR(object("rock", {0.4, 0.5}).probability, 0.9, 1e-9);
-  EXPECT_DOUBLE_EQ(object("rock", {0.4, 0.5}).radius, 0.4);
-  EXPECT_NEAR(object("rock", {0.4, 0.1}).probability, 0, 1e-9);
-  EXPECT_NEAR(object("crater", {10, 4}).probability, 0.9, 1e-9);  // 2 * 4 / 10
-  EXPECT_NEAR(object("crater", {10, 1}).probability, 0, 1e-9);
+  EXPECT_NEAR(object("rock", {0.4, 0.9}).probability, 0.9, 1e-5);  // 0.6 m are 4.8 sd of 14 %
+  EXPECT_DOUBLE_EQ(object("rock", {0.4, 0.9}).radius, 0.4);
+  EXPECT_NEAR(object("rock", {0.4, 0.1}).probability, 0, 1e-5);
+  EXPECT_NEAR(object("crater", {10, 8}).probability, 0.9, 1e-4);  // 2 * 8 / 10
+  EXPECT_NEAR(object("crater", {10, 0.5}).probability, 0, 1e-5);
   EXPECT_DOUBLE_EQ(object("tree", {20, 0.3, 5}).radius, 0.15);  // the stem, not the crown
   EXPECT_EQ(object("mountain_top", {1000, 30, 500}).probability, 0);
 }
