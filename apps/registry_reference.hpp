@@ -9,7 +9,7 @@
 #include "pipeline/engine/registry.hpp"
 namespace waymark::apps {
 
-/// A stage, landmark type or sensor profile in the four forms of `--as`.
+/// A stage, landmark type, sensor profile or vehicle in the four forms of `--as`.
 struct ReferenceEntry {
   std::string name, summary;
   std::string text, json, schema, markdown;
@@ -18,8 +18,10 @@ struct ReferenceEntry {
 std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages);
 std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types);
 std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types);
+/// Returns the built-in vehicles.
+std::vector<ReferenceEntry> vehicle_reference();
 
-/// Arguments of `waymark stages`, `types` and `sensors`.
+/// Arguments of `waymark stages`, `types`, `sensors` and `vehicles`.
 struct ReferenceRequest {
   std::string name;  ///< empty: all
   std::string as = "text";

@@ -10,13 +10,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+std::string coverage_text(const SensorCoverage& coverage) {
+  if (!(coverage.range > 0)) return "Range: unknown";
+  return fmt::format("Range {:g} m, view {:g} deg, sd {} and {:g} deg, probability of detection {:g}",
+                     coverage.range, coverage.view,
+                     coverage.range_sd > 0 ? fmt::format("{:g} m", coverage.range_sd) : "no range",
+                     coverage.bearing_sd, coverage.detection);
+}
+
 std::string as_text(const SensorProfile& sensor) {
   std::string text = fmt::format(
       "{}: {}\n\nWeight of a feature in the quality of a landmark (types not listed: all alike):\n",
       sensor.name, sensor.summary);
   for (const FeatureWeight& feature : sensor.weights)
     text += fmt::format("  {:<14} {:<18} {:g}\n", feature.type, feature.feature, feature.weight);
-  return text;
+  return text + "\n" + coverage_text(sensor.coverage) + "\n";
 }
 
 std::string as_markdown(const SensorProfile& sensor) {
@@ -24,13 +32,19 @@ std::string as_markdown(const SensorProfile& sensor) {
       fmt::format("# {}\n\n{}.\n\n| type | feature | weight |\n|---|---|---|\n", sensor.name, sensor.summary);
   for (const FeatureWeight& feature : sensor.weights)
     text += fmt::format("| {} | `{}` | {:g} |\n", feature.type, feature.feature, feature.weight);
-  return text;
+  return text + "\n" + coverage_text(sensor.coverage) + ".\n";
 }
 
 std::string as_json(const SensorProfile& sensor) {
   Json record{{"name", sensor.name}, {"summary", sensor.summary}, {"weights", Json::object()}};
   for (const FeatureWeight& feature : sensor.weights)
     record["weights"][feature.type][feature.feature] = feature.weight;
+  const SensorCoverage& c = sensor.coverage;
+  record["coverage"] = {{"range", c.range},
+                        {"view", c.view},
+                        {"range_sd", c.range_sd},
+                        {"bearing_sd", c.bearing_sd},
+                        {"detection", c.detection}};
   return record.dump(2);
 }
 

@@ -15,12 +15,22 @@ struct FeatureWeight {
   double weight = 1;
 };
 
-/// Feature weights of a sensor. Unlisted features of a listed type have weight 0. An unlisted type has equal
-/// weights, so that new types work with existing sensors.
+/// What a sensor sees of landmarks, for planning. Range 0: unknown.
+struct SensorCoverage {
+  double range = 0;         ///< metres, at which landmarks are detected
+  double view = 360;        ///< degrees, horizontal field of view about the heading
+  double range_sd = 0;      ///< metres; 0: the sensor measures no ranges
+  double bearing_sd = 0.5;  ///< degrees
+  double detection = 0.8;   ///< probability that an existing landmark in range and sight is detected
+};
+
+/// Feature weights and coverage of a sensor. Unlisted features of a listed type have weight 0. An unlisted
+/// type has equal weights, so that new types work with existing sensors.
 struct SensorProfile {
   std::string name;     ///< lower case, underscores
   std::string summary;  ///< one line for the user
   std::vector<FeatureWeight> weights;
+  SensorCoverage coverage = {};
 };
 
 /// Returns the weights in the order of the type's features; only their ratios matter.

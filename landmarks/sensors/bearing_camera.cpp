@@ -10,7 +10,8 @@ void register_sensor_bearing_camera(SensorRegistry& sensors) {
                            {"mountain_top", "isolation", 1},
                            {"mountain_top", "elevation", 0.5},
                            {"rock", "height", 1},
-                           {"tree", "height", 1}}});
+                           {"tree", "height", 1}},
+               .coverage = {.range = 100, .bearing_sd = 0.3}});
 }
 
 }  // namespace waymark::inline landmarks

@@ -9,7 +9,8 @@ void register_sensor_horizontal_laser(SensorRegistry& sensors) {
                .weights = {{"rock", "radius", 1},
                            {"rock", "height", 0.2},
                            {"tree", "diameter", 1},
-                           {"crater", "radius", 0.2}}});
+                           {"crater", "radius", 0.2}},
+               .coverage = {.range = 25, .view = 270, .range_sd = 0.1, .bearing_sd = 0.6}});
 }
 
 }  // namespace waymark::inline landmarks

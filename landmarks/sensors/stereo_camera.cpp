@@ -11,7 +11,8 @@ void register_sensor_stereo_camera(SensorRegistry& sensors) {
                            {"tree", "diameter", 1},
                            {"tree", "height", 0.3},
                            {"crater", "radius", 0.5},
-                           {"crater", "depth", 0.5}}});
+                           {"crater", "depth", 0.5}},
+               .coverage = {.range = 15, .view = 70, .range_sd = 0.1, .bearing_sd = 0.6}});
 }
 
 }  // namespace waymark::inline landmarks

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/route.hpp"
+#include "apps/command.hpp"
+#include "apps/console.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::apps {
+namespace {
+
+class RouteCommand final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "route",
+        .group = Group::use,
+        .summary = "Plan a way on which a robot keeps good landmarks in sight",
+        .about =
+            "The covariance of the position is propagated along the way with the odometry noise of `waymark "
+            "localize` and the landmarks that the sensor sees. One objective: --limit-sigma is the shortest "
+            "way on "
+            "which the sd keeps below a limit, --keep-landmarks that with the least length at which fewer "
+            "landmarks "
+            "are in sight, --weight a compromise of length and sd.\n\n"
+            "OUT.gpkg has the layers route and route_station: the ellipse of the error, the landmarks in "
+            "sight, and "
+            "the three that inform most. Identities are taken as known, and no terrain hides a landmark.",
+        .arguments =
+            {file_word("MAP.gpkg", &request_.map, "Map of landmarks"),
+             Argument{"--from", "X,Y[,YAW]", &request_.from,
+                      "Start in the map's CRS; yaw in degrees from east"}
+                 .needed(),
+             Argument{"--to", "X,Y", &request_.to, "Goal in the map's CRS"}.needed(),
+             Argument{"--via", "X,Y", &request_.via, "Position to pass; may be repeated, in order"},
+             Argument{"-o,--output", "OUT", &request_.output, "OUT.gpkg, OUT.geojson or OUT.csv"}
+                 .needed()
+                 .offering(Offer::file),
+             Argument{"--hazards", "FILE|none", &request_.hazards,
+                      "Hazard map that `waymark hazards` made, or none"}
+                 .offering(Offer::file)
+                 .or_else("none"),
+             Argument{"--sensor", "NAME", &request_.sensor,
+                      "Sensor with its coverage; `waymark sensors` lists them"}
+                 .needed()
+                 .offering(workflows::all_sensors().names()),
+             Argument{"--range", "METRES", &request_.range, "Range of the sensor"}.or_else(
+                 "that of the profile"),
+             Argument{"--view", "DEGREES", &request_.view, "Horizontal field of view"}.or_else(
+                 "that of the profile"),
+             Argument{"--limit-sigma", "METRES", &request_.limit_sigma,
+                      "Largest sd of the position on the way"},
+             Argument{"--keep-landmarks", "N", &request_.keep_landmarks, "Landmarks to keep in sight"},
+             Argument{"--by-quality", "", &request_.by_quality,
+                      "Sum their qualities in place of counting them"},
+             Argument{"--weight", "W", &request_.weight, "Metres of detour per metre driven at an sd of 1 m"},
+             Argument{"--cell", "METRES", &request_.cell, "Cells of the search"}.or_else("2"),
+             Argument{"--start-sd", "METRES", &request_.start_sd, "Sd of the position at the start"}.or_else(
+                 "0.1"),
+             Argument{"--worlds", "N", &request_.worlds, "Draws of which landmarks exist, to check the route"}
+                 .or_else("32"),
+             Argument{"--alternatives", "N", &request_.alternatives,
+                      "Routes along the front of length and sd, each a tenth better"}
+                 .or_else("1"),
+             Argument{"--seed", "N", &request_.seed, "Seed of the worlds"}.or_else("1")},
+        .examples = {
+            {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor horizontal_laser --limit-sigma 0.5 "
+             "--hazards hazard.tif -o route.gpkg",
+             "The shortest way with an sd of at most half a metre"},
+            {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor stereo_camera --keep-landmarks 3 -o "
+             "route.csv",
+             "Three landmarks in sight wherever possible"}}};
+  }
+
+  int run(const Session& session) override {
+    workflows::plan_route(request_, console_callbacks(session));
+    return 0;
+  }
+
+ private:
+  workflows::RouteRequest request_;
+};
+
+}  // namespace
+
+void register_command_route(CommandTable& commands);
+void register_command_route(CommandTable& commands) {
+  commands.add<RouteCommand>();
+}
+
+}  // namespace waymark::apps

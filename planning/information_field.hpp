@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+#include "landmarks/sensor_profile.hpp"
+#include "localization/identification/landmark_grid.hpp"
+#include "localization/line_of_sight.hpp"
+#include "planning/belief.hpp"
+namespace waymark::planning {
+
+/// How landmarks inform a vehicle that drives past them.
+struct LandmarkSensing {
+  SensorCoverage coverage;
+  double sightings_per_metre = 1;          ///< of each landmark in view
+  double correlation_per_range = 0.4;      ///< length over which a landmark's map error repeats, in ranges
+  double min_confidence = 0.5;             ///< less probable landmarks count as absent
+  localization::LineOfSight visible = {};  ///< empty: always free
+};
+
+/// Calls `visit` with the index of each landmark that the sensor sees from a pose and its information per
+/// metre driven, (m^-2, ...)/m. The factor of existence is left out.
+/// - An error of the map repeats in every sighting: it counts as white noise of the same spectral density,
+///   2 x correlation length x variance.
+using VisitInformation = std::function<void(std::uint32_t landmark, const Symmetric3& information)>;
+void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
+                       const LandmarkSensing& sensing, const VisitInformation& visit);
+
+/// Information at a pose.
+struct Information {
+  Symmetric3 rate;     ///< per metre driven; each landmark counts with its confidence
+  int landmarks = 0;   ///< seen, of the least confidence
+  double quality = 0;  ///< sum of their qualities for the sensor (eq. 8)
+};
+Information information_at(const localization::Pose2& pose, const localization::LandmarkGrid& map,
+                           const LandmarkSensing& sensing);
+
+/// Directions of drives between cells: east, then counter-clockwise in steps of 45 degrees.
+inline constexpr int kHeadings = 8;
+localization::Pose2 heading_pose(double x, double y, int heading);
+
+/// Square cells of the map frame on which routes are searched, row 0 in the south.
+struct RouteCells {
+  double x0 = 0, y0 = 0;  ///< centre of cell (0, 0), metres
+  double cell = 1;        ///< metres
+  std::int64_t columns = 0, rows = 0;
+
+  std::int64_t count() const { return columns * rows; }
+  double x(std::int64_t i) const { return x0 + static_cast<double>(i % columns) * cell; }
+  double y(std::int64_t i) const { return y0 + static_cast<double>(i / columns) * cell; }
+  /// Returns the index of the cell that holds a position; -1 outside.
+  std::int64_t index(double x, double y) const;
+};
+
+/// Information in every cell and heading.
+struct InformationField {
+  RouteCells cells;
+  int headings = 1;  ///< 1: the sensor sees all round; else kHeadings
+  std::vector<Information> at;
+
+  const Information& get(std::int64_t cell, int heading) const {
+    return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
+  }
+};
+/// Computes the field of the cells that are `passable`; others are empty. Threads do not change it.
+InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
+                                        const localization::LandmarkGrid& map,
+                                        const LandmarkSensing& sensing);
+
+}  // namespace waymark::planning

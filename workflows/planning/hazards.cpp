@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/hazards.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "exporters/raster/cog_stream.hpp"
+#include "exporters/raster/occupancy_map.hpp"
+#include "exporters/report/counting_area.hpp"
+#include "geo/metric_crs.hpp"
+#include "geodb/map_store.hpp"
+#include "importers/rasters/dem.hpp"
+#include "workflows/planning/hazard_style.hpp"
+#include "workflows/provenance.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kClassNames[] = {"safe", "uncertain", "hazard", "unknown"};
+
+bool is_map(const std::string& input) {
+  return fs::path(input).extension() == ".gpkg";
+}
+
+std::shared_ptr<const importers::ImportedDem> open_dem(const HazardMapRequest& request,
+                                                       const geodb::MapStore* map) {
+  std::vector<std::string> files = map ? request.dem : std::vector{request.input};
+  if (map && files.empty()) {
+    if (!map->has_dem_coverage())
+      throw Error(ErrorCode::input, "the map has no heights", request.input,
+                  "pass the elevation model with --dem, or make the map with `waymark run --with-dem`");
+    files = {"GPKG:" + request.input + ":dem"};
+  }
+  const auto dem = importers::import_dem({.files = files,
+                                          .nodata = NodataPolicy::unknown,
+                                          .crs = map && map->crs().kind() == CrsKind::local ? "local" : "",
+                                          .inspect = map == nullptr || !request.dem.empty()});
+  const GridGeometry& grid = dem->geometry();
+  if (grid.where.crs.kind() == CrsKind::geographic)
+    throw Error(
+        ErrorCode::input, "the DEM is in degrees: a vehicle needs metres", files.front(),
+        fmt::format("project it: gdalwarp -t_srs {} {} metres.tif", fitting_metric_crs(grid), files.front()));
+  return dem;
+}
+
+/// Landmarks in the axes of the DEM.
+struct SiteObjects {
+  std::vector<planning::HazardObject> objects;
+  std::vector<double> rock_diameters;  ///< of shadow casters, weighted by nothing: confidence of at least 0.5
+};
+
+SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const planning::Vehicle& vehicle) {
+  std::optional<CrsTransform> transform;
+  if (!map.crs().same_as(dem)) transform.emplace(map.crs(), dem);
+  const double metres = dem.metres_per_unit();
+  SiteObjects site;
+  for (const LandmarkType& type : map.types())
+    map.visit(type.name, [&](Landmark&& landmark) {
+      if (transform) {
+        const auto at = (*transform)(landmark.position.xyz.x(), landmark.position.xyz.y());
+        if (!std::isfinite(at.x)) return;
+        landmark.position.xyz.x() = at.x, landmark.position.xyz.y() = at.y;
+      }
+      planning::HazardObject object = planning::hazard_object(landmark, type, vehicle);
+      if (type.evidence == EvidenceModel::shadow_caster && landmark.confidence >= 0.5 && object.radius > 0)
+        site.rock_diameters.push_back(2 * object.radius);
+      if (!(object.probability > 1e-4)) return;
+      object.radius /= metres, object.radius_sd /= metres, object.covariance /= metres * metres;
+      site.objects.push_back(object);
+    });
+  return site;
+}
+
+planning::UndetectedRocks undetected_rocks(const HazardMapRequest& request, const SiteObjects& site,
+                                           const geodb::MapStore* map, const planning::Vehicle& vehicle,
+                                           const Crs& dem, double cell, const Callbacks& callbacks) {
+  planning::UndetectedRocks rocks{.min_height = vehicle.obstacle_height()};
+  const double complete = completeness_diameter(site.rock_diameters);
+  rocks.detected_diameter = request.detection_limit > 0 ? request.detection_limit
+                            : std::isfinite(complete)   ? complete
+                                                        : 4 * cell;
+  std::optional<exporters::CountingArea> area;
+  if (map) area = exporters::counting_area(*map);
+  if (request.rock_cover >= 0) {
+    rocks.known = true;
+    rocks.cover.k = request.rock_cover;
+  } else if (std::isfinite(complete) && area) {
+    const auto count =
+        std::ranges::count_if(site.rock_diameters, [&](double d) { return d >= rocks.detected_diameter; });
+    rocks.known = true;
+    rocks.cover = fit_rock_cover(count, rocks.detected_diameter, area->square_metres);
+  } else {
+    callbacks.warning(
+        fmt::format("undetected rocks are not counted: {}; --rock-cover K gives the fraction of the terrain "
+                    "that rocks cover",
+                    map ? fmt::format("the map has {} rocks, 20 and the area of its images are needed",
+                                      site.rock_diameters.size())
+                        : "a DEM shows none smaller than some cells"));
+  }
+  if (area && map->crs().same_as(dem))
+    for (const exporters::CountingArea::Ring& ring : area->rings) rocks.surveyed.push_back(ring.corners);
+  return rocks;
+}
+
+std::vector<Window> tiles_of(const GridGeometry& grid, std::int64_t size) {
+  std::vector<Window> tiles;
+  for (std::int64_t row = 0; row < grid.rows; row += size)
+    for (std::int64_t column = 0; column < grid.columns; column += size)
+      tiles.push_back({column, row, std::min(size, grid.columns - column), std::min(size, grid.rows - row)});
+  return tiles;
+}
+
+planning::ClassCounts write_tiles(const planning::HazardMap& map, const GridGeometry& grid,
+                                  const HazardMapRequest& request, exporters::CogStream& file) {
+  const std::vector<Window> tiles = tiles_of(grid, request.tile_cells);
+  tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);
+  const auto batch = static_cast<std::size_t>(std::max(1, 2 * arena.max_concurrency()));
+  planning::ClassCounts counts{};
+  for (std::size_t first = 0; first < tiles.size(); first += batch) {
+    std::vector<planning::HazardTile> made(std::min(batch, tiles.size() - first));
+    arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, made.size(),
+                        [&](std::size_t i) { made[i] = map.compute(tiles[first + i]); });
+    });
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      for (const float c : made[i].back().cells()) ++counts.at(static_cast<std::size_t>(c));
+      file.write(tiles[first + i], made[i]);
+    }
+  }
+  return counts;
+}
+
+void check(const HazardMapRequest& request) {
+  const auto refuse = [](std::string problem, std::string hint) {
+    throw Error(ErrorCode::usage, std::move(problem), "", std::move(hint));
+  };
+  if (fs::path(request.output).extension() != ".tif")
+    refuse(fmt::format("the hazard map '{}' does not end in .tif", request.output), "it is a GeoTIFF");
+  if (!request.polygons.empty() && !is_map(request.polygons))
+    refuse(fmt::format("the polygons '{}' do not end in .gpkg", request.polygons), "they are a GeoPackage");
+  if (!request.nav2.empty() && fs::path(request.nav2).extension() != ".yaml")
+    refuse(fmt::format("the map of Nav2 '{}' does not end in .yaml", request.nav2), "");
+  if (!request.polygons.empty() && request.polygons == request.input)
+    refuse("the polygons would replace the map", "name another file");
+  if (!(0 < request.min_uncertain && request.min_uncertain <= request.min_hazard && request.min_hazard <= 1))
+    refuse(fmt::format("--uncertain {:g} and --hazard {:g} are no increasing probabilities",
+                       request.min_uncertain, request.min_hazard),
+           "0 < uncertain <= hazard <= 1");
+  if (!(request.rock_cover <= 1))
+    refuse(fmt::format("--rock-cover {:g} is no fraction of the terrain", request.rock_cover),
+           "0.01 is smooth, 0.07 typical of landing sites, 0.3 very rocky");
+  if (request.tile_cells < 16 || request.tile_cells > 8192)
+    refuse(fmt::format("--tile-cells {} is outside [16, 8192]", request.tile_cells), "");
+}
+
+}  // namespace
+
+HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks& callbacks) {
+  check(request);
+  const planning::Vehicle vehicle = planning::find_vehicle(request.vehicle);
+  std::optional<geodb::MapStore> map;
+  if (is_map(request.input))
+    map.emplace(geodb::MapStore::open(request.input));
+  else if (!request.dem.empty())
+    throw Error(ErrorCode::usage, "--dem is the elevation model of a map, and the input is a DEM itself",
+                request.input, "leave one out");
+  const auto dem = open_dem(request, map ? &*map : nullptr);
+  for (const std::string& warning : dem->warnings()) callbacks.warning(warning);
+  const GridGeometry& grid = dem->geometry();
+  const double metres = grid.where.crs.metres_per_unit(), cell = grid.where.dx * metres;
+
+  planning::HazardRequest hazard{
+      .vehicle = vehicle,
+      .errors = {request.height_sd >= 0 ? request.height_sd : dem->height_sd(), request.height_correlation},
+      .min_uncertain = request.min_uncertain,
+      .min_hazard = request.min_hazard};
+  if (!(hazard.errors.sd > 0))
+    callbacks.warning(
+        "the standard deviation of the heights is unknown, limits are sharp: --height-sd gives it");
+  SiteObjects site;
+  if (map) site = read_objects(*map, grid.where.crs, vehicle);
+  hazard.undetected =
+      undetected_rocks(request, site, map ? &*map : nullptr, vehicle, grid.where.crs, cell, callbacks);
+  HazardMapResult result{.objects = static_cast<std::int64_t>(site.objects.size()),
+                         .undetected = hazard.undetected,
+                         .undetected_per_metre = {}};
+  const planning::Uncertain density = planning::undetected_density(hazard.undetected, true);
+  result.undetected_per_metre = {density.value * vehicle.track_width(), density.sd * vehicle.track_width()};
+
+  const planning::HazardMap hazards(*dem, hazard, std::move(site.objects));
+  if (hazards.fitted_radius() > 1.5 * vehicle.base_radius())
+    callbacks.warning(
+        fmt::format("the cells of {:.3g} m are coarse for a base of {:.3g} m: relief is judged over {:.3g} m",
+                    cell, 2 * vehicle.base_radius(), 2 * hazards.fitted_radius()));
+  std::vector<exporters::CogStream::Band> bands;
+  for (const auto& [name, unit] : planning::hazard_band_names()) bands.push_back({name, unit});
+  exporters::CogStream file(request.output, bands, grid);
+  result.cells = write_tiles(hazards, grid, request, file);
+  file.commit(
+      {{"WAYMARK_VERSION", program_version()},
+       {"VEHICLE", vehicle.name},
+       {"BASE_RADIUS", fmt::format("{:g}", vehicle.base_radius())},
+       {"HEIGHT_SD", fmt::format("{:g}", hazard.errors.sd)},
+       {"HEIGHT_CORRELATION", fmt::format("{:g}", hazard.errors.correlation)},
+       {"CLASSES", "0 safe, 1 uncertain, 2 hazard, 3 unknown"},
+       {"CLASS_LIMITS", fmt::format("{:g} {:g}", request.min_uncertain, request.min_hazard)},
+       {"ROCK_COVER", hazard.undetected.known ? fmt::format("{:.4g}", hazard.undetected.cover.k) : "unknown"},
+       {"DETECTED_DIAMETER", fmt::format("{:.4g}", hazard.undetected.detected_diameter)},
+       {"UNDETECTED_PER_METRE", fmt::format("{:.4g}", result.undetected_per_metre.value)}});
+  write_file(fs::path(request.output).replace_extension(".qml"), hazard_style());
+  const int bands_count = static_cast<int>(planning::kHazardBands);
+  if (!request.polygons.empty())
+    exporters::write_class_polygons(request.polygons, "hazard", request.output, bands_count, kClassNames);
+  if (!request.nav2.empty()) exporters::write_occupancy_map(request.nav2, request.output, bands_count - 1);
+  const auto total = static_cast<double>(grid.cells());
+  std::string text = fmt::format("{}: {} x {} cells for {}, {} objects\n", request.output, grid.columns,
+                                 grid.rows, vehicle.name, result.objects);
+  for (std::size_t i = 0; i < result.cells.size(); ++i)
+    text += fmt::format("  {:<9} {:6.2f} %\n", kClassNames[i],
+                        100 * static_cast<double>(result.cells[i]) / total);
+  if (hazard.undetected.known)
+    text += fmt::format(
+        "  rocks cover {:.3g} +- {:.2g} of the terrain; undetected hazardous rocks: {:.3g} +- {:.2g} per km "
+        "driven\n",
+        hazard.undetected.cover.k, hazard.undetected.cover.sd, 1000 * result.undetected_per_metre.value,
+        1000 * result.undetected_per_metre.sd);
+  callbacks.summary(text);
+  return result;
+}
+
+}  // namespace waymark::workflows

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+#include "planning/hazard_map.hpp"
+#include "workflows/callbacks.hpp"
+namespace waymark::workflows {
+
+/// Request of a hazard map.
+struct HazardMapRequest {
+  std::string input;             ///< map (.gpkg), or a DEM without objects
+  std::vector<std::string> dem;  ///< DEM of a map; empty: stored in the map
+  std::string output;            ///< .tif; a style .qml is written beside it
+  std::string vehicle = "rover";
+  std::string polygons;                           ///< GeoPackage for the layer `hazard`; empty: none
+  std::string nav2;                               ///< map.yaml; empty: none
+  double height_sd = -1, height_correlation = 0;  ///< metres; sd < 0: that of the DEM
+  double rock_cover = -1;                         ///< k of the site; < 0: fitted to the map's rocks
+  double detection_limit = -1;                    ///< metres; < 0: fitted to the map's rocks
+  double min_uncertain = 0.05, min_hazard = 0.5;  ///< probabilities
+  std::int64_t tile_cells = 512;
+  int threads = 0;
+  std::string command_line;
+};
+
+/// What a hazard map found.
+struct HazardMapResult {
+  planning::ClassCounts cells = {};
+  std::int64_t objects = 0;  ///< landmarks that may be hazards
+  planning::UndetectedRocks undetected;
+  planning::Uncertain undetected_per_metre;  ///< expected hazardous undetected rocks per metre driven
+};
+
+/// Writes a hazard map by tiles; memory does not depend on its size. The bytes do not depend on tiles and
+/// threads. Throws Error{usage} or Error{input} for a DEM in degrees, a map without heights, a bad vehicle.
+HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows

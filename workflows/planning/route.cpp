@@ -1,0 +1,428 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/route.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "geodb/map_store.hpp"
+#include "geodb/write_map.hpp"
+#include "importers/rasters/dem.hpp"
+#include "workflows/localization/robot_map.hpp"
+#include "workflows/parse_number.hpp"
+#include "workflows/planning/route_layers.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+constexpr std::int64_t kMaxCells = 4'000'000;
+constexpr double kMaxExtent = 50e3;  // m from the origin of the map frame, which is a plane
+
+struct Waypoint {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  // map frame
+  std::optional<double> yaw = {};
+  std::string text;
+};
+
+Waypoint parse_waypoint(const std::string& name, const std::string& text, const RobotMap& map) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    numbers.push_back(parse_number(name, text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  if (numbers.size() < 2 || numbers.size() > 3)
+    throw Error(ErrorCode::usage, fmt::format("{} {} is no position", name, text), "",
+                "X,Y or X,Y,YAW in degrees");
+  Waypoint point;
+  point.at = map.frame.map_frame_from_crs({{numbers[0], numbers[1], 0}}).xyz.head<2>();
+  if (!(point.at.norm() < kMaxExtent))
+    throw Error(
+        ErrorCode::input,
+        fmt::format("{} {} is {:.0f} km from the middle of the map", name, text, point.at.norm() / 1000),
+        map.store->path().string(),
+        fmt::format("positions are x,y in {}, at most {:.0f} km away", map.crs().id(), kMaxExtent / 1000));
+  if (numbers.size() == 3) point.yaw = numbers[2] * kRadiansPerDegree;
+  point.text = fmt::format("{} {}", name, text);
+  return point;
+}
+
+/// Classes of a hazard map at positions of the map frame.
+class HazardClasses {
+ public:
+  HazardClasses(const std::string& file, const RobotMap& map) : frame_(map.frame) {
+    // Classes are small whole numbers, which the importer of heights reads as they are.
+    raster_ = importers::import_dem({.files = {file},
+                                     .nodata = NodataPolicy::unknown,
+                                     .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                     .band = static_cast<int>(planning::kHazardBands),
+                                     .inspect = false});
+    const GridGeometry& grid = raster_->geometry();
+    if (!grid.where.crs.same_as(map.crs())) transform_.emplace(map.crs(), grid.where.crs);
+    classes_ = raster_->read({0, 0, grid.columns, grid.rows});
+  }
+
+  double cell() const {
+    return raster_->geometry().where.dx * raster_->geometry().where.crs.metres_per_unit();
+  }
+
+  planning::HazardClass at(double x, double y) const {
+    const auto crs = frame_.crs_from_map_frame({{x, y, 0}}).xyz;
+    CrsTransform::XY there{crs.x(), crs.y()};
+    if (transform_) there = (*transform_)(there.x, there.y);
+    const Georeference& where = raster_->geometry().where;
+    const double c = std::round(where.column(there.x)), r = std::round(where.row(there.y));
+    if (!(c >= 0 && r >= 0 && c < double(classes_.columns()) && r < double(classes_.rows())))
+      return planning::HazardClass::unknown;
+    const double value = classes_(static_cast<std::int64_t>(c), static_cast<std::int64_t>(r));
+    return value >= 0 && value <= 3 ? static_cast<planning::HazardClass>(static_cast<int>(value))
+                                    : planning::HazardClass::unknown;
+  }
+
+ private:
+  LocalFrame frame_;
+  std::shared_ptr<const importers::ImportedDem> raster_;
+  std::optional<CrsTransform> transform_;
+  HeightWindow classes_;
+};
+
+planning::RouteCells cells_for(const std::vector<Waypoint>& points, const Eigen::AlignedBox2d& landmarks,
+                               double cell, double margin) {
+  Eigen::AlignedBox2d box;
+  for (const Waypoint& point : points) box.extend(point.at);
+  if (!landmarks.isEmpty()) {
+    // Landmarks within reach of a detour as long as the way.
+    const double detour = box.diagonal().norm() / 2;
+    const Eigen::AlignedBox2d reach(box.min().array() - detour, box.max().array() + detour);
+    const Eigen::AlignedBox2d near = landmarks.intersection(reach);
+    if (!near.isEmpty()) box.extend(near);
+  }
+  planning::RouteCells cells{.cell = cell};
+  cells.x0 = std::floor((box.min().x() - margin) / cell) * cell;
+  cells.y0 = std::floor((box.min().y() - margin) / cell) * cell;
+  cells.columns = static_cast<std::int64_t>(std::ceil((box.max().x() + margin - cells.x0) / cell)) + 1;
+  cells.rows = static_cast<std::int64_t>(std::ceil((box.max().y() + margin - cells.y0) / cell)) + 1;
+  if (cells.count() > kMaxCells)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("the route needs {} x {} cells of {:g} m, more than {}", cells.columns, cells.rows, cell,
+                    kMaxCells),
+        "", fmt::format("--cell {:.2g}", 1.05 * cell * std::sqrt(double(cells.count()) / double(kMaxCells))));
+  return cells;
+}
+
+/// A route's cell is passable if no hazard cell within it is a hazard or unknown.
+std::vector<char> passable_cells(const planning::RouteCells& cells, const HazardClasses* hazards) {
+  std::vector<char> passable(static_cast<std::size_t>(cells.count()), 1);
+  if (!hazards) return passable;
+  const int samples = std::max(1, static_cast<int>(std::ceil(cells.cell / hazards->cell())));
+  for (std::int64_t i = 0; i < cells.count(); ++i)
+    for (int k = 0; k < samples * samples && passable[static_cast<std::size_t>(i)]; ++k) {
+      const double u = (k % samples + 0.5) / samples - 0.5, v = (k / samples + 0.5) / samples - 0.5;
+      if (hazards->at(cells.x(i) + u * cells.cell, cells.y(i) + v * cells.cell) >=
+          planning::HazardClass::hazard)
+        passable[static_cast<std::size_t>(i)] = 0;
+    }
+  return passable;
+}
+
+std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
+                     const std::vector<char>& passable, const HazardClasses* hazards,
+                     const std::string& file) {
+  const std::int64_t cell = cells.index(point.at.x(), point.at.y());
+  if (cell >= 0 && passable[static_cast<std::size_t>(cell)]) return cell;
+  const auto kind = hazards ? hazards->at(point.at.x(), point.at.y()) : planning::HazardClass::safe;
+  const char* problem =
+      kind == planning::HazardClass::unknown  ? "is on unknown terrain or outside the hazard map"
+      : kind == planning::HazardClass::hazard ? "is in a hazard"
+                                              : "is beside a hazard, within a cell of the route";
+  throw Error(ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
+              "move it, make --cell finer, or pass --hazards none");
+}
+
+SensorCoverage coverage_of(const RouteRequest& request) {
+  SensorCoverage coverage = all_sensors().at(request.sensor).coverage;
+  if (request.range > 0) coverage.range = request.range;
+  if (request.view > 0) coverage.view = request.view;
+  if (!(coverage.range > 0))
+    throw Error(ErrorCode::usage, fmt::format("the sensor '{}' has no range", request.sensor), "",
+                "pass --range METRES, or another sensor");
+  return coverage;
+}
+
+void check(const RouteRequest& request) {
+  const int objectives = (request.limit_sigma > 0) + (request.keep_landmarks > 0) + (request.weight > 0);
+  const auto refuse = [](const std::string& problem, const std::string& hint) {
+    throw Error(ErrorCode::usage, problem, "", hint);
+  };
+  if (objectives != 1)
+    refuse(objectives ? "more than one objective is given" : "the route has no objective",
+           "pass one of --limit-sigma M, --keep-landmarks N, --weight W");
+  if (!(request.cell >= 0.1 && request.cell <= 1000))
+    refuse(fmt::format("--cell {:g} is outside [0.1, 1000] m", request.cell), "");
+  if (!(request.start_sd > 0)) refuse(fmt::format("--start-sd {:g} is not above 0 m", request.start_sd), "");
+  if (request.limit_sigma > 0 && request.limit_sigma < request.start_sd)
+    refuse(fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", request.start_sd,
+                       request.limit_sigma),
+           "raise --limit-sigma, or give the start's --start-sd");
+  if (request.worlds < 1 || request.alternatives < 1)
+    refuse("--worlds and --alternatives are at least 1", "");
+  const std::string extension = std::filesystem::path(request.output).extension();
+  if (extension != ".gpkg" && extension != ".geojson" && extension != ".csv")
+    refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
+}
+
+/// Everything that legs of one request share.
+struct Planner {
+  const RouteRequest& request;
+  const RobotMap& map;
+  localization::LandmarkGrid landmarks;
+  planning::LandmarkSensing sensing;
+  planning::RouteProblem problem;
+  std::map<std::uint64_t, std::string> uids;
+
+  std::optional<planning::Route> search(double max_sd, double weight, int labels) {
+    return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
+  }
+
+  /// Grows the number of labels until the cost stops to fall.
+  std::optional<planning::Route> best(double max_sd, double weight) {
+    std::optional<planning::Route> route;
+    for (const int labels : {1, 4, 8}) {
+      auto next = search(max_sd, weight, labels);
+      if (next && route && !(next->cost < route->cost - 1e-9)) break;
+      if (next) route = std::move(next);
+    }
+    return route;
+  }
+
+  [[noreturn]] void fail_limit() {
+    const std::size_t goal = static_cast<std::size_t>(problem.to);
+    const double bound = planning::relaxed_sd(problem, 1e6)[goal];
+    double low = request.limit_sigma, high = low;
+    std::optional<planning::Route> found;
+    for (int i = 0; i < 12 && !found; ++i) high *= 1.6, found = search(high, 0, 1);
+    for (int i = 0; i < 5 && found; ++i) {
+      const double middle = std::sqrt(low * std::min(high, found->worst_sd));
+      if (auto better = search(middle, 0, 1))
+        found = std::move(better), high = middle;
+      else
+        low = middle;
+    }
+    throw Error(ErrorCode::input,
+                fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma),
+                request.map,
+                (found ? fmt::format("the least worst sd that was found is {:.2f} m", found->worst_sd)
+                       : std::string("no route keeps a hundred times as much")) +
+                    fmt::format("; at the goal it cannot be below {:.2f} m", bound));
+  }
+
+  planning::Route leg() {
+    if (request.keep_landmarks > 0) {
+      if (auto route = planning::search_by_landmarks(problem, request.keep_landmarks, request.by_quality))
+        return *route;
+    } else if (auto route = best(request.limit_sigma > 0 ? request.limit_sigma : 1e9, request.weight)) {
+      return *route;
+    }
+    if (request.limit_sigma > 0) fail_limit();
+    throw Error(ErrorCode::input, "the search found no route", request.map, "");
+  }
+
+  std::vector<std::string> important(const localization::Pose2& pose) const {
+    std::vector<std::pair<double, std::string>> found;
+    planning::visit_information(
+        pose, landmarks, sensing, [&](std::uint32_t i, const planning::Symmetric3& j) {
+          if (landmarks[i].quality < sensing.min_confidence) return;
+          const auto uid = uids.find(landmarks[i].key);
+          found.emplace_back(-(j.xx + j.yy) * landmarks[i].quality, uid == uids.end() ? "" : uid->second);
+        });
+    std::ranges::sort(found);
+    std::vector<std::string> first;
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, found.size()); ++i) first.push_back(found[i].second);
+    return first;
+  }
+
+  /// Returns the worst sd on the route in worlds in which each landmark exists or not.
+  std::vector<double> worst_in_worlds(const std::vector<planning::RouteNode>& nodes) const {
+    std::vector<double> worst;
+    for (std::int64_t world = 0; world < request.worlds; ++world) {
+      Random random(static_cast<std::uint64_t>(request.seed * 1'000'003 + world));
+      std::vector<char> exists(landmarks.size());
+      for (std::size_t i = 0; i < landmarks.size(); ++i) exists[i] = random.uniform() < landmarks[i].quality;
+      planning::Symmetric3 p = problem.start;
+      double sd = position_sd(p);
+      for (std::size_t k = 1; k < nodes.size(); ++k) {
+        const planning::RouteCells& cells = problem.field.cells;
+        const auto &a = nodes[k - 1], &b = nodes[k];
+        if (a.cell == b.cell) continue;
+        const Eigen::Vector2d step(cells.x(b.cell) - cells.x(a.cell), cells.y(b.cell) - cells.y(a.cell));
+        const double length = step.norm();
+        const double turn =
+            std::abs(localization::wrap_angle((b.heading - a.heading) * std::numbers::pi / 4));
+        p = planning::predict(p, {length, step.x() / length, step.y() / length, turn}, problem.noise);
+        planning::Symmetric3 j;
+        planning::visit_information(
+            planning::heading_pose(cells.x(b.cell), cells.y(b.cell), b.heading), landmarks, sensing,
+            [&](std::uint32_t i, const planning::Symmetric3& one) {
+              if (!exists[i]) return;
+              j.xx += length * one.xx, j.xy += length * one.xy, j.yy += length * one.yy;
+              j.xt += length * one.xt, j.yt += length * one.yt, j.tt += length * one.tt;
+            });
+        p = planning::update(p, j);
+        sd = std::max(sd, position_sd(p));
+      }
+      worst.push_back(sd);
+    }
+    return worst;
+  }
+
+  PlannedRoute describe(const std::vector<planning::Route>& legs) const {
+    PlannedRoute route;
+    const planning::RouteCells& cells = problem.field.cells;
+    std::vector<planning::RouteNode> nodes;
+    for (const planning::Route& leg : legs) {
+      route.length += leg.length, route.outside += leg.outside;
+      route.worst_sd = std::max(route.worst_sd, leg.worst_sd);
+      nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
+    }
+    double distance = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const planning::RouteNode& node = nodes[k];
+      const double x = cells.x(node.cell), y = cells.y(node.cell);
+      const double length =
+          k ? std::hypot(x - cells.x(nodes[k - 1].cell), y - cells.y(nodes[k - 1].cell)) : 0;
+      distance += length;
+      const localization::Pose2 pose = planning::heading_pose(x, y, node.heading);
+      const planning::Information& seen = problem.field.get(node.cell, node.heading);
+      if (seen.landmarks == 0) route.without_landmarks += length;
+      route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance, pose.yaw,
+                                node.covariance, position_sd(node.covariance), seen.landmarks,
+                                important(pose)});
+    }
+    route.final_sd = route.stations.back().sd;
+    std::vector<double> worst = worst_in_worlds(nodes);
+    std::ranges::sort(worst, std::greater<>());
+    for (const double sd : worst) route.worlds_mean += sd / double(worst.size());
+    const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
+    for (std::size_t i = 0; i < tenth; ++i) route.worlds_worst_tenth += worst[i] / double(tenth);
+    return route;
+  }
+};
+
+}  // namespace
+
+RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) {
+  check(request);
+  const SensorCoverage coverage = coverage_of(request);
+  OpenedMap opened = open_robot_map(request.map, &all_sensors().at(request.sensor));
+  const RobotMap& map = opened.map;
+  std::vector<Waypoint> points{parse_waypoint("--from", request.from, map)};
+  for (const std::string& via : request.via) points.push_back(parse_waypoint("--via", via, map));
+  points.push_back(parse_waypoint("--to", request.to, map));
+
+  std::optional<HazardClasses> hazards;
+  if (request.hazards != "none") hazards.emplace(request.hazards, map);
+  const HazardClasses* classes = hazards ? &*hazards : nullptr;
+  Planner planner{
+      .request = request,
+      .map = map,
+      .landmarks = localization::LandmarkGrid(all_landmarks(map, &all_sensors().at(request.sensor))),
+      .sensing = {.coverage = coverage},
+      .problem = {},
+      .uids = {}};
+  for (const Landmark& landmark : map.store->query({}))
+    planner.uids[localization::landmark_key(landmark.uid)] = landmark.uid;
+  const planning::RouteCells cells =
+      cells_for(points, planner.landmarks.bounds(), request.cell, coverage.range);
+  planning::RouteProblem& problem = planner.problem;
+  problem.passable = passable_cells(cells, classes);
+  std::vector<std::int64_t> stops;
+  for (const Waypoint& point : points)
+    stops.push_back(
+        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.map));
+  problem.field =
+      planning::make_information_field(cells, problem.passable, planner.landmarks, planner.sensing);
+  const double sd = request.start_sd;
+  problem.start = {sd * sd, 0, sd * sd, 0, 0, 0.0012};  // 2 degrees
+  const planning::Symmetric3 start = problem.start;
+
+  const auto legs_with = [&](auto&& search) {
+    std::vector<planning::Route> legs;
+    problem.start = start;
+    problem.heading.reset();
+    if (points[0].yaw)
+      problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+      problem.from = stops[i], problem.to = stops[i + 1];
+      if (!std::isfinite(planning::distances_to(cells, problem.passable,
+                                                problem.to)[static_cast<std::size_t>(problem.from)]))
+        throw Error(ErrorCode::input,
+                    fmt::format("there is no way from {} to {}", points[i].text, points[i + 1].text),
+                    request.hazards,
+                    "hazards and unknown terrain lie between; make --cell finer, or pass --hazards none");
+      legs.push_back(search());
+      problem.start = legs.back().nodes.back().covariance;
+      problem.heading = legs.back().nodes.back().heading;
+    }
+    problem.start = start;
+    return legs;
+  };
+
+  RouteResult result;
+  result.shortest = planner.describe(legs_with([&] { return *planner.search(1e9, 0, 1); }));
+  result.routes.push_back(planner.describe(legs_with([&] { return planner.leg(); })));
+  for (std::int64_t i = 1; i < request.alternatives; ++i) {
+    // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
+    const double limit = 0.9 * result.routes.back().worst_sd;
+    bool found = true;
+    const auto legs = legs_with([&] {
+      auto route = planner.search(limit, 0, 4);
+      found = found && route;
+      return route ? *route : *planner.search(1e9, 0, 1);
+    });
+    if (!found) break;
+    result.routes.push_back(planner.describe(legs));
+  }
+  if (request.limit_sigma > 0) {
+    // Cells that the relaxed test excludes cannot lie on the route.
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+      problem.from = stops[i], problem.to = stops[i + 1];
+      std::vector<char> reached = problem.passable;
+      if (i == 0) {
+        const std::vector<double> bound = planning::relaxed_sd(problem, request.limit_sigma);
+        for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
+      }
+      result.lower_bound +=
+          planning::distances_to(cells, reached, problem.to)[static_cast<std::size_t>(problem.from)];
+    }
+  }
+  write_routes(request, map.crs(), result);
+  const PlannedRoute& best = result.routes.front();
+  std::string text = fmt::format(
+      "{}: {:.1f} m, worst sd {:.2f} m, at the goal {:.2f} m, {:.0f} m without a landmark in sight\n"
+      "  over {} worlds: worst sd {:.2f} m on average, {:.2f} m in the worst tenth\n"
+      "  shortest way: {:.1f} m, worst sd {:.2f} m\n"
+      "  on cells of {:g} m and eight headings",
+      request.output, best.length, best.worst_sd, best.final_sd, best.without_landmarks, request.worlds,
+      best.worlds_mean, best.worlds_worst_tenth, result.shortest.length, result.shortest.worst_sd,
+      request.cell);
+  if (request.limit_sigma > 0)
+    text += fmt::format(", no route that keeps the limit is shorter than {:.1f} m", result.lower_bound);
+  if (request.keep_landmarks > 0)
+    text += fmt::format(", {:.1f} m with fewer than {:g} landmarks in sight", best.outside,
+                        request.keep_landmarks);
+  callbacks.summary(text + "\n");
+  return result;
+}
+
+}  // namespace waymark::workflows

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+#include "planning/hazard_map.hpp"
+#include "planning/route_search.hpp"
+#include "workflows/callbacks.hpp"
+namespace waymark::workflows {
+
+/// Request of a route over a map. Positions are in the map's CRS.
+struct RouteRequest {
+  std::string map, output;
+  std::string from, to;          ///< "X,Y" or "X,Y,YAW" (degrees from east towards north)
+  std::vector<std::string> via;  ///< "X,Y", in order
+  std::string hazards = "none";  ///< hazard map (.tif), or none
+  std::string sensor;            ///< profile of `waymark sensors`
+  double range = 0, view = 0;    ///< metres, degrees; 0: those of the sensor
+  double limit_sigma = 0;        ///< metres; 0: none
+  double keep_landmarks = 0;     ///< number; 0: not wanted
+  double weight = 0;             ///< metres of detour per metre at an sd of 1 m
+  bool by_quality = false;       ///< keep_landmarks sums qualities
+  double cell = 2;               ///< metres
+  double start_sd = 0.1;         ///< metres
+  std::int64_t worlds = 32;      ///< draws of which landmarks exist
+  std::int64_t alternatives = 1;
+  std::int64_t seed = 1;
+};
+
+/// One row of the layer `route_station`.
+struct RouteStation {
+  Eigen::Vector2d at;  ///< map CRS
+  double distance = 0, yaw = 0;
+  planning::Symmetric3 covariance;
+  double sd = 0;
+  int landmarks = 0;
+  std::vector<std::string> important;  ///< uids of the three that inform most
+};
+
+struct PlannedRoute {
+  double length = 0, worst_sd = 0, final_sd = 0, without_landmarks = 0, outside = 0;
+  double worlds_mean = 0, worlds_worst_tenth = 0;  ///< worst sd over worlds, metres
+  std::vector<RouteStation> stations;
+};
+
+struct RouteResult {
+  std::vector<PlannedRoute> routes;
+  PlannedRoute shortest;   ///< for comparison
+  double lower_bound = 0;  ///< metres, of the length of any route on these cells that keeps the limit
+};
+
+/// Plans a route and writes it. Throws Error{input} for a start or goal in a hazard, on unknown terrain or
+/// outside, for no way, and for a limit that no route keeps, with the least one that was found.
+RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows
