@@ -134,6 +134,9 @@ TEST_F(Hazards, RocksOfTheMapAreHazards) {
   const Outcome imported = waymark(
       {"import", folder_ / "rocks.csv", "-o", folder_ / "m.gpkg", "--type", "rock", "--map-crs", "local"});
   ASSERT_EQ(imported.code, 0) << imported.err;
+  const Outcome replaced = waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o",
+                                    folder_ / "h.tif", "--polygons", folder_ / "m.gpkg"});
+  EXPECT_THAT(replaced.err, HasSubstr("the polygons would replace the map"));
   const Outcome made =
       waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o", folder_ / "h.tif"});
   ASSERT_EQ(made.code, 0) << made.err;

@@ -150,8 +150,9 @@ void check(const HazardMapRequest& request) {
     refuse(fmt::format("the polygons '{}' do not end in .gpkg", request.polygons), "they are a GeoPackage");
   if (!request.nav2.empty() && fs::path(request.nav2).extension() != ".yaml")
     refuse(fmt::format("the map of Nav2 '{}' does not end in .yaml", request.nav2), "");
-  if (!request.polygons.empty() && request.polygons == request.input)
-    refuse("the polygons would replace the map", "name another file");
+  std::error_code missing;
+  if (!request.polygons.empty() && fs::equivalent(request.polygons, request.input, missing))
+    refuse(fmt::format("the polygons would replace the map {}", request.input), "name another file");
   if (!(0 < request.min_uncertain && request.min_uncertain <= request.min_hazard && request.min_hazard <= 1))
     refuse(fmt::format("--uncertain {:g} and --hazard {:g} are no increasing probabilities",
                        request.min_uncertain, request.min_hazard),

@@ -96,17 +96,11 @@ class HazardClasses {
   HeightWindow classes_;
 };
 
-planning::RouteCells cells_for(const std::vector<Waypoint>& points, const Eigen::AlignedBox2d& landmarks,
-                               double cell, double margin) {
+/// Room for detours of half the distance on all sides.
+planning::RouteCells cells_for(const std::vector<Waypoint>& points, double cell, double range) {
   Eigen::AlignedBox2d box;
   for (const Waypoint& point : points) box.extend(point.at);
-  if (!landmarks.isEmpty()) {
-    // Landmarks within reach of a detour as long as the way.
-    const double detour = box.diagonal().norm() / 2;
-    const Eigen::AlignedBox2d reach(box.min().array() - detour, box.max().array() + detour);
-    const Eigen::AlignedBox2d near = landmarks.intersection(reach);
-    if (!near.isEmpty()) box.extend(near);
-  }
+  const double margin = std::max(range, box.diagonal().norm() / 2);
   planning::RouteCells cells{.cell = cell};
   cells.x0 = std::floor((box.min().x() - margin) / cell) * cell;
   cells.y0 = std::floor((box.min().y() - margin) / cell) * cell;
@@ -177,6 +171,9 @@ void check(const RouteRequest& request) {
            "raise --limit-sigma, or give the start's --start-sd");
   if (request.worlds < 1 || request.alternatives < 1)
     refuse("--worlds and --alternatives are at least 1", "");
+  std::error_code missing;
+  if (std::filesystem::equivalent(request.output, request.map, missing))
+    refuse(fmt::format("the route would replace the map {}", request.map), "name another file");
   const std::string extension = std::filesystem::path(request.output).extension();
   if (extension != ".gpkg" && extension != ".geojson" && extension != ".csv")
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
@@ -342,8 +339,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       .uids = {}};
   for (const Landmark& landmark : map.store->query({}))
     planner.uids[localization::landmark_key(landmark.uid)] = landmark.uid;
-  const planning::RouteCells cells =
-      cells_for(points, planner.landmarks.bounds(), request.cell, coverage.range);
+  const planning::RouteCells cells = cells_for(points, request.cell, coverage.range);
   planning::RouteProblem& problem = planner.problem;
   problem.passable = passable_cells(cells, classes);
   std::vector<std::int64_t> stops;
