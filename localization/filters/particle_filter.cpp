@@ -45,12 +45,7 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatche
       memory_(matcher_.scales()) {
   if (!start) {
     searching_ = true;
-    const Eigen::AlignedBox2d box = matcher_.landmarks_near({0, 0}, 0).bounds();
-    if (!box.isEmpty()) {
-      summary_.pose = {box.center().x(), box.center().y(), 0};
-      summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
-          box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
-    }
+    summary_ = pose_anywhere(matcher_.landmarks_near({0, 0}, 0).bounds());
     convergence_.emplace(summary_, matcher_.options().use_identities);
     if (!matcher_.options().use_identities) chance_ = make_chance_fraction(matcher_);
     return;

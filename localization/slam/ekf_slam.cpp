@@ -70,6 +70,12 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
   }
 }
 
+void EkfSlam::predict(const BodyMotion& motion) {
+  pending_ = compose(pending_, motion);
+  if (search_) search_->predict(motion);
+  if (rival_) rival_->predict(motion);
+}
+
 PoseEstimate EkfSlam::estimate() const {
   return predict_pose({state_.pose(), state_.covariance()}, pending_);
 }

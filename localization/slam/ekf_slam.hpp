@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -63,17 +64,14 @@ class EkfSlam final : public Localizer {
   explicit EkfSlam(const PoseEstimate& start, SlamOptions options = {});
   EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scales, SlamOptions options = {},
           LineOfSight visible = {});
-  void predict(const BodyMotion& motion) override {
-    pending_ = compose(pending_, motion);
-    if (search_) search_->predict(motion);
-  }
+  void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
   LocalizationStatus status() const override;
 
-  /// Enables relocalization (SlamRelocalization): when the landmarks of the map are not found, the filter
-  /// restarts at the finder's pose. It then takes landmarks of the map from the map, and keeps new ones from
-  /// before it was lost.
-  void set_pose_finder(PoseFinder finder);
+  /// Enables relocalization (SlamRelocalization). A pose that the finder proposes is a rival, which a second
+  /// filter follows; the filter restarts there if the rival explains the sightings that come better. It then
+  /// takes landmarks of the map from the map, and keeps new ones from before it was lost.
+  void set_pose_finder(PoseFinder finder, PoseCheck check = {});
   int restarts() const { return restarts_; }
   PoseEstimate estimate() const override;
 
@@ -108,6 +106,8 @@ class EkfSlam final : public Localizer {
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
                             const std::vector<bool>& found);
+  bool is_of_map(std::size_t sighting) const { return last_[sighting] && *last_[sighting] < map_.size(); }
+  void compare_with_rival(const SightingSet& seen);
   void restart(const PoseEstimate& at);
 
   SlamOptions options_;
@@ -124,7 +124,8 @@ class EkfSlam final : public Localizer {
   double reach_ = 0, view_ = 0;  ///< largest range and bearing seen so far
   double hits_ = 0, chances_ = 0;
   std::optional<SlamRelocalization> search_;
-  std::size_t trusted_ = 0;  ///< number of landmarks when the map was last seen
+  std::unique_ptr<EkfSlam> rival_;  ///< started at the pose under trial
+  std::size_t trusted_ = 0;         ///< number of landmarks when the map was last seen
   int restarts_ = 0;
 };
 

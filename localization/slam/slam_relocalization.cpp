@@ -2,6 +2,7 @@
 #include "localization/slam/slam_relocalization.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "localization/slam/ekf_slam.hpp"
@@ -14,12 +15,52 @@ constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usu
 constexpr double kLostFade = 0.002;              // decay of the usual fit while lost
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
 constexpr int kWait = 5, kCheckInterval = 10, kRoutineInterval = 20, kUnmatchedSets = 10;
+constexpr double kTrialProbable = 0.05, kTrialCertain = 1e-3;  // levels of significance of a trial
+constexpr int kLongestTrial = 40;                              // sets
+
+// Returns the probability of at least `a` of a + b tosses of a coin.
+double sign_test(int a, int b) {
+  double term = std::pow(0.5, a + b), sum = 0;  // of no toss
+  for (int k = 0; k <= a + b; ++k) {
+    if (k >= a) sum += term;
+    term *= static_cast<double>(a + b - k) / (k + 1);
+  }
+  return std::min(1.0, sum);
+}
 
 }  // namespace
 
-void SlamRelocalization::predict(const BodyMotion& motion) {
-  memory_.predict(motion);
-  if (rival_) rival_ = predict_pose(*rival_, motion);
+double PoseTrial::chance_of_rival() const {
+  return sign_test(for_rival, for_own);
+}
+
+double PoseTrial::chance_of_own() const {
+  return sign_test(for_own, for_rival);
+}
+
+bool SlamRelocalization::lost() const {
+  if (trial_ && trial_->chance_of_rival() < kTrialProbable) return true;
+  return sets_ >= 20 && fit_ < 0.4 * usual_;
+}
+
+SlamRelocalization::Verdict SlamRelocalization::decide() {
+  ++trial_->sets;
+  if (trial_->chance_of_rival() < kTrialCertain) {
+    trial_.reset();
+    fit_ = usual_;
+    return Verdict::rival;
+  }
+  const bool refuted = trial_->chance_of_own() < kTrialProbable;
+  if (!refuted && trial_->sets < kLongestTrial) return Verdict::open;
+  trial_.reset();
+  if (refuted) fit_ = std::max(fit_, usual_);
+  return Verdict::own;
+}
+
+bool SlamRelocalization::is_confirmed(const SightingSet& seen, const PoseEstimate& here) {
+  if (!check_) return false;
+  const std::optional<PoseEstimate> checked = memory_.check(check_, seen, here);
+  return checked && !are_distinct(*checked, here);
 }
 
 std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, int expected, int found,
@@ -27,33 +68,26 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   memory_.add(seen);
   if (expected > 0) {
     ++sets_;  // starts at a known pose, and learns the detection rate of the sensor
-    const double share = static_cast<double>(found) / expected;
-    fit_ += std::max(kFade, 1.0 / sets_) * (share - fit_);
-    usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (share - usual_);
+    const double fraction = static_cast<double>(found) / expected;
+    fit_ += std::max(kFade, 1.0 / sets_) * (fraction - fit_);
+    usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (fraction - usual_);
   }
-  if (seen.sightings.empty()) return {};
+  if (seen.sightings.empty() || trial_) return {};
   unmatched_sets_ = matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
   const bool confident = !searching && fit_ > kConfident * usual_;
   if (++sets_since_query_ < (searching ? kWait : confident ? kRoutineInterval : kCheckInterval)) return {};
   sets_since_query_ = 0;
+  if (confident && is_confirmed(seen, here)) return {};
   PoseSearchResult answer = memory_.find(finder_, seen);
-  const std::optional<PoseEstimate> before = std::exchange(rival_, std::nullopt);
   if (!answer.accepted) return {};
-  if (!are_distinct(*answer.accepted, here)) {
-    fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
-    return {};
-  }
-  if (!before || are_distinct(*answer.accepted, *before)) {
-    rival_ = answer.accepted;
-    return {};
-  }
-  fit_ = usual_;
-  return answer.accepted;
+  if (are_distinct(*answer.accepted, here)) return answer.accepted;
+  fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
+  return {};
 }
 
-void EkfSlam::set_pose_finder(PoseFinder finder) {
-  search_.emplace(std::move(finder), scales_);
+void EkfSlam::set_pose_finder(PoseFinder finder, PoseCheck check) {
+  search_.emplace(std::move(finder), std::move(check), scales_);
 }
 
 LocalizationStatus EkfSlam::status() const {
@@ -67,12 +101,25 @@ void EkfSlam::check_relocalization(const SightingSet& seen, const std::vector<Ne
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
     expected += is_expected, of_those += is_expected && found[i], matched += found[i];
   }
+  if (rival_) compare_with_rival(seen);
   if (const auto at = search_->update(seen, expected, of_those, matched, estimate())) {
-    restart(*at);
-    ++restarts_;
-    return;
+    rival_ = std::make_unique<EkfSlam>(*at, map_, scales_, options_, visible_);
+    search_->begin_trial();
   }
-  if (!search_->lost() && matched > 0) trusted_ = landmarks_.size();
+  if (!rival_ && !search_->lost() && matched > 0) trusted_ = landmarks_.size();
+}
+
+void EkfSlam::compare_with_rival(const SightingSet& seen) {
+  rival_->update(seen);
+  for (std::size_t k = 0; k < seen.sightings.size(); ++k)
+    search_->trial()->add(is_of_map(k), rival_->is_of_map(k));
+  const SlamRelocalization::Verdict verdict = search_->decide();
+  if (verdict == SlamRelocalization::Verdict::open) return;
+  if (verdict == SlamRelocalization::Verdict::rival) {
+    restart(rival_->estimate());
+    ++restarts_;
+  }
+  rival_.reset();
 }
 
 void EkfSlam::restart(const PoseEstimate& at) {
