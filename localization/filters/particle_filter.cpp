@@ -157,9 +157,9 @@ bool ParticleFilter::fix(const HeadingFix& heading) {
 
 std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   apply_motion();
+  matcher_.observe(seen);
   const LandmarkGrid& map =
       matcher_.landmarks_near(seen, summary_, options_.weight.expect_unseen ? options_.weight.view_range : 0);
-  matcher_.observe(seen);
   ++sets_;
   if (finder_) {
     memory_.add(seen);
@@ -182,7 +182,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     resample_particles(seen, map);
 
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
-  if (!searching_) matcher_.learn(matches);
+  if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations
