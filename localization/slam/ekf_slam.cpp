@@ -17,6 +17,7 @@ namespace {
 constexpr double kRangeMargin =
     10;  // m beyond the range of sightings in which landmarks are still considered
 constexpr double kJointGate = 0.999;  // probability that right pairs of a set agree
+constexpr double kCertainty = 0.9;    // of a pair with a landmark of the map: it is not revised
 
 }  // namespace
 
@@ -55,6 +56,11 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
       visible_(std::move(visible)),
       map_(std::move(map)),
       centre_(start.pose.at()) {
+  if (!map_.empty()) {
+    IdentificationOptions identification = options_.identification;
+    identification.certainty = std::max(identification.certainty, kCertainty);
+    matcher_.emplace(LandmarkWindow(map_), scales_, identification);
+  }
   for (const MapLandmark& known : map_.landmarks()) {
     SlamLandmark l;
     l.at = known.at;
@@ -74,10 +80,16 @@ void EkfSlam::predict(const BodyMotion& motion) {
   pending_ = compose(pending_, motion);
   if (search_) search_->predict(motion);
   if (rival_) rival_->predict(motion);
+  if (tracker_) tracker_->predict(motion);
+}
+
+PoseEstimate EkfSlam::own_estimate() const {
+  return predict_pose({state_.pose(), state_.covariance()}, pending_);
 }
 
 PoseEstimate EkfSlam::estimate() const {
-  return predict_pose({state_.pose(), state_.covariance()}, pending_);
+  const PoseEstimate own = own_estimate();
+  return tracker_ && position_sd(own) > kPrecise ? tracker_->estimate() : own;
 }
 
 Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
@@ -126,8 +138,38 @@ double EkfSlam::feature_distance(const SeenLandmark& seen, const SlamLandmark& l
   return c.largest > options_.feature_limit ? kNever : c.squares - c.used;
 }
 
+// Returns the landmark of the map that each sighting shows with certainty.
+std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingSet& seen) {
+  std::vector<std::optional<LandmarkKey>> keys(seen.sightings.size());
+  if (!matcher_) return keys;
+  const auto add = [&](const std::vector<Match>& matches) {
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (!keys[k] && matches[k].verdict == Verdict::matched && matches[k].probability >= kCertainty)
+        keys[k] = matches[k].key;
+  };
+  const PoseEstimate robot{state_.pose(), state_.covariance()};
+  matcher_->observe(seen);
+  const LandmarkGrid& map = matcher_->landmarks_near(seen, robot);
+  std::vector<Match> own = matcher_->identify(seen, robot, map).matches;
+  matcher_->learn(own, seen, robot.pose, map);
+  for (Match& m : own)
+    if (m.verdict == Verdict::matched) m.key = map[m.pairing.landmark].key;
+  add(own);
+  in_map_ = {};
+  if (!tracker_) {
+    if (search_) in_map_.fit = matched_fraction(own);
+    return keys;
+  }
+  const std::vector<Match> tracked = tracker_->update(seen);
+  add(tracked);
+  in_map_.fit = matched_fraction(tracked);
+  if (in_map_.fit >= 0) in_map_.chance = chance_(seen, tracker_->estimate(), tracked);
+  return keys;
+}
+
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
   apply_pending_motion();
+  const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
   std::vector<Match> matches(set.sightings.size());
   // Signatures of landmarks are those of a map.
   SightingSet seen = set;
@@ -185,6 +227,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
       const Eigen::Matrix2d wide = base + sensor_noise(s);
       const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
       lowest[k] = std::min(lowest[k], squares);
+      if (landmark.was_mapped && in_map[k] != landmark.key) continue;
       if (squares < options_.match) pairs.push_back({squares + std::max(features, 0.0), k, l});
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include "localization/filters/explained_fraction.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
@@ -20,34 +21,47 @@ struct PoseTrial {
   double chance_of_own() const;
 };
 
+/// What one set of sightings says about the pose of SLAM in a map.
+struct SetEvidence {
+  int expected = 0, found = 0;   ///< landmarks of the map that should be seen, and those of them that were
+  int matched = 0;               ///< sightings of a landmark of the map, expected or not
+  double fit = -1, chance = -1;  ///< fractions that the map explains, here and at a wrong pose; < 0: none
+};
+
 /// Detects and repairs localization failure of SLAM in a map.
 /// - Every twentieth set the pose is checked with recent sightings: matches in a dense map are no proof.
 /// - The finder searches the whole map if the check fails; in doubt (every tenth set); while lost (every
 ///   fifth); and after ten sets without a landmark of the map (returning to the map closes the loop).
 /// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
 ///   trial: they share its errors.
-/// - Lost: the trial favours the other pose, or SLAM finds less than 0.4 of the expected landmarks that it
-///   usually finds and no answer confirms it. Terrain without landmarks does not count.
+/// - Lost: the trial favours the other pose, or two fractions are small and no answer confirms the pose.
+///   SLAM finds less than 0.4 of the expected landmarks that it usually finds; where terrain without
+///   landmarks does not count. And the map explains less than half of the usual fraction of its sightings,
+///   or less than a fifth beyond chance. Terrain that hides landmarks makes only the first one small,
+///   unmapped objects only the second.
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, PoseCheck check = {}, FeatureScales scales = {})
       : finder_(std::move(finder)), check_(std::move(check)), memory_(std::move(scales)) {}
 
   void predict(const BodyMotion& motion) { memory_.predict(motion); }
-  /// Adds a set that showed `found` of the `expected` landmarks of the map, and `matched` of the map in
-  /// all. Returns a pose to put on trial.
-  std::optional<PoseEstimate> update(const SightingSet& seen, int expected, int found, int matched,
+  /// Adds a set. Returns a pose to put on trial.
+  std::optional<PoseEstimate> update(const SightingSet& seen, const SetEvidence& evidence,
                                      const PoseEstimate& here);
 
   enum class Verdict { open, own, rival };
   /// Starts a trial.
   void begin_trial() { trial_.emplace(); }
+  /// Ends the trial without a verdict: the poses agree.
+  void end_trial() { trial_.reset(); }
   PoseTrial* trial() { return trial_ ? &*trial_ : nullptr; }
   /// Ends the trial if it is decided.
   Verdict decide();
   bool lost() const;
 
  private:
+  void learn(const SetEvidence& evidence);
+  bool is_explained() const;
   bool is_confirmed(const SightingSet& seen, const PoseEstimate& here);
 
   PoseFinder finder_;
@@ -55,7 +69,10 @@ class SlamRelocalization {
   SightingMemory memory_;
   std::optional<PoseTrial> trial_;
   double fit_ = 0, usual_ = 0;  // fractions of the expected landmarks that were seen, short and long term
-  int sets_ = 0, sets_since_query_ = 0, unmatched_sets_ = 0;
+  double explained_fit_ = 0, usual_explained_ = 0;  // fractions of the sightings that the map explains
+  ExplainedFraction beyond_chance_;
+  int explained_sets_ = 0;
+  int sets_ = 0, sets_since_query_ = 0, sets_since_check_ = 0, unmatched_sets_ = 0;
 };
 
 }  // namespace waymark::localization
