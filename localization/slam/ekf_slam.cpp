@@ -100,15 +100,27 @@ Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
 void EkfSlam::apply_pending_motion() {
   state_.predict(pending_);
   pending_ = {};
-  if ((state_.pose().at() - centre_).norm() < options_.margin) return;
-  state_.focus(options_.max_range + kRangeMargin + options_.margin);
+  const double moved = (state_.pose().at() - centre_).norm();
+  if (moved >= options_.margin || moved + reach() > focused_) focus();
+}
+
+// Makes the landmarks active that the sensor may see before `margin` metres are driven.
+void EkfSlam::focus() {
+  focused_ = reach() + options_.margin;
+  state_.focus(focused_);
   centre_ = state_.pose().at();
+}
+
+// Returns the distance, m, up to which landmarks are compared with sightings. Not more than the sensor has
+// shown: every active landmark costs time.
+double EkfSlam::reach() const {
+  return (sees_bearings_ ? options_.max_range : std::min(options_.max_range, reach_)) + kRangeMargin;
 }
 
 // Returns active landmarks, and those of the map nearby that were not seen yet.
 std::vector<EkfSlam::Near> EkfSlam::landmarks_in_reach(const SightingSet& seen) const {
   const Pose2 sensor = state_.pose() * seen.robot_from_sensor;
-  const double reach = options_.max_range + kRangeMargin;
+  const double reach = this->reach();
   std::vector<Near> near;
   const auto look_at = [&](std::size_t l) {
     const Eigen::Vector2d to = position(l) - sensor.at();
@@ -168,6 +180,16 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
 }
 
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
+  const auto usable = [&](const SeenLandmark& s) {
+    return s.is_valid() && s.type != kNoSuchType && (!s.range || *s.range <= options_.max_range);
+  };
+  for (const SeenLandmark& s : set.sightings) {
+    if (!usable(s)) continue;
+    if (s.range)
+      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
+    else
+      sees_bearings_ = true;
+  }
   apply_pending_motion();
   const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
   std::vector<Match> matches(set.sightings.size());
@@ -184,12 +206,6 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   const auto named = [&](const SeenLandmark& s) {
     return options_.identification.use_identities && s.identity;
   };
-  const auto usable = [&](const SeenLandmark& s) {
-    return s.is_valid() && s.type != kNoSuchType && (!s.range || *s.range <= options_.max_range);
-  };
-  for (const SeenLandmark& s : seen.sightings)
-    if (usable(s) && s.range)
-      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
   const std::vector<Near> near = landmarks_in_reach(seen);
   std::vector<bool> found(landmarks_.size(), false);
   const Eigen::Matrix3d robot = state_.covariance();
@@ -383,8 +399,7 @@ void EkfSlam::update_existence(const std::vector<Near>& near, const std::vector<
 }
 
 std::vector<SlamLandmark> EkfSlam::landmarks() {
-  state_.focus(options_.max_range + kRangeMargin + options_.margin);
-  centre_ = state_.pose().at();
+  focus();
   std::vector<SlamLandmark> all;
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     if (landmarks_[i].gone && !landmarks_[i].was_mapped) continue;

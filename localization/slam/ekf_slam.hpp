@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -109,6 +110,8 @@ class EkfSlam final : public Localizer {
     return std::sqrt(e.covariance(0, 0) + e.covariance(1, 1));
   }
   void apply_pending_motion();
+  void focus();
+  double reach() const;
   std::vector<Near> landmarks_in_reach(const SightingSet& seen) const;
   double feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const;
   std::vector<std::optional<LandmarkKey>> identify_in_map(const SightingSet& seen);
@@ -139,8 +142,10 @@ class EkfSlam final : public Localizer {
   std::vector<std::size_t> landmark_by_slot_;
   std::vector<std::optional<std::size_t>> last_;
   std::unordered_map<LandmarkKey, std::size_t> landmark_by_key_;
-  Eigen::Vector2d centre_;       ///< centre of the active neighbourhood
-  double reach_ = 0, view_ = 0;  ///< largest range and bearing seen so far
+  Eigen::Vector2d centre_;                                    ///< centre of the active neighbourhood
+  double focused_ = std::numeric_limits<double>::infinity();  ///< m about `centre_`: all in it is active
+  double reach_ = 0, view_ = 0;                               ///< largest range and bearing seen so far
+  bool sees_bearings_ = false;                                ///< a sighting had no range
   double hits_ = 0, chances_ = 0;
   std::optional<SlamRelocalization> search_;
   std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial

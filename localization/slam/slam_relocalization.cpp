@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "localization/slam/ekf_slam.hpp"
@@ -213,6 +214,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
   state_ = std::move(fresh);
   pending_ = {};
   centre_ = at.pose.at();
+  focused_ = std::numeric_limits<double>::infinity();
 }
 
 }  // namespace waymark::localization

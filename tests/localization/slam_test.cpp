@@ -251,6 +251,16 @@ TEST(EkfSlam, SignaturesKeepNeighboursApart) {
   EXPECT_NE(slam.update({{}, {seen}}).at(0).verdict, Verdict::matched) << "a tree is no rock";
 }
 
+// Two rocks of the map fit after a gap, the nearer one a little better. The choice would not be revised.
+TEST(EkfSlam, APairThatAnotherLandmarkCouldReplaceIsNotUsed) {
+  const LandmarkGrid map({landmark_at(10, 0.4, 1), landmark_at(10, -0.6, 2)});
+  const SightingSet seen{{}, {seen_at(10, 0)}};
+  EkfSlam unsure({{}, Eigen::Vector3d(1, 1, 1e-2).asDiagonal()}, map, {}, made_drive_options());
+  EXPECT_NE(unsure.update(seen).at(0).verdict, Verdict::matched);
+  EkfSlam sure({{0, 0.4, 0}, Eigen::Vector3d(1e-3, 1e-3, 1e-6).asDiagonal()}, map, {}, made_drive_options());
+  EXPECT_EQ(sure.update(seen).at(0).key, 1u);
+}
+
 TEST(Signature, MergingWeighsByVariance) {
   KnownFeatures known, seen;
   seen.value[0] = 1, seen.variance[0] = 0.01;
