@@ -44,7 +44,8 @@ double PoseTrial::chance_of_own() const {
 }
 
 bool SlamRelocalization::lost() const {
-  if (trial_ && trial_->chance_of_rival() < kTrialProbable) return true;
+  const bool in_doubt = fit_ <= kConfident * usual_;
+  if (trial_ && ((in_doubt && trial_->by_finder) || trial_->chance_of_rival() < kTrialProbable)) return true;
   return sets_ >= 20 && fit_ < 0.4 * usual_ && !is_explained();
 }
 
@@ -93,7 +94,7 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
                                                        const PoseEstimate& here) {
   memory_.add(seen);
   learn(evidence);
-  if (seen.sightings.empty() || trial_) return {};
+  if (seen.sightings.empty() || (trial_ && trial_->by_finder)) return {};
   unmatched_sets_ = evidence.matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
   const bool confident = !searching && fit_ > kConfident * usual_;
@@ -159,10 +160,11 @@ void EkfSlam::check_relocalization(const SightingSet& seen, const std::vector<Ne
   if (rival_) compare_with_rival(seen);
   if (!rival_ && is_outdone()) restart(tracker_->estimate());
   std::optional<PoseEstimate> at = search_->update(seen, evidence, own_estimate());
+  const bool by_finder = at.has_value();
   if (!at && !rival_) at = contradiction();
   if (at) {
     rival_ = std::make_unique<EkfSlam>(*at, map_, scales_, options_, visible_);
-    search_->begin_trial();
+    search_->begin_trial(by_finder);
   }
   if (!rival_ && !search_->lost() && evidence.matched > 0) trusted_ = landmarks_.size();
 }

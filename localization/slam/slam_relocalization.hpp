@@ -13,6 +13,7 @@ namespace waymark::localization {
 struct PoseTrial {
   int for_rival = 0, for_own = 0;  ///< sightings that only one of the two explains by a landmark of the map
   int sets = 0;
+  bool by_finder = true;  ///< proposed by the finder; a search may replace it otherwise
 
   void add(bool own, bool rival) { for_rival += rival && !own, for_own += own && !rival; }
   /// Returns the probability of at least `for_rival` of the deciding sightings if both poses are equally
@@ -34,11 +35,11 @@ struct SetEvidence {
 ///   fifth); and after ten sets without a landmark of the map (returning to the map closes the loop).
 /// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
 ///   trial: they share its errors.
-/// - Lost: the trial favours the other pose, or two fractions are small and no answer confirms the pose.
-///   SLAM finds less than 0.4 of the expected landmarks that it usually finds; where terrain without
-///   landmarks does not count. And the map explains less than half of the usual fraction of its sightings,
-///   or less than a fifth beyond chance. Terrain that hides landmarks makes only the first one small,
-///   unmapped objects only the second.
+/// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt, or two fractions
+///   are small and no answer confirms the pose. SLAM finds less than 0.4 of the expected landmarks that it
+///   usually finds; terrain without landmarks does not count. And the map explains less than half of the
+///   usual fraction of its sightings, or less than a fifth beyond chance. Terrain that hides landmarks makes
+///   only the first one small, unmapped objects only the second.
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, PoseCheck check = {}, FeatureScales scales = {})
@@ -50,8 +51,8 @@ class SlamRelocalization {
                                      const PoseEstimate& here);
 
   enum class Verdict { open, own, rival };
-  /// Starts a trial.
-  void begin_trial() { trial_.emplace(); }
+  /// Starts a trial of a pose of the finder, or of another source.
+  void begin_trial(bool by_finder) { trial_.emplace().by_finder = by_finder; }
   /// Ends the trial without a verdict: the poses agree.
   void end_trial() { trial_.reset(); }
   PoseTrial* trial() { return trial_ ? &*trial_ : nullptr; }
