@@ -30,10 +30,10 @@ KalmanLocalizer::KalmanLocalizer(LandmarkMatcher matcher, KalmanOptions options)
 
 std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
-  const LandmarkGrid& map = matcher_.landmarks_near(seen, before);
   matcher_.observe(seen);
+  const LandmarkGrid& map = matcher_.landmarks_near(seen, before);
   auto [matches, posterior] = matcher_.identify(seen, before, map);
-  matcher_.learn(matches);
+  matcher_.learn(matches, seen, before.pose, map);
   std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
   for (std::size_t i = 0; i < matches.size(); ++i) {

@@ -134,9 +134,9 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some, const Landma
 std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
   const PoseEstimate before = estimate();
   const IdentificationOptions& identification = matcher_.options();
+  matcher_.observe(seen);
   const LandmarkGrid& map = matcher_.landmarks_near(seen, before, view_ ? view_->view_range : 0);
 
-  matcher_.observe(seen);
   std::vector<Match> matches(seen.sightings.size());
   SightingSet some{seen.robot_from_sensor, {}};
   std::vector<std::size_t> places;  // indices of the sightings in `some`, and of those before
@@ -183,7 +183,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
       uses_[match.key] = {1 + recent_sightings(match.key), driven_};
     }
   }
-  matcher_.learn(matches);
+  matcher_.learn(matches, seen, before.pose, map);
   // Merges hypotheses of one pose, whatever their associations.
   for (Component& component : components_) component.choice.clear();
   prune();

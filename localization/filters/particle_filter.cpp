@@ -45,12 +45,7 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatche
       memory_(matcher_.scales()) {
   if (!start) {
     searching_ = true;
-    const Eigen::AlignedBox2d box = matcher_.landmarks_near({0, 0}, 0).bounds();
-    if (!box.isEmpty()) {
-      summary_.pose = {box.center().x(), box.center().y(), 0};
-      summary_.covariance.diagonal() << box.sizes().x() * box.sizes().x() / 12 + 1,
-          box.sizes().y() * box.sizes().y() / 12 + 1, 3.3;
-    }
+    summary_ = pose_anywhere(matcher_.landmarks_near({0, 0}, 0).bounds());
     convergence_.emplace(summary_, matcher_.options().use_identities);
     if (!matcher_.options().use_identities) chance_ = make_chance_fraction(matcher_);
     return;
@@ -162,9 +157,9 @@ bool ParticleFilter::fix(const HeadingFix& heading) {
 
 std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   apply_motion();
+  matcher_.observe(seen);
   const LandmarkGrid& map =
       matcher_.landmarks_near(seen, summary_, options_.weight.expect_unseen ? options_.weight.view_range : 0);
-  matcher_.observe(seen);
   ++sets_;
   if (finder_) {
     memory_.add(seen);
@@ -187,7 +182,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     resample_particles(seen, map);
 
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
-  if (!searching_) matcher_.learn(matches);
+  if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations

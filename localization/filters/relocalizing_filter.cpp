@@ -15,22 +15,25 @@ constexpr double kByChance = 0.2, kExplained = 0.3, kByChanceOfUsual = 0.4, kExp
 }  // namespace
 
 RelocalizingFilter::RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
-                                       ChanceFraction chance, FeatureScales scales)
+                                       ChanceFraction chance, FeatureScales scales, bool start_known)
     : make_filter_(std::move(factory)),
       finder_(std::move(finder)),
       chance_(std::move(chance)),
       inner_(make_filter_(start)),
       memory_(std::move(scales)),
-      reliable_(start) {}
+      reliable_(start),
+      located_(start_known),
+      sets_since_query_(start_known ? 0 : kWait) {}
 
 void RelocalizingFilter::predict(const BodyMotion& motion) {
-  inner_->predict(motion);
+  if (located_) inner_->predict(motion);
   memory_.predict(motion);
   reliable_ = predict_pose(reliable_, motion);
 }
 
 bool RelocalizingFilter::lost() const {
-  return chance_matches_ || inner_->status() == LocalizationStatus::lost || fit_ < kMinOfUsual * usual_fit_;
+  return !located_ || chance_matches_ || inner_->status() == LocalizationStatus::lost ||
+         fit_ < kMinOfUsual * usual_fit_;
 }
 
 bool RelocalizingFilter::is_explained() const {
@@ -44,8 +47,24 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
   explained_.clear();
 }
 
+// Restarts at the finder's pose if it is certain.
+bool RelocalizingFilter::relocate(const SightingSet& seen) {
+  if (++sets_since_query_ < kWait) return false;
+  sets_since_query_ = 0;
+  const PoseSearchResult found = memory_.find(finder_, seen);
+  if (!found.accepted) return false;
+  restart(*found.accepted);
+  reliable_ = *found.accepted;
+  ++restarts_;
+  fit_ = 1;
+  chance_matches_ = false;
+  located_ = true;
+  return true;
+}
+
 std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   memory_.add(seen);
+  if (!located_ && !relocate(seen)) return std::vector<Match>(seen.sightings.size());
   std::vector<Match> matches = inner_->update(seen);
   const double fit = matched_fraction(matches);
   if (fit >= 0) fit_ += kFade * (fit - fit_);
@@ -63,18 +82,7 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
     return matches;
   }
   if (seen.sightings.empty()) return matches;
-  if (++sets_since_query_ >= kWait) {
-    sets_since_query_ = 0;
-    PoseSearchResult found = memory_.find(finder_, seen);
-    if (found.accepted) {
-      restart(*found.accepted);
-      reliable_ = *found.accepted;
-      ++restarts_;
-      fit_ = 1;
-      chance_matches_ = false;
-      return inner_->update(seen);
-    }
-  }
+  if (relocate(seen)) return inner_->update(seen);
   if (++unresolved_sets_ < (chance_matches_ ? 2 : 1) * kRestartInterval) return matches;
   restart(reliable_);
   return inner_->update(seen);

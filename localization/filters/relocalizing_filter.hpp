@@ -25,20 +25,30 @@ namespace waymark::localization {
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
+  /// `start_known`: false if `start` only says where the robot may be (pose_anywhere). The filter is then
+  /// lost and uses no sighting before the finder is certain.
   RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
-                     ChanceFraction chance = {}, FeatureScales scales = {});
+                     ChanceFraction chance = {}, FeatureScales scales = {}, bool start_known = true);
 
   void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override { return apply_fix(gnss); }
   bool fix(const HeadingFix& heading) override { return apply_fix(heading); }
-  PoseEstimate estimate() const override { return chance_matches_ ? reliable_ : inner_->estimate(); }
+  PoseEstimate estimate() const override {
+    return chance_matches_ || !located_ ? reliable_ : inner_->estimate();
+  }
   LocalizationStatus status() const override { return lost() ? LocalizationStatus::lost : inner_->status(); }
   int restarts() const { return restarts_; }
 
  private:
   template <class Fix>
   bool apply_fix(const Fix& fix) {
+    if (!located_) {
+      const auto fixed = update_pose(reliable_, fix);
+      const bool fits = fixed.squares < 16 && is_informative(fix);
+      if (fits) reliable_ = fixed.estimate;
+      return fits;
+    }
     const bool used = inner_->fix(fix);
     // A tracking filter replaces dead reckoning. Errors of fixes are correlated: many are no better than one.
     if (used && !lost() && is_explained())
@@ -55,6 +65,7 @@ class RelocalizingFilter final : public Localizer {
   }
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
   bool is_explained() const;
+  bool relocate(const SightingSet& seen);
 
   Factory make_filter_;
   PoseFinder finder_;
@@ -66,6 +77,7 @@ class RelocalizingFilter final : public Localizer {
   double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
   double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
   int usual_sets_ = 5;           // sets that count in it; five for the value it begins with
+  bool located_ = true;          // false until a filter without a start is found
   bool chance_matches_ = false;  // whether the matches were found to fit by chance
   int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
 };

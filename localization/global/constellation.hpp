@@ -76,6 +76,9 @@ class ConstellationIndex {
   /// Morel 2000), given the local density of landmarks and the rarity of their features, and better than
   /// any other pose.
   ConstellationAnswer find(const SightingSet& seen) const;
+  /// Returns the fix next to an expected pose in the frame of a planar map, if it is too good for chance in
+  /// the whole map. Does not look for other poses.
+  std::optional<ConstellationFix> check(const SightingSet& seen, const Pose2& expected) const;
 
   std::size_t size() const { return landmarks_.size(); }
   std::size_t triangles() const { return corners_.size(); }

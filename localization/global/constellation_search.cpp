@@ -43,8 +43,7 @@ ConstellationSearch::ConstellationSearch(const ConstellationIndex& index, const 
 
 ConstellationAnswer ConstellationSearch::find() {
   if (index_.size() == 0) return {.fix = {}, .reason = "the map is empty", .candidates = {}};
-  std::size_t named = 0;
-  for (const Seen& s : points_) named += s.named.has_value();
+  const std::size_t named = count_named();
   if (named < 2 && points_.size() < static_cast<std::size_t>(o_.min_matches))
     return {.fix = {}, .reason = "too few sightings with range", .candidates = {}};
   if (named >= 2) guess_by_names();
@@ -54,6 +53,21 @@ ConstellationAnswer ConstellationSearch::find() {
   answer.reason = verdict(answer.candidates, named);
   if (answer.reason.empty()) answer.fix = answer.candidates[0];
   return answer;
+}
+
+std::optional<ConstellationFix> ConstellationSearch::check(const Pose2& expected) {
+  if (index_.size() == 0 || points_.empty()) return {};
+  const Eigen::Vector2d origin = index_.positions_[0].at.head<2>();
+  const Eigen::Vector2d middle = expected.at() + rotation(expected.yaw) * middle_ - origin;
+  std::optional<ConstellationFix> found =
+      fit({.anchor = 0, .middle = middle, .yaw = expected.yaw, .weight = 1});
+  if (found && !objection(*found, count_named()).empty()) found.reset();
+  return found;
+}
+
+std::size_t ConstellationSearch::count_named() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(points_, [](const Seen& s) { return s.named.has_value(); }));
 }
 
 void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
@@ -232,23 +246,31 @@ std::vector<std::array<TypeId, 3>> ConstellationSearch::possible_types(
   return all;
 }
 
+std::string_view ConstellationSearch::objection(const ConstellationFix& fix, std::size_t named) const {
+  if (named >= 2) {
+    const double min_matched = std::max(2.0, 0.6 * static_cast<double>(named));
+    return fix.matched >= min_matched ? "" : "the identities contradict the distances";
+  }
+  if (fix.matched < o_.min_matches) return "too few sightings fit one pose";
+  if (!(fix.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
+  return "";
+}
+
 std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix>& fixes,
                                               std::size_t named) const {
   if (fixes.empty()) return "no such constellation in the map";
-  const ConstellationFix& best = fixes[0];
-  if (named >= 2) {
-    const double min_matched = std::max(2.0, 0.6 * static_cast<double>(named));
-    return best.matched >= min_matched ? "" : "the identities contradict the distances";
-  }
-  if (best.matched < o_.min_matches) return "too few sightings fit one pose";
-  if (!(best.log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
-  if (fixes.size() > 1 && !(badness(fixes[1]) - badness(best) > std::log(o_.lead)))
-    return "two poses fit alike";
-  return "";
+  const std::string_view doubt = objection(fixes[0], named);
+  if (!doubt.empty() || named >= 2 || fixes.size() == 1) return doubt;
+  return badness(fixes[1]) - badness(fixes[0]) > std::log(o_.lead) ? "" : "two poses fit alike";
 }
 
 ConstellationAnswer ConstellationIndex::find(const SightingSet& seen) const {
   return ConstellationSearch(*this, seen).find();
+}
+
+std::optional<ConstellationFix> ConstellationIndex::check(const SightingSet& seen,
+                                                          const Pose2& expected) const {
+  return ConstellationSearch(*this, seen).check(expected);
 }
 
 }  // namespace waymark::localization

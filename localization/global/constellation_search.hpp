@@ -16,6 +16,7 @@ class ConstellationSearch {
  public:
   ConstellationSearch(const ConstellationIndex& index, const SightingSet& seen);
   ConstellationAnswer find();
+  std::optional<ConstellationFix> check(const Pose2& expected);
 
  private:
   struct Seen {
@@ -75,7 +76,10 @@ class ConstellationSearch {
   // Computes how many poses of the whole map would match as much by chance.
   ConstellationFix evaluate_fix(const PoseEstimate& e, const TangentPlane& plane, const Matches& matches,
                                 const std::vector<Local>& locals) const;
+  // Returns why a fix may be chance; empty if it is none.
+  std::string_view objection(const ConstellationFix& fix, std::size_t named) const;
   std::string_view verdict(const std::vector<ConstellationFix>& fixes, std::size_t named) const;
+  std::size_t count_named() const;
   const ConstellationIndex& index_;
   const ConstellationOptions& o_;
   std::vector<Seen> points_;

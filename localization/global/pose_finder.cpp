@@ -2,14 +2,25 @@
 #include "localization/global/pose_finder.hpp"
 
 #include <Eigen/LU>
+#include <numbers>
 
 namespace waymark::localization {
 namespace {
 
-constexpr double kElsewhere = 16.3;  // squared distance of two poses: 99.9 % of chi-square, 3 dof
-constexpr double kMinElsewhere = 1;  // m: a filter recovers from less by itself
+constexpr double kElsewhere = 16.3;     // squared distance of two poses: 99.9 % of chi-square, 3 dof
+constexpr double kUnknownExtent = 1e5;  // m, standard deviation
+constexpr double kMinElsewhere = 1;     // m: a filter recovers from less by itself
 
 }  // namespace
+
+PoseEstimate pose_anywhere(const Eigen::AlignedBox2d& box) {
+  const Eigen::Vector2d centre = box.isEmpty() ? Eigen::Vector2d(0, 0) : box.center();
+  const Eigen::Vector2d variance =
+      box.isEmpty() ? Eigen::Vector2d::Constant(kUnknownExtent * kUnknownExtent)
+                    : Eigen::Vector2d(box.sizes().cwiseAbs2() / 12 + Eigen::Vector2d::Ones());
+  const Eigen::Vector3d all(variance.x(), variance.y(), std::numbers::pi * std::numbers::pi / 3);
+  return {{centre.x(), centre.y(), 0}, all.asDiagonal()};
+}
 
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
   const Eigen::Vector3d d(found.pose.x - other.pose.x, found.pose.y - other.pose.y,

@@ -232,6 +232,14 @@ PoseSearchResult SightingMemory::find(const PoseFinder& finder, const SightingSe
   return found;
 }
 
+std::optional<PoseEstimate> SightingMemory::check(const PoseCheck& check, const SightingSet& seen,
+                                                  const PoseEstimate& expected) {
+  RememberedSightings remembered = recall();
+  std::optional<PoseEstimate> found = check(add_bearings(std::move(remembered.set), seen), expected);
+  if (found) found = predict_pose(*found, {{}, remembered.robot_covariance});
+  return found;
+}
+
 SightingSet add_bearings(SightingSet remembered, const SightingSet& seen) {
   for (SeenLandmark s : seen.sightings) {
     if (s.range) continue;

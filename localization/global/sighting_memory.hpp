@@ -34,6 +34,9 @@ class SightingMemory {
   /// Calls the finder on what is remembered and the bearings of the present set. Adds the error of the robot
   /// in the submap to the poses found.
   PoseSearchResult find(const PoseFinder& finder, const SightingSet& seen);
+  /// Calls the check in the same way.
+  std::optional<PoseEstimate> check(const PoseCheck& check, const SightingSet& seen,
+                                    const PoseEstimate& expected);
 
  private:
   struct Object {

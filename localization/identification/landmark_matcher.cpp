@@ -7,14 +7,13 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kPastKept = 1 - 1.0 / 50;        // of the past, per set
 constexpr double kMinRange = 1, kMinTurn = 0.35;  // m, rad: of a view
 constexpr double kPrior = 1;                      // sightings of the map, and not of it, before any is known
 
 }  // namespace
 
 void ClutterEstimate::add_sightings(const SightingSet& seen) {
-  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &squared_bearing_}) *sum *= kPastKept;
+  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &squared_bearing_}) *sum *= kKept;
   ++sets_;
   for (const SeenLandmark& s : seen.sightings) {
     if (!s.is_valid()) continue;
@@ -27,21 +26,33 @@ void ClutterEstimate::add_sightings(const SightingSet& seen) {
 }
 
 void ClutterEstimate::add_unmapped(double unmapped, double count) {
-  unmapped_ = kPastKept * unmapped_ + unmapped;
-  matched_ = kPastKept * matched_ + count - unmapped;
+  unmapped_ = kKept * unmapped_ + unmapped;
+  matched_ = kKept * matched_ + count - unmapped;
 }
 
 double ClutterEstimate::density(double bearing_reach) const {
   if (!(sightings_ > 0)) return 0;
   const double fraction = (unmapped_ + kPrior) / (unmapped_ + matched_ + 2 * kPrior);
-  const double range = ranged_ > 0 ? std::sqrt(3 * squared_range_ / ranged_) : bearing_reach;
-  const double turn = 2 * std::sqrt(3 * squared_bearing_ / sightings_);
-  return fraction * sightings_ / sets_ / (std::max(range, kMinRange) * std::max(turn, kMinTurn));
+  const double range = ranged_ > 0 ? view_range() : bearing_reach;
+  return fraction * sightings_ / sets_ /
+         (std::max(range, kMinRange) * std::max(2 * view_bearing(), kMinTurn));
+}
+
+double ClutterEstimate::detection() const {
+  return std::min(1.0, (matched_ + kPrior) / (in_view_ + kPrior));
+}
+
+double ClutterEstimate::view_range() const {
+  return ranged_ > 0 ? std::sqrt(3 * squared_range_ / ranged_) : 0;
+}
+
+double ClutterEstimate::view_bearing() const {
+  return sightings_ > 0 ? std::sqrt(3 * squared_bearing_ / sightings_) : 0;
 }
 
 const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, const PoseEstimate& robot,
                                                     double view_range) {
-  double farthest = view_range;
+  double farthest = std::max(view_range, clutter_.view_range());
   for (const SeenLandmark& s : seen.sightings)
     if (s.is_valid())
       farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options_.reach_of(s, scales_));
@@ -52,7 +63,8 @@ const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, con
 
 void LandmarkMatcher::set_clutter() {
   if (options_.learn_clutter)
-    options_.clutter = std::max(min_clutter_, clutter_.density(options_.clutter_reach()));
+    options_.clutter =
+        std::max(min_clutter_, clutter_.density(options_.clutter_reach()) / clutter_.detection());
 }
 
 void LandmarkMatcher::observe(const SightingSet& seen) {
@@ -60,7 +72,29 @@ void LandmarkMatcher::observe(const SightingSet& seen) {
   set_clutter();
 }
 
-void LandmarkMatcher::learn(std::span<const Match> matches) {
+// Only for sightings without identities: one with an identity does not compete with other landmarks.
+double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& robot,
+                                          const LandmarkGrid& map) {
+  for (const SeenLandmark& s : seen.sightings) {
+    if (options_.use_identities && s.identity) return 0;
+    any_type_ = any_type_ || !s.type;
+    if (s.type && std::ranges::find(seen_types_, *s.type) == seen_types_.end())
+      seen_types_.push_back(*s.type);
+  }
+  const Pose2 sensor = robot * seen.robot_from_sensor;
+  double count = 0;
+  map.near(sensor.at(), clutter_.view_range(), [&](std::uint32_t i) {
+    if (!any_type_ && std::ranges::find(seen_types_, map[i].type) == seen_types_.end()) return;
+    const Eigen::Vector2d to = map[i].at - sensor.at();
+    const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
+    if (std::abs(bearing) < clutter_.view_bearing()) count += existence_prior(map[i], options_);
+  });
+  return count;
+}
+
+void LandmarkMatcher::learn(std::span<const Match> matches, const SightingSet& seen, const Pose2& robot,
+                            const LandmarkGrid& map) {
+  if (matches.size() != seen.sightings.size()) return;
   double unmapped = 0, count = 0;
   for (const Match& m : matches) {
     if (m.verdict == Verdict::unsound || m.verdict == Verdict::unknown_type) continue;
@@ -68,6 +102,7 @@ void LandmarkMatcher::learn(std::span<const Match> matches) {
     ++count;
   }
   clutter_.add_unmapped(unmapped, count);
+  clutter_.add_in_view(landmarks_in_view(seen, robot, map));
   set_clutter();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <span>
+#include <vector>
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/sighting.hpp"
@@ -10,6 +11,9 @@ namespace waymark::localization {
 /// the map lacks. It is the mean number of sightings per set over the sensor's view, times the fraction that
 /// is not of the map. The view is the rectangle in range and bearing on which a uniform density has the
 /// same second moments. Forgets within some 50 sets.
+///
+/// A landmark of the map competes with this density by its rate of detection. Where the terrain hides nine of
+/// ten landmarks, one that fits by chance is as much too easy to find as this rate is small.
 class ClutterEstimate {
  public:
   /// Adds the sightings of a set, before they are matched.
@@ -19,11 +23,19 @@ class ClutterEstimate {
   /// Returns the density per metre of range and radian of bearing. Half of the sightings count as unmapped
   /// until matches are known. Bearings without range are taken as spread over `bearing_reach` metres.
   double density(double bearing_reach) const;
+  /// Adds the number of landmarks of the map in view of the set whose matches were added last.
+  void add_in_view(double landmarks) { in_view_ = kKept * in_view_ + landmarks; }
+  /// Returns the fraction of the landmarks in view that is seen; 1 until any was in view.
+  double detection() const;
+  /// Returns the range, m, and the bearing to each side, rad, of the view; 0 until any range is known.
+  double view_range() const;
+  double view_bearing() const;
 
  private:
+  static constexpr double kKept = 1 - 1.0 / 50;                  // of the past, per set
   double sets_ = 0, sightings_ = 0;                              // discounted numbers
   double ranged_ = 0, squared_range_ = 0, squared_bearing_ = 0;  // sums
-  double unmapped_ = 0, matched_ = 0;
+  double unmapped_ = 0, matched_ = 0, in_view_ = 0;
 };
 
 /// Matches sightings with the landmarks around a robot. Bundles the map, the scales of its features and the
@@ -36,8 +48,8 @@ class LandmarkMatcher {
         options_(std::move(options)),
         min_clutter_(options_.clutter) {}
 
-  /// Returns at least the landmarks that the sightings may show from a pose, and those within `view_range`
-  /// metres. Valid until the next call.
+  /// Returns at least the landmarks that the sightings may show from a pose, and those in view of the sensor
+  /// or within `view_range` metres. Valid until the next call.
   const LandmarkGrid& landmarks_near(const SightingSet& seen, const PoseEstimate& robot,
                                      double view_range = 0);
   /// Returns at least the landmarks within `reach` metres of a position. Valid until the next call.
@@ -47,8 +59,11 @@ class LandmarkMatcher {
 
   /// Prepares for a set: estimates the density of sightings without landmark (`learn_clutter`).
   void observe(const SightingSet& seen);
-  /// Learns from the matches of the set how many of its sightings are not of the map.
-  void learn(std::span<const Match> matches);
+  /// Learns from the matches of the set, made at a pose, how many of its sightings are not of the map, and
+  /// what part of the landmarks in view is seen. `map`: from landmarks_near. Does nothing if they are
+  /// not the matches of the set.
+  void learn(std::span<const Match> matches, const SightingSet& seen, const Pose2& robot,
+             const LandmarkGrid& map);
 
   /// Matches the sightings of a set; see waymark::identify. `map`: from landmarks_near.
   Identification identify(const SightingSet& seen, const PoseEstimate& robot, const LandmarkGrid& map) const {
@@ -61,17 +76,20 @@ class LandmarkMatcher {
   }
 
   const FeatureScales& scales() const { return scales_; }
-  /// Returns the options; `clutter` is the estimated density.
+  /// Returns the options; `clutter` is the estimated density over the rate of detection.
   const IdentificationOptions& options() const { return options_; }
 
  private:
   void set_clutter();
+  double landmarks_in_view(const SightingSet& seen, const Pose2& robot, const LandmarkGrid& map);
 
   LandmarkWindow map_;
   FeatureScales scales_;
   IdentificationOptions options_;
   ClutterEstimate clutter_;
   double min_clutter_;
+  std::vector<TypeId> seen_types_;  // of any sighting so far
+  bool any_type_ = false;           // a sighting had no type, so it may be of any
 };
 
 }  // namespace waymark::localization

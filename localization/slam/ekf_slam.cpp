@@ -17,6 +17,7 @@ namespace {
 constexpr double kRangeMargin =
     10;  // m beyond the range of sightings in which landmarks are still considered
 constexpr double kJointGate = 0.999;  // probability that right pairs of a set agree
+constexpr double kCertainty = 0.9;    // of a pair with a landmark of the map: it is not revised
 
 }  // namespace
 
@@ -55,6 +56,11 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
       visible_(std::move(visible)),
       map_(std::move(map)),
       centre_(start.pose.at()) {
+  if (!map_.empty()) {
+    IdentificationOptions identification = options_.identification;
+    identification.certainty = std::max(identification.certainty, kCertainty);
+    matcher_.emplace(LandmarkWindow(map_), scales_, identification);
+  }
   for (const MapLandmark& known : map_.landmarks()) {
     SlamLandmark l;
     l.at = known.at;
@@ -70,8 +76,20 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
   }
 }
 
-PoseEstimate EkfSlam::estimate() const {
+void EkfSlam::predict(const BodyMotion& motion) {
+  pending_ = compose(pending_, motion);
+  if (search_) search_->predict(motion);
+  if (rival_) rival_->predict(motion);
+  if (tracker_) tracker_->predict(motion);
+}
+
+PoseEstimate EkfSlam::own_estimate() const {
   return predict_pose({state_.pose(), state_.covariance()}, pending_);
+}
+
+PoseEstimate EkfSlam::estimate() const {
+  const PoseEstimate own = own_estimate();
+  return tracker_ && position_sd(own) > kPrecise ? tracker_->estimate() : own;
 }
 
 Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
@@ -82,15 +100,27 @@ Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
 void EkfSlam::apply_pending_motion() {
   state_.predict(pending_);
   pending_ = {};
-  if ((state_.pose().at() - centre_).norm() < options_.margin) return;
-  state_.focus(options_.max_range + kRangeMargin + options_.margin);
+  const double moved = (state_.pose().at() - centre_).norm();
+  if (moved >= options_.margin || moved + reach() > focused_) focus();
+}
+
+// Makes the landmarks active that the sensor may see before `margin` metres are driven.
+void EkfSlam::focus() {
+  focused_ = reach() + options_.margin;
+  state_.focus(focused_);
   centre_ = state_.pose().at();
+}
+
+// Returns the distance, m, up to which landmarks are compared with sightings. Not more than the sensor has
+// shown: every active landmark costs time.
+double EkfSlam::reach() const {
+  return (sees_bearings_ ? options_.max_range : std::min(options_.max_range, reach_)) + kRangeMargin;
 }
 
 // Returns active landmarks, and those of the map nearby that were not seen yet.
 std::vector<EkfSlam::Near> EkfSlam::landmarks_in_reach(const SightingSet& seen) const {
   const Pose2 sensor = state_.pose() * seen.robot_from_sensor;
-  const double reach = options_.max_range + kRangeMargin;
+  const double reach = this->reach();
   std::vector<Near> near;
   const auto look_at = [&](std::size_t l) {
     const Eigen::Vector2d to = position(l) - sensor.at();
@@ -120,8 +150,48 @@ double EkfSlam::feature_distance(const SeenLandmark& seen, const SlamLandmark& l
   return c.largest > options_.feature_limit ? kNever : c.squares - c.used;
 }
 
+// Returns the landmark of the map that each sighting shows with certainty.
+std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingSet& seen) {
+  std::vector<std::optional<LandmarkKey>> keys(seen.sightings.size());
+  if (!matcher_) return keys;
+  const auto add = [&](const std::vector<Match>& matches) {
+    for (std::size_t k = 0; k < keys.size(); ++k)
+      if (!keys[k] && matches[k].verdict == Verdict::matched && matches[k].probability >= kCertainty)
+        keys[k] = matches[k].key;
+  };
+  const PoseEstimate robot{state_.pose(), state_.covariance()};
+  matcher_->observe(seen);
+  const LandmarkGrid& map = matcher_->landmarks_near(seen, robot);
+  std::vector<Match> own = matcher_->identify(seen, robot, map).matches;
+  matcher_->learn(own, seen, robot.pose, map);
+  for (Match& m : own)
+    if (m.verdict == Verdict::matched) m.key = map[m.pairing.landmark].key;
+  add(own);
+  in_map_ = {};
+  if (!tracker_) {
+    if (search_) in_map_.fit = matched_fraction(own);
+    return keys;
+  }
+  const std::vector<Match> tracked = tracker_->update(seen);
+  add(tracked);
+  in_map_.fit = matched_fraction(tracked);
+  if (in_map_.fit >= 0) in_map_.chance = chance_(seen, tracker_->estimate(), tracked);
+  return keys;
+}
+
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
+  const auto usable = [&](const SeenLandmark& s) {
+    return s.is_valid() && s.type != kNoSuchType && (!s.range || *s.range <= options_.max_range);
+  };
+  for (const SeenLandmark& s : set.sightings) {
+    if (!usable(s)) continue;
+    if (s.range)
+      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
+    else
+      sees_bearings_ = true;
+  }
   apply_pending_motion();
+  const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
   std::vector<Match> matches(set.sightings.size());
   // Signatures of landmarks are those of a map.
   SightingSet seen = set;
@@ -136,12 +206,6 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   const auto named = [&](const SeenLandmark& s) {
     return options_.identification.use_identities && s.identity;
   };
-  const auto usable = [&](const SeenLandmark& s) {
-    return s.is_valid() && s.type != kNoSuchType && (!s.range || *s.range <= options_.max_range);
-  };
-  for (const SeenLandmark& s : seen.sightings)
-    if (usable(s) && s.range)
-      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
   const std::vector<Near> near = landmarks_in_reach(seen);
   std::vector<bool> found(landmarks_.size(), false);
   const Eigen::Matrix3d robot = state_.covariance();
@@ -179,6 +243,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
       const Eigen::Matrix2d wide = base + sensor_noise(s);
       const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
       lowest[k] = std::min(lowest[k], squares);
+      if (landmark.was_mapped && in_map[k] != landmark.key) continue;
       if (squares < options_.match) pairs.push_back({squares + std::max(features, 0.0), k, l});
     }
   }
@@ -334,8 +399,7 @@ void EkfSlam::update_existence(const std::vector<Near>& near, const std::vector<
 }
 
 std::vector<SlamLandmark> EkfSlam::landmarks() {
-  state_.focus(options_.max_range + kRangeMargin + options_.margin);
-  centre_ = state_.pose().at();
+  focus();
   std::vector<SlamLandmark> all;
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     if (landmarks_[i].gone && !landmarks_[i].was_mapped) continue;

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 #include "core/options.hpp"
+#include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_grid.hpp"
+#include "localization/identification/landmark_matcher.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/slam/slam_relocalization.hpp"
@@ -58,23 +63,26 @@ struct SlamLandmark {
 /// - Sightings without identities are associated one to one, least distance first, features included. A
 ///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
 ///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
+/// - A pair with a landmark of the map must also be certain (0.9) among all others and an object that the
+///   map lacks (LandmarkMatcher): after a gap several landmarks are inside the gate. Where it is not, a sum
+///   of Gaussians that keeps several associations (MultiHypothesisFilter on the map alone) may decide it.
 class EkfSlam final : public Localizer {
  public:
   explicit EkfSlam(const PoseEstimate& start, SlamOptions options = {});
   EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scales, SlamOptions options = {},
           LineOfSight visible = {});
-  void predict(const BodyMotion& motion) override {
-    pending_ = compose(pending_, motion);
-    if (search_) search_->predict(motion);
-  }
+  void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
   LocalizationStatus status() const override;
 
-  /// Enables relocalization (SlamRelocalization): when the landmarks of the map are not found, the filter
-  /// restarts at the finder's pose. It then takes landmarks of the map from the map, and keeps new ones from
-  /// before it was lost.
-  void set_pose_finder(PoseFinder finder);
+  /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
+  /// it disagrees, is a rival, which a second filter follows; the filter restarts there if the rival explains
+  /// the sightings that come better, and without a trial if its own position is uncertain by a metre. It then
+  /// takes landmarks of the map from the map, and keeps new ones from before it was lost.
+  void set_pose_finder(PoseFinder finder, PoseCheck check = {});
   int restarts() const { return restarts_; }
+  /// Returns the estimate of the sum of Gaussians while this one has a standard deviation above a metre: it
+  /// then has followed one of several associations.
   PoseEstimate estimate() const override;
 
   /// Brings the state up to date and returns the landmarks. Includes those of the map that were not seen or
@@ -97,9 +105,20 @@ class EkfSlam final : public Localizer {
     std::size_t landmark;
     bool expected;
   };
+  static constexpr double kPrecise = 1;  // m, standard deviation of a position
+  static double position_sd(const PoseEstimate& e) {
+    return std::sqrt(e.covariance(0, 0) + e.covariance(1, 1));
+  }
   void apply_pending_motion();
+  void focus();
+  double reach() const;
   std::vector<Near> landmarks_in_reach(const SightingSet& seen) const;
   double feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const;
+  std::vector<std::optional<LandmarkKey>> identify_in_map(const SightingSet& seen);
+  void start_tracker(const PoseEstimate& at);
+  std::optional<PoseEstimate> contradiction() const;
+  bool is_outdone() const;
+  PoseEstimate own_estimate() const;
   SlamState::Correction correction(const SightingSet& seen, const Pair& pair);
   std::vector<Pair> jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen);
   void match(const SightingSet& seen, const std::vector<Pair>& chosen);
@@ -108,6 +127,8 @@ class EkfSlam final : public Localizer {
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
                             const std::vector<bool>& found);
+  bool is_of_map(std::size_t sighting) const { return last_[sighting] && *last_[sighting] < map_.size(); }
+  void compare_with_rival(const SightingSet& seen);
   void restart(const PoseEstimate& at);
 
   SlamOptions options_;
@@ -115,15 +136,22 @@ class EkfSlam final : public Localizer {
   BodyMotion pending_;  ///< motion since the last sightings
   FeatureScales scales_;
   LineOfSight visible_;
-  LandmarkGrid map_;                     ///< as given, to find landmarks that were not seen yet
-  std::vector<SlamLandmark> landmarks_;  ///< those of the map first, in the order of its grid
+  std::optional<LandmarkMatcher> matcher_;  ///< of the map as given; none if it is empty
+  LandmarkGrid map_;                        ///< as given, to find landmarks that were not seen yet
+  std::vector<SlamLandmark> landmarks_;     ///< those of the map first, in the order of its grid
   std::vector<std::size_t> landmark_by_slot_;
   std::vector<std::optional<std::size_t>> last_;
   std::unordered_map<LandmarkKey, std::size_t> landmark_by_key_;
-  Eigen::Vector2d centre_;       ///< centre of the active neighbourhood
-  double reach_ = 0, view_ = 0;  ///< largest range and bearing seen so far
+  Eigen::Vector2d centre_;                                    ///< centre of the active neighbourhood
+  double focused_ = std::numeric_limits<double>::infinity();  ///< m about `centre_`: all in it is active
+  double reach_ = 0, view_ = 0;                               ///< largest range and bearing seen so far
+  bool sees_bearings_ = false;                                ///< a sighting had no range
   double hits_ = 0, chances_ = 0;
   std::optional<SlamRelocalization> search_;
+  std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial
+  std::unique_ptr<MultiHypothesisFilter> tracker_;  ///< follows the robot in the map as given
+  ChanceFraction chance_;
+  SetEvidence in_map_;       ///< of the last set: `fit` and `chance`
   std::size_t trusted_ = 0;  ///< number of landmarks when the map was last seen
   int restarts_ = 0;
 };

@@ -2,6 +2,8 @@
 #include "localization/slam/slam_relocalization.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "localization/slam/ekf_slam.hpp"
@@ -13,47 +15,133 @@ namespace {
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
 constexpr double kLostFade = 0.002;              // decay of the usual fit while lost
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
-constexpr int kWait = 5, kCheckInterval = 10, kRoutineInterval = 20, kUnmatchedSets = 10;
+// Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
+constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
+constexpr int kUnmatchedSets = 10;
+// Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
+constexpr double kExplainedOfUsual = 0.5, kBeyondChance = 0.2, kBeyondChanceOfUsual = 0.4;
+constexpr double kTrialProbable = 0.05, kTrialCertain = 1e-3;  // levels of significance of a trial
+constexpr int kLongestTrial = 40;                              // sets
+
+// Returns the probability of at least `a` of a + b tosses of a coin.
+double sign_test(int a, int b) {
+  double term = std::pow(0.5, a + b), sum = 0;  // of no toss
+  for (int k = 0; k <= a + b; ++k) {
+    if (k >= a) sum += term;
+    term *= static_cast<double>(a + b - k) / (k + 1);
+  }
+  return std::min(1.0, sum);
+}
 
 }  // namespace
 
-void SlamRelocalization::predict(const BodyMotion& motion) {
-  memory_.predict(motion);
-  if (rival_) rival_ = predict_pose(*rival_, motion);
+double PoseTrial::chance_of_rival() const {
+  return sign_test(for_rival, for_own);
 }
 
-std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, int expected, int found,
-                                                       int matched, const PoseEstimate& here) {
-  memory_.add(seen);
-  if (expected > 0) {
+double PoseTrial::chance_of_own() const {
+  return sign_test(for_own, for_rival);
+}
+
+bool SlamRelocalization::lost() const {
+  const bool in_doubt = fit_ <= kConfident * usual_;
+  if (trial_ && ((in_doubt && trial_->by_finder) || trial_->chance_of_rival() < kTrialProbable)) return true;
+  return sets_ >= 20 && fit_ < 0.4 * usual_ && !is_explained();
+}
+
+bool SlamRelocalization::is_explained() const {
+  if (explained_sets_ < 20 || explained_fit_ < kExplainedOfUsual * usual_explained_) return false;
+  return !beyond_chance_.known() ||
+         beyond_chance_.value() > std::min(kBeyondChance, kBeyondChanceOfUsual * usual_explained_);
+}
+
+void SlamRelocalization::learn(const SetEvidence& evidence) {
+  if (evidence.expected > 0) {
     ++sets_;  // starts at a known pose, and learns the detection rate of the sensor
-    const double share = static_cast<double>(found) / expected;
-    fit_ += std::max(kFade, 1.0 / sets_) * (share - fit_);
-    usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (share - usual_);
+    const double fraction = static_cast<double>(evidence.found) / evidence.expected;
+    fit_ += std::max(kFade, 1.0 / sets_) * (fraction - fit_);
+    usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (fraction - usual_);
   }
-  if (seen.sightings.empty()) return {};
-  unmatched_sets_ = matched > 0 ? 0 : unmatched_sets_ + 1;
+  if (evidence.fit < 0) return;
+  ++explained_sets_;
+  explained_fit_ += std::max(kFade, 1.0 / explained_sets_) * (evidence.fit - explained_fit_);
+  usual_explained_ +=
+      std::max(lost() ? kLostFade : kSlowFade, 1.0 / explained_sets_) * (evidence.fit - usual_explained_);
+  beyond_chance_.add(evidence.fit, evidence.chance);
+}
+
+SlamRelocalization::Verdict SlamRelocalization::decide() {
+  ++trial_->sets;
+  if (trial_->chance_of_rival() < kTrialCertain) {
+    trial_.reset();
+    fit_ = usual_;
+    return Verdict::rival;
+  }
+  const bool refuted = trial_->chance_of_own() < kTrialProbable;
+  if (!refuted && trial_->sets < kLongestTrial) return Verdict::open;
+  trial_.reset();
+  if (refuted) fit_ = std::max(fit_, usual_);
+  return Verdict::own;
+}
+
+bool SlamRelocalization::is_confirmed(const SightingSet& seen, const PoseEstimate& here) {
+  if (!check_) return false;
+  const std::optional<PoseEstimate> checked = memory_.check(check_, seen, here);
+  return checked && !are_distinct(*checked, here);
+}
+
+std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, const SetEvidence& evidence,
+                                                       const PoseEstimate& here) {
+  memory_.add(seen);
+  learn(evidence);
+  if (seen.sightings.empty() || (trial_ && trial_->by_finder)) return {};
+  unmatched_sets_ = evidence.matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
   const bool confident = !searching && fit_ > kConfident * usual_;
-  if (++sets_since_query_ < (searching ? kWait : confident ? kRoutineInterval : kCheckInterval)) return {};
+  ++sets_since_query_;
+  if (++sets_since_check_ >= (confident ? kRoutineInterval : kCheckInDoubt)) {
+    sets_since_check_ = 0;
+    if (is_confirmed(seen, here)) {
+      fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
+      sets_since_query_ = 0;
+      return {};
+    }
+  }
+  if (sets_since_query_ < (searching ? kWait : confident ? kRoutineInterval : kDoubtInterval)) return {};
   sets_since_query_ = 0;
   PoseSearchResult answer = memory_.find(finder_, seen);
-  const std::optional<PoseEstimate> before = std::exchange(rival_, std::nullopt);
   if (!answer.accepted) return {};
-  if (!are_distinct(*answer.accepted, here)) {
-    fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
-    return {};
-  }
-  if (!before || are_distinct(*answer.accepted, *before)) {
-    rival_ = answer.accepted;
-    return {};
-  }
-  fit_ = usual_;
-  return answer.accepted;
+  if (are_distinct(*answer.accepted, here)) return answer.accepted;
+  fit_ = std::max(fit_, usual_);
+  return {};
 }
 
-void EkfSlam::set_pose_finder(PoseFinder finder) {
-  search_.emplace(std::move(finder), scales_);
+void EkfSlam::set_pose_finder(PoseFinder finder, PoseCheck check) {
+  search_.emplace(std::move(finder), std::move(check), scales_);
+  start_tracker(own_estimate());
+}
+
+void EkfSlam::start_tracker(const PoseEstimate& at) {
+  if (map_.empty() || options_.identification.use_identities) return;
+  MultiHypothesisOptions options;
+  options.search.search_growth = 1;
+  const LandmarkMatcher matcher(LandmarkWindow(map_), scales_, options_.identification);
+  tracker_ = std::make_unique<MultiHypothesisFilter>(at, matcher, options);
+  if (!chance_) chance_ = make_chance_fraction(matcher);
+}
+
+// Returns the pose of the sum of Gaussians if it is precise and contradicts this filter.
+std::optional<PoseEstimate> EkfSlam::contradiction() const {
+  if (!tracker_ || tracker_->status() == LocalizationStatus::lost) return {};
+  const PoseEstimate at = tracker_->estimate();
+  const bool differs = position_sd(at) < kPrecise && are_distinct(at, own_estimate());
+  return differs ? std::optional(at) : std::nullopt;
+}
+
+// Returns whether only the sum of Gaussians knows the position to a metre.
+bool EkfSlam::is_outdone() const {
+  return tracker_ && tracker_->status() != LocalizationStatus::lost &&
+         position_sd(own_estimate()) > kPrecise && position_sd(tracker_->estimate()) < kPrecise;
 }
 
 LocalizationStatus EkfSlam::status() const {
@@ -62,17 +150,42 @@ LocalizationStatus EkfSlam::status() const {
 
 void EkfSlam::check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
                                    const std::vector<bool>& found) {
-  int expected = 0, of_those = 0, matched = 0;
+  SetEvidence evidence = in_map_;
   for (const auto& [i, is_expected] : near) {
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
-    expected += is_expected, of_those += is_expected && found[i], matched += found[i];
+    evidence.expected += is_expected;
+    evidence.found += is_expected && found[i];
+    evidence.matched += found[i];
   }
-  if (const auto at = search_->update(seen, expected, of_those, matched, estimate())) {
-    restart(*at);
-    ++restarts_;
+  if (rival_) compare_with_rival(seen);
+  if (!rival_ && is_outdone()) restart(tracker_->estimate());
+  std::optional<PoseEstimate> at = search_->update(seen, evidence, own_estimate());
+  const bool by_finder = at.has_value();
+  if (!at && !rival_) at = contradiction();
+  if (at) {
+    rival_ = std::make_unique<EkfSlam>(*at, map_, scales_, options_, visible_);
+    search_->begin_trial(by_finder);
+  }
+  if (!rival_ && !search_->lost() && evidence.matched > 0) trusted_ = landmarks_.size();
+}
+
+void EkfSlam::compare_with_rival(const SightingSet& seen) {
+  rival_->update(seen);
+  if (!are_distinct(rival_->own_estimate(), own_estimate())) {
+    search_->end_trial();
+    rival_.reset();
     return;
   }
-  if (!search_->lost() && matched > 0) trusted_ = landmarks_.size();
+  for (std::size_t k = 0; k < seen.sightings.size(); ++k)
+    search_->trial()->add(is_of_map(k), rival_->is_of_map(k));
+  const SlamRelocalization::Verdict verdict = search_->decide();
+  if (verdict == SlamRelocalization::Verdict::open) return;
+  if (verdict == SlamRelocalization::Verdict::rival) {
+    restart(rival_->estimate());
+    ++restarts_;
+  }
+  if (contradiction()) start_tracker(own_estimate());
+  rival_.reset();
 }
 
 void EkfSlam::restart(const PoseEstimate& at) {
@@ -103,6 +216,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
   state_ = std::move(fresh);
   pending_ = {};
   centre_ = at.pose.at();
+  focused_ = std::numeric_limits<double>::infinity();
 }
 
 }  // namespace waymark::localization

@@ -134,7 +134,12 @@ TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
   EXPECT_LT(score()["ate_median"], 0.12);
   EXPECT_EQ(localize(log, {"--method", "pf", "--start", "none", "--ids", "unknown"}).code, 0);
   EXPECT_LT(score()["ate_median"], 0.12);
-  EXPECT_THAT(refusal(log, 2, {"--start", "none"}), HasSubstr("must know where the robot starts"));
+  for (const char* method : {"ekf", "ukf"}) {
+    EXPECT_EQ(localize(log, {"--method", method, "--start", "none", "--ids", "unknown"}).code, 0) << method;
+    EXPECT_LT(score()["ate_median"], 0.12) << method;
+  }
+  EXPECT_THAT(refusal(log, 2, {"--method", "odometry", "--start", "none"}),
+              HasSubstr("must know where the robot starts"));
   EXPECT_THAT(refusal(drive_log({.truth = false, .start = false})), HasSubstr("give --start X,Y,YAW"));
   EXPECT_EQ(localize(log, {"--start", "0,-6,0"}).code, 0);
   EXPECT_THAT(refusal(log, 2, {"--start", "0,-6"}), HasSubstr("--start takes X,Y,YAW"));

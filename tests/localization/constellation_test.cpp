@@ -174,6 +174,28 @@ TEST(Constellation, PoseAndCovarianceAreThoseOfTheRobot) {
   EXPECT_NEAR(sum / (3 * count), 1, 0.25);  // 360 degrees of freedom: sd 0.075; linearised at 15 m
 }
 
+TEST(Constellation, TheCheckOfAPoseAgreesWithTheSearch) {
+  const Stars stars = strewn_rocks(5000, 500, 3);
+  const ConstellationIndex index(stars.map, {});
+  Random random(21);
+  int found = 0, elsewhere = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Pose2 robot{random.uniform(-200, 200), random.uniform(-200, 200), random.uniform(-3, 3)};
+    const SimulatedSightings seen = look(stars.map, stars.positions, {}, robot, {.reach = 15}, random);
+    const auto answer = index.find(seen.set);
+    if (!answer.fix) continue;
+    const auto checked = index.check(seen.set, robot * Pose2{0.2, -0.1, 0.01});
+    ASSERT_TRUE(checked) << i;
+    EXPECT_EQ(checked->landmarks, answer.fix->landmarks);
+    EXPECT_LT((checked->pose().pose.vector() - answer.fix->pose().pose.vector()).norm(), 1e-6);
+    ++found;
+    elsewhere += index.check(seen.set, robot * Pose2{20, 0, 1}).has_value();
+    elsewhere += index.check(scramble_bearings(seen.set, random), robot).has_value();
+  }
+  EXPECT_GE(found, 30);
+  EXPECT_EQ(elsewhere, 0);
+}
+
 TEST(Constellation, MirrorImagesAreRejected) {
   // A map and a look at its mirror image: all lengths are right, but it turns the other way.
   Stars stars = strewn_rocks(40, 40, 11);

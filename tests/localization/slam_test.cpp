@@ -7,6 +7,7 @@
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
+#include "localization/slam/slam_relocalization.hpp"
 #include "made_world.hpp"
 
 namespace waymark::test {
@@ -250,6 +251,16 @@ TEST(EkfSlam, SignaturesKeepNeighboursApart) {
   EXPECT_NE(slam.update({{}, {seen}}).at(0).verdict, Verdict::matched) << "a tree is no rock";
 }
 
+// Two rocks of the map fit after a gap, the nearer one a little better. The choice would not be revised.
+TEST(EkfSlam, APairThatAnotherLandmarkCouldReplaceIsNotUsed) {
+  const LandmarkGrid map({landmark_at(10, 0.4, 1), landmark_at(10, -0.6, 2)});
+  const SightingSet seen{{}, {seen_at(10, 0)}};
+  EkfSlam unsure({{}, Eigen::Vector3d(1, 1, 1e-2).asDiagonal()}, map, {}, made_drive_options());
+  EXPECT_NE(unsure.update(seen).at(0).verdict, Verdict::matched);
+  EkfSlam sure({{0, 0.4, 0}, Eigen::Vector3d(1e-3, 1e-3, 1e-6).asDiagonal()}, map, {}, made_drive_options());
+  EXPECT_EQ(sure.update(seen).at(0).key, 1u);
+}
+
 TEST(Signature, MergingWeighsByVariance) {
   KnownFeatures known, seen;
   seen.value[0] = 1, seen.variance[0] = 0.01;
@@ -266,6 +277,84 @@ TEST(Existence, CountersTurnIntoProbabilities) {
   EXPECT_DOUBLE_EQ(log_odds(1), kSurestLogOdds);
   EXPECT_DOUBLE_EQ(unseen_evidence(0.9, -0.5), -0.5);
   EXPECT_NEAR(unseen_evidence(0.1, -0.5), std::log(0.9), 1e-12) << "a sensor that misses much says little";
+}
+
+TEST(PoseTrial, OnlySightingsThatOnePoseExplainsDecide) {
+  PoseTrial trial;
+  trial.add(true, true), trial.add(false, false);
+  EXPECT_DOUBLE_EQ(trial.chance_of_rival(), 1);
+  for (int i = 0; i < 3; ++i) trial.add(false, true);
+  EXPECT_DOUBLE_EQ(trial.chance_of_rival(), 1.0 / 8);
+  EXPECT_DOUBLE_EQ(trial.chance_of_own(), 1);
+  trial.add(true, false);  // three of four: (4 + 1) / 16
+  EXPECT_DOUBLE_EQ(trial.chance_of_rival(), 5.0 / 16);
+  EXPECT_DOUBLE_EQ(trial.chance_of_own(), 15.0 / 16);
+}
+
+/// A finder that answers with the truth moved by `offset`.
+PoseFinder finder_at(const MadeDrive& drive, const Pose2& offset, int& calls) {
+  return [&drive, offset, &calls](const SightingSet&) {
+    ++calls;
+    PoseSearchResult found;
+    found.accepted = PoseEstimate{drive.truth() * offset, Eigen::Vector3d(0.01, 0.01, 0.0004).asDiagonal()};
+    return found;
+  };
+}
+
+TEST(EkfSlam, AWrongAnswerOfTheFinderDoesNotMoveIt) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    MadeDrive drive(seed, 60, false);
+    EkfSlam slam(drive.start(), grid_of(drive.map()), {}, made_drive_options());
+    int calls = 0;
+    slam.set_pose_finder(finder_at(drive, {1.6, 0.5, 0.05}, calls));
+    for (int i = 0; i < 120; ++i) {
+      slam.predict(drive.drive());
+      slam.update(drive.look());
+      EXPECT_LT((slam.estimate().pose.at() - drive.truth().at()).norm(), 0.5) << seed << ", set " << i;
+      EXPECT_EQ(slam.status(), LocalizationStatus::tracking) << seed << ", set " << i;
+    }
+    EXPECT_GE(calls, 2);
+    EXPECT_EQ(slam.restarts(), 0) << seed;
+  }
+}
+
+TEST(EkfSlam, ARightAnswerMovesALostFilter) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    MadeDrive drive(seed, 60, false);
+    PoseEstimate start = drive.start();
+    start.pose = start.pose * Pose2{9, 4, 0.8};
+    EkfSlam slam(start, grid_of(drive.map()), {}, made_drive_options());
+    int calls = 0;
+    slam.set_pose_finder(finder_at(drive, {}, calls));
+    for (int i = 0; i < 120; ++i) {
+      slam.predict(drive.drive());
+      slam.update(drive.look());
+    }
+    EXPECT_EQ(slam.restarts(), 1) << seed;
+    EXPECT_EQ(slam.status(), LocalizationStatus::tracking) << seed;
+    EXPECT_LT((slam.estimate().pose.at() - drive.truth().at()).norm(), 0.3) << seed;
+  }
+}
+
+TEST(EkfSlam, ACheckedPoseIsNotSearchedInTheWholeMap) {
+  for (const bool confirmed : {true, false}) {
+    MadeDrive drive(1, 60, false);
+    EkfSlam slam(drive.start(), grid_of(drive.map()), {}, made_drive_options());
+    int calls = 0, checks = 0;
+    slam.set_pose_finder(finder_at(drive, {}, calls), [&](const SightingSet&, const PoseEstimate& expected) {
+      ++checks;
+      return confirmed ? std::optional(expected) : std::nullopt;
+    });
+    for (int i = 0; i < 100; ++i) {
+      slam.predict(drive.drive());
+      slam.update(drive.look());
+    }
+    EXPECT_GE(checks, 5);
+    if (confirmed)
+      EXPECT_EQ(calls, 0);
+    else
+      EXPECT_GE(calls, 5);
+  }
 }
 
 TEST(EkfSlam, NonsenseIsRefusedAndLeavesItAlone) {

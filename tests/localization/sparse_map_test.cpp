@@ -145,5 +145,35 @@ TEST(ClutterEstimate, IsTheDensityOfSightingsWithoutLandmark) {
   EXPECT_NEAR(bearings.density(100), 1 / (100 * std::sqrt(3.0)), 1e-4);  // a view of 2 sqrt(3) 0.5 rad
 }
 
+// Terrain hides nine of ten landmarks. One that is in view by chance then fits ten times too easily.
+TEST(LandmarkMatcher, ClutterCountsAgainstTheRateOfDetection) {
+  constexpr double kRange = 12;
+  const std::vector<MapLandmark> map = scatter_landmarks(900, 60, 3);
+  const auto clutter = [&](double detection) {
+    IdentificationOptions options;
+    options.use_identities = false;
+    LandmarkMatcher matcher(LandmarkWindow(LandmarkGrid(map)), {}, options);
+    Random random(7, "hidden");
+    for (int set = 0; set < 300; ++set) {
+      SightingSet seen;
+      std::vector<Match> matches;
+      for (const MapLandmark& l : map) {
+        const double range = l.at.norm(), bearing = std::atan2(l.at.y(), l.at.x());
+        if (range > kRange || std::abs(bearing) > 1 || !random.bernoulli(detection)) continue;
+        seen.sightings.push_back(seen_at(range, bearing));
+        matches.push_back({.verdict = Verdict::matched, .pairing = {}, .unmapped = 0});
+      }
+      seen.sightings.push_back(seen_at(random.uniform(0.1, kRange), random.uniform(-1, 1)));
+      matches.push_back({.verdict = Verdict::too_far, .pairing = {}});
+      matcher.observe(seen);
+      matcher.learn(matches, seen, {}, matcher.landmarks_near(seen, {}));
+    }
+    return matcher.options().clutter;
+  };
+  const double all = clutter(1), few = clutter(0.1);
+  EXPECT_NEAR(all, 1 / (kRange * 2), 0.4 * all);  // one in the view
+  EXPECT_NEAR(few / all, 10, 3);
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -121,7 +121,7 @@ std::optional<localization::PoseEstimate> choose_start(const LocalizeRequest& re
     if (log.start_sd > 0 && !sd_given) start.covariance = start_covariance(log.start_sd, log.start_yaw_sd);
     return start;
   }
-  if (policy != StartPolicy::required && request.start.empty()) return {};
+  if (policy == StartPolicy::optional && request.start.empty()) return {};
   throw Error(ErrorCode::input, "the start of the robot is unknown", request.log,
               "give --start X,Y,YAW (metres and radians), or use --method pf");
 }

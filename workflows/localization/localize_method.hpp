@@ -41,7 +41,8 @@ struct LocalizeSettings {
 /// Whether a method needs the robot's start.
 enum class StartPolicy {
   required,
-  optional,  ///< used if given; otherwise the method finds the robot
+  required_or_none,  ///< required, unless it is said to be unknown
+  optional,          ///< used if given; otherwise the method finds the robot
   ignored
 };
 

@@ -57,9 +57,12 @@ double search_growth(const LocalizeTask& task, double requested) {
   return by_default && !task.settings.identification.use_identities ? 1 : requested;
 }
 
-}  // namespace
+struct PoseSearch {
+  localization::PoseFinder find;
+  localization::PoseCheck check;
+};
 
-localization::PoseFinder make_pose_finder(const LocalizeTask& task, const SearchOptions& search) {
+PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& search) {
   struct Known {
     localization::ConstellationIndex index;
     std::optional<localization::SkylineIndex> skyline;  // made at the first sighting of tops of the horizon
@@ -83,8 +86,16 @@ localization::PoseFinder make_pose_finder(const LocalizeTask& task, const Search
   skyline.body_radius = body.name.empty() ? 0 : body.mean_radius();
   if (body.name == "Earth" && skyline.refraction == 0) skyline.refraction = 0.13;
   const auto known = std::make_shared<std::optional<Known>>();  // the map is read when it is needed first
-  return [known, open_index, skyline, ground = task.ground,
-          map = task.map.map](const localization::SightingSet& seen) {
+  const localization::PoseCheck check =
+      [known, open_index](
+          const localization::SightingSet& seen,
+          const localization::PoseEstimate& expected) -> std::optional<localization::PoseEstimate> {
+    if (!*known) known->emplace(open_index());
+    const auto fix = (*known)->index.check(seen, expected.pose);
+    return fix ? std::optional(fix->pose()) : std::nullopt;
+  };
+  const localization::PoseFinder find = [known, open_index, skyline, ground = task.ground,
+                                         map = task.map.map](const localization::SightingSet& seen) {
     if (!*known) known->emplace(open_index());
     localization::PoseSearchResult found;
     const auto tops = horizon_tops(seen, (*known)->top_type);
@@ -103,6 +114,20 @@ localization::PoseFinder make_pose_finder(const LocalizeTask& task, const Search
     found.reason = answer.reason;
     return found;
   };
+  return {find, check};
+}
+
+}  // namespace
+
+localization::PoseFinder make_pose_finder(const LocalizeTask& task, const SearchOptions& search) {
+  return make_pose_search(task, search).find;
+}
+
+void enable_relocalization(localization::EkfSlam& slam, const LocalizeTask& task,
+                           const SearchOptions& search) {
+  if (task.map.map.landmarks == 0) return;
+  PoseSearch poses = make_pose_search(task, search);
+  slam.set_pose_finder(std::move(poses.find), std::move(poses.check));
 }
 
 localization::LineOfSight line_of_sight(const LocalizeTask& task) {
@@ -150,9 +175,11 @@ std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& tas
     filter->expect_landmarks(settings.particles.weight, visible);
     return filter;
   };
+  const localization::PoseEstimate start =
+      task.start.value_or(localization::pose_anywhere(task.map.map.bounds));
   return std::make_unique<localization::RelocalizingFilter>(
-      *task.start, make, make_pose_finder(task, search), std::move(chance),
-      localization::FeatureScales(task.map.map.types()));
+      start, make, make_pose_finder(task, search), std::move(chance),
+      localization::FeatureScales(task.map.map.types()), task.start.has_value());
 }
 
 }  // namespace waymark::workflows

@@ -5,6 +5,7 @@
 #include "localization/global/constellation.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/skyline.hpp"
+#include "localization/slam/ekf_slam.hpp"
 #include "workflows/localization/localize_method.hpp"
 namespace waymark::workflows {
 
@@ -21,6 +22,10 @@ struct SearchOptions {
 /// Returns a finder of poses by constellations of landmarks in the whole map, and with a DEM by skylines. The
 /// map is read at the first call.
 localization::PoseFinder make_pose_finder(const LocalizeTask& task, const SearchOptions& search);
+
+/// Lets SLAM check its pose, and relocalize, by that finder, if the map has landmarks.
+void enable_relocalization(localization::EkfSlam& slam, const LocalizeTask& task,
+                           const SearchOptions& search);
 
 /// Returns a particle filter that relocalizes with that finder. Without a start it begins with global
 /// localization. Moves the landmark window out of the task.

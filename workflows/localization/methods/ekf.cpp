@@ -11,7 +11,7 @@ class Ekf final : public FilterMethod {
     return "extended Kalman filter; without identities a sum of Gaussians, one per probable data "
            "association";
   }
-
+  StartPolicy start() const override { return StartPolicy::required_or_none; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:

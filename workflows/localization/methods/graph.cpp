@@ -87,7 +87,7 @@ class Graph final : public LocalizeMethod {
     localization::EkfSlam slam(
         setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
         localization::FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
-    if (task.map.map.landmarks > 0) slam.set_pose_finder(make_pose_finder(task, search_));
+    enable_relocalization(slam, task, search_);
     localization::PoseGraphBuilder drive(setup.start, slam);
     localization::Track track = run_slam(task, setup, drive);
     std::vector<localization::SlamLandmark> landmarks;

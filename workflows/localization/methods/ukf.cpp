@@ -10,7 +10,7 @@ class Ukf final : public FilterMethod {
   std::string_view summary() const override {
     return "unscented Kalman filter, square root form; without identities a sum of Gaussians, as ekf";
   }
-
+  StartPolicy start() const override { return StartPolicy::required_or_none; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
  protected:
