@@ -15,6 +15,7 @@
 #include "exporters/report/map_drawing.hpp"
 #include "exporters/report/map_markers.hpp"
 #include "exporters/report/page_style.hpp"
+#include "exporters/report/quality_section.hpp"
 #include "exporters/report/run_section.hpp"
 #include "exporters/report/size_frequency.hpp"
 #include "geodb/map_store.hpp"
