@@ -18,6 +18,7 @@ constexpr double kConfident = 0.6;  // fraction of the usual fit above which the
 // Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
 constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
 constexpr int kUnmatchedSets = 10;
+constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
 constexpr double kExplainedOfUsual = 0.5, kBeyondChance = 0.2, kBeyondChanceOfUsual = 0.4;
 constexpr double kTrialProbable = 0.05, kTrialCertain = 1e-3;  // levels of significance of a trial
@@ -44,13 +45,13 @@ double PoseTrial::chance_of_own() const {
 }
 
 bool SlamRelocalization::lost() const {
-  const bool in_doubt = fit_ <= kConfident * usual_;
+  const bool in_doubt = sets_ >= kUsualSets && fit_ <= kConfident * usual_;
   if (trial_ && ((in_doubt && trial_->by_finder) || trial_->chance_of_rival() < kTrialProbable)) return true;
-  return sets_ >= 20 && fit_ < 0.4 * usual_ && !is_explained();
+  return sets_ >= kUsualSets && fit_ < 0.4 * usual_ && !is_explained();
 }
 
 bool SlamRelocalization::is_explained() const {
-  if (explained_sets_ < 20 || explained_fit_ < kExplainedOfUsual * usual_explained_) return false;
+  if (explained_sets_ < kUsualSets || explained_fit_ < kExplainedOfUsual * usual_explained_) return false;
   return !beyond_chance_.known() ||
          beyond_chance_.value() > std::min(kBeyondChance, kBeyondChanceOfUsual * usual_explained_);
 }
