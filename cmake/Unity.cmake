@@ -1,6 +1,6 @@
-# Compiles the sources of a library two dozen at a time, so that their headers are parsed once: a clean build takes half
+# Compiles the sources of a library together, so that their headers are parsed once: a clean build takes half
 # the time. The presets for development leave it off, since an edited file would rebuild its whole unit.
-option(WAYMARK_UNITY "Compile the sources of a library two dozen at a time" OFF)
+option(WAYMARK_UNITY "Compile several sources of a library at a time" OFF)
 # Files whose private names occur in other files of their library, too.
 set(alone
   apps/commands/man.cpp apps/waymark.cpp
@@ -22,7 +22,11 @@ set(alone
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp)
 
 function(waymark_unity TARGET)
-  set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${WAYMARK_UNITY} UNITY_BUILD_BATCH_SIZE 24)
+  set(sources_per_unit 24)
+  if("${TARGET}" MATCHES "_(reconstruction|localization|pipeline)$")
+    set(sources_per_unit 6)  # the time of g++ grows faster than the number of instantiations of Eigen
+  endif()
+  set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${WAYMARK_UNITY} UNITY_BUILD_BATCH_SIZE ${sources_per_unit})
   list(TRANSFORM alone PREPEND ${PROJECT_SOURCE_DIR}/)
   set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

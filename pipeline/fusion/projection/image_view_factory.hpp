@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "geo/image_source.hpp"
+#include "geo/terrain.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
 namespace waymark::pipeline {
 
@@ -10,6 +11,6 @@ namespace waymark::pipeline {
 ImageView make_image_view(const ImageInfo& info);
 
 /// Computes footprint, area and ground sample distance; footprints in units of a CRS of `metres_per_unit`.
-void compute_footprint(ImageView& image, const class Terrain& terrain, double metres_per_unit);
+void compute_footprint(ImageView& image, const Terrain& terrain, double metres_per_unit);
 
 }  // namespace waymark::pipeline

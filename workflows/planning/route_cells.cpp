@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/route_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "workflows/parse_number.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+constexpr std::int64_t kMaxCells = 4'000'000;
+constexpr double kMaxExtent = 50e3;  // m from the origin of the map frame, which is a plane
+
+}  // namespace
+
+Waypoint parse_waypoint(const std::string& name, const std::string& text, const RobotMap& map) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    numbers.push_back(parse_number(name, text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  if (numbers.size() < 2 || numbers.size() > 3)
+    throw Error(ErrorCode::usage, fmt::format("{} {} is no position", name, text), "",
+                "X,Y or X,Y,YAW in degrees");
+  Waypoint point;
+  point.at = map.frame.map_frame_from_crs({{numbers[0], numbers[1], 0}}).xyz.head<2>();
+  if (!(point.at.norm() < kMaxExtent))
+    throw Error(
+        ErrorCode::input,
+        fmt::format("{} {} is {:.0f} km from the middle of the map", name, text, point.at.norm() / 1000),
+        map.store->path().string(),
+        fmt::format("positions are x,y in {}, at most {:.0f} km away", map.crs().id(), kMaxExtent / 1000));
+  if (numbers.size() == 3) point.yaw = numbers[2] * kRadiansPerDegree;
+  point.text = fmt::format("{} {}", name, text);
+  return point;
+}
+
+HazardClasses::HazardClasses(const std::string& file, const RobotMap& map) : frame_(map.frame) {
+  // Classes are small whole numbers, which the importer of heights reads as they are.
+  raster_ = importers::import_dem({.files = {file},
+                                   .nodata = NodataPolicy::unknown,
+                                   .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                   .band = static_cast<int>(planning::kHazardBands),
+                                   .inspect = false});
+  const GridGeometry& grid = raster_->geometry();
+  if (!grid.where.crs.same_as(map.crs())) transform_.emplace(map.crs(), grid.where.crs);
+  classes_ = raster_->read({0, 0, grid.columns, grid.rows});
+}
+
+double HazardClasses::cell() const {
+  return raster_->geometry().where.dx * raster_->geometry().where.crs.metres_per_unit();
+}
+
+planning::HazardClass HazardClasses::at(double x, double y) const {
+  const auto crs = frame_.crs_from_map_frame({{x, y, 0}}).xyz;
+  CrsTransform::XY there{crs.x(), crs.y()};
+  if (transform_) there = (*transform_)(there.x, there.y);
+  const Georeference& where = raster_->geometry().where;
+  const double c = std::round(where.column(there.x)), r = std::round(where.row(there.y));
+  if (!(c >= 0 && r >= 0 && c < double(classes_.columns()) && r < double(classes_.rows())))
+    return planning::HazardClass::unknown;
+  const double value = classes_(static_cast<std::int64_t>(c), static_cast<std::int64_t>(r));
+  return value >= 0 && value <= 3 ? static_cast<planning::HazardClass>(static_cast<int>(value))
+                                  : planning::HazardClass::unknown;
+}
+
+planning::RouteCells cells_for(const std::vector<Waypoint>& points, double cell, double range) {
+  Eigen::AlignedBox2d box;
+  for (const Waypoint& point : points) box.extend(point.at);
+  const double margin = std::max(range, box.diagonal().norm() / 2);
+  planning::RouteCells cells{.cell = cell};
+  cells.x0 = std::floor((box.min().x() - margin) / cell) * cell;
+  cells.y0 = std::floor((box.min().y() - margin) / cell) * cell;
+  cells.columns = static_cast<std::int64_t>(std::ceil((box.max().x() + margin - cells.x0) / cell)) + 1;
+  cells.rows = static_cast<std::int64_t>(std::ceil((box.max().y() + margin - cells.y0) / cell)) + 1;
+  if (cells.count() > kMaxCells)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("the route needs {} x {} cells of {:g} m, more than {}", cells.columns, cells.rows, cell,
+                    kMaxCells),
+        "", fmt::format("--cell {:.2g}", 1.05 * cell * std::sqrt(double(cells.count()) / double(kMaxCells))));
+  return cells;
+}
+
+std::vector<char> passable_cells(const planning::RouteCells& cells, const HazardClasses* hazards) {
+  std::vector<char> passable(static_cast<std::size_t>(cells.count()), 1);
+  if (!hazards) return passable;
+  const int samples = std::max(1, static_cast<int>(std::ceil(cells.cell / hazards->cell())));
+  for (std::int64_t i = 0; i < cells.count(); ++i)
+    for (int k = 0; k < samples * samples && passable[static_cast<std::size_t>(i)]; ++k) {
+      const double u = (k % samples + 0.5) / samples - 0.5, v = (k / samples + 0.5) / samples - 0.5;
+      if (hazards->at(cells.x(i) + u * cells.cell, cells.y(i) + v * cells.cell) >=
+          planning::HazardClass::hazard)
+        passable[static_cast<std::size_t>(i)] = 0;
+    }
+  return passable;
+}
+
+std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
+                     const std::vector<char>& passable, const HazardClasses* hazards,
+                     const std::string& file) {
+  const std::int64_t cell = cells.index(point.at.x(), point.at.y());
+  if (cell >= 0 && passable[static_cast<std::size_t>(cell)]) return cell;
+  const auto kind = hazards ? hazards->at(point.at.x(), point.at.y()) : planning::HazardClass::safe;
+  const char* problem =
+      kind == planning::HazardClass::unknown  ? "is on unknown terrain or outside the hazard map"
+      : kind == planning::HazardClass::hazard ? "is in a hazard"
+                                              : "is beside a hazard, within a cell of the route";
+  throw Error(ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
+              "move it, make --cell finer, or pass --hazards none");
+}
+
+}  // namespace waymark::workflows
