@@ -42,7 +42,8 @@ Symmetric3 predict(const Symmetric3& covariance, const DriveStep& step,
   p.yy += 2 * ay * p.yt + ay * ay * p.tt;
   p.xt += ax * p.tt;
   p.yt += ay * p.tt;
-  // Yaw that is lost on the way moves the rest of it aside: integrals of q, q (length - l), q (length - l)^2.
+  // Yaw that is lost on the path moves the rest of it aside: integrals of q, q (length - l), q (length -
+  // l)^2.
   const double q = noise.yaw_per_metre * length, sideways = q * length / 2;
   const double along = noise.along_per_metre * length;
   const double across = noise.across_per_metre * length + q * length * length / 3;

@@ -11,6 +11,8 @@ struct Symmetric3 {
   Eigen::Matrix3d matrix() const;
   friend bool operator==(const Symmetric3&, const Symmetric3&) = default;
 };
+
+/// Returns the upper triangle of a symmetric matrix.
 Symmetric3 symmetric(const Eigen::Matrix3d& matrix);
 
 /// Drive of `length` metres straight along a unit direction, after a turn on the spot, radians.
@@ -19,7 +21,7 @@ struct DriveStep {
 };
 
 /// Returns the covariance after a drive with the odometry noise of the localizers. Exact for noise that is
-/// continuous along the way: two half steps equal one whole step.
+/// continuous along the path: two half steps equal one whole step.
 Symmetric3 predict(const Symmetric3& covariance, const DriveStep& step,
                    const localization::OdometryNoise& noise);
 

@@ -53,10 +53,11 @@ enum class HazardBand {
 };
 inline constexpr std::size_t kHazardBands = 11;
 
-/// Returns the name of a band and its unit.
+/// Name of a band and its unit.
 struct BandName {
   const char *name, *unit;
 };
+/// Returns the names and units in the order of the bands.
 std::array<BandName, kHazardBands> hazard_band_names();
 
 /// Bands of a window, NaN if unknown; the class is always known.

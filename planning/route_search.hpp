@@ -31,7 +31,8 @@ struct Route {
   double outside = 0;            ///< metres with fewer landmarks than wanted
 };
 
-/// Returns the shortest distance over passable cells to `to` from every cell, metres; infinity without a way.
+/// Returns the shortest distance over passable cells to `to` from every cell, metres; infinity if there is
+/// none.
 std::vector<double> distances_to(const RouteCells& cells, const std::vector<char>& passable, std::int64_t to);
 
 /// Settings of the search for a limited or weighted sd.
@@ -54,7 +55,7 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd);
 
 /// Returns the route with the least length at which fewer than `count` landmarks are seen, and of these the
-/// shortest (section 6 of the paper). Exact on the grid; `std::nullopt` without a way.
+/// shortest (section 6 of the paper). Exact on the grid; `std::nullopt` if there is none.
 /// `by_quality`: sums qualities (eq. 8) in place of counting.
 std::optional<Route> search_by_landmarks(const RouteProblem& problem, double count, bool by_quality);
 

@@ -24,13 +24,12 @@ class Hazards final : public Command {
         .about =
             "A cell is judged with the vehicle's middle on it. Relief is that of a plane fitted under the "
             "vehicle's base. Rocks, crater walls and stems are those of the map, with their covariance and "
-            "confidence; a DEM alone shows none. Rocks that the map cannot show are estimated from the sizes "
-            "of "
-            "the others. Terrain without heights is unknown, never safe.\n\n"
+            "confidence; a DEM alone shows none. Rocks that the map cannot show are estimated from the "
+            "sizes of the others. Terrain without heights is unknown, never safe.\n\n"
             "HAZARD.tif is a cloud-optimized GeoTIFF: slope, roughness and step with their standard "
-            "deviations, "
-            "object, undetected, probability and class (0 safe, 1 uncertain, 2 hazard, 3 unknown). A QGIS "
-            "style is written beside it. The result does not depend on --threads or --tile-cells.",
+            "deviations, object, undetected, probability and class (0 safe, 1 uncertain, 2 hazard, 3 "
+            "unknown). A QGIS style is written beside it. The result does not depend on --threads or "
+            "--tile-cells.",
         .arguments =
             {file_word("MAP|DEM", &request_.input, "Map (.gpkg), or an elevation model in metres"),
              Argument{"-o,--output", "HAZARD.tif", &request_.output, "Hazard map"}.needed().offering(

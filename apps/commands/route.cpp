@@ -13,17 +13,15 @@ class RouteCommand final : public Command {
     return {
         .name = "route",
         .group = Group::use,
-        .summary = "Plan a way on which a robot keeps good landmarks in sight",
+        .summary = "Plan a route that keeps good landmarks in sight",
         .about =
-            "The covariance of the position is propagated along the way with the odometry noise of `waymark "
-            "localize` and the landmarks that the sensor sees. One objective: --limit-sigma is the shortest "
-            "way on "
-            "which the sd keeps below a limit, --keep-landmarks that with the least length at which fewer "
-            "landmarks "
-            "are in sight, --weight a compromise of length and sd.\n\n"
+            "The covariance of the position is propagated along the route with the odometry noise of "
+            "`waymark localize` and the landmarks that the sensor sees. Give one objective: --limit-sigma "
+            "keeps the sd below a limit on the shortest route, --keep-landmarks drives the least length "
+            "with fewer landmarks in sight, --weight is a compromise of length and sd.\n\n"
             "OUT.gpkg has the layers route and route_station: the ellipse of the error, the landmarks in "
-            "sight, and "
-            "the three that inform most. Identities are taken as known, and no terrain hides a landmark.",
+            "sight, and the three that inform most. Identities are taken as known, and no terrain hides a "
+            "landmark.",
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks"),
              Argument{"--from", "X,Y[,YAW]", &request_.from,
@@ -47,7 +45,7 @@ class RouteCommand final : public Command {
              Argument{"--view", "DEGREES", &request_.view, "Horizontal field of view"}.or_else(
                  "that of the profile"),
              Argument{"--limit-sigma", "METRES", &request_.limit_sigma,
-                      "Largest sd of the position on the way"},
+                      "Largest sd of the position on the route"},
              Argument{"--keep-landmarks", "N", &request_.keep_landmarks, "Landmarks to keep in sight"},
              Argument{"--by-quality", "", &request_.by_quality,
                       "Sum their qualities in place of counting them"},
@@ -55,7 +53,8 @@ class RouteCommand final : public Command {
              Argument{"--cell", "METRES", &request_.cell, "Cells of the search"}.or_else("2"),
              Argument{"--start-sd", "METRES", &request_.start_sd, "Sd of the position at the start"}.or_else(
                  "0.1"),
-             Argument{"--worlds", "N", &request_.worlds, "Draws of which landmarks exist, to check the route"}
+             Argument{"--worlds", "N", &request_.worlds,
+                      "Random sets of existing landmarks that check the route"}
                  .or_else("32"),
              Argument{"--alternatives", "N", &request_.alternatives,
                       "Routes along the front of length and sd, each a tenth better"}
@@ -64,7 +63,7 @@ class RouteCommand final : public Command {
         .examples = {
             {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor horizontal_laser --limit-sigma 0.5 "
              "--hazards hazard.tif -o route.gpkg",
-             "The shortest way with an sd of at most half a metre"},
+             "The shortest route with an sd of at most half a metre"},
             {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor stereo_camera --keep-landmarks 3 -o "
              "route.csv",
              "Three landmarks in sight wherever possible"}}};

@@ -66,7 +66,7 @@ TEST_F(RouteCommand, LimitLeadsAlongTheLandmarks) {
   EXPECT_LE(largest("sd"), 1.5);
   EXPECT_GT(largest("y"), 15);
   EXPECT_GT(largest("distance"), 205);
-  EXPECT_THAT(limited.err, AllOf(HasSubstr("shortest way: 200.0 m"), HasSubstr("over 32 worlds"),
+  EXPECT_THAT(limited.err, AllOf(HasSubstr("shortest route: 200.0 m"), HasSubstr("over 32 worlds"),
                                  HasSubstr("no route that keeps the limit is shorter than")));
 }
 

@@ -243,7 +243,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       if (!std::isfinite(planning::distances_to(cells, problem.passable,
                                                 problem.to)[static_cast<std::size_t>(problem.from)]))
         throw Error(ErrorCode::input,
-                    fmt::format("there is no way from {} to {}", points[i].text, points[i + 1].text),
+                    fmt::format("there is no route from {} to {}", points[i].text, points[i + 1].text),
                     request.hazards,
                     "hazards and unknown terrain lie between; make --cell finer, or pass --hazards none");
       legs.push_back(search());
@@ -287,7 +287,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   std::string text = fmt::format(
       "{}: {:.1f} m, worst sd {:.2f} m, at the goal {:.2f} m, {:.0f} m without a landmark in sight\n"
       "  over {} worlds: worst sd {:.2f} m on average, {:.2f} m in the worst tenth\n"
-      "  shortest way: {:.1f} m, worst sd {:.2f} m\n"
+      "  shortest route: {:.1f} m, worst sd {:.2f} m\n"
       "  on cells of {:g} m and eight headings",
       request.output, best.length, best.worst_sd, best.final_sd, best.without_landmarks, request.worlds,
       best.worlds_mean, best.worlds_worst_tenth, result.shortest.length, result.shortest.worst_sd,

@@ -22,7 +22,7 @@ struct RouteRequest {
   bool by_quality = false;       ///< keep_landmarks sums qualities
   double cell = 2;               ///< metres
   double start_sd = 0.1;         ///< metres
-  std::int64_t worlds = 32;      ///< draws of which landmarks exist
+  std::int64_t worlds = 32;      ///< random sets of existing landmarks
   std::int64_t alternatives = 1;
   std::int64_t seed = 1;
 };
@@ -50,7 +50,7 @@ struct RouteResult {
 };
 
 /// Plans a route and writes it. Throws Error{input} for a start or goal in a hazard, on unknown terrain or
-/// outside, for no way, and for a limit that no route keeps, with the least one that was found.
+/// outside, for no route, and for a limit that no route keeps, with the least one that was found.
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

@@ -41,7 +41,7 @@ geodb::ShapeLayer route_layer(const RouteResult& result) {
       .summary = "Planned routes, the first one as requested, the others alternatives",
       .kind = geodb::ShapeKind::line,
       .columns = {{"length", "m", Kind::real, "Length in the plane"},
-                  {"worst_sd", "m", Kind::real, "Largest sd of the position on the way"},
+                  {"worst_sd", "m", Kind::real, "Largest sd of the position on the route"},
                   {"final_sd", "m", Kind::real, "Sd of the position at the goal"},
                   {"without_landmarks", "m", Kind::real, "Length without a landmark in sight"},
                   {"outside", "m", Kind::real, "Length with fewer landmarks than wanted"},

@@ -45,8 +45,8 @@ Eigen::Matrix3d attitude_of(const importers::GimbalAngles& gimbal, double grid_y
          Eigen::AngleAxisd(gimbal.roll * kPriorDegree + turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
 }
 
-// Heights above take-off where all pictures have them, since they are more exact. The altitudes, of which one
-// is enough, then give the height of the take-off.
+// Heights above take-off where all pictures have them, since they are more exact. One altitude or more
+// then give the height of the take-off.
 struct HeightSource {
   bool relative = true;
   double takeoff = 0;

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "core/random.hpp"
+#include "core/solve.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "pipeline/forest/tree_confidence.hpp"
@@ -45,7 +46,7 @@ pipeline::TreetopTerms fit_tree_confidence(std::span<const TreetopExample> examp
       slope += ((one.is_tree ? 1 : 0) - p) * terms;
       curvature += p * (1 - p) * terms * terms.transpose();
     }
-    weights += curvature.ldlt().solve(slope);
+    weights += solve_symmetric(curvature, slope);
   }
   pipeline::TreetopTerms rounded{};
   for (std::size_t i = 0; i < rounded.size(); ++i)

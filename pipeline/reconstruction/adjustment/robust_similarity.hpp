@@ -24,8 +24,8 @@ struct RobustSimilarity {
 /// `std::nullopt` if fewer than three pairs agree, or if these lie on one line up to their deviations.
 std::optional<RobustSimilarity> robust_similarity(const std::vector<PositionPair>& pairs);
 
-/// Returns the same, given the upward direction in the frame, from two pairs one of which is beside the other
-/// in plan. The map's z points up.
+/// Returns the same, given the upward direction in the frame, from two pairs that differ in plan. The map's z
+/// points up.
 std::optional<RobustSimilarity> robust_similarity(const std::vector<PositionPair>& pairs,
                                                   const Eigen::Vector3d& up_in_frame);
 
