@@ -6,12 +6,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <set>
 #include <sstream>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "exporters/gdal_messages.hpp"
 
 namespace waymark::exporters {
@@ -24,11 +24,6 @@ constexpr std::size_t kDbfName = 10;              // dBASE III field names
 
 bool has(GDALDriver& driver, const char* key) {
   return driver.GetMetadataItem(key) != nullptr;
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 std::vector<GDALDriver*> writers() {
@@ -60,10 +55,10 @@ std::vector<std::string> extensions(GDALDriver& driver) {
 GDALDriver& driver_called(const std::string& name, const std::vector<GDALDriver*>& all) {
   std::vector<std::string> lower_names;
   for (GDALDriver* driver : all) {
-    if (lower(driver->GetDescription()) == lower(name)) return *driver;
-    lower_names.push_back(lower(driver->GetDescription()));
+    if (lower_case(driver->GetDescription()) == lower_case(name)) return *driver;
+    lower_names.push_back(lower_case(driver->GetDescription()));
   }
-  const std::string nearest = nearest_name(lower(name), lower_names);
+  const std::string nearest = nearest_name(lower_case(name), lower_names);
   const auto match = std::find(lower_names.begin(), lower_names.end(), nearest);
   const std::string hint =
       match == lower_names.end()
@@ -75,7 +70,7 @@ GDALDriver& driver_called(const std::string& name, const std::vector<GDALDriver*
 }
 
 GDALDriver& driver_for(const std::string& out, const std::vector<GDALDriver*>& all) {
-  const std::string file = lower(out.substr(out.find_last_of('/') + 1));
+  const std::string file = lower_case(out.substr(out.find_last_of('/') + 1));
   std::vector<std::string> known;
   for (GDALDriver* driver : all) {
     for (const std::string& extension : extensions(*driver)) {

@@ -3,17 +3,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
 
-#include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/cameras/ground_control.hpp"
 #include "importers/tables/table.hpp"
 #include "importers/tables/table_number.hpp"
+
+#include "core/error.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -30,10 +31,7 @@ class NamedCells {
   std::optional<std::size_t> find(std::initializer_list<std::string_view> names) const {
     for (const std::string_view name : names)
       for (std::size_t i = 0; i < header().columns.size(); ++i)
-        if (std::ranges::equal(header().columns[i], name, [](char a, char b) {
-              return std::tolower(static_cast<unsigned char>(a)) == b;
-            }))
-          return i;
+        if (lower_case(header().columns[i]) == name) return i;
     return {};
   }
   std::size_t need(const char* what, std::initializer_list<std::string_view> names, const char* hint) const {
@@ -62,9 +60,8 @@ double deviation(const NamedCells& cells, std::optional<std::size_t> column, dou
               "leave the cell empty if it is unknown");
 }
 
-bool is_true(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+bool is_true(std::string_view cell) {
+  const std::string text = lower_case(cell);
   return text == "1" || text == "true" || text == "yes" || text == "check" || text == "t" || text == "y";
 }
 

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/tables/text_table.hpp"
 
 namespace waymark::importers {
@@ -60,10 +61,7 @@ GroundControlPoint& point_of(GroundControl& all, const std::string& name, const 
 }  // namespace
 
 bool is_check_name(const std::string& name) {
-  const std::string_view word = "check";
-  return name.size() >= word.size() && std::equal(word.begin(), word.end(), name.begin(), [](char w, char c) {
-           return w == std::tolower(static_cast<unsigned char>(c));
-         });
+  return lower_case(name).starts_with("check");
 }
 
 GroundControl read_ground_control(const std::string& points, const std::string& marks) {

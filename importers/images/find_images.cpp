@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -16,6 +15,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/gdal_session.hpp"
 
 namespace waymark::importers {
@@ -84,8 +84,7 @@ void make_names_unique(std::vector<FoundImage>& images) {
 bool is_image_name(const std::string& name) {
   static constexpr std::array kExtensions{".tif", ".tiff", ".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".img",
                                           ".jp2", ".vrt",  ".cub", ".bmp", ".webp", ".exr", ".jxl"};
-  std::string extension = fs::path(name).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_case(fs::path(name).extension().string());
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 

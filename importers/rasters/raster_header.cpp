@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/rasters/reference_radius.hpp"
 
 namespace waymark::importers {
@@ -203,9 +204,7 @@ HeightUnit height_unit(std::string_view name) {
       {0.01, {"cm", "centimetre", "centimeter", "centimetres", "centimeters"}},
       {0.001, {"mm", "millimetre", "millimeter"}},
   };
-  std::string lower(name);
-  std::ranges::transform(lower, lower.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string lower = lower_case(name);
   for (const NamedUnit& unit : units)
     if (std::ranges::find(unit.names, lower) != unit.names.end()) return {unit.metres, true};
   return {1, false};

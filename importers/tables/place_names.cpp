@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
 
 #include "core/bytes.hpp"
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/tables/table.hpp"
 #include "importers/tables/table_number.hpp"
 #include "importers/tables/table_positions.hpp"
@@ -19,16 +18,10 @@
 namespace waymark::importers {
 namespace {
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 std::optional<std::size_t> column_of(const TableHeader& table, const std::vector<std::string>& names) {
   for (const std::string& name : names)
     for (std::size_t i = 0; i < table.columns.size(); ++i)
-      if (lower(table.columns[i]) == name) return i;
+      if (lower_case(table.columns[i]) == name) return i;
   return {};
 }
 
@@ -47,12 +40,12 @@ std::vector<PlaceName> read_place_names(const std::string& path, const std::stri
   const TableHeader& header = table->header();
   const std::size_t name = column.empty()
                                ? needed_column(header, {"name", "label", "toponym"}, "name it in name_column")
-                               : needed_column(header, {lower(column)}, "check the name");
+                               : needed_column(header, {lower_case(column)}, "check the name");
   const std::size_t x =
       needed_column(header, {"geom_x", "x", "lon", "longitude", "easting"}, "points have x and y");
   const std::size_t y =
       needed_column(header, {"geom_y", "y", "lat", "latitude", "northing"}, "points have x and y");
-  const bool degrees = lower(header.columns[x]).starts_with("lon");
+  const bool degrees = lower_case(header.columns[x]).starts_with("lon");
   TablePositions positions(header, "", into.kind() == CrsKind::local ? "local" : into.wkt2(), degrees);
   std::vector<PlaceName> places;
   TableRow row;

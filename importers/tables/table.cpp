@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <array>
 
+#include "core/lower_case.hpp"
+
 namespace waymark::importers {
 namespace {
 
 constexpr std::array kTextEndings = {".csv",    ".tsv",    ".txt",    ".dat",   ".tab",
                                      ".csv.gz", ".tsv.gz", ".txt.gz", ".dat.gz"};
 
-bool named_like_text(std::string path) {
-  std::ranges::transform(path, path.begin(), [](unsigned char c) { return static_cast<char>(tolower(c)); });
-  return std::ranges::any_of(kTextEndings, [&](const char* ending) { return path.ends_with(ending); });
+bool named_like_text(std::string_view path) {
+  const std::string name = lower_case(path);
+  return std::ranges::any_of(kTextEndings, [&](const char* ending) { return name.ends_with(ending); });
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "core/units.hpp"
 #include "importers/tables/table_number.hpp"
 
@@ -42,13 +43,6 @@ constexpr std::array kFunctions = {
     Function{"min", 2, [](double a, double b) { return std::isnan(a) || a < b ? a : b; }},
     Function{"max", 2, [](double a, double b) { return std::isnan(a) || a > b ? a : b; }},
 };
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
 
 bool is_letter(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -190,13 +184,13 @@ class Parser {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     const std::string_view word = text_.substr(start, at_ - start);
     if (take('(')) return call(word);
-    const bool own =
-        std::ranges::any_of(columns_, [&](const std::string& c) { return lower(c) == lower(word); });
+    const bool own = std::ranges::any_of(
+        columns_, [&](const std::string& c) { return lower_case(c) == lower_case(word); });
     return word == "pi" && !own ? constant(std::numbers::pi) : column(word);
   }
 
   NodePointer call(std::string_view word) {
-    const auto* function = std::ranges::find(kFunctions, lower(word), &Function::name);
+    const auto* function = std::ranges::find(kFunctions, lower_case(word), &Function::name);
     if (function == kFunctions.end()) fail(fmt::format("there is no function '{}'", word));
     NodePointer first = sum(), second;
     if (function->arguments == 2) {
@@ -262,7 +256,7 @@ std::size_t column_index(const std::vector<std::string>& columns, std::string_vi
     return static_cast<std::size_t>(exact - columns.begin());
   std::vector<std::size_t> like;
   for (std::size_t i = 0; i < columns.size(); ++i)
-    if (lower(columns[i]) == lower(name)) like.push_back(i);
+    if (lower_case(columns[i]) == lower_case(name)) like.push_back(i);
   if (like.size() == 1) return like[0];
   const std::string nearest = nearest_name(name, columns);
   throw Error(ErrorCode::usage,

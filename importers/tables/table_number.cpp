@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/lower_case.hpp"
+
 namespace waymark::importers {
 namespace {
 
@@ -21,8 +23,7 @@ std::string_view trimmed(std::string_view cell) {
 
 bool is_missing(std::string_view cell) {
   constexpr std::array<std::string_view, 8> words = {"na", "n/a", "nan", "null", "none", "-", "--", "*"};
-  std::string lower(trimmed(cell));
-  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(tolower(c)); });
+  const std::string lower = lower_case(trimmed(cell));
   return lower.empty() || std::ranges::find(words, lower) != words.end();
 }
 

@@ -8,18 +8,12 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 
 namespace waymark::pipeline {
 namespace {
 
 constexpr double kBreastHeight = 1.3;
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
 
 // Cells of a line; quoted cells may contain commas.
 std::vector<std::string> cells_of(std::string_view line) {
@@ -51,12 +45,12 @@ std::optional<double> number(const std::string& cell) {
 class Reader {
  public:
   Reader(std::string_view file, const std::vector<std::string>& head) : file_(file) {
-    for (const std::string& name : head) names_.push_back(lower(name));
+    for (const std::string& name : head) names_.push_back(lower_case(name));
   }
   Allometry row(const std::vector<std::string>& cells, int line) const {
     Allometry one;
     one.species = text(cells, "species").empty() ? "all" : text(cells, "species");
-    const std::string form = lower(text(cells, "form"));
+    const std::string form = lower_case(text(cells, "form"));
     if (form != "height" && form != "height_crown")
       fail(line, fmt::format("the form is '{}'; it is height or height_crown", form));
     one.form = form == "height" ? AllometryForm::height : AllometryForm::height_crown;
@@ -116,8 +110,8 @@ std::optional<StemDiameter> stem_diameter(const Allometry& allometry, double hei
 const Allometry* allometry_of(std::span<const Allometry> table, std::string_view species) {
   const Allometry* all = nullptr;
   for (const Allometry& row : table) {
-    if (lower(row.species) == lower(species)) return &row;
-    if (lower(row.species) == "all") all = &row;
+    if (lower_case(row.species) == lower_case(species)) return &row;
+    if (lower_case(row.species) == "all") all = &row;
   }
   return all;
 }

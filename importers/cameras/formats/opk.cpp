@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 
 #include "core/error.hpp"
+#include "core/lower_case.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/interior_orientation.hpp"
 #include "importers/json_value.hpp"
@@ -26,11 +26,6 @@ struct Columns {
   std::optional<std::size_t> camera = {};
 };
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool is_header(const TextRow& row) {
   double ignored = 0;
   return row.words.size() >= 7 && std::ranges::none_of(row.words, [&](const std::string& word) {
@@ -40,7 +35,7 @@ bool is_header(const TextRow& row) {
 
 Columns columns_of(const TextRow& header, const std::string& path) {
   std::map<std::string, std::size_t> at;
-  for (std::size_t i = 0; i < header.words.size(); ++i) at[lower(header.words[i])] = i;
+  for (std::size_t i = 0; i < header.words.size(); ++i) at[lower_case(header.words[i])] = i;
   const auto column = [&](std::initializer_list<const char*> names) {
     for (const char* name : names)
       if (const auto found = at.find(name); found != at.end()) return found->second;
@@ -112,7 +107,7 @@ CameraFile read_opk(const CameraSource& source) {
 // Recognises a header with the three angles, or a line of a name and six numbers.
 bool recognises(const CameraSource& source) {
   if (source.head.find('{') != source.head.npos || source.head.find('<') != source.head.npos) return false;
-  const std::string head = lower(source.head.substr(0, source.head.find('\n')));
+  const std::string head = lower_case(source.head.substr(0, source.head.find('\n')));
   if (head.find("omega") != head.npos && head.find("kappa") != head.npos) return true;
   std::vector<std::string> words;
   for (std::size_t begin = head.find_first_not_of(" \t,;\r"); begin < head.size();) {
