@@ -1,9 +1,12 @@
 # Compiles the sources of a library together, so that their headers are parsed once: a clean build takes half
 # the time. The presets for development leave it off, since an edited file would rebuild its whole unit.
 option(WAYMARK_UNITY "Compile several sources of a library at a time" OFF)
-# Files whose private names occur in other files of their library, too.
+# Files whose private names occur in other files of their library, too, and decompositions of Eigen: the time of g++
+# grows with the square of their number in a unit.
 set(alone
   apps/commands/man.cpp apps/waymark.cpp
+  core/solve/cholesky.cpp core/solve/inverse_by_lu.cpp core/solve/least_squares.cpp core/solve/rotation_between.cpp
+  core/solve/singular_values.cpp core/solve/solve_symmetric.cpp core/solve/symmetric_eigen.cpp
   geo/terrain_pyramid.cpp
   exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/report/track_picture.cpp exporters/vector/ogr_output.cpp
   geodb/geopackage/geometry_blob.cpp geodb/geopackage/shape_blob.cpp

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/solve.hpp"
 
 namespace waymark::inline geo {
 namespace {
@@ -20,8 +21,7 @@ Eigen::Matrix3Xd columns_of(const std::vector<Eigen::Vector3d>& points) {
 // Returns the spread of the points across their longest direction, as a fraction of it.
 double width_fraction(const Eigen::Matrix3Xd& points) {
   const Eigen::Matrix3Xd about = points.colwise() - points.rowwise().mean();
-  const Eigen::Vector3d spread =
-      Eigen::JacobiSVD<Eigen::Matrix3d>(about * about.transpose()).singularValues();
+  const Eigen::Vector3d spread = singular_values(about * about.transpose()).values;
   return spread[0] > 0 ? std::sqrt(spread[1] / spread[0]) : 0;
 }
 

@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <algorithm>
 
+#include "core/solve.hpp"
+
 namespace waymark::importers {
 
 FittedLens fit_brown(const std::vector<LensPair>& pairs) {
@@ -19,7 +21,7 @@ FittedLens fit_brown(const std::vector<LensPair>& pairs) {
   }
   FittedLens fitted;
   if (count < 5) return fitted;
-  const Eigen::VectorXd k = terms.colPivHouseholderQr().solve(moved);
+  const Eigen::VectorXd k = solve_least_squares(terms, moved);
   std::copy_n(k.data(), 5, fitted.distortion.begin());
   const Eigen::VectorXd miss = terms * k - moved;
   for (Eigen::Index i = 0; i < count; ++i)

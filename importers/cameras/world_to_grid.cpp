@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "core/solve.hpp"
 #include "geo/local_frame.hpp"
 #include "importers/images/image.hpp"
 
@@ -105,11 +106,11 @@ LocalRotation local_rotation_at(const WorldToGrid& to_grid, const Eigen::Vector3
     const Vector step = kStep * Vector::Unit(i);
     axes.col(i) = (to_grid(place + step) - to_grid(place - step)) / (2 * kStep);
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const SingularValues3 parts = singular_values(axes);
   LocalRotation turn;
-  turn.rotation = parts.matrixU() * parts.matrixV().transpose();
+  turn.rotation = parts.u * parts.v.transpose();
   if (turn.rotation.determinant() < 0) turn.rotation = -turn.rotation;
-  turn.stretch = parts.singularValues()[0] / parts.singularValues()[2];
+  turn.stretch = parts.values[0] / parts.values[2];
   return turn;
 }
 

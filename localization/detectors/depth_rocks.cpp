@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/grid.hpp"
+#include "core/solve.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -39,7 +40,7 @@ double ground_about(const Grid<Square>& squares, std::int64_t column, std::int64
         ++used;
       }
     if (used < 8) return std::nan("");
-    plane = (normal + 1e-6 * Eigen::Matrix3d::Identity()).ldlt().solve(right);
+    plane = solve_symmetric<3>(normal + 1e-6 * Eigen::Matrix3d::Identity(), right);
     above = keep;
     if (keep == 1e9) above = 0.15;
   }

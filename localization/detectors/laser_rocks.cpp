@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/solve.hpp"
 #include "localization/detectors/scan_segments.hpp"
 
 namespace waymark::localization {
@@ -25,7 +26,7 @@ Arc fit_arc(std::span<const double> ranges) {
     r(i) = ranges[static_cast<std::size_t>(i)];
   }
   const Eigen::Matrix3d normal = design.transpose() * design;
-  const Eigen::Vector3d fit = normal.ldlt().solve(design.transpose() * r);
+  const Eigen::Vector3d fit = solve_symmetric<3>(normal, design.transpose() * r);
   Arc arc;
   arc.bulge = fit(2);
   arc.front = fit(0);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/solve.hpp"
+
 namespace waymark::localization {
 namespace {
 
@@ -69,8 +71,8 @@ double SlamState::joint_squares(std::span<const Correction> corrections) const {
                            paa_.block<2, 2>(row(a.slot), row(b.slot)) * b.by_landmark.transpose());
     }
   }
-  const Eigen::LLT<Eigen::MatrixXd> root((s + s.transpose()) / 2);
-  if (root.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  const Cholesky root((s + s.transpose()) / 2);
+  if (!root.positive_definite()) return std::numeric_limits<double>::infinity();
   return v.dot(root.solve(v));
 }
 
@@ -93,9 +95,9 @@ void SlamState::update(std::span<const Correction> corrections) {
     const Correction& c = corrections[static_cast<std::size_t>(k / 2)];
     s.middleRows<2>(k) += c.by_pose * ph.topRows<3>() + c.by_landmark * ph.middleRows<2>(row(c.slot));
   }
-  const Eigen::LLT<Eigen::MatrixXd> root((s + s.transpose()) / 2);
-  if (root.info() != Eigen::Success) return;  // not positive definite: skip the update
-  const Eigen::MatrixXd gain = root.solve(ph.transpose()).transpose();
+  const Cholesky root((s + s.transpose()) / 2);
+  if (!root.positive_definite()) return;  // not positive definite: skip the update
+  const Eigen::MatrixXd gain = root.solve(Eigen::MatrixXd(ph.transpose())).transpose();
   const Eigen::VectorXd step = gain * v;
   if (!step.allFinite()) return;
   pose_ = pose_of(pose_.vector() + step.head<3>());

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/solve.hpp"
 #include "pipeline/craters/harmonic_rim.hpp"
 #include "pipeline/craters/sample.hpp"
 
@@ -38,7 +39,7 @@ Eigen::Vector2d tilt(const Pixels& heights, const CraterCandidate& c) {
       normal += at * at.transpose();
       right += at * double(sample(heights, x, y));
     }
-  const Eigen::Vector3d plane = normal.ldlt().solve(right);
+  const Eigen::Vector3d plane = solve_symmetric(normal, right);
   return {plane[1] / (c.diameter / 2), plane[2] / (c.diameter / 2)};
 }
 

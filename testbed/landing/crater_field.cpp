@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
+#include "core/solve.hpp"
 #include "testbed/landing/crater_profile.hpp"
 
 namespace waymark::testbed {
@@ -68,7 +69,7 @@ Eigen::Vector3d plane_around(const Grid<float>& heights, const NodeGrid& nodes, 
       normal += row * row.transpose();
       right += row * double(heights(i, j));
     }
-  return normal.ldlt().solve(right);
+  return solve_symmetric(normal, right);
 }
 
 // Secondary craters of a distant impact: along a line, elongated along it, half as deep.

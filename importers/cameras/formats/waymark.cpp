@@ -6,6 +6,7 @@
 #include <Eigen/SVD>
 #include <map>
 
+#include "core/solve.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/interior_orientation.hpp"
 #include "importers/images/sun_position.hpp"
@@ -62,8 +63,8 @@ Eigen::Matrix3d rotation_of(const JsonValue& image) {
     image["rotation"].refuse(fmt::format("this is no rotation: R R' is {:.2g} off the identity", off));
   if (!(given.determinant() > 0))
     image["rotation"].refuse("this is a reflection: its determinant is -1", "one axis has the wrong sign");
-  const Eigen::JacobiSVD<Eigen::Matrix3d> parts(given, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return parts.matrixU() * parts.matrixV().transpose();
+  const SingularValues3 parts = singular_values(given);
+  return parts.u * parts.v.transpose();
 }
 
 std::optional<Eigen::Matrix<double, 6, 6>> covariance_of(const JsonValue& image) {

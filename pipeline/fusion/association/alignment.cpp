@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/principal_axes.hpp"
+#include "core/solve.hpp"
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/association/clustering.hpp"
 #include "pipeline/fusion/association/shared_footprints.hpp"
@@ -180,7 +181,8 @@ class BundleAdjustment {
 
   void iterate(const std::vector<IndexPair>& pairs) {
     for (int k = 0; k < rules_.solutions; ++k) solve(pairs);
-    posterior_ = normal_.llt().solve(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols()));
+    posterior_ =
+        Cholesky(normal_).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(normal_.rows(), normal_.cols())));
   }
 
   void solve(const std::vector<IndexPair>& pairs) {
@@ -195,7 +197,7 @@ class BundleAdjustment {
     Eigen::VectorXd right = Eigen::VectorXd::Zero(prior_.rows());
     for (std::size_t image = 0; image < images_.size(); ++image) {
       const auto i = static_cast<Eigen::Index>(6 * image);
-      normal_.block<6, 6>(i, i) = prior_.block<6, 6>(i, i).inverse();
+      normal_.block<6, 6>(i, i) = inverse_by_lu(prior_.block<6, 6>(i, i));
       if (const auto& tie = images_[image].dem_constraint) {
         normal_.block<6, 6>(i, i) += tie->information / sharing_[image];
         right.segment<6>(i) += tie->information_vector / sharing_[image];
@@ -222,7 +224,7 @@ class BundleAdjustment {
       right.segment<6>(i) -= wa * apart;
       right.segment<6>(j) += wb * apart;
     }
-    correction_ = normal_.llt().solve(right);
+    correction_ = Cholesky(normal_).solve(right);
   }
 
   std::span<const ImageView> images_;

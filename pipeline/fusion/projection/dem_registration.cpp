@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/solve.hpp"
 #include "pipeline/fusion/projection/position_covariance.hpp"
 #include "pipeline/fusion/projection/shaded_relief.hpp"
 
@@ -112,7 +113,7 @@ class ShadingRegistration {
       normal += p * p.transpose();
       right += b * p;
     }
-    return normal.ldlt().solve(right);
+    return solve_symmetric(normal, right);
   }
 
   std::vector<Sums> blocks(const Parts& weight) const {
@@ -220,11 +221,11 @@ Estimate refine(ShadingRegistration& registration, Estimate from, const Eigen::M
     to.tie.information_vector = to.tie.information * to.correction + information_vector;
     if (!to.tie.information.allFinite() || !to.tie.information_vector.allFinite()) return to;
     const Eigen::Matrix<double, 6, 6> both = to.tie.information + prior;
-    const Vector6 next = both.ldlt().solve(to.tie.information_vector), step = next - to.correction;
+    const Vector6 next = solve_symmetric(both, to.tie.information_vector), step = next - to.correction;
     to.correction = next;
     if (step.dot(both * step) < kConverged) break;
   }
-  const Vector6 apart = to.tie.information.ldlt().solve(to.tie.information_vector) - to.correction;
+  const Vector6 apart = solve_symmetric(to.tie.information, to.tie.information_vector) - to.correction;
   const double distance = apart.dot(to.tie.information * apart) + to.correction.dot(prior * to.correction);
   to.sound = distance <= rules.gate;
   return to;
@@ -245,7 +246,7 @@ std::optional<PoseConstraint> register_to_dem(const Pixels& pixels, const ImageV
   Eigen::Matrix<double, 6, 6> given = image.view->covariance;
   given.diagonal() += Eigen::Vector<double, 6>::Constant(1e-14);
   given.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
-  const Eigen::Matrix<double, 6, 6> prior = given.inverse();
+  const Eigen::Matrix<double, 6, 6> prior = inverse_by_lu(given);
 
   const double step = std::max(terrain.step_x(), terrain.step_y());
   const Eigen::Vector2d size = high - low;

@@ -7,6 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -17,10 +19,9 @@ Eigen::Vector3d normal_of(const ReliefToPlace& relief) {
   for (const Eigen::Vector3d& c : relief.centres) cameras += c / double(relief.centres.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& p : relief.points) spread += (p - mean) * (p - mean).transpose();
-  Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(0);
+  Eigen::Vector3d normal = symmetric_eigen(spread).vectors.col(0);
   if (normal.dot(cameras - mean) < 0) normal = -normal;
-  const Eigen::Matrix3d level =
-      Eigen::Quaterniond::FromTwoVectors(normal, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d level = rotation_between(normal, Eigen::Vector3d::UnitZ());
   std::vector<Eigen::Vector3d> turned;
   for (const Eigen::Vector3d& p : relief.points) turned.push_back(level * (p - mean));
   const Eigen::Vector3d plane = fitted_plane(std::move(turned));
@@ -39,7 +40,7 @@ Eigen::Vector3d fitted_plane(std::vector<Eigen::Vector3d> points) {
       a.row(i) << p.x(), p.y(), 1;
       z[i] = p.z();
     }
-    plane = a.colPivHouseholderQr().solve(z);
+    plane = solve_least_squares(a, z);
     std::ranges::sort(points, {}, [&](const Eigen::Vector3d& p) {
       return std::abs(p.z() - plane.dot(Eigen::Vector3d(p.x(), p.y(), 1)));
     });
@@ -51,9 +52,8 @@ Eigen::Vector3d fitted_plane(std::vector<Eigen::Vector3d> points) {
 LevelRelief level_relief(const ReliefToPlace& relief) {
   LevelRelief out;
   Similarity& to = out.level_from_frame;
-  to.rotation = Eigen::Quaterniond::FromTwoVectors(relief.up ? relief.up->normalized() : normal_of(relief),
-                                                   Eigen::Vector3d::UnitZ())
-                    .toRotationMatrix();
+  to.rotation =
+      rotation_between(relief.up ? relief.up->normalized() : normal_of(relief), Eigen::Vector3d::UnitZ());
   std::vector<double> x, y, z;
   for (const Eigen::Vector3d& p : relief.points) {
     const Eigen::Vector3d at = to.rotation * p;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -54,10 +56,10 @@ std::optional<Similarity> fit(const std::vector<PositionPair>& pairs, bool level
     if (!(std::hypot(sine, cosine) > 0)) return std::nullopt;
     out.rotation = Eigen::AngleAxisd(std::atan2(sine, cosine), Eigen::Vector3d::UnitZ()).toRotationMatrix();
   } else {
-    const Eigen::JacobiSVD<Eigen::Matrix3d> parts(product, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const SingularValues3 parts = singular_values(product);
     Eigen::Vector3d sign(1, 1, 1);
-    if (parts.matrixU().determinant() * parts.matrixV().determinant() < 0) sign.z() = -1;
-    out.rotation = parts.matrixU() * sign.asDiagonal() * parts.matrixV().transpose();
+    if (parts.u.determinant() * parts.v.determinant() < 0) sign.z() = -1;
+    out.rotation = parts.u * sign.asDiagonal() * parts.v.transpose();
   }
   out.scale = (out.rotation.transpose() * product).trace() / spread;
   if (!(out.scale > 0) || !std::isfinite(out.scale)) return std::nullopt;
@@ -100,7 +102,7 @@ double distance_from_line(const std::vector<PositionPair>& pairs) {
   for (const PositionPair& p : pairs) mean += p.map / static_cast<double>(pairs.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   for (const PositionPair& p : pairs) spread += (p.map - mean) * (p.map - mean).transpose();
-  const Eigen::Vector3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues();
+  const Eigen::Vector3d axes = symmetric_eigen(spread).values;
   return std::sqrt(std::max(0.0, axes[0] + axes[1]) / static_cast<double>(pairs.size()));
 }
 
@@ -133,8 +135,7 @@ std::optional<RobustSimilarity> robust_similarity(const std::vector<PositionPair
                                                   const Eigen::Vector3d& up_in_frame) {
   const std::size_t n = pairs.size();
   if (n < 2) return std::nullopt;
-  const Eigen::Matrix3d level =
-      Eigen::Quaterniond::FromTwoVectors(up_in_frame, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d level = rotation_between(up_in_frame, Eigen::Vector3d::UnitZ());
   std::vector<PositionPair> levelled = pairs;
   for (PositionPair& p : levelled) p.frame = level * p.frame;
   std::optional<RobustSimilarity> best;

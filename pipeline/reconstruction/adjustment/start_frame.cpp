@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/solve.hpp"
 #include "pipeline/reconstruction/adjustment/robust_similarity.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
 
@@ -103,7 +104,7 @@ std::optional<Similarity> by_surface(const Reconstruction& scene, const Observat
       if (along(a, b) > along(*from, *to)) from = &a, to = &b;
   const Eigen::Vector3d frame = to->frame - from->frame, map = to->map - from->map;
   if (!(frame.norm() > 0) || !(map.norm() > from->sd + to->sd)) return std::nullopt;
-  const Eigen::Matrix3d start = Eigen::Quaterniond::FromTwoVectors(frame, map).toRotationMatrix();
+  const Eigen::Matrix3d start = rotation_between(frame, map);
   std::optional<Similarity> best;
   double lowest = 0;
   for (int step = 0; step < 360; ++step) {

@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/solve.hpp"
 #include "pipeline/reconstruction/adjustment/lens_model.hpp"
 
 namespace waymark::pipeline {
@@ -26,7 +27,7 @@ std::optional<Eigen::Vector3d> midpoint(const std::vector<WorldRay>& rays) {
   }
   constexpr double kParallel = 1e-14;  // squared angle of 1e-7 radians
   if (!(sum.determinant() > kParallel * static_cast<double>(rays.size()))) return std::nullopt;
-  return base + sum.ldlt().solve(right);
+  return base + solve_symmetric(sum, right);
 }
 
 double largest_angle(const std::vector<WorldRay>& rays) {
@@ -83,7 +84,7 @@ std::optional<TriangulatedPoint> triangulate(std::span<const PosedMark> marks) {
   TriangulatedPoint found{.position = *start};
   auto fit = fit_at(marks, found.position, lenses, parameters);
   for (int step = 0; step < 20 && fit; ++step) {
-    Eigen::Vector3d move = fit->normal.ldlt().solve(fit->right);
+    Eigen::Vector3d move = solve_symmetric(fit->normal, fit->right);
     if (!move.allFinite()) return std::nullopt;
     bool better = false;
     for (int halving = 0; halving < 10 && !better; ++halving, move /= 2) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -16,7 +18,7 @@ double cost_at(std::span<const FocalEvidence> evidence, double focal) {
   const Eigen::Vector3d scale(focal, focal, 1);
   for (const FocalEvidence& one : evidence) {
     const Eigen::Matrix3d essential = scale.asDiagonal() * one.fundamental * scale.asDiagonal();
-    const Eigen::Vector3d values = Eigen::JacobiSVD<Eigen::Matrix3d>(essential).singularValues();
+    const Eigen::Vector3d values = singular_values(essential).values;
     if (!(values[0] > 0)) continue;
     sum += one.weight * std::min(kBound, 1 - values[1] / values[0]);
     weights += one.weight;

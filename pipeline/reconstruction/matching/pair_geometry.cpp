@@ -9,6 +9,8 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -127,10 +129,10 @@ std::size_t rotation_inliers(const std::vector<RayPair>& pairs, double threshold
         sum += rays.second * rays.first.transpose() / (1 + angle * angle / (width * width));
     }
     if (round == 14 || sum.isZero()) break;
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const SingularValues3 svd = singular_values(sum);
     Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-    flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant();
-    rotation = svd.matrixU() * flip * svd.matrixV().transpose();
+    flip(2, 2) = (svd.u * svd.v.transpose()).determinant();
+    rotation = svd.u * flip * svd.v.transpose();
   }
   return count;
 }
@@ -307,8 +309,8 @@ PairGeometry pair_geometry(std::span<const Match> matches, std::span<const Eigen
   if (const auto h = homography_of(points, settings)) {
     out.homography_inliers = homography_inliers(*h, pairs, settings.threshold);
     add_plane_poses(*h, candidates);
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(*h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    turn = svd.matrixU() * svd.matrixV().transpose();
+    const SingularValues3 svd = singular_values(*h);
+    turn = svd.u * svd.v.transpose();
     if (turn.determinant() < 0) turn.setIdentity();
   }
   const std::size_t turned = rotation_inliers(pairs, settings.threshold, turn);

@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "core/random.hpp"
+#include "core/solve.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -100,7 +101,7 @@ Eigen::Isometry3d refine_resection(const Camera& camera, Eigen::Isometry3d pose,
       normal += weight * slope.transpose() * slope;
       right -= weight * slope.transpose() * *r;
     }
-    const Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(right);
+    const Eigen::Matrix<double, 6, 1> step = solve_symmetric(normal, right);
     if (!step.allFinite()) break;
     const Eigen::Isometry3d next = nudged(pose, step);
     Agreement there = agreement(camera, next, points, threshold);

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -29,7 +31,7 @@ Eigen::Vector3d robust_plane(const std::vector<Neighbour>& cells, double min_sca
       normal += weight[i] * row * row.transpose();
       right += weight[i] * cells[i].h * row;
     }
-    plane = normal.ldlt().solve(right);
+    plane = solve_symmetric(normal, right);
     for (std::size_t i = 0; i < cells.size(); ++i)
       residual[i] = std::abs(cells[i].h - plane.x() - plane.y() * cells[i].x - plane.z() * cells[i].y);
     std::vector<double> sorted = residual;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/solve.hpp"
 #include "pipeline/reconstruction/surface/image_levels.hpp"
 
 namespace waymark::pipeline {
@@ -193,7 +194,7 @@ std::vector<double> balance_gains(const Grid<double>& sums, const Grid<double>& 
     }
   const double pull = n > 0 ? std::max(1e-9, kPull * normal.trace() / double(n)) : 1;
   normal.diagonal().array() += pull;
-  const Eigen::VectorXd logs = normal.ldlt().solve(right);
+  const Eigen::VectorXd logs = solve_symmetric(normal, right);
   std::vector<double> gains;
   for (Eigen::Index i = 0; i < n; ++i) gains.push_back(std::exp(logs(i)));
   return gains;
