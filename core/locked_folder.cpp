@@ -77,7 +77,9 @@ bool is_dead(const Owner& owner) {
   return owner.host == host_name() && ::kill(owner.process, 0) != 0 && errno == ESRCH;
 }
 
-void remove_dead(const fs::path& parent, const std::function<void(const fs::path&)>& before_removal) {
+}  // namespace
+
+void remove_dead_folders(const fs::path& parent, const std::function<void(const fs::path&)>& before_removal) {
   std::error_code ignored;  // another process may be clearing the same folder
   for (fs::directory_iterator entry(parent, ignored), end; entry != end; entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
@@ -96,11 +98,9 @@ void remove_dead(const fs::path& parent, const std::function<void(const fs::path
   }
 }
 
-}  // namespace
-
 LockedFolder::LockedFolder(const fs::path& parent,
                            const std::function<void(const fs::path&)>& before_removal) {
-  remove_dead(parent, before_removal);
+  remove_dead_folders(parent, before_removal);
   const std::string pattern =
       (parent / (std::string(kAsidePrefix) + std::to_string(::getpid()) + "-" + host_name() + "-XXXXXX"))
           .string();

@@ -8,6 +8,10 @@ namespace waymark::inline core {
 /// Prefix of every hidden file or folder that Waymark keeps beside an output or in the temporary folder.
 inline constexpr std::string_view kAsidePrefix = ".waymark-";
 
+/// Removes the locked folders of dead processes in a folder, as the constructor of LockedFolder does.
+void remove_dead_folders(const std::filesystem::path& parent,
+                         const std::function<void(const std::filesystem::path& dead)>& before_removal = {});
+
 /// A folder .waymark-<process>-<host>-XXXXXX, removed with its content by the destructor. It is locked while
 /// the process lives; the constructor removes those of dead processes in the same folder.
 class LockedFolder {

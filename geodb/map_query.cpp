@@ -43,9 +43,12 @@ void check_query_columns(const MapQuery& query, const Tables& tables) {
 }
 
 /// Visits the rows with the largest values in their final order, by the index of write_map: equal values by
-/// row. Returns whether they are all that the query can need; if not, `best` is unusable.
+/// row, those without a value last. Returns whether they are all that the query can need; if not, `best` is
+/// unusable.
 bool visit_largest(const MapStore::Connection& map, const LandmarkTable& table, const MapQuery& query,
                    const LandmarkSearch& search, BestLandmarks& best) {
+  if (query.sensor != nullptr && query.largest_first == "quality")
+    return false;  // the sensor's is not stored
   const LargestConditions largest =
       largest_conditions(map.database, table.layout.type().name, query.largest_first);
   if (largest.indexed.empty()) return false;
@@ -56,8 +59,8 @@ bool visit_largest(const MapStore::Connection& map, const LandmarkTable& table, 
   };
   visit("WHERE t." + largest.indexed + " ORDER BY t." + quote_identifier(query.largest_first) +
         " DESC, t.id");
-  if (!largest.equal.empty()) visit("WHERE t." + largest.equal + " ORDER BY t.id");
-  return found >= best.limit();
+  if (!largest.following.empty()) visit("WHERE t." + largest.following + " ORDER BY t.id");
+  return largest.all_rows || found >= best.limit();
 }
 
 BestLandmarks search(MapStore::Connection& map, const Tables& tables, const MapQuery& query,

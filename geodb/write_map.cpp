@@ -43,7 +43,7 @@ struct TypeStatistics {
   LargestValues largest{0};
 };
 
-void add_statistics(std::vector<TypeStatistics>& of_type, const TypeRegistry& types,
+void add_statistics(std::vector<TypeStatistics>& of_type, const std::vector<LandmarkLayout>& layouts,
                     const std::vector<Landmark>& landmarks, bool in_memory) {
   for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
     const Landmark& landmark = landmarks[i];
@@ -53,18 +53,21 @@ void add_statistics(std::vector<TypeStatistics>& of_type, const TypeRegistry& ty
     TypeStatistics& statistics = of_type.at(landmark.type);
     ++statistics.count;
     statistics.extent.add(landmark.position.xyz.x(), landmark.position.xyz.y());
-    add_landmark(statistics.largest, types[landmark.type], landmark);
+    add_landmark(statistics.largest, layouts[landmark.type], landmark);
     if (in_memory) statistics.in_memory.push_back(i);
   }
 }
 
 std::vector<TypeStatistics> type_statistics(const MapContents& contents) {
   std::vector<TypeStatistics> of_type(contents.types.size());
-  for (TypeId id = 0; id < of_type.size(); ++id)
-    of_type[id].largest = LargestValues(largest_columns(contents.types[id]).size());
-  add_statistics(of_type, contents.types, contents.landmarks, true);
+  std::vector<LandmarkLayout> layouts;
+  for (TypeId id = 0; id < of_type.size(); ++id) {
+    layouts.emplace_back(contents.types[id], id);
+    of_type[id].largest = LargestValues(layouts[id].columns().size());
+  }
+  add_statistics(of_type, layouts, contents.landmarks, true);
   for (std::size_t part = 0; part < contents.parts.count; ++part)
-    add_statistics(of_type, contents.types, *contents.parts.landmarks(part), false);
+    add_statistics(of_type, layouts, *contents.parts.landmarks(part), false);
   return of_type;
 }
 
@@ -134,7 +137,7 @@ class MapWriter {
     orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, max_in_memory_));
     database_->execute(layout.create_table());
     if ((*statistics_)[old_id].count >= kLarge)
-      create_largest_indexes(*database_, type, (*statistics_)[old_id].largest);
+      create_largest_indexes(*database_, layout, (*statistics_)[old_id].largest);
     insert_rows(layout, old_id);
     create_uid_index(type.name);
     create_edit_triggers(*database_, type.name);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <type_traits>
 
 #include "core/error.hpp"
 #include "core/landmark.hpp"
@@ -66,6 +67,47 @@ std::optional<double> spread(const FeatureValue& feature) {
   return std::sqrt(feature.variance);
 }
 
+/// Calls `take` with the value of each column after the uid, in their order.
+template <class Take>
+void visit_values(const LandmarkType& type, const Landmark& landmark, const Take& take) {
+  for (std::size_t i = 0; i < type.features.size(); ++i) {
+    const bool known = i < landmark.features.size() && landmark.features[i].known();
+    const FeatureValue value = known ? landmark.features[i] : FeatureValue{};
+    const auto& confidences = landmark.quality.feature_confidences;
+    take(value.value);
+    take(spread(value));
+    take(known && i < confidences.size() ? confidences[i] : std::nullopt);
+  }
+  const auto& [seen, visible, feature_confidences] = landmark.quality;
+  const auto& covariance = landmark.covariance;
+  take(seen);
+  take(visible);
+  take(multiplicity_confidence(seen, visible));
+  take(quality_of(type, landmark));
+  for (const double value :
+       {landmark.confidence, covariance(0, 0), covariance(1, 1), covariance(0, 1), covariance(2, 2)})
+    take(value);
+  take(landmark.observations);
+  static const AttributeValue none;  // texts are bound by reference, so it must outlive the loop
+  for (std::size_t i = 0; i < type.attributes.size(); ++i)
+    take(i < landmark.attributes.size() ? landmark.attributes[i] : none);
+}
+
+double number_of(double value) {
+  return value;
+}
+double number_of(std::optional<double> value) {
+  return value.value_or(std::nan(""));
+}
+double number_of(int value) {
+  return value;
+}
+double number_of(const AttributeValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  const auto* real = std::get_if<double>(&value);
+  return real != nullptr ? *real : std::nan("");
+}
+
 }  // namespace
 
 LandmarkLayout::LandmarkLayout(const LandmarkType& type, TypeId id) : type_(&type), id_(id) {
@@ -123,27 +165,19 @@ void LandmarkLayout::bind(sqlite::Statement& statement, std::int64_t row, const 
                           std::span<const std::byte> geometry) const {
   statement.bind_all(row, geometry, landmark.uid);
   int parameter = kFirst;
-  for (std::size_t i = 0; i < type_->features.size(); ++i) {
-    const bool known = i < landmark.features.size() && landmark.features[i].known();
-    const FeatureValue value = known ? landmark.features[i] : FeatureValue{};
-    const auto& confidences = landmark.quality.feature_confidences;
-    statement.bind(++parameter, value.value);
-    statement.bind(++parameter, spread(value));
-    statement.bind(++parameter, known && i < confidences.size() ? confidences[i] : std::nullopt);
-  }
-  const auto& [seen, visible, feature_confidences] = landmark.quality;
-  const auto& covariance = landmark.covariance;
-  statement.bind(++parameter, seen);
-  statement.bind(++parameter, visible);
-  statement.bind(++parameter, multiplicity_confidence(seen, visible));
-  statement.bind(++parameter, quality_of(*type_, landmark));
-  for (const double value :
-       {landmark.confidence, covariance(0, 0), covariance(1, 1), covariance(0, 1), covariance(2, 2)})
-    statement.bind(++parameter, value);
-  statement.bind(++parameter, landmark.observations);
-  static const AttributeValue none;  // texts are bound by reference, so it must outlive the loop
-  for (std::size_t i = 0; i < type_->attributes.size(); ++i)
-    bind_attribute(statement, ++parameter, i < landmark.attributes.size() ? landmark.attributes[i] : none);
+  visit_values(*type_, landmark, [&]<class Value>(const Value& value) {
+    if constexpr (std::is_same_v<Value, AttributeValue>)
+      bind_attribute(statement, ++parameter, value);
+    else
+      statement.bind(++parameter, value);
+  });
+}
+
+std::vector<double> LandmarkLayout::numbers(const Landmark& landmark) const {
+  std::vector<double> numbers(kFirst, std::nan(""));
+  numbers.reserve(columns_.size());
+  visit_values(*type_, landmark, [&](const auto& value) { numbers.push_back(number_of(value)); });
+  return numbers;
 }
 
 Landmark LandmarkLayout::read(const sqlite::Statement& row) const {

@@ -39,6 +39,8 @@ class LandmarkLayout {
   void bind(sqlite::Statement& statement, std::int64_t row, const Landmark& landmark,
             std::span<const std::byte> geometry) const;
   Landmark read(const sqlite::Statement& row) const;
+  /// Returns the value of each column as bind() stores it; NaN for NULL, geometries and texts.
+  std::vector<double> numbers(const Landmark& landmark) const;
 
   static std::int64_t row_id(const sqlite::Statement& row) { return row.integer(0); }
   static std::span<const std::byte> geometry(const sqlite::Statement& row) { return row.blob(1); }

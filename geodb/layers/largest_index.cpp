@@ -8,8 +8,8 @@
 #include <cmath>
 #include <functional>
 
+#include "geodb/layers/landmark_search.hpp"
 #include "geodb/sqlite/sql_text.hpp"
-#include "landmarks/sensor_profile.hpp"
 
 namespace waymark::geodb {
 namespace {
@@ -18,8 +18,16 @@ std::string index_name(std::string_view table, std::string_view column) {
   return fmt::format("{}_{}_largest", table, column);
 }
 
-std::string condition_text(std::string_view column, std::string_view relation, double threshold) {
+constexpr const char* kKnown = " IS NOT NULL";
+
+std::string comparison(std::string_view column, std::string_view relation, double threshold) {
   return fmt::format("{} {} {:.17g}", quote_identifier(column), relation, threshold);
+}
+
+std::string condition_text(std::string_view column, const LargestValues::Threshold& threshold) {
+  using Rows = LargestValues::Threshold::Rows;
+  if (threshold.rows == Rows::known) return quote_identifier(column) + kKnown;
+  return comparison(column, threshold.rows == Rows::above ? ">" : ">=", threshold.value);
 }
 
 }  // namespace
@@ -41,36 +49,29 @@ void LargestValues::add(std::size_t column, double value) {
   std::ranges::push_heap(heap, std::greater{});
 }
 
-std::optional<LargestValues::Threshold> LargestValues::threshold(std::size_t column) const {
+LargestValues::Threshold LargestValues::threshold(std::size_t column) const {
+  using Rows = Threshold::Rows;
   const auto& [heap, equal] = columns_[column];
-  if (heap.size() < capacity_) return std::nullopt;
-  return Threshold{.value = heap.front(), .many_equal = equal > capacity_};
+  if (heap.size() < capacity_) return {.rows = Rows::known};
+  return {.rows = equal > capacity_ ? Rows::above : Rows::from, .value = heap.front()};
 }
 
-std::vector<std::string> largest_columns(const LandmarkType& type) {
-  std::vector<std::string> names;
-  for (const FeatureSpec& feature : type.features) names.push_back(feature.name);
-  names.insert(names.end(), {"quality", "confidence"});
-  return names;
+void add_landmark(LargestValues& values, const LandmarkLayout& layout, const Landmark& landmark) {
+  const std::vector<double> numbers = layout.numbers(landmark);
+  for (std::size_t i = 0; i < numbers.size(); ++i) values.add(i, numbers[i]);
 }
 
-void add_landmark(LargestValues& values, const LandmarkType& type, const Landmark& landmark) {
-  const std::size_t features = type.features.size();
-  for (std::size_t i = 0; i < std::min(features, landmark.features.size()); ++i)
-    if (landmark.features[i].known()) values.add(i, landmark.features[i].value);
-  if (const auto quality = quality_of(type, landmark)) values.add(features, *quality);
-  values.add(features + 1, landmark.confidence);
-}
-
-void create_largest_indexes(const sqlite::Database& database, const LandmarkType& type,
+void create_largest_indexes(const sqlite::Database& database, const LandmarkLayout& layout,
                             const LargestValues& values) {
-  const std::vector<std::string> columns = largest_columns(type);
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    if (const auto threshold = values.threshold(i))
-      database.execute(fmt::format(
-          "CREATE INDEX {} ON {} ({} DESC) WHERE {}", quote_identifier(index_name(type.name, columns[i])),
-          quote_identifier(type.name), quote_identifier(columns[i]),
-          condition_text(columns[i], threshold->many_equal ? ">" : ">=", threshold->value)));
+  const std::string& table = layout.type().name;
+  const auto columns = layout.columns();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& column = columns[i].name;
+    if (number_column(layout, column))
+      database.execute(fmt::format("CREATE INDEX {} ON {} ({} DESC) WHERE {}",
+                                   quote_identifier(index_name(table, column)), quote_identifier(table),
+                                   quote_identifier(column), condition_text(column, values.threshold(i))));
+  }
 }
 
 LargestConditions largest_conditions(const sqlite::Database& database, std::string_view table,
@@ -81,15 +82,17 @@ LargestConditions largest_conditions(const sqlite::Database& database, std::stri
   row.bind_all(name, table);
   if (!row.step()) return {};
   const std::string_view sql = row.text(0);
-  const std::size_t relation = sql.rfind("> ");
-  const std::size_t number = relation == std::string_view::npos ? sql.rfind(">= ") : relation;
+  const std::string quoted = quote_identifier(column);
+  if (sql.ends_with(kKnown)) return {quoted + kKnown, quoted + " IS NULL", true};
+  const std::size_t above = sql.rfind("> ");
+  const std::size_t number = above == std::string_view::npos ? sql.rfind(">= ") : above;
   if (number == std::string_view::npos) return {};
   double threshold = 0;  // only the number and its relation are taken from the file
   if (std::from_chars(sql.data() + sql.find(' ', number) + 1, sql.data() + sql.size(), threshold).ec !=
       std::errc())
     return {};
-  if (relation == std::string_view::npos) return {condition_text(column, ">=", threshold), ""};
-  return {condition_text(column, ">", threshold), condition_text(column, "=", threshold)};
+  if (above == std::string_view::npos) return {comparison(column, ">=", threshold), ""};
+  return {comparison(column, ">", threshold), comparison(column, "=", threshold)};
 }
 
 }  // namespace waymark::geodb

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 #include "core/landmark.hpp"
+#include "geodb/layers/landmark_layout.hpp"
 #include "geodb/sqlite/sqlite.hpp"
-#include "landmarks/landmark_type.hpp"
 namespace waymark::geodb {
 
 /// The largest values of some columns among many landmarks, to index these alone: a query for the largest
 /// reads thousands of rows of a large map and not all.
 class LargestValues {
  public:
-  /// Smallest of the largest values of a column. `many_equal`: so many landmarks have just this value that
-  /// only larger ones are worth an index; a scan in the order of rows soon finds enough of them.
+  /// Rows of a column that are worth an index.
   struct Threshold {
+    enum class Rows {
+      from,   ///< with this value or a larger one
+      above,  ///< with a larger one: a scan in the order of rows soon finds enough that have just this value
+      known,  ///< with any value: most rows have none
+    };
+    Rows rows = Rows::from;
     double value = 0;
-    bool many_equal = false;
   };
 
   /// Each column keeps its `capacity` largest values.
@@ -26,8 +29,7 @@ class LargestValues {
       : columns_(columns), capacity_(capacity) {}
   /// Adds a value of a column; ignores NaN and infinity.
   void add(std::size_t column, double value);
-  /// Returns `std::nullopt` for a column with fewer values than `capacity`.
-  std::optional<Threshold> threshold(std::size_t column) const;
+  Threshold threshold(std::size_t column) const;
 
  private:
   struct Column {
@@ -38,22 +40,20 @@ class LargestValues {
   std::size_t capacity_;
 };
 
-/// Returns the columns with an index of their largest values: the type's features, quality and confidence.
-std::vector<std::string> largest_columns(const LandmarkType& type);
+/// Adds a landmark's value of each column of its table.
+void add_landmark(LargestValues& values, const LandmarkLayout& layout, const Landmark& landmark);
 
-/// Adds a landmark's values of `largest_columns`.
-void add_landmark(LargestValues& values, const LandmarkType& type, const Landmark& landmark);
-
-/// Creates a partial index per column over the values from its threshold on. Cheap before the rows are
-/// inserted.
-void create_largest_indexes(const sqlite::Database& database, const LandmarkType& type,
+/// Creates a partial index of each column of numbers, over the rows with its largest values. Cheap before the
+/// rows are inserted.
+void create_largest_indexes(const sqlite::Database& database, const LandmarkLayout& layout,
                             const LargestValues& values);
 
 /// Conditions of the rows with the largest values of a column, the larger ones first. SQLite uses the index
 /// if a query has the condition `indexed`.
 struct LargestConditions {
-  std::string indexed;  ///< e.g. `"radius" >= 3.5`; empty: no such index
-  std::string equal;    ///< rows of equal value that follow, e.g. `"confidence" = 1`; empty: none
+  std::string indexed;    ///< e.g. `"radius" >= 3.5`; empty: no such index
+  std::string following;  ///< rows of equal rank that follow, e.g. `"quality" IS NULL`; empty: none
+  bool all_rows = false;  ///< no other rows exist
 };
 LargestConditions largest_conditions(const sqlite::Database& database, std::string_view table,
                                      std::string_view column);

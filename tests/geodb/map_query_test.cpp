@@ -176,6 +176,20 @@ TEST(MapQuery, ManyEqualLargestValuesNeedNoIndexOfAll) {
   }
 }
 
+SensorProfile sensor_of_heights() {
+  return {.name = "heights", .summary = "", .weights = {{"lamp_post", "height", 1}}};
+}
+
+/// Removes the indexes of the largest values: every query is a scan.
+void drop_largest_indexes(const std::filesystem::path& map) {
+  std::string script = query_text(
+      map,
+      "SELECT group_concat('DROP INDEX \"' || name || '\"', '; ') FROM sqlite_schema WHERE name LIKE "
+      "'%_largest'");
+  ASSERT_NE(script, "");
+  execute_sql(map, script);
+}
+
 // Maps of 50,000 landmarks and more have an index of the largest values. Rounded heights make many ties.
 TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
   MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
@@ -188,12 +202,13 @@ TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
   }
   const TemporaryFolder folder;
   write_map(folder / "map.gpkg", contents);
-  EXPECT_EQ(query_text(folder / "map.gpkg", "SELECT count(*) FROM sqlite_schema WHERE name LIKE '%_largest'"),
+  EXPECT_EQ(query_text(folder / "map.gpkg",
+                       "SELECT count(*) FROM sqlite_schema WHERE name IN ('lamp_post_height_largest', "
+                       "'lamp_post_diameter_largest', 'lamp_post_quality_largest', "
+                       "'lamp_post_confidence_largest')"),
             "4");
   write_map(folder / "scan.gpkg", contents);
-  execute_sql(folder / "scan.gpkg",
-              "DROP INDEX lamp_post_height_largest; DROP INDEX lamp_post_diameter_largest; "
-              "DROP INDEX lamp_post_quality_largest; DROP INDEX lamp_post_confidence_largest");
+  drop_largest_indexes(folder / "scan.gpkg");
   const MapStore indexed = MapStore::open(folder / "map.gpkg"),
                  scanned = MapStore::open(folder / "scan.gpkg");
   for (const std::string feature : {"height", "diameter", "quality", "confidence"})
@@ -206,6 +221,61 @@ TEST(MapQuery, TheIndexOfTheLargestGivesWhatAScanGives) {
       .features = {{.feature = "height", .max_value = 5}}, .largest_first = "height", .limit = 3};
   EXPECT_EQ(uids(indexed.query(tall)), uids(scanned.query(tall)));  // none of the largest: a scan after all
   EXPECT_THAT(validate_map(folder / "map.gpkg"), ::testing::IsEmpty());
+}
+
+// Few have a quality, none a deviation, nearly all are seen once: what no index held was a scan of the map.
+TEST(MapQuery, EveryNumberOfALargeMapHasAnIndexOfItsLargest) {
+  MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
+  for (std::size_t i = 0; i < contents.landmarks.size(); ++i) {
+    Landmark& l = contents.landmarks[i];
+    const bool assessed = i % 600 == 0;
+    l.features[0].variance = assessed ? 0.01 * static_cast<double>(i % 7) : 0;
+    l.quality = assessed
+                    ? Quality{.seen = static_cast<int>(i / 600 % 5), .visible = 5, .feature_confidences = {}}
+                    : Quality{.seen = 1, .visible = 1, .feature_confidences = {}};
+  }
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", contents);
+  write_map(folder / "scan.gpkg", contents);
+  drop_largest_indexes(folder / "scan.gpkg");
+  const MapStore indexed = MapStore::open(folder / "map.gpkg"),
+                 scanned = MapStore::open(folder / "scan.gpkg");
+  const SensorProfile heights = sensor_of_heights();
+  for (const char* column : {"quality", "q_multiplicity", "seen", "visible", "observations", "height_sd",
+                             "diameter_q", "var_x", "var_z", "fixtures", "diameter"}) {
+    const std::string name(column);
+    EXPECT_THAT(query_text(folder / "map.gpkg",
+                           "SELECT sql FROM sqlite_schema WHERE name = 'lamp_post_" + name + "_largest'"),
+                ::testing::HasSubstr("CREATE INDEX"))
+        << name;
+    for (const std::int64_t limit : {1, 7, 101, 5'000})
+      for (const double min_height : {0.0, 5.0})
+        for (const SensorProfile* sensor : {static_cast<const SensorProfile*>(nullptr), &heights}) {
+          const MapQuery query{.features = {{.feature = "height", .min_value = min_height}},
+                               .sensor = sensor,
+                               .largest_first = name,
+                               .limit = limit};
+          EXPECT_EQ(uids(indexed.query(query)), uids(scanned.query(query))) << name << ' ' << limit;
+        }
+  }
+}
+
+// A sensor's quality differs from the stored one in order.
+TEST(MapQuery, TheLargestQualityOfASensorIsNotTheStoredOne) {
+  MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
+  for (std::size_t i = 0; i < contents.landmarks.size(); ++i) {
+    const double agreement = static_cast<double>(i * 7919 % 60'000) / 60'000;
+    contents.landmarks[i].quality = {
+        .seen = 4, .visible = 5, .feature_confidences = {agreement, 1 - agreement * agreement}};
+  }
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", contents);
+  write_map(folder / "scan.gpkg", contents);
+  drop_largest_indexes(folder / "scan.gpkg");
+  const SensorProfile heights = sensor_of_heights();
+  const MapQuery query{.sensor = &heights, .largest_first = "quality", .limit = 5};
+  EXPECT_EQ(uids(MapStore::open(folder / "map.gpkg").query(query)),
+            uids(MapStore::open(folder / "scan.gpkg").query(query)));
 }
 
 TEST(MapQuery, EveryNumberCanBeQueried) {

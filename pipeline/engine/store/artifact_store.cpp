@@ -117,6 +117,7 @@ std::optional<StoredUnit> ArtifactStore::find(const Unit& unit, const StageSpec&
   const fs::path result = result_folder(unit);
   const Json manifest = intact_manifest(result);
   if (manifest.is_null()) return std::nullopt;
+  remove_dead_folders(item_folder(unit));  // of a process killed after its result was complete
   StoredUnit stored;
   try {
     stored.counts = {manifest.at("in"), manifest.at("out"), manifest.at("rejected")};

@@ -109,6 +109,15 @@ TEST_F(KilledRun, GoesOnWhereItWas) {
   EXPECT_EQ(leftovers(), 0);
 }
 
+// A process can be killed when its result is in place, and its hidden folder still there.
+TEST_F(KilledRun, LeavesNothingBesideAFinishedResult) {
+  resumed_sum();
+  const fs::path dead = work / "sum_squares/map/.waymark-999999999-a-host-abcdef";
+  fs::create_directories(dead);
+  resumed_sum();
+  EXPECT_FALSE(fs::exists(dead));
+}
+
 TEST_F(KilledRun, LeavesNothingForGood) {
   fs::create_directories(work / "sum_squares/map");
   const fs::path dead = work / "sum_squares/map/.waymark-999999999-a-host-abcdef";
