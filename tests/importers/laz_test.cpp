@@ -265,6 +265,39 @@ TEST(Catalogue, ThreadsDoNotMatter) {
   EXPECT_EQ(all, visited());
 }
 
+// The points of tests/importers/laz: three flight lines, three channels, wild values among them. The files
+// were written by another program than ours, in chunks of 100.
+std::vector<LasPoint> points_by_formula(int format) {
+  std::uint32_t state = 12345;
+  const auto draw = [&] {
+    state = state * 1664525 + 1013904223;
+    return static_cast<int>(state >> 8);
+  };
+  std::vector<LasPoint> points;
+  for (int i = 0; i < 240; ++i) {
+    const int line = i / 97, k = i % 97, returns = 1 + i / 7 % 4, number = 1 + i % returns;
+    int x = (line % 2 ? 97 - k : k) * 53 + draw() % 9;
+    const int y = line * 201 + draw() % 31;
+    int z = 1000 + (number < returns ? draw() % 1500 : draw() % 20);
+    if (i % 131 == 0) x = draw() - (1 << 23), z = -draw();
+    draw();  // intensity
+    int type = number == returns ? 2 : 3 + draw() % 3;
+    if (format >= 6 && i % 61 == 0) type = 100;
+    // User data, time, colours and waveforms.
+    for (int skipped = (i % 40 == 0) + (i % 71 == 0) + 4 + 28; skipped > 0; --skipped) draw();
+    points.push_back({500000 + 0.01 * x, 5000000 + 0.01 * y, 0.01 * z, static_cast<std::uint8_t>(type),
+                      static_cast<std::uint8_t>(number), i % 50 == 0});
+  }
+  return points;
+}
+
+TEST(LazOfAnotherProgram, EveryPointFormatIsRead) {
+  for (int format = 0; format <= 10; ++format)
+    EXPECT_EQ(all_points(fmt::format("{}/tests/importers/laz/format_{}.laz", WAYMARK_SOURCE_DIR, format)),
+              points_by_formula(format))
+        << format;
+}
+
 // Files of the shared data whose points are published as LAS, too.
 TEST(RealLaz, IsReadLikeItsLas) {
   const std::filesystem::path folder = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/forest";
