@@ -31,7 +31,7 @@ std::uint64_t table_offset(VsiFile& file, const LasHeader& header) {
   const auto first = static_cast<std::int64_t>(header.first_point + kBefore);
   if (offset <= first && header.points > 0)
     refuse_table(header, "the file has no table of its chunks: it was not finished");
-  if (offset + 8 > static_cast<std::int64_t>(file.size()))
+  if (offset > static_cast<std::int64_t>(file.size()) - 8)
     refuse_table(header,
                  fmt::format("the file is truncated: the table of its chunks would be at byte {}, it has {}",
                              offset, file.size()));
