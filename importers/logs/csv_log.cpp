@@ -125,8 +125,7 @@ class CsvLog {
       throw Error(ErrorCode::usage, fmt::format("--columns gives '{}' twice", one.target), "--columns",
                   "remove one of them");
     if (one.target == "frame")
-      records_.push_back(
-          {1, text_of({{"kind", "header"}, {"version", 1}, {"frame", one.expression}})});
+      records_.push_back({1, text_of({{"kind", "header"}, {"version", 1}, {"frame", one.expression}})});
     else if (!one.expression.empty())
       bind(one.target, one.expression);
   }

@@ -33,9 +33,9 @@ inline unsigned return_level(unsigned returns, unsigned number) {
   return level < 7 ? level : 7;
 }
 
-/// Returns the context of a coordinate by the bits of the previous ones, even and at most `most`.
-inline unsigned even_context(unsigned bits, unsigned most) {
-  return bits < most ? bits & ~1U : most;
+/// Returns the context of a coordinate by the bits of the previous ones, even and at most `max_context`.
+inline unsigned even_context(unsigned bits, unsigned max_context) {
+  return bits < max_context ? bits & ~1U : max_context;
 }
 
 }  // namespace waymark::importers
