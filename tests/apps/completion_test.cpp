@@ -58,7 +58,7 @@ TEST(Completion, Help) {
 TEST(Completion, IsSoundZsh) {
   const std::string script = waymark({"completion", "zsh"}).out;
   EXPECT_THAT(script, testing::AllOf(testing::StartsWith("#compdef waymark"), testing::HasSubstr("'peaks:"),
-                                     testing::HasSubstr("(fill")));
+                                     testing::HasSubstr("(ocean unknown fill)")));
   if (bash("command -v zsh").code != 0) GTEST_SKIP() << "zsh is not installed";
   EXPECT_EQ(bash("$WAYMARK completion zsh | zsh -n").err, "");
 }
