@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "core/printable.hpp"
 
@@ -15,8 +16,11 @@ constexpr std::size_t kMaxMessage = 4000;  // bytes: about a screen
 
 spdlog::logger& log() {
   static const auto logger = [] {
-    auto made =
-        std::make_shared<spdlog::logger>("waymark", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    const char* no_colour = std::getenv("NO_COLOR");  // https://no-color.org
+    const bool plain = no_colour != nullptr && *no_colour != '\0';
+    auto made = std::make_shared<spdlog::logger>(
+        "waymark", std::make_shared<spdlog::sinks::stderr_color_sink_mt>(
+                       plain ? spdlog::color_mode::never : spdlog::color_mode::automatic));
     made->set_pattern("%^%l:%$ %v");
     made->set_level(spdlog::level::warn);
     return made;

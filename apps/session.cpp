@@ -33,7 +33,7 @@ void log_gdal(CPLErr level, CPLErrorNum number, const char* text) {
 std::vector<Argument> global_arguments(Session& session) {
   return {
       {"-h,--help", "", &session.help, "Show what a command does, its options and examples"},
-      {"--version", "", &session.version, "Show the version"},
+      {"-V,--version", "", &session.version, "Show the version"},
       {"-q,--quiet", "", &session.quiet, "Say nothing but errors"},
       {"-v,--verbose", "", &session.verbose, "Say more: every input file with its SHA-256"},
       Argument{"--threads", "N", &session.threads, "Threads to compute with"}.or_else("one per processor"),

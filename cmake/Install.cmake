@@ -23,12 +23,24 @@ install(FILES ${PROJECT_BINARY_DIR}/WaymarkConfig.cmake ${PROJECT_BINARY_DIR}/Wa
               cmake/Catalogue.cmake cmake/FindOpenCVParts.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
+# For builds without CMake.
+get_property(own_libraries GLOBAL PROPERTY WAYMARK_LIBRARIES)
+list(TRANSFORM own_libraries PREPEND -l)
+list(JOIN own_libraries " " own_libraries)
+get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" to_prefix ${to_prefix})
+configure_file(cmake/waymark.pc.in waymark.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/waymark.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+
 # apps/CMakeLists.txt makes these with the program, so that all that is installed exists once the program is built.
 set(pages ${PROJECT_BINARY_DIR}/pages)
 install(FILES ${pages}/waymark.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${pages}/waymark DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+install(FILES ${pages}/_waymark DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+install(FILES ${pages}/waymark.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
-install(FILES NOTICE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES NOTICE CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/install-packages --list libraries
                 OUTPUT_VARIABLE libraries OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)

@@ -36,6 +36,7 @@ function(waymark_folder)
   if(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
     waymark_use_precompiled(${target} waymark_precompiled)
   endif()
+  set_property(GLOBAL APPEND PROPERTY WAYMARK_LIBRARIES ${target})  # for pkg-config
   install(TARGETS ${target} EXPORT WaymarkTargets ARCHIVE COMPONENT development)
 endfunction()
 

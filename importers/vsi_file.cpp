@@ -14,7 +14,11 @@ VSILFILE* handle(void* file) {
 
 }  // namespace
 
-VsiFile::VsiFile(const std::string& path) : file_(VSIFOpenL(path.c_str(), "rb")) {
+VsiFile::VsiFile(const std::string& path) : file_(nullptr) {
+  VSIStatBufL status;
+  if (VSIStatL(path.c_str(), &status) == 0 && VSI_ISDIR(status.st_mode))
+    throw Error(ErrorCode::input, "it is a folder, not a file", path, "name the files in it");
+  file_ = VSIFOpenL(path.c_str(), "rb");
   if (file_ == nullptr)
     throw Error(ErrorCode::input, "the file does not exist or cannot be read", path, "check its name");
 }

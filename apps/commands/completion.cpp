@@ -9,6 +9,7 @@
 
 #include "apps/command.hpp"
 #include "apps/session.hpp"
+#include "apps/shell_completion.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -95,17 +96,29 @@ class Completion final : public Command {
             .group = Group::look_up,
             .summary = "Print a script that completes waymark's command lines in a shell",
             .about = "It completes commands, options, values and file names.",
-            .arguments = {Argument{"", "SHELL", &shell_, "Shell to complete in"}.needed().one_of({"bash"})},
-            .examples = {{"source <(waymark completion bash)", "Completion for this shell"},
-                         {"waymark completion bash > ~/.local/share/bash-completion/completions/waymark",
-                          "Completion for every shell to come"}}};
+            .arguments = {Argument{"", "SHELL", &shell_, "Shell to complete in"}.needed().one_of(
+                {"bash", "zsh", "fish"})},
+            .examples = {
+                {"source <(waymark completion bash)", "Completion for this shell"},
+                {"waymark completion bash > ~/.local/share/bash-completion/completions/waymark",
+                 "Completion for every shell to come"},
+                {"waymark completion zsh > ~/.zfunc/_waymark", "For zsh; the folder must be in its fpath"},
+                {"waymark completion fish > ~/.config/fish/completions/waymark.fish", "For fish"}}};
   }
 
   int run(const Session&) override {
     CommandTable commands;
     register_commands(commands);
     Session any;
-    std::cout << bash_completion(commands.describe(), global_arguments(any));
+    std::vector<CommandSpec> specs = commands.describe();
+    std::vector<std::string> names;
+    for (const CommandSpec& spec : specs) names.push_back(spec.name);
+    for (CommandSpec& spec : specs)
+      if (spec.name == "help") spec.arguments[0] = spec.arguments[0].offering(names);
+    const auto script = shell_ == "zsh"    ? zsh_completion
+                        : shell_ == "fish" ? fish_completion
+                                           : bash_completion;
+    std::cout << script(specs, global_arguments(any));
     return 0;
   }
 

@@ -36,7 +36,8 @@ class Localize final : public Command {
              Argument{"", "LOG", &request_.log, "Log of the robot: a file, or the folder of a dataset"}
                  .needed()
                  .offering(Offer::file),
-             Argument{"-o,--output", "TRACK", &request_.output, "Track to write, .csv or .gpkg"}
+             Argument{"-o,--output", "TRACK", &request_.output,
+                      "Track to write: .csv, .gpkg, .tum, .kitti or .g2o"}
                  .needed()
                  .offering(Offer::file),
              Argument{"--method", "NAME", &request_.method, "How to localize"}
@@ -50,8 +51,10 @@ class Localize final : public Command {
                  .or_else("0"),
              Argument{"--seed", "N", &request_.seed, "Seed of all random numbers"}.or_else("1"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
-                 .one_of({"waymark", "mrclam", "victoria-park", "isam", "g2o", "toro"})
+                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "isam", "g2o", "toro"})
                  .or_else("recognised by the files"),
+             Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
+                      "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
              Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"},
              Argument{"--ids", "HOW", &ids_, "Whether identities in the log are used for data association"}
                  .one_of({"known", "unknown"})
@@ -90,6 +93,10 @@ class Localize final : public Command {
              "Find the robot and follow it"},
             {"waymark localize mrclam.gpkg MRCLAM_Dataset6 --robot 1 --method ekf -o track.csv",
              "A robot of MRCLAM"},
+            {"waymark localize site.gpkg drive.csv --columns "
+             "t=stamp,v=speed/3.6,omega=rad(rate),bearing=b,range=r "
+             "-o track.tum",
+             "A CSV log in km/h and degrees; a track for other tools"},
             {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1", "How well that went"}}};
   }
 

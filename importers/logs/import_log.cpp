@@ -21,6 +21,7 @@ std::string recognised(const fs::path& path) {
   }
   if (!fs::exists(path))
     throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
+  if (path.extension() == ".csv" || path.extension() == ".tsv") return "csv";
   if (path.extension() == ".dat") return "mrclam";
   const std::string name = path.filename().string();
   if (name == "LASER.txt" || name == "DRS.txt") return "victoria-park";
@@ -47,14 +48,20 @@ void check_times(const localization::RobotLog& log, const fs::path& path) {
 }
 
 localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types, const LogImport& how) {
-  const std::string format = how.format.empty() ? recognised(path) : how.format;
+  const std::string format = !how.format.empty()    ? how.format
+                             : !how.columns.empty() ? "csv"
+                                                    : recognised(path);
+  if (!how.columns.empty() && format != "csv")
+    throw Error(ErrorCode::usage, "columns are given for a log of the format " + format, path.string(),
+                "only text tables (csv) have columns");
+  if (format == "csv") return import_csv_log(path, how.columns, types);
   if (format == "waymark") return import_waymark_log(path, types);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
-              "known are waymark, mrclam, victoria-park, isam, g2o and toro");
+              "known are waymark, csv, mrclam, victoria-park, isam, g2o and toro");
 }
 
 }  // namespace

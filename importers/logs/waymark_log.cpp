@@ -13,6 +13,7 @@
 #include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/log_line.hpp"
+#include "importers/logs/log_records.hpp"
 #include "localization/detectors/depth_rocks.hpp"
 #include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/horizon_summits.hpp"
@@ -239,18 +240,23 @@ class Reader {
 
 }  // namespace
 
+localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
+                                        const TypeRegistry& types) {
+  if (records.empty()) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
+  Reader reader(types);
+  for (const LogRecord& record : records) reader.read({file, record.line, record.json});
+  return reader.take();
+}
+
 localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
   std::istringstream text(read_text(file, "the file"));
-  Reader reader(types);
-  std::size_t number = 0, records = 0;
+  std::vector<LogRecord> records;
+  std::size_t number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    reader.read({file, number, line});
-    ++records;
+    if (line.find_first_not_of(" \t\r") != std::string::npos) records.push_back({number, std::move(line)});
   }
-  if (records == 0) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
-  return reader.take();
+  return read_log_records(file, records, types);
 }
 
 }  // namespace waymark::importers

@@ -2,31 +2,17 @@
 #include "importers/points/las_catalogue.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
+#include <cmath>
+#include <exception>
 #include <limits>
 
 #include "core/error.hpp"
-#include "importers/vsi_file.hpp"
 
 namespace waymark::importers {
 namespace {
-
-// Offsets of the fields of a record; formats 6 to 10 have wider return numbers and classes.
-LasPoint decoded(const unsigned char* record, const LasHeader& header) {
-  std::int32_t raw[3];
-  std::memcpy(raw, record, sizeof raw);
-  LasPoint point;
-  point.x = header.offset[0] + header.scale[0] * raw[0];
-  point.y = header.offset[1] + header.scale[1] * raw[1];
-  point.z = header.offset[2] + header.scale[2] * raw[2];
-  const bool wide = header.point_format >= 6;
-  point.return_number = static_cast<std::uint8_t>(record[14] & (wide ? 0x0F : 0x07));
-  point.classification = static_cast<std::uint8_t>(wide ? record[16] : record[15] & 0x1F);
-  point.withheld = (record[15] & (wide ? 0x04 : 0x80)) != 0;
-  return point;
-}
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr LasBox kNowhere{kFar, kFar, -kFar, -kFar};
@@ -36,49 +22,102 @@ void include(LasBox& box, double x, double y) {
   box.low = std::min(box.low, y), box.high = std::max(box.high, y);
 }
 
-}  // namespace
+// What is known of a run once it was read.
+struct Summary {
+  LasBox box = kNowhere;
+  std::uint64_t points = 0, ground = 0, first_returns = 0, excluded = 0;
+  std::exception_ptr error;
+};
 
-std::vector<LasPoint> read_las_points(const LasHeader& header, std::uint64_t first, std::uint64_t count) {
-  VsiFile file(header.path);
-  const auto length = static_cast<std::size_t>(header.point_length);
-  std::vector<LasPoint> points(static_cast<std::size_t>(count));
-  std::vector<unsigned char> bytes(static_cast<std::size_t>(std::min(count, kLasChunk)) * length);
-  for (std::uint64_t done = 0; done < count;) {
-    const std::uint64_t part = std::min(kLasChunk, count - done);
-    const std::size_t wanted = static_cast<std::size_t>(part) * length;
-    if (file.read(header.first_point + (first + done) * length, bytes.data(), wanted) != wanted)
-      throw Error(ErrorCode::input, fmt::format("the file ends before its point {}", first + done + part),
-                  header.path, "copy or download it again");
-    for (std::uint64_t i = 0; i < part; ++i)
-      points[static_cast<std::size_t>(done + i)] =
-          decoded(bytes.data() + static_cast<std::size_t>(i) * length, header);
-    done += part;
+Summary summary_of(const std::vector<LasPoint>& points) {
+  Summary summary;
+  for (const LasPoint& p : points) {
+    if (!is_usable(p)) {
+      ++summary.excluded;
+      continue;
+    }
+    ++summary.points;
+    summary.ground += p.classification == 2;
+    summary.first_returns += is_first(p);
+    include(summary.box, p.x, p.y);
   }
-  return points;
+  return summary;
 }
+
+void check_bounds(const LasHeader& header) {
+  bool sound = true;
+  for (const std::size_t axis : {0, 1})
+    sound = sound && std::isfinite(header.low[axis]) && std::isfinite(header.high[axis]) &&
+            header.low[axis] <= header.high[axis];
+  if (!sound)
+    throw Error(ErrorCode::input,
+                fmt::format("the header of the COPC file states bounds of {} to {} and {} to {}",
+                            header.low[0], header.high[0], header.low[1], header.high[1]),
+                header.path, "write it again from its source");
+}
+
+}  // namespace
 
 LasCatalogue::LasCatalogue(const std::vector<std::string>& files, std::int64_t memory_bytes)
     : box_(kNowhere),
-      kept_runs_(
-          std::max<std::size_t>(4, static_cast<std::size_t>(memory_bytes) / (kLasChunk * sizeof(LasPoint)))) {
+      max_kept_(
+          std::max(4 * std::size_t{kLasChunk}, static_cast<std::size_t>(memory_bytes) / sizeof(LasPoint))) {
   for (const std::string& file : files) headers_.push_back(read_las_header(file));
-  for (std::size_t f = 0; f < headers_.size(); ++f)
-    for (std::uint64_t first = 0; first < headers_[f].points; first += kLasChunk) {
-      Run run{f, first, std::min(kLasChunk, headers_[f].points - first), kNowhere};
-      for (const LasPoint& p : read_las_points(headers_[f], first, run.count)) {
-        if (!is_usable(p)) {
-          ++excluded_;
-          continue;
-        }
-        ++points_;
-        ground_ += p.classification == 2;
-        first_returns_ += is_first(p);
-        include(run.box, p.x, p.y);
-      }
-      if (run.box.left > run.box.right) continue;
-      include(box_, run.box.left, run.box.low), include(box_, run.box.right, run.box.high);
-      runs_.push_back(run);
+  for (std::size_t f = 0; f < headers_.size(); ++f) add_file(f);
+}
+
+void LasCatalogue::add_file(std::size_t file) {
+  const LasHeader& header = headers_[file];
+  const std::vector<LasRun> runs = las_runs(header);
+  const bool counted = header.first_returns > 0 && header.first_returns <= header.points;
+  header.copc&& counted ? index_copc(file, runs) : index(file, runs);
+}
+
+// Levels are read until one has ground points: files without any are read whole.
+void LasCatalogue::index_copc(std::size_t file, std::span<const LasRun> runs) {
+  const LasHeader& header = headers_[file];
+  check_bounds(header);
+  const std::uint64_t ground = ground_, excluded = excluded_, points = points_, first = first_returns_;
+  std::size_t done = 0;
+  while (done < runs.size() && ground_ == ground) {
+    std::size_t end = done;
+    while (end < runs.size() && runs[end].level == runs[done].level) ++end;
+    index(file, runs.subspan(done, end - done));
+    done = end;
+  }
+  if (done == runs.size()) return;
+  for (const LasRun& run : runs.subspan(done)) runs_.push_back({file, run, *run.box});
+  points_ = points + header.points - (excluded_ - excluded);
+  first_returns_ = first + header.first_returns;
+  include(box_, header.low[0], header.low[1]), include(box_, header.high[0], header.high[1]);
+  all_read_ = false;
+}
+
+void LasCatalogue::index(std::size_t file, std::span<const LasRun> runs) {
+  std::vector<Summary> summaries(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
+    try {
+      summaries[i] = summary_of(read(headers_[file], runs[i]));
+    } catch (...) {
+      summaries[i].error = std::current_exception();
     }
+  });
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const Summary& summary = summaries[i];
+    if (summary.error) std::rethrow_exception(summary.error);
+    excluded_ += summary.excluded;
+    points_ += summary.points;
+    ground_ += summary.ground;
+    first_returns_ += summary.first_returns;
+    if (summary.points == 0) continue;
+    include(box_, summary.box.left, summary.box.low), include(box_, summary.box.right, summary.box.high);
+    runs_.push_back({file, runs[i], summary.box});
+  }
+}
+
+std::vector<LasPoint> LasCatalogue::read(const LasHeader& header, const LasRun& run) const {
+  ++decoded_;
+  return read_run(header, run);
 }
 
 LasCatalogue::Points LasCatalogue::points_of(std::size_t run) const {
@@ -90,13 +129,14 @@ LasCatalogue::Points LasCatalogue::points_of(std::size_t run) const {
     }
   }
   const Run& r = runs_[run];
-  auto points =
-      std::make_shared<const std::vector<LasPoint>>(read_las_points(headers_[r.file], r.first, r.count));
+  auto points = std::make_shared<const std::vector<LasPoint>>(read(headers_[r.file], r.part));
   const std::scoped_lock lock(mutex_);
   if (!at_.contains(run)) {
     kept_.emplace_front(run, points);
     at_[run] = kept_.begin();
-    while (kept_.size() > kept_runs_) {
+    kept_points_ += points->size();
+    while (kept_points_ > max_kept_ && kept_.size() > 1) {
+      kept_points_ -= kept_.back().second->size();
       at_.erase(kept_.back().first);
       kept_.pop_back();
     }

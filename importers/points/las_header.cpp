@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "importers/points/laz/copc.hpp"
 #include "importers/vsi_file.hpp"
 
 namespace waymark::importers {
 namespace {
 
 constexpr std::array<int, 11> kMinLength{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+constexpr int kCompressed = 0x80;          // bit of the point format
 constexpr std::size_t kHeaderBytes = 375;  // of LAS 1.4; older ones are shorter
 
 [[noreturn]] void refuse(const std::string& path, const std::string& problem, const std::string& hint) {
@@ -35,13 +37,15 @@ std::vector<unsigned char> bytes_of(VsiFile& file, std::uint64_t offset, std::si
   return bytes;
 }
 
-// Contents of the CRS records.
-struct CrsRecords {
+// Contents of the records that are read.
+struct LasRecords {
   std::string wkt;
   int projected = 0, geographic = 0, linear_unit = 0, vertical_unit = 0, vertical = 0;
+  std::optional<LazRecord> laz;
+  std::optional<CopcRecord> copc;
 };
 
-void read_keys(const std::vector<unsigned char>& body, CrsRecords& records) {
+void read_keys(const std::vector<unsigned char>& body, LasRecords& records) {
   if (body.size() < 8) return;
   const std::size_t count = at<std::uint16_t>(body, 6);
   for (std::size_t i = 0; i < count && 16 + 8 * i <= body.size(); ++i) {
@@ -57,9 +61,15 @@ void read_keys(const std::vector<unsigned char>& body, CrsRecords& records) {
 }
 
 void read_record(VsiFile& file, const char* user, int id, std::uint64_t body, std::uint64_t length,
-                 CrsRecords& records) {
-  if (std::strncmp(user, "LASF_Projection", 16) != 0 || length > (1U << 20)) return;
+                 LasRecords& records) {
+  const std::string_view owner(user, ::strnlen(user, 16));
+  const bool projection = owner == "LASF_Projection", laz = owner == "laszip encoded" && id == 22204,
+             copc = owner == "copc" && id == 1;
+  if ((!projection && !laz && !copc) || length > (1U << 20)) return;
   const auto bytes = bytes_of(file, body, static_cast<std::size_t>(length));
+  if (laz) records.laz = laz_record(bytes);
+  if (copc) records.copc = copc_record(bytes);
+  if (!projection) return;
   if (id == 34735) read_keys(bytes, records);
   if (id == 2112) {
     records.wkt.assign(bytes.begin(), bytes.end());
@@ -67,8 +77,8 @@ void read_record(VsiFile& file, const char* user, int id, std::uint64_t body, st
   }
 }
 
-CrsRecords read_records(VsiFile& file, const std::vector<unsigned char>& head, int minor) {
-  CrsRecords records;
+LasRecords read_records(VsiFile& file, const std::vector<unsigned char>& head, int minor) {
+  LasRecords records;
   std::uint64_t offset = at<std::uint16_t>(head, 94);
   const std::uint64_t end = at<std::uint32_t>(head, 96);
   for (std::uint32_t i = 0; i < at<std::uint32_t>(head, 100) && offset + 54 <= end; ++i) {
@@ -109,7 +119,7 @@ double vertical_unit_of(const std::string& wkt) {
   return 1;
 }
 
-void place(LasHeader& header, const CrsRecords& records) {
+void place(LasHeader& header, const LasRecords& records) {
   try {
     if (!records.wkt.empty())
       header.crs = Crs::from_text(records.wkt);
@@ -124,10 +134,7 @@ void place(LasHeader& header, const CrsRecords& records) {
 }
 
 void check_format(LasHeader& header, const std::vector<unsigned char>& head) {
-  const int format = head[104];
-  if (format & 0xC0)
-    refuse(header.path, "the points are compressed (LAZ), which cannot be read",
-           fmt::format("decompress it: laszip -i '{}' -o points.las, or pdal translate", header.path));
+  const int format = head[104] & ~kCompressed;
   if (format > 10)
     refuse(header.path, fmt::format("point format {} is none of LAS 1.0 to 1.4 (0 to 10)", format),
            "is the file damaged?");
@@ -144,8 +151,13 @@ void check_format(LasHeader& header, const std::vector<unsigned char>& head) {
 void count_points(LasHeader& header, const std::vector<unsigned char>& head, std::uint64_t size) {
   header.first_point = at<std::uint32_t>(head, 96);
   header.points = at<std::uint32_t>(head, 107);
+  header.first_returns = at<std::uint32_t>(head, 111);
   if (header.minor_version >= 4 && head.size() >= kHeaderBytes)
-    if (const auto count = at<std::uint64_t>(head, 247); count > 0) header.points = count;
+    if (const auto count = at<std::uint64_t>(head, 247); count > 0) {
+      header.points = count;
+      header.first_returns = at<std::uint64_t>(head, 255);
+    }
+  if (head[104] & kCompressed) return;
   const auto length = static_cast<std::uint64_t>(header.point_length);
   const std::uint64_t there = size > header.first_point ? (size - header.first_point) / length : 0;
   if (header.points > there)
@@ -164,7 +176,7 @@ LasHeader read_las_header(const std::string& path) {
   const std::vector<unsigned char> head = bytes_of(file, 0, kHeaderBytes);
   if (head.size() < 4 || std::memcmp(head.data(), "LASF", 4) != 0)
     refuse(path, head.empty() ? "the file is empty" : "the file is no LAS file: it does not begin with LASF",
-           "--las takes LAS 1.0 to 1.4; rasters are passed with --chm, or --dsm and --dtm");
+           "--las takes LAS 1.0 to 1.4, LAZ and COPC; rasters are passed with --chm, or --dsm and --dtm");
   if (head.size() < 227) refuse(path, "the file ends within its header", "copy or download it again");
   header.minor_version = head[25];
   if (head[24] != 1 || header.minor_version > 4)
@@ -182,7 +194,13 @@ LasHeader read_las_header(const std::string& path) {
              "the header is damaged: write the file again from its source");
   }
   count_points(header, head, file.size());
-  place(header, read_records(file, head, header.minor_version));
+  const LasRecords records = read_records(file, head, header.minor_version);
+  place(header, records);
+  if (head[104] & kCompressed) {
+    header.laz = records.laz;
+    check_laz(header);
+    if (header.point_format >= 6 && header.point_format <= 8) header.copc = records.copc;
+  }
   return header;
 }
 

@@ -108,8 +108,8 @@ class PointCanopy final : public ImportedCanopy {
       throw Error(ErrorCode::input, "the files hold no points", import_.las[0],
                   "check that they are the right ones");
     if (const auto out = catalogue_.excluded(); out > 0)
-      warnings_.push_back(
-          fmt::format("{}: {} points are noise or withheld and are skipped", import_.las[0], out));
+      warnings_.push_back(fmt::format("{}: {}{} points are noise or withheld and are skipped", import_.las[0],
+                                      catalogue_.all_read() ? "" : "at least ", out));
   }
 
   void check_unclassified() {

@@ -26,10 +26,10 @@ struct LoadCanopy {
       option("chm", chm, {.help = "Canopy height models: heights above ground"});
       option("dsm", dsm, {.help = "Surface models, instead of chm; dtm gives the terrain"});
       option("dtm", dtm, {.help = "Terrain models under the surface models, on any grid"});
-      option(
-          "las", las,
-          {.help =
-               "LAS files, instead of chm: one catalogue of laser points, with classified ground (class 2)"});
+      option("las", las,
+             {.help = "LAS, LAZ or COPC files, instead of chm: one catalogue of laser points, with "
+                      "classified ground "
+                      "(class 2)"});
       option("resolution", resolution,
              {.help = "Cell size of the canopy made from laser points; 0: by their density",
               .min = 0,

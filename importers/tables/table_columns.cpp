@@ -96,43 +96,11 @@ std::vector<std::string> targets_of(const TypeRegistry& types, const std::vector
   return targets;
 }
 
-struct Assignment {
-  std::string target, expression;
-};
-
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   return first == std::string_view::npos
              ? ""
              : std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
-/// Splits at commas outside quotes and parentheses.
-std::vector<Assignment> assignments(const std::string& text) {
-  std::vector<std::string> parts(1);
-  char quote = 0;
-  int depth = 0;
-  for (const char c : text) {
-    if (quote != 0)
-      quote = c == quote ? '\0' : quote;
-    else if (c == '"' || c == '`')
-      quote = c;
-    depth += quote == 0 ? (c == '(') - (c == ')') : 0;
-    if (c == ',' && quote == 0 && depth <= 0)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  std::vector<Assignment> all;
-  for (const std::string& part : parts) {
-    if (trimmed(part).empty()) continue;
-    const std::size_t sign = part.find('=');
-    if (sign == std::string::npos)
-      throw Error(ErrorCode::usage, fmt::format("'{}' has no target", trimmed(part)), "--columns " + text,
-                  "write target=expression, e.g. x=lon,y=lat,radius=diam/2");
-    all.push_back({trimmed(part.substr(0, sign)), trimmed(part.substr(sign + 1))});
-  }
-  return all;
 }
 
 void refuse_unknown(const std::string& target, const std::vector<std::string>& targets) {
@@ -193,6 +161,33 @@ class Binder {
 
 }  // namespace
 
+std::vector<ColumnAssignment> column_assignments(const std::string& text) {
+  std::vector<std::string> parts(1);
+  char quote = 0;
+  int depth = 0;
+  for (const char c : text) {
+    if (quote != 0)
+      quote = c == quote ? '\0' : quote;
+    else if (c == '"' || c == '`')
+      quote = c;
+    depth += quote == 0 ? (c == '(') - (c == ')') : 0;
+    if (c == ',' && quote == 0 && depth <= 0)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  std::vector<ColumnAssignment> all;
+  for (const std::string& part : parts) {
+    if (trimmed(part).empty()) continue;
+    const std::size_t sign = part.find('=');
+    if (sign == std::string::npos)
+      throw Error(ErrorCode::usage, fmt::format("'{}' has no target", trimmed(part)), "--columns " + text,
+                  "write target=expression, e.g. x=lon,y=lat,radius=diam/2");
+    all.push_back({trimmed(part.substr(0, sign)), trimmed(part.substr(sign + 1))});
+  }
+  return all;
+}
+
 bool is_target(const TypeRegistry& types, const std::vector<std::string>& chosen, const std::string& name) {
   const auto targets = targets_of(types, chosen);
   return std::ranges::find(targets, name) != targets.end();
@@ -202,7 +197,7 @@ ColumnBindings bind_columns(const std::string& text, const TableHeader& table, c
                             const std::vector<std::string>& chosen) {
   const std::vector<std::string> targets = targets_of(types, chosen);
   Binder binder(table);
-  for (const Assignment& one : assignments(text)) {
+  for (const ColumnAssignment& one : column_assignments(text)) {
     refuse_unknown(one.target, targets);
     binder.set(one.target, one.expression);
   }

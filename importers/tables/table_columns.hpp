@@ -12,6 +12,14 @@ namespace waymark::importers {
 /// north), x_sd, y_sd, z_sd, var_x, var_y, cov_xy, var_z; `<feature>_sd` of every feature.
 bool is_target(const TypeRegistry& types, const std::vector<std::string>& chosen, const std::string& name);
 
+struct ColumnAssignment {
+  std::string target, expression;
+};
+
+/// Splits "t=stamp,v=speed/3.6" at commas outside quotes and parentheses. Throws Error{usage} for a part
+/// without a target.
+std::vector<ColumnAssignment> column_assignments(const std::string& text);
+
 /// Expressions for the properties of a landmark: target -> expression.
 using ColumnBindings = std::map<std::string, TableExpression, std::less<>>;
 

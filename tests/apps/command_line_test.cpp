@@ -41,6 +41,26 @@ TEST(CommandLine, VersionIsOneLine) {
   EXPECT_THAT(waymark({"--version"}).out, testing::MatchesRegex("waymark [0-9.]+\n"));
 }
 
+TEST(CommandLine, VersionHasAShortName) {
+  EXPECT_EQ(waymark({"-V"}).out, waymark({"--version"}).out);
+}
+
+TEST(CommandLine, HelpIsACommandToo) {
+  EXPECT_EQ(waymark({"help", "peaks"}).out, waymark({"peaks", "--help"}).out);
+  EXPECT_EQ(waymark({"help"}).out, waymark({"--help"}).out);
+  EXPECT_THAT(waymark({"help", "peeks"}).err, HasSubstr("did you mean 'peaks'?"));
+}
+
+TEST(CommandLine, NoColorIsRespected) {
+  if (bash("command -v script").code != 0) GTEST_SKIP() << "script is not installed";
+  const auto on_a_terminal = [](const std::string& before) {
+    return bash(before + " script -qec '$WAYMARK nonsense' /dev/null < /dev/null").out;
+  };
+  EXPECT_THAT(on_a_terminal("TERM=xterm NO_COLOR="), HasSubstr("\x1b["));
+  EXPECT_THAT(on_a_terminal("TERM=xterm NO_COLOR=1"),
+              testing::AllOf(HasSubstr("error: "), testing::Not(HasSubstr("\x1b["))));
+}
+
 TEST(CommandLine, UnknownCommandNamesTheNearest) {
   const Outcome said = waymark({"pekas", "dem.tif"});
   EXPECT_EQ(said.code, 2);

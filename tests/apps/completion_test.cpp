@@ -51,6 +51,26 @@ TEST(Completion, FilesWithBlanksInTheirNames) {
   EXPECT_THAT(offered("peaks my", folder.path()), ElementsAre("my dem.tif"));
 }
 
+TEST(Completion, Help) {
+  EXPECT_THAT(offered("help pea"), ElementsAre("peaks"));
+}
+
+TEST(Completion, IsSoundZsh) {
+  const std::string script = waymark({"completion", "zsh"}).out;
+  EXPECT_THAT(script, testing::AllOf(testing::StartsWith("#compdef waymark"), testing::HasSubstr("'peaks:"),
+                                     testing::HasSubstr("(ocean unknown fill)")));
+  if (bash("command -v zsh").code != 0) GTEST_SKIP() << "zsh is not installed";
+  EXPECT_EQ(bash("$WAYMARK completion zsh | zsh -n").err, "");
+}
+
+TEST(Completion, IsSoundFish) {
+  const std::string script = waymark({"completion", "fish"}).out;
+  EXPECT_THAT(script, testing::HasSubstr("-n '__fish_seen_subcommand_from peaks' -l nodata"));
+  if (bash("command -v fish").code != 0) GTEST_SKIP() << "fish is not installed";
+  const Outcome offers = bash("fish -c '$WAYMARK completion fish | source; complete -C \"waymark pea\"'");
+  EXPECT_THAT(offers.out, testing::StartsWith("peaks\t"));
+}
+
 TEST(ManPage, HasEveryCommandAndGroffIsContent) {
   const std::string page = waymark({"man"}).out;
   for (const char* part : {".TH WAYMARK 1", ".SS peaks", ".SS query", ".SH EXIT STATUS"})

@@ -7,6 +7,7 @@
 
 #include "made_dem.hpp"
 #include "program.hpp"
+#include "tests/support/laz_writer.hpp"
 
 namespace waymark::test {
 namespace {
@@ -50,6 +51,27 @@ class Trees : public testing::Test {
 
   TempFolder folder_;
 };
+
+TEST_F(Trees, OfAFolderOfCompressedPoints) {
+  LazFile west{.format = 1, .chunks = {{}}}, east{.format = 6, .chunks = {{}}};
+  for (int i = 0; i < 80 * 80 * 4; ++i) {
+    RawPoint p;
+    const double x = 0.5 * (i % 160), y = 0.5 * (i / 160);
+    const double above = 12 - 3 * std::hypot(std::fmod(x, 20) - 10, std::fmod(y, 20) - 10);
+    p.at = {static_cast<int>(1000 * x), static_cast<int>(1000 * y),
+            static_cast<int>(1000 * std::max(0.0, above))};
+    p.classification = above > 0 ? 5 : 2, p.time = i;
+    (x < 40 ? west : east).chunks[0].push_back(p);
+  }
+  const std::string folder = folder_ / "tiles";
+  std::filesystem::create_directory(folder);
+  write_text(folder + "/west.laz", laz_bytes(west));
+  write_text(folder + "/east.copc.laz", copc_bytes(east, 3));
+  ASSERT_EQ(trees({"--las", folder}).code, 0);
+  const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
+  EXPECT_EQ(found.size(), 16U);  // 20 m apart on 80 x 80 m
+  EXPECT_THAT(trees({"--las", folder_ / "none.laz"}).err, HasSubstr("none.laz"));
+}
 
 TEST_F(Trees, ConesEndToEnd) {
   const Outcome made = trees({"--chm", chm(), "--preset", "conifer"});

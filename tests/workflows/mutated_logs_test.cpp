@@ -29,6 +29,14 @@ TEST_F(MutatedFiles, OfRobotLogs) {
         [](const std::string& path) { importers::import_log(path, all_types(), {.format = "waymark"}); });
 }
 
+TEST_F(MutatedFiles, OfCsvLogs) {
+  check("log.csv",
+        "t,v,omega,bearing,range,landmark,truth_x,truth_y,gnss_x,gnss_y\n0,1,0.1,,,,1,2,,\n0.5,1,0.1,-0.2,4,"
+        "rk-1,,,1,2\n"
+        "0.5,,,0.3,5,,,,,\n1,1,0.2,,,,2,3,,\n",
+        Content::text, 250, [](const std::string& path) { importers::import_log(path, all_types(), {}); });
+}
+
 TEST_F(MutatedFiles, OfPoseGraphs) {
   const auto read = [](const char* format) {
     return

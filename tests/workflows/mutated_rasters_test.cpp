@@ -4,6 +4,7 @@
 #include "importers/images/list_images.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/rasters/dem.hpp"
+#include "tests/support/laz_writer.hpp"
 #include "tests/support/mutated_files.hpp"
 
 namespace waymark::test {
@@ -54,6 +55,41 @@ TEST_F(MutatedFiles, OfLaserPoints) {
         const GridGeometry& grid = canopy->geometry();
         canopy->read({0, 0, std::min<std::int64_t>(grid.columns, 64), std::min<std::int64_t>(grid.rows, 64)});
       });
+}
+
+void read_canopy(const std::string& path) {
+  const auto canopy = importers::import_canopy({.las = {path}});
+  const GridGeometry& grid = canopy->geometry();
+  canopy->read({0, 0, std::min<std::int64_t>(grid.columns, 64), std::min<std::int64_t>(grid.rows, 64)});
+}
+
+// A slope of 30 x 30 m with bumps, four returns per square metre.
+LazFile compressed_slope(int format) {
+  LazFile file{.format = format, .origin = {500000, 5000000, 100}, .scale = 0.01};
+  for (int i = 0; i < 3600; ++i) {
+    RawPoint p;
+    p.at = {i % 60 * 50 - 1500, i / 60 * 50 - 1500, i % 60 + (i % 7 == 0) * 1200};
+    p.classification = i % 7 == 0 ? 5 : 2;
+    p.intensity = static_cast<std::uint16_t>(i * 7 % 300), p.time = 1000 + i / 3 * 20;
+    if (i % 1800 == 0) file.chunks.emplace_back();
+    file.chunks.back().push_back(p);
+  }
+  return file;
+}
+
+TEST_F(MutatedFiles, OfCompressedPoints) {
+  for (const int format : {1, 3, 6, 8})
+    check("points.laz", laz_bytes(compressed_slope(format)), Content::binary, 60, read_canopy);
+}
+
+TEST_F(MutatedFiles, OfCompressedPointsOfVaryingChunks) {
+  LazFile file = compressed_slope(6);
+  file.variable = file.table_at_end = true;
+  check("points.laz", laz_bytes(file), Content::binary, 150, read_canopy);
+}
+
+TEST_F(MutatedFiles, OfOctreesOfPoints) {
+  check("points.copc.laz", copc_bytes(compressed_slope(6), 3), Content::binary, 200, read_canopy);
 }
 
 }  // namespace

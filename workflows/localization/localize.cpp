@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "exporters/vector/track_file.hpp"
+#include "exporters/vector/track_formats.hpp"
 #include "geodb/validate_map.hpp"
 #include "localization/detectors/detected_types.hpp"
 #include "localization/robot_log.hpp"
@@ -21,10 +22,19 @@
 namespace waymark::workflows {
 namespace {
 
+std::optional<exporters::TrackFormat> pose_format(const std::string& output) {
+  const std::string extension = std::filesystem::path(output).extension();
+  if (extension == ".tum") return exporters::TrackFormat::tum;
+  if (extension == ".kitti") return exporters::TrackFormat::kitti;
+  if (extension == ".g2o") return exporters::TrackFormat::g2o;
+  return {};
+}
+
 void check_output(const std::string& output) {
   const std::filesystem::path file(output);
-  if (file.extension() != ".csv" && file.extension() != ".gpkg")
-    throw Error(ErrorCode::usage, "a track is written as .csv or .gpkg", output, "e.g. -o track.csv");
+  if (file.extension() != ".csv" && file.extension() != ".gpkg" && !pose_format(output))
+    throw Error(ErrorCode::usage, "a track is written as .csv, .gpkg, .tum, .kitti or .g2o", output,
+                "e.g. -o track.csv");
 }
 
 void check_written_map(const LocalizeRequest& request, const LocalizeMethod& method) {
@@ -148,6 +158,8 @@ void write_track(const LocalizeRequest& request, const localization::Track& trac
   if (std::filesystem::path(request.output).extension() == ".gpkg") {
     form.frame = &map.frame;
     exporters::write_track_geopackage(request.output, track, form);
+  } else if (const auto format = pose_format(request.output)) {
+    exporters::write_track_poses(request.output, track, *format);
   } else {
     exporters::write_track_csv(request.output, track, form);
   }

@@ -12,7 +12,7 @@ namespace waymark::workflows {
 struct LocalizeRequest {
   std::string map;             ///< map file; "none" for methods that need no map
   std::string log;             ///< file, or folder of a dataset
-  std::string output = {};     ///< track, .csv or .gpkg; empty: no file is written
+  std::string output = {};     ///< track: .csv, .gpkg, .tum, .kitti, .g2o; empty: none
   std::string method = "ekf";  ///< a name of localize_methods()
   double min_confidence = 0;   ///< landmarks less probable than this are not used
   std::string sensor =

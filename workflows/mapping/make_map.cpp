@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
+#include "importers/points/find_las.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 #include "workflows/mapping/assemble_map.hpp"
 #include "workflows/output_path.hpp"
@@ -110,7 +111,7 @@ void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy) {
   pipeline.add("load_canopy", nlohmann::json{{"chm", canopy.chm},
                                              {"dsm", canopy.dsm},
                                              {"dtm", canopy.dtm},
-                                             {"las", canopy.las},
+                                             {"las", importers::find_las_files(canopy.las)},
                                              {"flights", canopy.flights}}
                                   .dump());
   pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", canopy.crowns}}.dump());

@@ -10,6 +10,7 @@
 #include "importers/points/las_catalogue.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
+#include "tests/support/laz_writer.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
@@ -110,7 +111,8 @@ TEST(Las, SaysWhatIsWrong) {
   LasFile good{.points = some_points()};
   LasFile las = good;
   las.compressed = true;
-  EXPECT_THAT(refusal(las), AllOf(HasSubstr("compressed (LAZ)"), HasSubstr("laszip -i")));
+  EXPECT_THAT(refusal(las),
+              AllOf(HasSubstr("compressed (LAZ)"), HasSubstr("record that says how is missing")));
   las = good, las.promised = 100;
   EXPECT_THAT(refusal(las), HasSubstr("truncated: its header states 100 points, it holds 4"));
   las = good, las.length = 20;
@@ -207,6 +209,35 @@ TEST(PointCanopy, FeetBecomeMetres) {
   const Grid<float> heights = canopy->read({0, 0, 120, 120});
   for (const float h : heights.cells()) highest = std::max(highest, h);
   EXPECT_NEAR(highest, 12, 0.8);
+}
+
+// The cones as records; 0.001 m from 500000 and 5000000.
+LazFile raw_cones(int format) {
+  LazFile file{.format = format};
+  const auto points = cones();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    RawPoint p;
+    p.at = {static_cast<std::int32_t>(std::lround((points[i].x - 500000) * 1000)),
+            static_cast<std::int32_t>(std::lround((points[i].y - 5000000) * 1000)),
+            static_cast<std::int32_t>(std::lround(points[i].z * 1000))};
+    p.classification = points[i].classification, p.number = points[i].return_number;
+    p.returns = p.number, p.time = 1000 + static_cast<std::int64_t>(i);
+    if (i % 5000 == 0) file.chunks.emplace_back();
+    file.chunks.back().push_back(p);
+  }
+  return file;
+}
+
+Grid<float> heights_of(const std::string& name, const std::string& bytes) {
+  const auto canopy = importers::import_canopy({.las = {write_text(name, bytes)}});
+  return canopy->read({0, 0, canopy->geometry().columns, canopy->geometry().rows});
+}
+
+TEST(PointCanopy, CompressedPointsMakeTheSameCanopy) {
+  const Grid<float> plain = heights_of("cones.las", las_bytes(raw_cones(6)));
+  EXPECT_EQ(plain, heights_of("one.laz", laz_bytes(raw_cones(1))));
+  EXPECT_EQ(plain, heights_of("six.laz", laz_bytes(raw_cones(6))));
+  EXPECT_EQ(plain, heights_of("cones.copc.laz", copc_bytes(raw_cones(6), 4)));
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <sstream>
+
+#include "apps/shell_completion.hpp"
+
+namespace waymark::apps {
+namespace {
+
+std::string fish_text(const std::string& text) {
+  std::string safe = "'";
+  for (const char c : text) {
+    if (c == '\'' || c == '\\') safe += '\\';
+    safe += c;
+  }
+  return safe + "'";
+}
+
+// Returns what follows the name of an argument that takes a value.
+std::string fish_values(const Argument& argument) {
+  const auto& words = argument.choices.empty() ? argument.suggestions : argument.choices;
+  if (!words.empty()) return " -xa " + fish_text(fmt::format("{}", fmt::join(words, " ")));
+  if (argument.offer == Offer::file) return " -rF";
+  return argument.offer == Offer::folder ? " -xa '(__fish_complete_directories)'" : " -x";
+}
+
+std::string fish_option(const Argument& argument, const std::string& condition) {
+  std::string text = "complete -c waymark" + condition;
+  std::istringstream names(argument.names);
+  for (std::string name; std::getline(names, name, ',');)
+    text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+  text += " -d " + fish_text(argument.help);
+  return text + (argument.flag() ? "" : fish_values(argument)) + "\n";
+}
+
+std::string fish_words(const Argument& argument, const std::string& condition) {
+  const auto& words = argument.choices.empty() ? argument.suggestions : argument.choices;
+  if (!words.empty())
+    return "complete -c waymark" + condition + " -a " + fish_text(fmt::format("{}", fmt::join(words, " "))) +
+           "\n";
+  return argument.offer == Offer::nothing ? "" : "complete -c waymark" + condition + " -F\n";
+}
+
+}  // namespace
+
+std::string fish_completion(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
+  std::string text =
+      "# fish completion for waymark, written by `waymark completion fish`\ncomplete -c waymark -f\n";
+  for (const Argument& argument : globals) text += fish_option(argument, "");
+  for (const CommandSpec& command : commands)
+    text += "complete -c waymark -n __fish_use_subcommand -a " + command.name + " -d " +
+            fish_text(command.summary) + "\n";
+  for (const CommandSpec& command : commands) {
+    const std::string condition = " -n '__fish_seen_subcommand_from " + command.name + "'";
+    for (const Argument& argument : command.arguments)
+      text += argument.positional() ? fish_words(argument, condition) : fish_option(argument, condition);
+  }
+  return text;
+}
+
+}  // namespace waymark::apps
