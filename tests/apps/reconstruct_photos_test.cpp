@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "made_flight.hpp"
 #include "photo_files.hpp"
 #include "program.hpp"
 
@@ -21,15 +22,9 @@ namespace fs = std::filesystem;
 /// Six images of 300 x 300 pixels from 300 m in two lines.
 const fs::path& grid_flight() {
   static const TempFolder folder;
-  static const fs::path site = [] {
-    write_text(folder / "scenario.json", R"({"waymark_scenario": 1, "seed": 3, "ground": {"cell": 1},
-      "camera": {"columns": 300, "rows": 300, "field_of_view": 60}, "dem": {"cell": 4},
-      "flights": [{"images": 3, "lines": 2, "line_spacing": 100, "from_east": -90, "from_north": 50,
-                   "from_altitude": 300, "to_east": 90, "to_north": 50, "to_altitude": 300, "track_sd": 0.5}]})");
-    const Outcome made = waymark({"simulate", folder / "scenario.json", "-o", folder / "site"});
-    EXPECT_EQ(made.code, 0) << made.err;
-    return folder.path() / "site";
-  }();
+  static const fs::path site = simulate_flight(
+      folder.path(),
+      {.ground_cell = 1, .half_length = 90, .north = 50, .line_spacing = 100, .altitude = 300});
   return site;
 }
 

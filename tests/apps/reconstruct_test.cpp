@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "made_flight.hpp"
 #include "program.hpp"
 
 namespace waymark::test {
@@ -18,15 +19,7 @@ namespace fs = std::filesystem;
 /// Six images of 200 x 200 pixels, simulated once.
 const fs::path& flight() {
   static const TempFolder folder;
-  static const fs::path site = [] {
-    write_text(folder / "scenario.json", R"({"waymark_scenario": 1, "seed": 3, "ground": {"cell": 0.5},
-      "camera": {"columns": 200, "rows": 200, "field_of_view": 60}, "dem": {"cell": 4},
-      "flights": [{"images": 3, "lines": 2, "line_spacing": 25, "from_east": -25, "from_north": 12,
-                   "from_altitude": 90, "to_east": 25, "to_north": 12, "to_altitude": 90, "track_sd": 0.5}]})");
-    const Outcome made = waymark({"simulate", folder / "scenario.json", "-o", folder / "site"});
-    EXPECT_EQ(made.code, 0) << made.err;
-    return folder.path() / "site";
-  }();
+  static const fs::path site = simulate_flight(folder.path(), {.pixels = 200});
   return site;
 }
 
