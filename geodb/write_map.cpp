@@ -136,9 +136,9 @@ class MapWriter {
     const Envelope& extent = (*statistics_)[old_id].extent;
     orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, max_in_memory_));
     database_->execute(layout.create_table());
+    insert_rows(layout, old_id);
     if ((*statistics_)[old_id].count >= kLarge)
       create_largest_indexes(*database_, layout, (*statistics_)[old_id].largest);
-    insert_rows(layout, old_id);
     create_uid_index(type.name);
     create_edit_triggers(*database_, type.name);
     create_spatial_index(*database_, type.name);

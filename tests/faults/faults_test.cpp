@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <random>
+#include <sstream>
 
 #include "made_dem.hpp"
 #include "made_drive.hpp"
@@ -22,7 +23,7 @@ bool is_slow() {
   return std::getenv("WAYMARK_SLOW_TESTS") != nullptr;
 }
 
-/// Kills and failing writes per command.
+/// Kills, failing writes and failing renames per command.
 int rounds() {
   return is_slow() ? 40 : 3;
 }
@@ -80,6 +81,23 @@ const std::vector<Command>& commands() {
     if (is_slow()) add("train", "train craters -o $OUT/model.txt --scenes 2 --rounds 1 --seed %", "1", "2");
     add("detect_csv", "detect craters $IN/%.pgm -o $OUT/craters.csv --image-sun-angle 0", "small", "large");
     add("detect_gpkg", "detect craters $IN/%.pgm -o $OUT/craters.gpkg --image-sun-angle 0", "small", "large");
+    add("trees", "trees --chm $IN/%.chm.tif -o $OUT/map.gpkg --tile-cells 64", "small", "large");
+    add("craters", "craters --dem $IN/%.tif -o $OUT/map.gpkg --with-dem", "small", "large");
+    add("hazards",
+        "hazards $IN/%.ground.tif -o $OUT/hazard.tif --polygons $OUT/hazard.gpkg --nav2 $OUT/hazard.yaml "
+        "--rock-cover 0 --detection-limit 0.5",
+        "small", "large");
+    for (const char* ending : {"gpkg", "csv", "geojson"})
+      add(std::string("route_") + ending,
+          std::string("route $IN/few.gpkg --from -10,-10 --to %,20 --sensor horizontal_laser --weight 1 -o "
+                      "$OUT/route.") +
+              ending,
+          "20", "30");
+    add("update_map", "localize $OUT/few.gpkg $IN/%.jsonl -o $OUT/track.csv --method slam --update-map",
+        "short", "long", true);
+    add("reconstruct",
+        "reconstruct $IN/flight/images --cameras $IN/flight/truth/cameras.json -o $OUT --until % --threads 1",
+        "poses", "dem");
     add("picture", "evaluate track $IN/track.csv --truth $IN/%.jsonl --picture $OUT/track.svg", "short",
         "long");
     return made;
@@ -121,6 +139,21 @@ void write_inputs(const TempFolder& in) {
     "camera": {"columns": 64, "rows": 64, "field_of_view": 45},
     "flights": [{"name": "descent", "images": 2, "from_east": -5, "from_north": -5, "from_altitude": 40,
       "to_east": 5, "to_north": 5, "to_altitude": 30, "tilt": 4}]})");
+  const auto wall = [](int column, int row) { return column == row ? -9999.0 : column < 20 ? 100.0 : 101.0; };
+  const auto cones = [](int column, int row) {
+    return std::max(0.0, 15 - 2 * std::hypot(column % 20 - 10, row % 20 - 10));
+  };
+  for (const auto& [name, side] : {std::pair{"small", 60}, std::pair{"large", 100}}) {
+    MadeDem ground{.columns = side, .rows = 50, .height = wall};
+    ground.geotransform = {500000, 0.5, 0, 5200000, 0, -0.5};
+    make_dem(in / (std::string(name) + ".ground.tif"), ground);
+    ground.height = cones;
+    make_dem(in / (std::string(name) + ".chm.tif"), ground);
+  }
+  write_text(in / "flight.json", R"({"waymark_scenario": 1, "seed": 3, "ground": {"cell": 0.5},
+    "camera": {"columns": 128, "rows": 128, "field_of_view": 60}, "dem": {"cell": 4},
+    "flights": [{"images": 3, "lines": 2, "line_spacing": 25, "from_east": -25, "from_north": 12,
+      "from_altitude": 90, "to_east": 25, "to_north": 12, "to_altitude": 90, "track_sd": 0.5}]})");
   write_text(in / "forest.json", R"({"waymark_scenario": 1, "crs": "EPSG:32632", "seed": 5,
     "ground": {"cell": 1, "east": 440000, "north": 5400000, "up": 520},
     "forest": {"width": 40, "height": 30, "stands": 2, "density": 300, "cell": 0.5, "pulses": 2, "points": true}})");
@@ -149,7 +182,7 @@ class Faults : public ::testing::TestWithParam<Command> {
     const Outcome done = run(GetParam().newer, "WAYMARK_FAULT=kill WAYMARK_FAULT_COUNT=" + in_ / "count");
     ASSERT_EQ(done.code, 0) << done.err;
     newer_ = files();
-    calls_ = std::stol(text_of(in_ / "count"));
+    std::istringstream(text_of(in_ / "count")) >> calls_ >> renames_;
     ASSERT_GT(calls_, 2) << "the calls are not seen";
     ASSERT_NE(newer_, start_);
   }
@@ -233,12 +266,14 @@ class Faults : public ::testing::TestWithParam<Command> {
   TempFolder in_;
   fs::path out_ = fs::canonical(in_.path()) / "out", kept_ = in_.path() / "kept";
   Files start_, newer_;
-  long calls_ = 0;
+  long calls_ = 0, renames_ = 0;
 
  private:
   void make_inputs() const {
     const std::string &older = GetParam().older, &line = older, both = older + GetParam().newer;
-    const bool drive = line.starts_with("localize") || line.starts_with("evaluate");
+    const bool drive =
+        line.starts_with("localize") || line.starts_with("evaluate") || line.starts_with("route");
+    if (line.starts_with("reconstruct")) make("simulate $IN/flight.json -o $IN/flight");
     for (const std::string map : {"few", "many"})
       if (!drive && both.find(map + ".gpkg") != std::string::npos)
         make("import $IN/" + map + ".csv -o $IN/" + map + ".gpkg --type rock --map-crs EPSG:32632");
@@ -314,6 +349,48 @@ TEST_P(Faults, OfWritesLeaveTheOldOrTheNew) {
     if (!GetParam().edits_map) {
       EXPECT_EQ(files(), newer_) << when;
     }
+  }
+}
+
+// A write may take a part of the bytes only, which is no error: the rest is written by another call.
+TEST_P(Faults, OfShortWritesAreFinishedOrReported) {
+  std::mt19937 random(13);
+  for (int round = 0; round < rounds(); ++round) {
+    restore();
+    const long from = 1 + calls_ * round / rounds(), to = std::max(from, calls_ * (round + 1) / rounds());
+    const long call = from + static_cast<long>(random()) % (to - from + 1);
+    const std::string when = "short at call " + std::to_string(call) + " of " + std::to_string(calls_);
+    const Outcome done = run(GetParam().newer, at("short", call));
+    expect_whole(when);
+    EXPECT_THAT(done.code, ::testing::AnyOf(0, 1, 3)) << when << ": " << done.err;
+    if (done.code == 0 && !GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
+  }
+}
+
+TEST_P(Faults, OfRenamesLeaveTheOldOrTheNew) {
+  for (int round = 0; round < std::min<long>(rounds(), renames_); ++round) {
+    restore();
+    const long call = 1 + renames_ * round / std::min<long>(rounds(), renames_);
+    const std::string when = "rename " + std::to_string(call) + " of " + std::to_string(renames_);
+    const Outcome failed = run(GetParam().newer, at("rename", call));
+    EXPECT_THAT(failed.code, ::testing::AnyOf(0, 1, 3)) << when << ": " << failed.err;
+    if (failed.code != 0) {
+      EXPECT_NE(failed.err, "") << when;
+    }
+    write_other();  // finishes a set of files that was being moved
+    expect_whole(when);
+    if (failed.code == 0 && !GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+    const Outcome again = run(GetParam().newer);
+    EXPECT_EQ(again.code, 0) << when << ": " << again.err;
+    if (!GetParam().edits_map) {
+      EXPECT_EQ(files(), newer_) << when;
+    }
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when << " and run again";
   }
 }
 

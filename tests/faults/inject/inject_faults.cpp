@@ -3,8 +3,10 @@
 // and at call number WAYMARK_FAULT_AT
 //   WAYMARK_FAULT=kill   kills the process,
 //   WAYMARK_FAULT=once   lets this call fail with EIO,
-//   WAYMARK_FAULT=full   lets this and every later call fail that needs space, with ENOSPC.
-// The count is written to WAYMARK_FAULT_COUNT when the process ends.
+//   WAYMARK_FAULT=full   lets this and every later call fail that needs space, with ENOSPC,
+//   WAYMARK_FAULT=short  lets this call write half of its bytes.
+// WAYMARK_FAULT=rename lets rename number WAYMARK_FAULT_AT fail with EIO.
+// The numbers of calls and of renames are written to WAYMARK_FAULT_COUNT when the process ends.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -39,7 +41,7 @@ const Plan& plan() {
   return made;
 }
 
-std::atomic<long> calls = 0;
+std::atomic<long> calls = 0, renames = 0;
 
 bool is_below(const char* path) {
   const std::string& folder = plan().folder;
@@ -66,6 +68,18 @@ bool fails(Need need) {
   return false;
 }
 
+/// Counts a rename. Returns true, with errno, if it must fail.
+bool rename_fails() {
+  const bool failed = fails(Need::none);
+  if (++renames == plan().at && plan().fault == "rename") return errno = EIO, true;
+  return failed;
+}
+
+/// Returns how many bytes the call that was just counted may write.
+size_t allowed(size_t count) {
+  return plan().fault == "short" && calls == plan().at && count > 1 ? count / 2 : count;
+}
+
 template <class Function>
 Function* real(const char* name) {
   return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
@@ -75,7 +89,7 @@ struct WriteCount {
   ~WriteCount() {
     const char* file = std::getenv("WAYMARK_FAULT_COUNT");
     if (file == nullptr) return;
-    const std::string text = std::to_string(calls.load());
+    const std::string text = std::to_string(calls.load()) + ' ' + std::to_string(renames.load());
     const long out = ::syscall(SYS_openat, AT_FDCWD, file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::syscall(SYS_write, out, text.data(), text.size());
   }
@@ -121,7 +135,8 @@ FILE* fopen(const char* path, const char* how) {
 }
 ssize_t write(int file, const void* bytes, size_t count) {
   static auto* const call = real<ssize_t(int, const void*, size_t)>("write");
-  return is_below(file) && fails(Need::space) ? -1 : call(file, bytes, count);
+  const bool below = is_below(file);
+  return below && fails(Need::space) ? -1 : call(file, bytes, below ? allowed(count) : count);
 }
 ssize_t writev(int file, const struct iovec* parts, int count) {
   static auto* const call = real<ssize_t(int, const struct iovec*, int)>("writev");
@@ -129,15 +144,18 @@ ssize_t writev(int file, const struct iovec* parts, int count) {
 }
 ssize_t pwrite(int file, const void* bytes, size_t count, off_t at) {
   static auto* const call = real<ssize_t(int, const void*, size_t, off_t)>("pwrite");
-  return is_below(file) && fails(Need::space) ? -1 : call(file, bytes, count, at);
+  const bool below = is_below(file);
+  return below && fails(Need::space) ? -1 : call(file, bytes, below ? allowed(count) : count, at);
 }
 ssize_t pwrite64(int file, const void* bytes, size_t count, off64_t at) {
   static auto* const call = real<ssize_t(int, const void*, size_t, off64_t)>("pwrite64");
-  return is_below(file) && fails(Need::space) ? -1 : call(file, bytes, count, at);
+  const bool below = is_below(file);
+  return below && fails(Need::space) ? -1 : call(file, bytes, below ? allowed(count) : count, at);
 }
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
   static auto* const call = real<size_t(const void*, size_t, size_t, FILE*)>("fwrite");
-  return is_below(::fileno(file)) && fails(Need::space) ? 0 : call(bytes, size, count, file);
+  const bool below = is_below(::fileno(file));
+  return below && fails(Need::space) ? 0 : call(bytes, size, below ? allowed(count) : count, file);
 }
 int fsync(int file) {
   static auto* const call = real<int(int)>("fsync");
@@ -149,7 +167,7 @@ int fdatasync(int file) {
 }
 int rename(const char* from, const char* to) {
   static auto* const call = real<int(const char*, const char*)>("rename");
-  return is_below(to) && fails(Need::none) ? -1 : call(from, to);
+  return is_below(to) && rename_fails() ? -1 : call(from, to);
 }
 int mkdir(const char* path, mode_t mode) {
   static auto* const call = real<int(const char*, mode_t)>("mkdir");
