@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exporters/report/image_picture.hpp"
 
-#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 
@@ -16,7 +14,7 @@ namespace {
 
 constexpr double kLargePart = 1e8;  // pixels; beyond, averaging all of them costs seconds
 constexpr double kClipped = 0.005;  // fraction of pixels that become black, and white
-constexpr const char* kQuality = "82";
+constexpr int kQuality = 82;
 
 using Dataset = std::unique_ptr<GDALDataset>;
 
@@ -68,33 +66,6 @@ Stretch stretch_of(const std::vector<std::vector<float>>& bands) {
   return {dark, bright > dark ? bright : dark + 1};
 }
 
-std::string encoded(const std::vector<std::vector<float>>& bands, int columns, int rows) {
-  static std::atomic<int> count = 0;
-  const std::string name = fmt::format("/vsimem/waymark_image_{}.jpg", count++);
-  GDALDriverManager& drivers = *GetGDALDriverManager();
-  GDALDriver *memory = drivers.GetDriverByName("MEM"), *jpeg = drivers.GetDriverByName("JPEG");
-  if (memory == nullptr || jpeg == nullptr) return {};
-  const Dataset pixels(memory->Create("", columns, rows, static_cast<int>(bands.size()), GDT_Byte, nullptr));
-  const Stretch stretch = stretch_of(bands);
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    std::vector<std::uint8_t> bytes(bands[b].size());
-    std::ranges::transform(bands[b], bytes.begin(), stretch);
-    if (pixels->GetRasterBand(static_cast<int>(b) + 1)
-            ->RasterIO(GF_Write, 0, 0, columns, rows, bytes.data(), columns, rows, GDT_Byte, 0, 0, nullptr) !=
-        CE_None)
-      return {};
-  }
-  CPLStringList options;
-  options.SetNameValue("QUALITY", kQuality);
-  if (!Dataset(jpeg->CreateCopy(name.c_str(), pixels.get(), FALSE, options.List(), nullptr, nullptr)))
-    return {};
-  vsi_l_offset size = 0;
-  const GByte* content = VSIGetMemFileBuffer(name.c_str(), &size, FALSE);
-  std::string copy(content, content + size);
-  VSIUnlink(name.c_str());
-  return copy;
-}
-
 }  // namespace
 
 std::optional<Window> image_extent(const std::string& path) {
@@ -104,7 +75,7 @@ std::optional<Window> image_extent(const std::string& path) {
   return Window{0, 0, image->GetRasterXSize(), image->GetRasterYSize()};
 }
 
-std::optional<ImagePicture> image_picture(const std::string& path, const Window& part, std::int64_t longest) {
+std::optional<Grid<Colour>> image_pixels(const std::string& path, const Window& part, std::int64_t longest) {
   const GdalMessages quiet;
   const Dataset image = open_image(path);
   if (!image || image->GetRasterCount() == 0 || part.columns < 1 || part.rows < 1) return {};
@@ -120,8 +91,22 @@ std::optional<ImagePicture> image_picture(const std::string& path, const Window&
     if (!cells) return {};
     bands.push_back(std::move(*cells));
   }
-  ImagePicture picture{.jpeg = encoded(bands, columns, rows), .columns = columns, .rows = rows, .part = part};
-  return picture.jpeg.empty() ? std::nullopt : std::optional(std::move(picture));
+  const Stretch stretch = stretch_of(bands);
+  Grid<Colour> pixels(columns, rows);
+  for (std::size_t i = 0; i < bands[0].size(); ++i)
+    pixels.cells()[i] = {stretch(bands[0][i]), stretch(bands[colour ? 1 : 0][i]),
+                         stretch(bands[colour ? 2 : 0][i]),
+                         static_cast<std::uint8_t>(std::isnan(bands[0][i]) ? 0 : 255)};
+  return pixels;
+}
+
+std::optional<ImagePicture> image_picture(const std::string& path, const Window& part, std::int64_t longest) {
+  const auto pixels = image_pixels(path, part, longest);
+  if (!pixels) return {};
+  return ImagePicture{.jpeg = encode_jpeg(*pixels, kQuality),
+                      .columns = pixels->columns(),
+                      .rows = pixels->rows(),
+                      .part = part};
 }
 
 }  // namespace waymark::exporters

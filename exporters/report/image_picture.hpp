@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include "core/grid.hpp"
+#include "exporters/report/relief_picture.hpp"
 namespace waymark::exporters {
 
 /// A part of an image as a JPEG for display.
@@ -18,7 +19,10 @@ std::optional<Window> image_extent(const std::string& path);
 
 /// Reads a part of an image and averages it so that the longer side has at most `longest` pixels. Stretches
 /// the contrast: the darkest and the brightest half percent become black and white. Three bands of 8 bit stay
-/// in colour. `std::nullopt` if the file cannot be read, since pictures are optional.
+/// in colour; alpha is 0 for no data. `std::nullopt` if the file cannot be read, since pictures are optional.
+std::optional<Grid<Colour>> image_pixels(const std::string& path, const Window& part, std::int64_t longest);
+
+/// Returns image_pixels() as a JPEG.
 std::optional<ImagePicture> image_picture(const std::string& path, const Window& part, std::int64_t longest);
 
 }  // namespace waymark::exporters

@@ -67,7 +67,9 @@ std::vector<ImageObservations> observed_images(const geodb::MapStore& map,
   return all;
 }
 
-std::optional<std::string> file_of(const geodb::MapStore& map, const std::string& name) {
+}  // namespace
+
+std::optional<std::string> find_image_file(const geodb::MapStore& map, const std::string& name) {
   const fs::path folder = map.path().parent_path();
   std::vector<std::string> candidates;
   for (const geodb::RunRecord& run : map.runs())
@@ -81,6 +83,8 @@ std::optional<std::string> file_of(const geodb::MapStore& map, const std::string
   }
   return {};
 }
+
+namespace {
 
 double radius_in_pixels(const Observation& one, const LandmarkType& type, const geodb::ImageRecord& image) {
   const auto feature = find_feature(type, type.body.feature);
@@ -163,7 +167,7 @@ std::string image_html(const geodb::MapStore& map, const ImageObservations& imag
   const std::string heading =
       fmt::format("<h3>{}</h3><p class='counts'>{}{}</p>\n", escape_markup(image.record->name),
                   counts_html(image, map.types()), known);
-  const auto path = file_of(map, image.record->name);
+  const auto path = find_image_file(map, image.record->name);
   const auto extent = path ? image_extent(*path) : std::nullopt;
   if (!extent) return heading + "<p class='empty'>The image file is missing.</p>\n";
   std::string pictures = picture_html(image, map.types(), *path, *extent, "The whole image");

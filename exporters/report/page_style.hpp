@@ -5,6 +5,8 @@ namespace waymark::exporters {
 
 /// The style sheet of a report: light, dark and print.
 extern const std::string_view kPageStyle;
+/// The script of a report: it makes the map and the tables interactive. The page is whole without it.
+extern const std::string_view kReportScript;
 
 /// Element of the head that forbids a page scripts, forms and anything outside it.
 inline constexpr std::string_view kContentPolicy =

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 
@@ -13,9 +14,9 @@
 namespace waymark::exporters {
 namespace {
 
-std::string unique_name() {
+std::string unique_name(const char* extension) {
   static std::atomic<int> count = 0;
-  return fmt::format("/vsimem/waymark_relief_{}.png", count++);
+  return fmt::format("/vsimem/waymark_picture_{}.{}", count++, extension);
 }
 
 std::string taken_from_memory(const std::string& name) {
@@ -26,31 +27,42 @@ std::string taken_from_memory(const std::string& name) {
   return copy;
 }
 
-}  // namespace
-
-std::string encode_png(const Grid<Colour>& picture) {
+/// Encodes the first `bands` of red, green, blue, alpha with a driver of GDAL.
+std::string encoded(const Grid<Colour>& picture, const char* driver, int bands, const char* option) {
   const GdalMessages messages;
   const int columns = static_cast<int>(picture.columns()), rows = static_cast<int>(picture.rows());
   GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");
-  GDALDriver* png = GetGDALDriverManager()->GetDriverByName("PNG");
-  if (memory == nullptr || png == nullptr)
-    throw Error(ErrorCode::environment, "this GDAL has no PNG driver", "the relief of a report",
-                "install GDAL's raster drivers (Debian: libgdal32)");
-  const std::unique_ptr<GDALDataset> pixels(memory->Create("", columns, rows, 4, GDT_Byte, nullptr));
+  GDALDriver* format = GetGDALDriverManager()->GetDriverByName(driver);
+  if (memory == nullptr || format == nullptr)
+    throw Error(ErrorCode::environment, fmt::format("this GDAL has no {} driver", driver),
+                "the pictures of a report", "install GDAL's raster drivers (Debian: libgdal32)");
+  const std::unique_ptr<GDALDataset> pixels(memory->Create("", columns, rows, bands, GDT_Byte, nullptr));
   std::vector<Colour> cells(picture.cells().begin(), picture.cells().end());
-  const std::string name = unique_name();
+  const std::string name = unique_name(driver);
   CPLStringList options;
-  options.SetNameValue("ZLEVEL", "9");
+  options.AddString(option);
   const bool copied = pixels->RasterIO(GF_Write, 0, 0, columns, rows, cells.data(), columns, rows, GDT_Byte,
-                                       4, nullptr, 4, 4 * columns, 1, nullptr) == CE_None;
-  pixels->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
+                                       bands, nullptr, 4, 4 * columns, 1, nullptr) == CE_None;
+  if (bands == 4) pixels->GetRasterBand(4)->SetColorInterpretation(GCI_AlphaBand);
   const std::unique_ptr<GDALDataset> file(
-      copied ? png->CreateCopy(name.c_str(), pixels.get(), FALSE, options.List(), nullptr, nullptr)
+      copied ? format->CreateCopy(name.c_str(), pixels.get(), FALSE, options.List(), nullptr, nullptr)
              : nullptr);
   if (!file)
-    throw Error(ErrorCode::environment,
-                "the relief picture could not be encoded: " + messages.cause("out of memory"));
+    throw Error(ErrorCode::environment, "a picture could not be encoded: " + messages.cause("out of memory"));
+  file->FlushCache();
   return taken_from_memory(name);
+}
+
+}  // namespace
+
+std::string encode_png(const Grid<Colour>& picture) {
+  return encoded(picture, "PNG", 4, "ZLEVEL=9");
+}
+
+std::string encode_jpeg(const Grid<Colour>& picture, int quality) {
+  const bool grey = std::ranges::all_of(
+      picture.cells(), [](const Colour& c) { return c.red == c.green && c.green == c.blue; });
+  return encoded(picture, "JPEG", grey ? 1 : 3, fmt::format("QUALITY={}", quality).c_str());
 }
 
 }  // namespace waymark::exporters

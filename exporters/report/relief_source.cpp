@@ -44,6 +44,13 @@ std::optional<Raster> open_raster(const std::string& name, const Crs& crs, doubl
   return raster;
 }
 
+std::vector<Raster> open_rasters(const std::vector<std::string>& names, const Crs& crs, double near_x) {
+  std::vector<Raster> rasters;
+  for (const std::string& name : names)
+    if (auto raster = open_raster(name, crs, near_x)) rasters.push_back(std::move(*raster));
+  return rasters;
+}
+
 /// Pixels of a picture that lie wholly inside a raster, and the part of the raster they show.
 struct Part {
   Window pixels;
@@ -132,6 +139,11 @@ Extent Extent::united(const Extent& other) const {
           std::max(north, other.north)};
 }
 
+Extent Extent::common(const Extent& other) const {
+  return {std::max(west, other.west), std::max(south, other.south), std::min(east, other.east),
+          std::min(north, other.north)};
+}
+
 GroundScale ground_scale(const Crs& crs, const Extent& extent) {
   if (crs.kind() != CrsKind::geographic) return {crs.metres_per_unit(), crs.metres_per_unit()};
   const double degree = crs.body().mean_radius() * kRadiansPerDegree;
@@ -139,15 +151,23 @@ GroundScale ground_scale(const Crs& crs, const Extent& extent) {
   return {degree * std::cos(latitude * kRadiansPerDegree), degree};
 }
 
-std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
-                                  std::int64_t pixels) {
+std::optional<Extent> relief_extent(const std::vector<std::string>& names, const Crs& crs, double near_x) {
   const GdalMessages quiet;
-  std::vector<Raster> rasters;
-  for (const std::string& name : names)
-    if (auto raster = open_raster(name, crs, near_x)) rasters.push_back(std::move(*raster));
+  std::optional<Extent> extent;
+  for (const Raster& raster : open_rasters(names, crs, near_x))
+    extent = extent ? extent->united(raster.extent) : raster.extent;
+  return extent;
+}
+
+std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
+                                  std::int64_t pixels, const std::optional<Extent>& within) {
+  const GdalMessages quiet;
+  const std::vector<Raster> rasters = open_rasters(names, crs, near_x);
   if (rasters.empty()) return {};
   Extent extent = rasters.front().extent;
   for (const Raster& raster : rasters) extent = extent.united(raster.extent);
+  if (within) extent = extent.common(*within);
+  if (!(extent.width() > 0 && extent.height() > 0)) return {};
   Relief relief = blank_relief(extent, crs, pixels);
   for (const Raster& raster : rasters) paint(relief, raster);
   return relief;

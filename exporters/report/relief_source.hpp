@@ -16,6 +16,8 @@ struct Extent {
   double width() const { return east - west; }
   double height() const { return north - south; }
   Extent united(const Extent& other) const;
+  /// Returns the common part; width or height is not above 0 if there is none.
+  Extent common(const Extent& other) const;
 };
 
 /// Heights sampled for a picture; NaN for unknown ones.
@@ -37,8 +39,12 @@ GroundScale ground_scale(const Crs& crs, const Extent& extent);
 /// - Cost is that of the overviews, or of every n-th row of a large file without them.
 /// - Missing files, other rasters and those of another body are skipped, since the picture is optional.
 /// - `near_x` is a longitude of the map; geographic files are shifted by whole turns to be near it.
-/// `std::nullopt` if no DEM is left.
+/// - `within`: only this rectangle is read, where it meets the DEMs.
+/// `std::nullopt` if no DEM is left, or none within `within`.
 std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
-                                  std::int64_t pixels);
+                                  std::int64_t pixels, const std::optional<Extent>& within = {});
+
+/// Returns the rectangle of all DEMs under these names; `std::nullopt` if there is none.
+std::optional<Extent> relief_extent(const std::vector<std::string>& names, const Crs& crs, double near_x);
 
 }  // namespace waymark::exporters

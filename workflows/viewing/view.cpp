@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/viewing/view.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "core/atomic_file.hpp"
+#include "exporters/vector/track_file.hpp"
+#include "exporters/view/make_scene.hpp"
+#include "exporters/view/view_page.hpp"
+#include "importers/cameras/camera_set.hpp"
+#include "workflows/localization/robot_map.hpp"
+#include "workflows/viewing/scene_folder.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxPage = 10'000'000;  // bytes
+
+exporters::NamedTrack read_named_track(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const bool named = equals != std::string::npos && equals > 0 && !fs::exists(text);
+  const fs::path file = named ? text.substr(equals + 1) : text;
+  return {named ? text.substr(0, equals) : file.stem().string(), exporters::read_track_csv(file)};
+}
+
+/// Returns the posed images of a camera file, with files from a folder.
+std::vector<exporters::PosedImageFile> read_cameras(const ViewPageRequest& request, const RobotMap& map) {
+  const fs::path folder =
+      request.images.empty() ? fs::path(request.cameras).parent_path() / "images" : fs::path(request.images);
+  const bool is_local = map.crs().kind() == CrsKind::local;
+  const auto set =
+      importers::import_cameras(request.cameras, "", {.crs = is_local ? "local" : map.crs().wkt2()});
+  std::vector<exporters::PosedImageFile> images;
+  for (const importers::ImageCamera& one : set.images) {
+    if (!one.view) continue;
+    const fs::path name = fs::path(one.image).filename();
+    std::string found;
+    for (const fs::path& path : {folder / name, fs::path(request.cameras).parent_path() / one.image})
+      if (std::error_code missing; found.empty() && fs::exists(path, missing)) found = path.string();
+    images.push_back({name.string(), found, *one.view});
+  }
+  return images;
+}
+
+localization::RobotLog read_view_log(const ViewPageRequest& request, const RobotMap& map,
+                                     const Callbacks& callbacks) {
+  localization::RobotLog log = importers::import_log(request.log, map.types(), request.log_format);
+  localization::convert_to_map_frame(log, map.frame);
+  for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
+  return log;
+}
+
+}  // namespace
+
+void write_view(const ViewPageRequest& asked, const Callbacks& callbacks) {
+  ViewPageRequest request = asked;
+  std::optional<SceneFolder> scene;
+  if (fs::is_directory(request.map)) scene.emplace(request);
+  const RobotMap map = open_robot_map(request.map, nullptr, true).map;
+  exporters::ViewRequest view{.title = request.title,
+                              .dems = request.dem,
+                              .orthophoto = request.orthophoto,
+                              .max_landmarks = request.max_landmarks};
+  for (const std::string& track : request.tracks) view.tracks.push_back(read_named_track(track));
+  localization::RobotLog log;
+  if (!request.log.empty()) {
+    log = read_view_log(request, map, callbacks);
+    view.log = &log;
+  }
+  view.images = request.cameras.empty() ? exporters::posed_images(*map.store) : read_cameras(request, map);
+  const exporters::ViewScene made = exporters::make_view_scene(*map.store, map.frame, view);
+  const std::string page = exporters::view_page(made);
+  if (page.size() > kMaxPage)
+    throw Error(ErrorCode::output,
+                fmt::format("the page has {:.1f} MB, at most 10 MB are written", double(page.size()) / 1e6),
+                request.output, "give a smaller --max-landmarks, or fewer tracks");
+  write_file(request.output, page);
+  for (const std::string& note : made.notes) callbacks.summary(note + "\n");
+  callbacks.summary(fmt::format("{}  {:.1f} MB\n", request.output, double(page.size()) / 1e6));
+}
+
+}  // namespace waymark::workflows

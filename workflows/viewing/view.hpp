@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+#include "importers/logs/import_log.hpp"
+#include "workflows/callbacks.hpp"
+namespace waymark::workflows {
+
+/// Request of a page that shows a map, and drives on it, in three dimensions.
+struct ViewPageRequest {
+  std::string map;     ///< map (.gpkg), or the folder of a simulated scene
+  std::string output;  ///< .html
+  std::string title = {};
+  std::vector<std::string> dem = {};  ///< empty: stored in the map, or read by its run
+  std::string orthophoto = {};        ///< empty: shaded relief
+  std::string cameras = {};           ///< camera file; empty: cameras of the map
+  std::string images = {};            ///< folder of their images; empty: where the run read them
+  std::string log = {};               ///< empty: none, or that of the scene
+  importers::LogImport log_format = {};
+  std::vector<std::string> tracks = {};  ///< TRACK.csv or NAME=TRACK.csv
+  std::int64_t max_landmarks = 24000;
+};
+
+/// Writes the page (exporters/view). Throws Error{input} for files that cannot be read, Error{usage} for a
+/// scene folder without truth, Error{output} if the page exceeds 10 MB or cannot be written.
+void write_view(const ViewPageRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows
