@@ -149,6 +149,32 @@ std::string track_score_as_json(const localization::TrackScore& score, const std
   return as_json(score, align).dump(2) + "\n";
 }
 
+std::string track_study_as_json(const workflows::TrackStudy& study, const std::string& align) {
+  json rows = json::object();
+  for (const workflows::StudyRow& row : study.rows)
+    rows[row.name] = {{"drives", row.drives},    {"median", row.spread.median}, {"low", row.spread.low},
+                      {"high", row.spread.high}, {"min", row.spread.min},       {"max", row.spread.max}};
+  nlohmann::ordered_json all{{"drives", study.drives.size()},
+                             {"consistent", study.consistent},
+                             {"with_covariances", study.with_covariances},
+                             {"summary", rows},
+                             {"scores", nlohmann::ordered_json::array()}};
+  for (const localization::TrackScore& score : study.drives) all["scores"].push_back(as_json(score, align));
+  return all.dump(2) + "\n";
+}
+
+std::string track_study_as_text(const workflows::TrackStudy& study, const std::string&) {
+  std::string text = fmt::format("{:<16} {:>7} {:>9} {:>20} {:>9} {:>9}\n", "", "drives", "median",
+                                 "95 % interval", "best", "worst");
+  for (const workflows::StudyRow& row : study.rows)
+    text += fmt::format("{:<16} {:>7} {:>9} {:>20} {:>9} {:>9}\n", row.name, row.drives,
+                        number(row.spread.median),
+                        fmt::format("{} to {}", number(row.spread.low), number(row.spread.high)),
+                        number(row.spread.min), number(row.spread.max));
+  return text + fmt::format("consistent: {} of {} drives with covariances have ANEES inside its band\n",
+                            study.consistent, study.with_covariances);
+}
+
 std::string track_score_as_text(const localization::TrackScore& score, const std::string& align) {
   const nlohmann::ordered_json all = as_json(score, align);
   std::string text;

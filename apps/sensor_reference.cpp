@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/registry_reference.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -35,19 +36,6 @@ std::string as_markdown(const SensorProfile& sensor) {
   return text + "\n" + coverage_text(sensor.coverage) + ".\n";
 }
 
-std::string as_json(const SensorProfile& sensor) {
-  Json record{{"name", sensor.name}, {"summary", sensor.summary}, {"weights", Json::object()}};
-  for (const FeatureWeight& feature : sensor.weights)
-    record["weights"][feature.type][feature.feature] = feature.weight;
-  const SensorCoverage& c = sensor.coverage;
-  record["coverage"] = {{"range", c.range},
-                        {"view", c.view},
-                        {"range_sd", c.range_sd},
-                        {"bearing_sd", c.bearing_sd},
-                        {"detection", c.detection}};
-  return record.dump(2);
-}
-
 /// Of the object `weights` above: every feature a sensor can weigh, with this sensor's weight as the default.
 std::string as_schema(const SensorProfile& sensor, const TypeRegistry& types) {
   Json properties = Json::object();
@@ -71,8 +59,8 @@ std::string as_schema(const SensorProfile& sensor, const TypeRegistry& types) {
 std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types) {
   std::vector<ReferenceEntry> all;
   for (const SensorProfile& sensor : sensors)
-    all.push_back({sensor.name, sensor.summary, as_text(sensor), as_json(sensor), as_schema(sensor, types),
-                   as_markdown(sensor)});
+    all.push_back({sensor.name, sensor.summary, as_text(sensor), workflows::sensor_as_json(sensor),
+                   as_schema(sensor, types), as_markdown(sensor)});
   return all;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "core/error.hpp"
@@ -22,6 +23,13 @@ std::optional<double> weighted_quality(const Landmark& landmark, const std::vect
 }
 
 }  // namespace
+
+double detection_probability(const SensorCoverage& coverage, double range, double diameter) {
+  if (!coverage.detection_odds || !(diameter > 0)) return coverage.detection;
+  const DetectionOdds& odds = *coverage.detection_odds;
+  return 1 / (1 + std::exp(-(odds.intercept + odds.per_metre * range +
+                             odds.per_log_diameter * std::log(diameter))));
+}
 
 std::vector<double> weights_for(const SensorProfile& profile, const LandmarkType& type) {
   const bool listed =

@@ -15,6 +15,11 @@ struct FeatureWeight {
   double weight = 1;
 };
 
+/// Log odds of a detection: intercept + per_metre range + per_log_diameter ln(diameter / 1 m).
+struct DetectionOdds {
+  double intercept = 0, per_metre = 0, per_log_diameter = 0;
+};
+
 /// What a sensor sees of landmarks, for planning. Range 0: unknown.
 struct SensorCoverage {
   double range = 0;         ///< metres, at which landmarks are detected
@@ -22,7 +27,12 @@ struct SensorCoverage {
   double range_sd = 0;      ///< metres; 0: the sensor measures no ranges
   double bearing_sd = 0.5;  ///< degrees
   double detection = 0.8;   ///< probability that an existing landmark in range and sight is detected
+  std::optional<DetectionOdds> detection_odds = {};  ///< by range and size, where `detection` is the mean
 };
+
+/// Returns the probability that a landmark in view is detected: by `detection_odds`, or `detection` if there
+/// are none or the diameter is unknown (not above 0). Metres.
+double detection_probability(const SensorCoverage& coverage, double range, double diameter);
 
 /// Feature weights and coverage of a sensor. Unlisted features of a listed type have weight 0. An unlisted
 /// type has equal weights, so that new types work with existing sensors.

@@ -41,13 +41,14 @@ void visit_information(const localization::Pose2& pose, const localization::Land
     const double bearing = bearing_sd * bearing_sd / rate + 2 * correlation * w.dot(s * w) / (r * r);
     // The bearing's row of the measurement matrix is (-w / r, -1), that of the range (-u, 0).
     Symmetric3 j;
-    const double b = sensor.detection / bearing;
+    const double detection = detection_probability(sensor, r, landmark.diameter);
+    const double b = detection / bearing;
     add(j,
         {w.x() * w.x() / (r * r), w.x() * w.y() / (r * r), w.y() * w.y() / (r * r), w.x() / r, w.y() / r, 1},
         b);
     if (sensor.range_sd > 0) {
       const double range = sensor.range_sd * sensor.range_sd / rate + 2 * correlation * u.dot(s * u);
-      add(j, {u.x() * u.x(), u.x() * u.y(), u.y() * u.y(), 0, 0, 0}, sensor.detection / range);
+      add(j, {u.x() * u.x(), u.x() * u.y(), u.y() * u.y(), 0, 0, 0}, detection / range);
     }
     visit(i, j);
   });

@@ -5,11 +5,13 @@
 #include "apps/console.hpp"
 #include "apps/score_text.hpp"
 #include "workflows/evaluation/evaluate.hpp"
+#include "workflows/evaluation/track_study.hpp"
 
 namespace waymark::apps {
 namespace {
 
-std::vector<Argument> track_arguments(workflows::TrackEvaluation& into) {
+std::vector<Argument> track_arguments(workflows::TrackEvaluation& into,
+                                      std::vector<std::string>& more_drives) {
   return {
       Argument{"--align", "HOW", &into.align, "track: how it is aligned with the truth first"}
           .one_of({"none", "se2", "sim2"})
@@ -25,6 +27,9 @@ std::vector<Argument> track_arguments(workflows::TrackEvaluation& into) {
           "--map", "MAP", &into.map,
           "track: map that the robot used; it is drawn, and a truth in CRS coordinates is put into its frame"}
           .offering(Offer::file),
+      Argument{"--drive", "TRACK=LOG", &more_drives,
+               "track: another drive and its truth; the result is a summary over all, --picture their errors "
+               "over time; may be repeated"},
       Argument{"--also", "NAME=TRACK", &into.also, "track: another track of the picture; may be repeated"},
       Argument{"--max-gap", "S", &into.max_gap,
                "track: seconds between two true poses that may be interpolated"}
@@ -83,11 +88,14 @@ class Evaluate final : public Command {
              Argument{"--format", "FORMAT", &format_, "text or json"}
                  .one_of({"text", "json"})
                  .or_else("text")},
-        .examples = {{"waymark evaluate landmarks mars.gpkg --truth mars/truth.csv --ignore mars/ignored.csv",
-                      "A landing map against its testbed"},
-                     {"waymark evaluate landmarks out.csv --truth tile_gt.csv --by overlap --min-diameter 16",
-                      "Craters of one image against a catalogue, in pixels"}}};
-    for (Argument& argument : track_arguments(track_)) spec.arguments.push_back(argument);
+        .examples = {
+            {"waymark evaluate landmarks mars.gpkg --truth mars/truth.csv --ignore mars/ignored.csv",
+             "A landing map against its testbed"},
+            {"waymark evaluate landmarks out.csv --truth tile_gt.csv --by overlap --min-diameter 16",
+             "Craters of one image against a catalogue, in pixels"},
+            {"waymark evaluate track a.csv --truth a.jsonl --drive b.csv=b.jsonl --drive c.csv=c.jsonl",
+             "Medians, confidence intervals and consistency over three drives"}}};
+    for (Argument& argument : track_arguments(track_, more_drives_)) spec.arguments.push_back(argument);
     return spec;
   }
 
@@ -95,6 +103,12 @@ class Evaluate final : public Command {
     if (what_ == "track") {
       track_.track = landmarks_.result;
       track_.truth = landmarks_.truth;
+      if (!more_drives_.empty()) {
+        const workflows::TrackStudy study = workflows::evaluate_drives(track_, more_drives_);
+        std::cout << (format_ == "json" ? track_study_as_json(study, track_.align)
+                                        : track_study_as_text(study, track_.align));
+        return 0;
+      }
       const localization::TrackScore score = workflows::evaluate(track_);
       std::cout << (format_ == "json" ? track_score_as_json(score, track_.align)
                                       : track_score_as_text(score, track_.align));
@@ -109,6 +123,7 @@ class Evaluate final : public Command {
   std::string what_, format_ = "text";
   workflows::LandmarkEvaluation landmarks_;
   workflows::TrackEvaluation track_;
+  std::vector<std::string> more_drives_;
 };
 
 }  // namespace

@@ -43,8 +43,9 @@ class Localize final : public Command {
              Argument{"--method", "NAME", &request_.method, "How to localize"}
                  .one_of(workflows::localize_methods())
                  .or_else("ekf"),
-             Argument{"--sensor", "NAME", &request_.sensor,
-                      "Sensor profile of eq. 8; for --set quality=paper, and for maps without confidence"}
+             Argument{"--sensor", "NAME|FILE", &request_.sensor,
+                      "Sensor profile, built-in or FILE.json: eq. 8 for --set quality=paper and maps without "
+                      "confidence; its range, view and detection for --set expect_unseen=true"}
                  .offering(workflows::all_sensors().names()),
              Argument{"--min-confidence", "P", &request_.min_confidence,
                       "Use only landmarks that exist with at least this probability, 0 to 1"}

@@ -23,8 +23,8 @@ std::vector<Argument> query_arguments(workflows::QueryRequest& request) {
       {"--max", "FEATURE=VALUE", &request.max_features,
        "Landmarks whose feature or other number is at most this; may be repeated"},
       Argument{"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed"}.or_else("the map's"),
-      Argument{"--sensor", "NAME", &request.sensor,
-               "Quality as this sensor sees it; `waymark sensors` lists them"}
+      Argument{"--sensor", "NAME|FILE", &request.sensor,
+               "Quality as this sensor sees it; `waymark sensors` lists them, FILE.json is one of your own"}
           .offering(workflows::all_sensors().names()),
       {"--min-confidence", "P", &request.min_confidence,
        "Landmarks that exist with at least this probability, 0 to 1"},
@@ -64,7 +64,7 @@ class Query final : public Command {
   int run(const Session&) override {
     request_.wgs84 = format_ == "geojson";
     const workflows::QueryResult found = workflows::query(map_, request_);
-    RowContext context{.types = &found.types, .sensor = found.sensor};
+    RowContext context{.types = &found.types, .sensor = found.sensor.get()};
     if (!request_.near.empty() || !request_.nearest.empty())
       context.distance = [&](const Landmark& landmark) { return found.distances.at(landmark.uid); };
     print(row_columns(request_.types.empty() ? found.types.names() : request_.types, context),

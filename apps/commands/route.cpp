@@ -36,8 +36,8 @@ class RouteCommand final : public Command {
                       "Hazard map that `waymark hazards` made, or none"}
                  .offering(Offer::file)
                  .or_else("none"),
-             Argument{"--sensor", "NAME", &request_.sensor,
-                      "Sensor with its coverage; `waymark sensors` lists them"}
+             Argument{"--sensor", "NAME|FILE", &request_.sensor,
+                      "Sensor with its coverage; `waymark sensors` lists them, FILE.json is one of your own"}
                  .needed()
                  .offering(workflows::all_sensors().names()),
              Argument{"--range", "METRES", &request_.range, "Range of the sensor"}.or_else(

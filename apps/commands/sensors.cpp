@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/registry_reference.hpp"
 #include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -14,13 +15,23 @@ class Sensors final : public Command {
         .summary = "List the sensor profiles, or describe one with its weights",
         .about =
             "A sensor profile says how much each feature helps that sensor to distinguish landmarks. "
-            "`waymark query --sensor NAME` ranks landmarks by it.",
+            "`waymark query --sensor NAME` ranks landmarks by it. `--as json` prints a file to copy and "
+            "change; every --sensor also takes such a FILE.json, and `waymark sensors FILE.json` checks it.",
         .arguments = reference_arguments(what_, workflows::all_sensors().names()),
-        .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"}}};
+        .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"},
+                     {"waymark sensors horizontal_laser --as json > mine.json", "A file to change"}}};
   }
 
   int run(const Session&) override {
-    print_reference(registry_reference(workflows::all_sensors(), workflows::all_types()), "sensor", what_);
+    SensorRegistry sensors;
+    if (what_.name.ends_with(".json")) {  // checks a file, and prints what was read
+      SensorProfile own = *workflows::find_sensor(what_.name);
+      own.name = what_.name;
+      sensors.add(std::move(own));
+    } else {
+      for (const SensorProfile& sensor : workflows::all_sensors()) sensors.add(sensor);
+    }
+    print_reference(registry_reference(sensors, workflows::all_types()), "sensor", what_);
     return 0;
   }
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/training/train.hpp"
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "core/error.hpp"
+#include "workflows/training/fit_sensor.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -12,7 +15,7 @@ class Train final : public Command {
     return {
         .name = "train",
         .group = Group::make,
-        .summary = "Train the models that find craters, rocks and trees",
+        .summary = "Train the models that find craters, rocks and trees, or fit a sensor profile",
         .about =
             "craters: makes scenes with known craters, half of them with the testbed of `waymark "
             "simulate`, detects bowls in them and trains a classifier of craters and a model of their "
@@ -24,16 +27,19 @@ class Train final : public Command {
             "forests. With images, trains the network of crowns on orthophotos whose trees are all marked, "
             "in a table beside each (a.csv beside a.tif: x, y in pixels), and reports the score on images "
             "that were left out.\n\n"
+            "sensor: fits range, field of view, noise and the probability of detection by range and size to "
+            "logs with true poses and the map of their site, and writes a sensor file.\n\n"
             "The same scenes, images and seed give the same model. A name that ends in .cpp gives the "
             "source file that is compiled into waymark.",
         .arguments =
             {Argument{"", "WHAT", &request_.what, "What to train"}.needed().one_of(
-                 {"craters", "rocks", "trees"}),
-             Argument{"", "IMAGE...", &request_.images, "trees: orthophotos to train on"}.offering(
-                 Offer::file),
-             Argument{"-o,--output", "MODEL", &request_.output, "Model to write, .txt or .cpp"}
+                 {"craters", "rocks", "trees", "sensor"}),
+             Argument{"", "FILE...", &request_.images, "trees: orthophotos to train on; sensor: logs"}
+                 .offering(Offer::file),
+             Argument{"-o,--output", "MODEL", &request_.output, "Model to write, .txt or .cpp; sensor: .json"}
                  .needed()
                  .offering(Offer::file),
+             Argument{"--map", "MAP", &map_, "sensor: map of the site of the logs"}.offering(Offer::file),
              {"--scenes", "N", &request_.scenes,
               "Made scenes to train on; 0: 120 of craters, 240 of rocks, 120 forests of each type"},
              {"--colour", "", &request_.colour, "trees in images: train on red, green and blue alone"},
@@ -46,10 +52,18 @@ class Train final : public Command {
             {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
              "Confidence of treetops in canopy models"},
             {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
-             "Trees in images with near infrared"}}};
+             "Trees in images with near infrared"},
+            {"waymark train sensor drive1.jsonl drive2.jsonl --map site.gpkg -o mine.json",
+             "A sensor profile from drives with true poses"}}};
   }
 
   int run(const Session& session) override {
+    if (request_.what == "sensor") {
+      workflows::fit_sensor({request_.images, map_, request_.output}, console_callbacks(session));
+      return 0;
+    }
+    if (!map_.empty())
+      throw Error(ErrorCode::usage, "--map is for `waymark train sensor`", "train " + request_.what);
     request_.threads = static_cast<int>(session.threads);
     workflows::train(request_, console_callbacks(session));
     return 0;
@@ -57,6 +71,7 @@ class Train final : public Command {
 
  private:
   workflows::TrainRequest request_;
+  std::string map_;
 };
 
 }  // namespace

@@ -47,12 +47,15 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   robots.at = frame.map_frame_from_crs(ground).xyz.head<2>();
   robots.covariance = usable(landmark.covariance);
   robots.type = landmark.type;
-  const double quality =
-      (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark)).value_or(1);
+  const double quality = (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark))
+                             .value_or(landmark.quality.visible > 0 ? kUnassessedQuality : 1);
   robots.paper_quality = std::clamp(quality, 1e-3, 1.0);
   robots.quality =
       std::isfinite(landmark.confidence) ? std::clamp(landmark.confidence, 1e-3, 1.0) : robots.paper_quality;
   robots.features = known_features(landmark.features);
+  for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i)
+    if (type.features[i].name == type.body.feature && landmark.features[i].value > 0)
+      robots.diameter = 2 * type.body.radius_per_value * landmark.features[i].value;
   return robots;
 }
 

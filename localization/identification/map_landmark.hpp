@@ -21,9 +21,16 @@ struct MapLandmark {
   TypeId type = 0;
   /// Probability that it exists, (0, 1]: the map's confidence, or its quality if it has none. 1 without both.
   double quality = 1;
-  double paper_quality = 1;  ///< for the sensor (eq. 8), (0, 1]; 1 if it was not assessed
+  /// For the sensor (eq. 8), (0, 1]; kUnassessedQuality if its observations say nothing, 1 if the map has no
+  /// counts at all.
+  double paper_quality = 1;
   KnownFeatures features;
+  double diameter = 0;  ///< m, of its body; 0: unknown
 };
+
+/// Quality of a landmark that was observed but not assessed, the mean of a quality that may be anything. With
+/// 1, which eq. 7 gives to a single observation, it would outrank every landmark that images agree on.
+inline constexpr double kUnassessedQuality = 0.5;
 
 /// Converts all landmarks of a map. `sensor`: profile for eq. 8; null: equal weights.
 std::vector<MapLandmark> to_map_landmarks(const SemanticMap& map, const SensorProfile* sensor = nullptr);

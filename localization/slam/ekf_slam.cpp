@@ -67,6 +67,7 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
     l.covariance = known.covariance;
     l.quality = options_.identification.quality_floor < 1 ? known.quality : 1;
     l.log_odds = log_odds(l.quality);
+    l.noise_divisor = noise_divisor(known, options_.identification);
     l.key = known.key;
     l.was_mapped = true;
     l.type = known.type;
@@ -299,12 +300,11 @@ SlamState::Correction EkfSlam::correction(const SightingSet& seen, const Pair& p
     landmark_by_slot_[*l.slot] = pair.landmark;
   }
   const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, state_.at(*l.slot));
-  SlamState::Correction c{
-      .slot = *l.slot,
-      .innovation = innovation(s, e.value),
-      .by_pose = e.by_pose,
-      .by_landmark = e.by_landmark,
-      .noise = sensor_noise(s) / std::max(l.quality, options_.identification.quality_floor)};
+  SlamState::Correction c{.slot = *l.slot,
+                          .innovation = innovation(s, e.value),
+                          .by_pose = e.by_pose,
+                          .by_landmark = e.by_landmark,
+                          .noise = sensor_noise(s) / l.noise_divisor};
   if (!s.range) {
     c.by_pose.row(0).setZero(), c.by_landmark.row(0).setZero();
     c.innovation[0] = 0;

@@ -48,8 +48,9 @@ struct SlamLandmark {
   bool gone = false;               ///< removed because the evidence says it does not exist
   bool was_mapped = false;         ///< it was in the initial map
   std::optional<TypeId> type;
-  double quality = 1;      ///< of the map's landmark
-  KnownFeatures features;  ///< the signature
+  double quality = 1;        ///< of the map's landmark: probability that it exists
+  double noise_divisor = 1;  ///< of the noise of its sightings (section 4.3); 1 unless `quality=paper`
+  KnownFeatures features;    ///< the signature
   std::vector<KnownFeatures>
       feature_samples;                  ///< features of each match, for the map's statistics; at most 100
   std::size_t index = 0;                ///< constant while the filter lives

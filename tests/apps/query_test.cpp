@@ -87,6 +87,11 @@ TEST_F(Query, ByConfidenceQualityAndCounts) {
   EXPECT_THAT(query({"--min", "confidense=1"}).err, HasSubstr("did you mean 'confidence'?"));
 }
 
+TEST_F(Query, ByExpectedVisibility) {
+  EXPECT_THAT(elevations({"--min", "visibility=0", "--largest", "visibility"}), ElementsAre(900, 700));
+  EXPECT_THAT(elevations({"--min", "visibility=1.01"}), IsEmpty());
+}
+
 TEST_F(Query, WhatIsNotAssessedHasNoQualityAndTheTableShowsConfidence) {
   const Outcome table = query({});
   EXPECT_THAT(table.out, AllOf(HasSubstr("quality"), HasSubstr("confidence"), HasSubstr("  -  ")));

@@ -178,6 +178,23 @@ TEST(Identify, JointHypothesesAreThoseOfASearchOfAll) {
   }
 }
 
+// Seen by the one image that covers it, a landmark would have quality 1 by eq. 7 and outrank all others.
+TEST(MapLandmark, AnUnassessedQualityOutranksNoWellObservedOne) {
+  TypeRegistry types;
+  register_landmark_types(types);
+  const LandmarkType& rock = types[types.id("rock")];
+  const auto quality = [&](int seen, int visible, std::optional<double> confidence) {
+    Landmark l;
+    l.type = types.id("rock");
+    l.quality = {.seen = seen, .visible = visible, .feature_confidences = {confidence}};
+    return map_landmark(l, rock, LocalFrame(Crs::local(), {})).paper_quality;
+  };
+  EXPECT_DOUBLE_EQ(quality(8, 10, 0.8), 0.64);  // eq. 8
+  EXPECT_LT(quality(1, 1, {}), quality(8, 10, 0.8));
+  EXPECT_DOUBLE_EQ(quality(1, 1, {}), kUnassessedQuality);
+  EXPECT_DOUBLE_EQ(quality(0, 0, {}), 1) << "a map without counts is surveyed";
+}
+
 TEST(Identify, QualityFloorOfOneSwitchesQualityOff) {
   IdentificationOptions options;
   options.quality_floor = 1;

@@ -251,6 +251,27 @@ TEST(EkfSlam, SignaturesKeepNeighboursApart) {
   EXPECT_NE(slam.update({{}, {seen}}).at(0).verdict, Verdict::matched) << "a tree is no rock";
 }
 
+// By default the existence of a landmark is its prior and does not widen the noise; with quality=paper eq. 8
+// does.
+TEST(EkfSlam, OnlyThePapersQualityWidensTheNoise) {
+  MapLandmark rock = landmark_at(5, 0, 1);
+  rock.covariance = Eigen::Matrix2d::Identity() * 1e-4;
+  const auto variance = [&](double existence, double paper_quality, const std::string& use) {
+    rock.quality = existence, rock.paper_quality = paper_quality;
+    SlamOptions options = made_drive_options();
+    options.identification.quality = use;
+    SeenLandmark seen = seen_at(5, 0);
+    seen.identity = 1;
+    EkfSlam slam({{}, Eigen::Vector3d(0.04, 0.04, 1e-3).asDiagonal()}, LandmarkGrid({rock}), {}, options);
+    EXPECT_EQ(slam.update({{}, {seen}}).at(0).key, 1u);
+    return slam.estimate().covariance(0, 0);
+  };
+  const double sure = variance(1, 1, "existence");
+  EXPECT_DOUBLE_EQ(variance(0.7, 1, "existence"), sure);
+  EXPECT_DOUBLE_EQ(variance(1, 0.3, "existence"), sure);
+  EXPECT_GT(variance(1, 0.3, "paper"), 1.5 * sure);
+}
+
 // Two rocks of the map fit after a gap, the nearer one a little better. The choice would not be revised.
 TEST(EkfSlam, APairThatAnotherLandmarkCouldReplaceIsNotUsed) {
   const LandmarkGrid map({landmark_at(10, 0.4, 1), landmark_at(10, -0.6, 2)});

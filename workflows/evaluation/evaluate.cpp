@@ -189,6 +189,14 @@ localization::TrackScore evaluate(const TrackEvaluation& request) {
   return s;
 }
 
+std::vector<localization::TrackErrorAt> track_errors(const TrackEvaluation& request) {
+  std::optional<OpenedMap> opened;
+  if (!request.map.empty()) opened = open_robot_map(request.map, nullptr);
+  return localization::track_errors(exporters::read_track_csv(request.track),
+                                    read_truth(request, opened ? &opened->map.frame : nullptr).poses,
+                                    request.max_gap);
+}
+
 std::vector<exporters::QualityCheck> check_quality(const std::string& map, const std::string& truth) {
   const auto pairs = pair_by_type(read_scored_things(map, "", 0),
                                   read_scored_things(truth, "", LandmarkEvaluation{}.min_pixels), "");

@@ -5,6 +5,7 @@
 #include <vector>
 #include "exporters/report/report_html.hpp"
 #include "importers/logs/import_log.hpp"
+#include "localization/drive_statistics.hpp"
 #include "localization/track_score.hpp"
 #include "testbed/score.hpp"
 #include "workflows/callbacks.hpp"
@@ -42,6 +43,9 @@ struct TrackEvaluation {
 /// Returns errors and consistency of a track, and draws the picture. Throws Error{input} if the truth has no
 /// poses or no time in common with the track.
 localization::TrackScore evaluate(const TrackEvaluation& request);
+
+/// Returns the position errors of a track over time, without alignment. Throws as evaluate().
+std::vector<localization::TrackErrorAt> track_errors(const TrackEvaluation& request);
 
 /// Returns how far the confidence and quality of a map's landmarks agree with the truth, for a report.
 std::vector<exporters::QualityCheck> check_quality(const std::string& map, const std::string& truth);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <numbers>
 #include <optional>
 
 #include "core/error.hpp"
@@ -18,6 +20,7 @@
 #include "workflows/localization/localize_method.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -28,6 +31,14 @@ std::optional<exporters::TrackFormat> pose_format(const std::string& output) {
   if (extension == ".kitti") return exporters::TrackFormat::kitti;
   if (extension == ".g2o") return exporters::TrackFormat::g2o;
   return {};
+}
+
+/// Expects landmarks where the sensor detects them. Without a known range the settings stay.
+void set_coverage(const SensorCoverage& coverage, localization::WeightOptions& weight) {
+  if (!(coverage.range > 0)) return;
+  weight.view_range = coverage.range;
+  weight.view_angle = std::min(coverage.view / 360, 1.0) * 2 * std::numbers::pi;
+  weight.detection = coverage.detection;
 }
 
 void check_output(const std::string& output) {
@@ -182,7 +193,10 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);
   check_written_map(request, method);
+  const std::shared_ptr<const SensorProfile> sensor =
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor);
   LocalizeSettings settings;
+  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
   settings.particles.seed = request.seed;
   const DescribeOptions options = [&](OptionVisitor& visitor) {
     settings.describe(visitor);
@@ -196,11 +210,10 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   if (!(request.min_confidence >= 0 && request.min_confidence <= 1))
     throw Error(ErrorCode::usage,
                 fmt::format("--min-confidence must be 0 to 1, is {:g}", request.min_confidence));
-  const SensorProfile* sensor = request.sensor.empty() ? nullptr : &all_sensors().at(request.sensor);
   OpenedMap opened =
       request.map == "none" && !method.requires_map()
           ? make_empty_robot_map()
-          : open_robot_map(request.map, sensor, !method.requires_map(), request.min_confidence);
+          : open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
   const RobotMap map = opened.map;
   localization::RobotLog log = read_log(request, map, callbacks);
   const std::optional<localization::PoseEstimate> start =
@@ -212,7 +225,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
                     .map = std::move(opened),
                     .start = start,
                     .settings = settings,
-                    .sensor = sensor,
+                    .sensor = sensor.get(),
                     .ground = open_terrain(map, request.dem),
                     .command_line = request.command_line,
                     .settings_json = options_as_json(option_table(options)),
@@ -235,7 +248,10 @@ std::string localize_settings(const LocalizeRequest& request) {
   MethodTable methods;
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);
+  const std::shared_ptr<const SensorProfile> sensor =
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor);
   LocalizeSettings settings;
+  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
   settings.particles.seed = request.seed;
   const DescribeOptions options = [&](OptionVisitor& visitor) {
     settings.describe(visitor);

@@ -22,6 +22,7 @@
 #include "localization/slam/existence_log_odds.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -36,15 +37,29 @@ FeatureValue merged_feature(const localization::SlamLandmark& l, std::size_t i, 
   return values.empty() ? FeatureValue{} : merge(values, scale);
 }
 
+/// Returns a feature of the map after one more observation (eq. 3): the mean of a drive, whose sightings
+/// repeat the error of one sensor. The spread is that of all observations.
+FeatureValue refined_feature(const FeatureValue& of_map, double of_drive, Scale scale) {
+  const double n = of_map.observations;
+  const WeightedValue both[] = {{of_map.value, n}, {of_drive, 1}};
+  FeatureValue refined = merge(both, scale);
+  const double a = difference(of_map.value, refined.value, scale);
+  const double b = difference(of_drive, refined.value, scale);
+  refined.variance = ((n - 1) * of_map.variance + n * a * a + b * b) / n;
+  refined.observations = of_map.observations + 1;
+  return refined;
+}
+
 void add_features(const localization::SlamLandmark& seen, const LandmarkType& type, Landmark& into) {
   into.features.resize(type.features.size());
   into.quality.feature_confidences.resize(type.features.size());
   for (std::size_t i = 0; i < std::min(type.features.size(), localization::kMaxFeatures); ++i) {
-    if (into.features[i].known()) continue;
     const FeatureSpec& spec = type.features[i];
-    const FeatureValue value = merged_feature(seen, i, spec.scale);
-    if (!value.known() || !(value.value >= spec.min_value && value.value <= spec.max_value)) continue;
-    into.features[i] = value;
+    const FeatureValue of_drive = merged_feature(seen, i, spec.scale);
+    if (!of_drive.known() || !(of_drive.value >= spec.min_value && of_drive.value <= spec.max_value))
+      continue;
+    FeatureValue& value = into.features[i];
+    value = value.known() ? refined_feature(value, of_drive.value, spec.scale) : of_drive;
     into.quality.feature_confidences[i] = spread_confidence(value, spec.scale, spec.reference);
   }
 }
@@ -59,7 +74,7 @@ void set_position(const localization::SlamLandmark& seen, const LocalFrame& fram
   if (is_new) into.covariance(2, 2) = kUnknown;
 }
 
-Observation make_evidence(const Landmark& l, const localization::SlamLandmark& seen,
+Observation make_evidence(const Landmark& l, const localization::SlamLandmark& seen, const LandmarkType& type,
                           const std::string& source) {
   Observation o;
   o.type = l.type;
@@ -71,24 +86,27 @@ Observation make_evidence(const Landmark& l, const localization::SlamLandmark& s
   o.confidence = std::clamp(localization::probability_from_log_odds(seen.log_odds), 1e-3, 1.0);
   o.features.resize(l.features.size());
   for (std::size_t i = 0; i < std::min(o.features.size(), localization::kMaxFeatures); ++i)
-    if (seen.features.known(i) && !seen.feature_samples.empty())
-      o.features[i] = {seen.features.value[i], seen.features.variance[i], 1};
+    if (const FeatureValue mean = merged_feature(seen, i, type.features[i].scale); mean.known())
+      o.features[i] = {mean.value, mean.variance, 1};
   return o;
 }
 
+/// Counts the drive as one survey, like an image: its hundreds of scans repeat one view, and would drown the
+/// images of the map in eq. 5. The scans speak in the confidence.
 void add_counts(const localization::SlamLandmark& seen, Landmark& into) {
   into.confidence = localization::probability_from_log_odds(seen.log_odds);
-  into.quality.seen += static_cast<int>(seen.matches);
-  into.quality.visible += static_cast<int>(std::max(seen.expected, seen.matches));
+  ++into.quality.visible;
+  into.quality.seen += seen.matches > 0 && !seen.gone;
 }
 
 geodb::RunRecord run_record(const LocalizeTask& task, const SlamUpdate& update, std::string_view method) {
   geodb::RunRecord run = make_run_record(task.command_line, std::chrono::system_clock::now());
   using Json = nlohmann::ordered_json;
-  run.job_json = Json{{"method", method},
-                      {"log", task.log_file},
-                      {"settings", Json::parse(json_or_empty(task.settings_json))}}
-                     .dump();
+  Json job{{"method", method},
+           {"log", task.log_file},
+           {"settings", Json::parse(json_or_empty(task.settings_json))}};
+  if (task.sensor) job["sensor"] = Json::parse(json_or_empty(sensor_as_json(*task.sensor)));
+  run.job_json = job.dump();
   run.report_json = nlohmann::json{
       {"changed", update.changed.size()},
       {"added", update.added.size()},
@@ -150,7 +168,7 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
         add_features(l, types[changed.type], changed);
       }
       add_counts(l, changed);
-      if (l.matches > 0) update.evidence.push_back(make_evidence(changed, l, source));
+      if (l.matches > 0) update.evidence.push_back(make_evidence(changed, l, types[changed.type], source));
       update.changed.push_back(std::move(changed));
       continue;
     }
@@ -176,7 +194,7 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
     const auto name = names.find(seen_of[i]->key.value_or(0));
     if (seen_of[i]->key && name != names.end()) added.uid = name->second;
     while (of_map.contains(localization::landmark_key(added.uid))) added.uid += "-s";
-    update.evidence.push_back(make_evidence(added, *seen_of[i], source));
+    update.evidence.push_back(make_evidence(added, *seen_of[i], types[added.type], source));
   }
   return update;
 }

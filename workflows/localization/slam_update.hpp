@@ -16,7 +16,7 @@ struct SlamUpdate {
 
 /// Returns the changes that a drive makes to its map, in the map's CRS.
 /// - Landmarks of the map that were observed or missed: position, covariance, existence (confidence), counts
-///   of seen and visible, and features that the map lacked. Features and heights of the map stay.
+///   of seen and visible (one survey), and features (one observation, eq. 3). Heights of the map stay.
 /// - New landmarks whose log odds reach `confirmed`, of the observed type, else `beacon` or the map's only
 ///   type. A landmark with an identity gets it as uid; heights are unknown.
 /// - One observation per observed landmark, from `source`.

@@ -19,13 +19,13 @@
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/route_cells.hpp"
 #include "workflows/planning/route_layers.hpp"
-#include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
 
-SensorCoverage coverage_of(const RouteRequest& request) {
-  SensorCoverage coverage = all_sensors().at(request.sensor).coverage;
+SensorCoverage coverage_of(const RouteRequest& request, const SensorProfile& sensor) {
+  SensorCoverage coverage = sensor.coverage;
   if (request.range > 0) coverage.range = request.range;
   if (request.view > 0) coverage.view = request.view;
   if (!(coverage.range > 0))
@@ -200,8 +200,9 @@ struct Planner {
 
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) {
   check(request);
-  const SensorCoverage coverage = coverage_of(request);
-  OpenedMap opened = open_robot_map(request.map, &all_sensors().at(request.sensor));
+  const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor);
+  const SensorCoverage coverage = coverage_of(request, *sensor);
+  OpenedMap opened = open_robot_map(request.map, sensor.get());
   const RobotMap& map = opened.map;
   std::vector<Waypoint> points{parse_waypoint("--from", request.from, map)};
   for (const std::string& via : request.via) points.push_back(parse_waypoint("--via", via, map));
@@ -210,13 +211,12 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   std::optional<HazardClasses> hazards;
   if (request.hazards != "none") hazards.emplace(request.hazards, map);
   const HazardClasses* classes = hazards ? &*hazards : nullptr;
-  Planner planner{
-      .request = request,
-      .map = map,
-      .landmarks = localization::LandmarkGrid(all_landmarks(map, &all_sensors().at(request.sensor))),
-      .sensing = {.coverage = coverage},
-      .problem = {},
-      .uids = {}};
+  Planner planner{.request = request,
+                  .map = map,
+                  .landmarks = localization::LandmarkGrid(all_landmarks(map, sensor.get())),
+                  .sensing = {.coverage = coverage},
+                  .problem = {},
+                  .uids = {}};
   for (const Landmark& landmark : map.store->query({}))
     planner.uids[localization::landmark_key(landmark.uid)] = landmark.uid;
   const planning::RouteCells cells = cells_for(points, request.cell, coverage.range);

@@ -10,7 +10,7 @@
 #include "exporters/vector/vector_format.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/query/query_area.hpp"
-#include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -70,7 +70,8 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
   query_.min_quality = check_fraction("--min-quality", request.min_quality);
   query_.min_confidence = check_fraction("--min-confidence", request.min_confidence);
   query_.largest_first = request.largest;
-  if (!request.sensor.empty()) query_.sensor = &all_sensors().at(request.sensor);
+  if (!request.sensor.empty()) sensor_ = find_sensor(request.sensor);
+  query_.sensor = sensor_.get();
   for (const std::string& text : request.min_features) {
     const auto [feature, value] = parse_bound("--min", text);
     query_.features.push_back({.feature = feature, .min_value = value});

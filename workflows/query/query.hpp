@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -14,7 +15,7 @@ namespace waymark::workflows {
 /// Conditions on the landmarks of a map. Coordinates are in `crs`.
 struct QueryRequest {
   std::string crs;      ///< of coordinates given and returned; empty: the map's
-  std::string sensor;   ///< profile that weighs the quality; empty: equal weights
+  std::string sensor;   ///< name or file of the profile that weighs the quality; empty: equal weights
   std::string largest;  ///< feature, or other column of numbers, whose largest values come first
   std::vector<std::string> types, min_features, max_features;  ///< bounds: "prominence=300"
   std::vector<double> bbox;                                    ///< min_x, min_y, max_x, max_y
@@ -27,9 +28,9 @@ struct QueryRequest {
 
 /// Landmarks that meet the conditions of a query.
 struct QueryResult {
-  TypeRegistry types;  ///< of the map
-  Crs crs;             ///< of the landmarks
-  const SensorProfile* sensor = nullptr;
+  TypeRegistry types;                                ///< of the map
+  Crs crs;                                           ///< of the landmarks
+  std::shared_ptr<const SensorProfile> sensor = {};  ///< null: equal weights
   std::vector<Landmark> landmarks = {};
   std::unordered_map<std::string, double> distances = {};  ///< metres by uid, of queries about a point
 };
@@ -45,7 +46,7 @@ class PreparedQuery {
   PreparedQuery(const QueryRequest& request, const geodb::MapStore& map);
 
   const Crs& crs() const { return crs_; }  ///< of the request; the map's if it names none
-  const SensorProfile* sensor() const { return query_.sensor; }
+  const std::shared_ptr<const SensorProfile>& sensor() const { return sensor_; }
   /// Returns landmarks in the map's CRS.
   std::vector<Landmark> run(const geodb::MapStore& map) const;
   /// Returns true if the result is sorted by the distance from a point.
@@ -58,6 +59,7 @@ class PreparedQuery {
   void set_box(const QueryRequest& request, const geodb::MapStore& map);
 
   Crs crs_;
+  std::shared_ptr<const SensorProfile> sensor_;
   geodb::MapQuery query_;
   std::optional<geodb::MapQuery::Box> outline_ = {};  ///< in crs_, if that is not the map's
   std::size_t limit_;

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <span>
+#include <string>
+#include "localization/drive_statistics.hpp"
+namespace waymark::exporters {
+
+/// Returns an SVG page without external references: over time, the median position error of several drives,
+/// the bands of half and of 90 % of them, and dashed the standard deviation that they claim. Bands that are
+/// empty give empty axes.
+std::string error_bands_picture(const std::string& title, std::span<const localization::ErrorBand> bands);
+
+}  // namespace waymark::exporters

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <string>
+#include <string_view>
+#include "landmarks/sensor_profile.hpp"
+namespace waymark::workflows {
+
+/// Reads a sensor file (docs/reference/sensor.md). `source` names the file in messages. Throws Error{usage}
+/// for unknown keys, types and features, numbers out of range, and weights of a type that do not sum to 1.
+SensorProfile parse_sensor(std::string_view json, const std::string& name, const std::string& source);
+
+/// Returns a profile as a sensor file: the weights of each type are divided by their sum.
+std::string sensor_as_json(const SensorProfile& sensor);
+
+/// Returns a built-in sensor profile by name, or reads the file (.json) of that path. Throws Error{usage}
+/// with the nearest name if there is none.
+std::shared_ptr<const SensorProfile> find_sensor(const std::string& name_or_file);
+
+}  // namespace waymark::workflows
