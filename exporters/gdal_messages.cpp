@@ -44,4 +44,8 @@ void GdalMessages::add_warning(std::string text) {
   add_once(warnings_, std::move(text));
 }
 
+int stop_after_failure(double, const char*, void* messages) {
+  return static_cast<const GdalMessages*>(messages)->failures().empty() ? 1 : 0;
+}
+
 }  // namespace waymark::exporters

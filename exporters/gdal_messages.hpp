@@ -26,4 +26,8 @@ class GdalMessages {
   std::vector<std::string> failures_, warnings_;
 };
 
+/// Progress function of GDAL that stops it after the first failure; its argument is the GdalMessages. GDAL's
+/// COG driver goes on with rasters that it could not write.
+int stop_after_failure(double fraction, const char* text, void* messages);
+
 }  // namespace waymark::exporters

@@ -55,8 +55,9 @@ void write_cog(const std::filesystem::path& path, const std::vector<RasterBand>&
         "COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_RESAMPLING=NEAREST",
         "BIGTIFF=IF_SAFER", "NUM_THREADS=1", nullptr};
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
-    const GDALDatasetUniquePtr written(driver->CreateCopy(
-        aside.path().c_str(), raster.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
+    const GDALDatasetUniquePtr written(driver->CreateCopy(aside.path().c_str(), raster.get(), FALSE,
+                                                          const_cast<char**>(options.data()),
+                                                          stop_after_failure, &messages));
     if (written) written->FlushCache(true);
     if (!written || !messages.failures().empty())
       fail_output(path, messages.cause("not all of it was written"));

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <limits>
+#include <system_error>
 
 #include "core/atomic_file.hpp"
 #include "core/output_error.hpp"
@@ -50,7 +51,12 @@ CogStream::CogStream(const std::filesystem::path& path, const std::vector<Band>&
   }
 }
 
-CogStream::~CogStream() = default;
+// After a failed write, libtiff may follow the directories of the file without an end. An empty file has
+// none.
+CogStream::~CogStream() {
+  std::error_code ignored;
+  if (file_ && file_->raster) std::filesystem::resize_file(file_->collected, 0, ignored);
+}
 
 void CogStream::write(const Window& window, std::span<const Grid<float>> bands) {
   const int columns = static_cast<int>(window.columns), rows = static_cast<int>(window.rows);
@@ -66,11 +72,14 @@ void CogStream::write(const Window& window, std::span<const Grid<float>> bands) 
 void CogStream::commit(const std::map<std::string, std::string>& metadata) {
   for (const auto& [key, value] : metadata) file_->raster->SetMetadataItem(key.c_str(), value.c_str());
   file_->raster->FlushCache(false);
+  if (!file_->messages.failures().empty())
+    fail_output(file_->path, file_->messages.cause("not all of it was written"));
   const std::array<const char*, 6> options{"COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_RESAMPLING=NEAREST",
                                            "BIGTIFF=IF_SAFER", "NUM_THREADS=1", nullptr};
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
   GDALDatasetUniquePtr written(driver->CreateCopy(file_->aside.path().c_str(), file_->raster.get(), FALSE,
-                                                  const_cast<char**>(options.data()), nullptr, nullptr));
+                                                  const_cast<char**>(options.data()), stop_after_failure,
+                                                  &file_->messages));
   if (written) written->FlushCache(true);
   if (!written || !file_->messages.failures().empty())
     fail_output(file_->path, file_->messages.cause("not all of it was written"));
