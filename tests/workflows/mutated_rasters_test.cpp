@@ -63,15 +63,15 @@ void read_canopy(const std::string& path) {
   canopy->read({0, 0, std::min<std::int64_t>(grid.columns, 64), std::min<std::int64_t>(grid.rows, 64)});
 }
 
-// A slope of 30 x 30 m with bumps, four returns per square metre.
+// A slope of 30 x 30 m with bumps, a return per square metre.
 LazFile compressed_slope(int format) {
   LazFile file{.format = format, .origin = {500000, 5000000, 100}, .scale = 0.01};
-  for (int i = 0; i < 3600; ++i) {
+  for (int i = 0; i < 900; ++i) {
     RawPoint p;
-    p.at = {i % 60 * 50 - 1500, i / 60 * 50 - 1500, i % 60 + (i % 7 == 0) * 1200};
+    p.at = {i % 30 * 100 - 1500, i / 30 * 100 - 1500, i % 30 + (i % 7 == 0) * 1200};
     p.classification = i % 7 == 0 ? 5 : 2;
     p.intensity = static_cast<std::uint16_t>(i * 7 % 300), p.time = 1000 + i / 3 * 20;
-    if (i % 1800 == 0) file.chunks.emplace_back();
+    if (i % 450 == 0) file.chunks.emplace_back();
     file.chunks.back().push_back(p);
   }
   return file;
