@@ -63,13 +63,13 @@ CircleEvidence::CircleEvidence(std::span<const Circle> map, std::span<const Circ
       sum += normal_density(std::log(c.diameter / circle.diameter), bandwidth_ * bandwidth_);
     clutter_.push_back(sum / count / map_area_);
   }
-  Eigen::Vector2d least = catalogue_.front().at, most = least;
+  Eigen::Vector2d min_corner = catalogue_.front().at, max_corner = min_corner;
   for (const Circle& c : catalogue_) {
-    least = least.cwiseMin(c.at);
-    most = most.cwiseMax(c.at);
+    min_corner = min_corner.cwiseMin(c.at);
+    max_corner = max_corner.cwiseMax(c.at);
     largest_sd_ = std::max(largest_sd_, c.position_sd / c.diameter);
   }
-  catalogue_area_ = std::max((most - least).prod(), 1e-9);
+  catalogue_area_ = std::max((max_corner - min_corner).prod(), 1e-9);
 }
 
 std::vector<CircleEvidence::Near> CircleEvidence::near(const Circle& circle, const PlaneSimilarity& place,

@@ -14,10 +14,10 @@
 namespace waymark::localization {
 namespace {
 
-constexpr std::size_t kLargest = 14;    // circles of the map whose pairs suggest places
-constexpr std::size_t kKept = 40;       // suggestions of one pair that are kept
-constexpr std::size_t kAdjusted = 400;  // suggestions that are adjusted
-constexpr double kSizes = 3;            // standard deviations of a ratio of diameters
+constexpr std::size_t kLargest = 14;     // circles of the map whose pairs suggest places
+constexpr std::size_t kKeptOfPair = 40;  // suggestions of one pair that are kept
+constexpr std::size_t kAdjusted = 400;   // suggestions that are adjusted
+constexpr double kSizes = 3;             // standard deviations of a ratio of diameters
 
 struct Suggestion {
   PlaneSimilarity place = {};
@@ -43,10 +43,10 @@ std::vector<Suggestion> suggestions_of(const CircleEvidence& evidence, const Cir
   std::vector<Suggestion> out;
   const Eigen::Vector2d base = b.at - a.at;
   if (!(base.norm() > 6 * std::hypot(a.position_sd, b.position_sd))) return out;
-  const double most = std::log(rules.max_scale);
+  const double max_log = std::log(rules.max_scale);
   for (const Circle& first : evidence.catalogue()) {
     const double ratio = std::log(first.diameter / a.diameter), slack = kSizes * size_sd(a, first);
-    const double low = std::max(-most, ratio - slack), high = std::min(most, ratio + slack);
+    const double low = std::max(-max_log, ratio - slack), high = std::min(max_log, ratio + slack);
     if (!(low < high)) continue;
     evidence.cells().near(
         {first.at.x(), first.at.y(), 0}, base.norm() * std::exp(high), [&](std::uint32_t k, double square) {
@@ -62,10 +62,10 @@ std::vector<Suggestion> suggestions_of(const CircleEvidence& evidence, const Cir
           if (!((place * evidence.middle() - evidence.middle()).norm() <= rules.max_shift)) return;
           const Eigen::Vector2d between = (first.at + second.at) / 2;
           out.push_back({place, evidence.quick_score(place, between, there.norm(), kLargest)});
-          if (out.size() > 50 * kKept) keep_best(out, kKept);
+          if (out.size() > 50 * kKeptOfPair) keep_best(out, kKeptOfPair);
         });
   }
-  keep_best(out, kKept);
+  keep_best(out, kKeptOfPair);
   return out;
 }
 
