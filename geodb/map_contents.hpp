@@ -61,7 +61,8 @@ struct MapContents {
   std::vector<ImageRecord> images;
   std::vector<ShapeLayer> layers;  ///< additional layers: crowns, stands, tracks
   RunRecord run;
-  DemHandle dem_coverage;  ///< stored in the map as elevation tiles; null: none
+  std::vector<RunRecord> earlier_runs = {};  ///< oldest first
+  DemHandle dem_coverage;                    ///< stored in the map as elevation tiles; null: none
 };
 
 }  // namespace waymark::geodb

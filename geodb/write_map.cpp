@@ -108,6 +108,7 @@ class MapWriter {
     write_evidence();
     write_images();
     write_layers(*database_, contents_->layers, changed_);
+    for (const RunRecord& run : contents_->earlier_runs) write_run(*database_, run);
     write_run(*database_, contents_->run);
     write_metadata(*database_, contents_->run, changed_);
     if (contents_->dem_coverage) write_dem_coverage(*database_, *contents_->dem_coverage, srs_id_, changed_);

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// `waymark register` on a map whose true place is known.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "core/random.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double kScale = 1.25, kYaw = 0.5, kEast = 612'000, kNorth = 5'230'000;
+
+/// A catalogue of craters in UTM, and a map of its south-western part in a frame of its own.
+class Register : public testing::Test {
+ protected:
+  void SetUp() override {
+    Random random(7, "register");
+    std::string catalogue = "x,y,diameter\n", part = "type,uid,x,y,z,radius\n";
+    for (int i = 0; i < 150; ++i) {
+      const double x = random.uniform(0, 20'000), y = random.uniform(0, 20'000);
+      const double diameter = 250 / std::sqrt(1 - 0.99 * random.uniform());
+      catalogue += row({kEast + x, kNorth + y, diameter * std::exp(random.normal(0, 0.04))});
+      if (x > 8'000 || y > 8'000) continue;
+      const double error = 0.02 * diameter;
+      const double east = x + random.normal(0, error), north = y + random.normal(0, error);
+      part += "crater,c" + std::to_string(i) + "," + row(back(east, north, 100, diameter / 2 / kScale));
+      truth_["c" + std::to_string(i)] = {kEast + x, kNorth + y, diameter};
+    }
+    part += "rock,stone," + row(back(4'000, 4'000, 110, 2 / kScale));
+    write_text(folder_ / "catalogue.csv", catalogue);
+    write_text(folder_ / "part.csv", part);
+    const Outcome made = waymark({"import", folder_ / "part.csv", "-o", rough_, "--map-crs", "local"});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+
+  static std::string row(const std::vector<double>& values) {
+    std::string out;
+    for (const double v : values) out += (out.empty() ? "" : ",") + std::to_string(v);
+    return out + "\n";
+  }
+  static std::vector<double> back(double x, double y, double z, double radius) {
+    return {(std::cos(kYaw) * x + std::sin(kYaw) * y) / kScale,
+            (-std::sin(kYaw) * x + std::cos(kYaw) * y) / kScale, z, radius};
+  }
+  Outcome registered(std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"register", rough_,       "--to", folder_ / "catalogue.csv",
+                                   "--crs",    "EPSG:32632", "-o",   map_};
+    words.insert(words.end(), more.begin(), more.end());
+    return waymark(words);
+  }
+
+  TempFolder folder_;
+  std::string rough_ = folder_ / "rough.gpkg", map_ = folder_ / "map.gpkg";
+  std::map<std::string, std::vector<double>> truth_;
+};
+
+TEST_F(Register, MovesAllLandmarksAndKeepsTheRuns) {
+  const Outcome said = registered();
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("wrong with a probability of"));
+  EXPECT_EQ(waymark({"validate", map_}).code, 0);
+  int craters = 0;
+  for (const json& one : json::parse(waymark({"query", map_, "--format", "json"}).out)) {
+    if (one["uid"] == "stone") {
+      EXPECT_NEAR(one["x"], kEast + 4'000, 40);
+      EXPECT_NEAR(one["y"], kNorth + 4'000, 40);
+      EXPECT_NEAR(one["radius"], 2, 0.03);
+      continue;
+    }
+    const auto& truth = truth_.at(one["uid"]);
+    EXPECT_NEAR(one["x"], truth[0], 40 + 0.08 * truth[2]);
+    EXPECT_NEAR(one["y"], truth[1], 40 + 0.08 * truth[2]);
+    EXPECT_NEAR(2 * double(one["radius"]), truth[2], 0.02 * truth[2]);
+    ++craters;
+  }
+  EXPECT_EQ(craters, int(truth_.size()));
+  EXPECT_EQ(bash("sqlite3 " + map_ + " 'SELECT count(*) FROM run'").out, "2\n");
+}
+
+TEST_F(Register, RefusesACatalogueOfOtherTerrain) {
+  std::string other = "x,y,diameter\n";
+  Random random(8, "elsewhere");
+  for (int i = 0; i < 150; ++i)
+    other += row({kEast + random.uniform(0, 20'000), kNorth + random.uniform(0, 20'000),
+                  250 / std::sqrt(1 - 0.99 * random.uniform())});
+  write_text(folder_ / "catalogue.csv", other);
+  const Outcome said = registered();
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, HasSubstr("the map is not registered: "));
+  EXPECT_THAT(said.err, HasSubstr("with a probability of"));
+}
+
+TEST_F(Register, RefusesBadOptionsAndTooFewCraters) {
+  EXPECT_THAT(registered({"--max-scale", "0.5"}).err, HasSubstr("--max-scale 0.5 is not a factor above 1"));
+  EXPECT_THAT(registered({"--max-wrong", "2"}).err, HasSubstr("--max-wrong 2 is not a probability"));
+  EXPECT_THAT(registered({"--within", "-1"}).err, HasSubstr("--within -1 is not a distance above 0"));
+  write_text(folder_ / "catalogue.csv", "x,y,diameter\n612000,5230000,300\n");
+  const Outcome said = registered();
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, HasSubstr("and 1 of the catalogue are too few: 4 of each are needed"));
+}
+
+}  // namespace
+}  // namespace waymark::test
