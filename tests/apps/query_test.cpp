@@ -87,6 +87,13 @@ TEST_F(Query, ByConfidenceQualityAndCounts) {
   EXPECT_THAT(query({"--min", "confidense=1"}).err, HasSubstr("did you mean 'confidence'?"));
 }
 
+TEST_F(Query, ABoundOfAnUnknownNumberIsSaid) {
+  const Outcome empty = query({"--min", "quality=0.9"});
+  EXPECT_EQ(empty.code, 0);
+  EXPECT_THAT(empty.err, HasSubstr("no landmark has a known 'quality'"));
+  EXPECT_THAT(query({"--min", "elevation=5000"}).err, IsEmpty());
+}
+
 TEST_F(Query, ByExpectedVisibility) {
   EXPECT_THAT(elevations({"--min", "visibility=0", "--largest", "visibility"}), ElementsAre(900, 700));
   EXPECT_THAT(elevations({"--min", "visibility=1.01"}), IsEmpty());

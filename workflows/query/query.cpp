@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 #include "exporters/vector/vector_format.hpp"
@@ -129,6 +130,18 @@ std::vector<Landmark> PreparedQuery::run(const geodb::MapStore& map) const {
   return found;
 }
 
+std::vector<std::string> PreparedQuery::unknown_numbers(const geodb::MapStore& map) const {
+  constexpr double kLowest = std::numeric_limits<double>::lowest();  // excludes unknown values
+  std::vector<std::string> unknown;
+  for (const auto& range : query_.features)
+    if (map.query({.types = query_.types,
+                   .features = {{.feature = range.feature, .min_value = kLowest}},
+                   .limit = 1})
+            .empty())
+      unknown.push_back(range.feature);
+  return unknown;
+}
+
 double PreparedQuery::distance(const geodb::MapStore& map, const Landmark& landmark) const {
   if (query_.near) return map.distance(landmark, query_.near->x, query_.near->y);
   return map.distance(landmark, query_.nearest->x, query_.nearest->y);
@@ -143,6 +156,7 @@ QueryResult query(const std::filesystem::path& file, const QueryRequest& request
       .crs = request.wgs84 ? exporters::output_crs(kGeoJson, map.crs(), "", file) : prepared.crs(),
       .sensor = prepared.sensor()};
   const std::vector<Landmark> found = prepared.run(map);
+  if (found.empty()) result.unknown = prepared.unknown_numbers(map);
   if (prepared.from_point())
     for (const Landmark& landmark : found) result.distances[landmark.uid] = prepared.distance(map, landmark);
   result.landmarks = transform_landmarks(found, map.types(), map.crs(), result.crs);

@@ -32,6 +32,8 @@ struct QueryResult {
   Crs crs;                                           ///< of the landmarks
   std::shared_ptr<const SensorProfile> sensor = {};  ///< null: equal weights
   std::vector<Landmark> landmarks = {};
+  std::vector<std::string> unknown =
+      {};  ///< bounded numbers that no landmark of the map has, if none is found
   std::unordered_map<std::string, double> distances = {};  ///< metres by uid, of queries about a point
 };
 
@@ -47,6 +49,8 @@ class PreparedQuery {
 
   const Crs& crs() const { return crs_; }  ///< of the request; the map's if it names none
   const std::shared_ptr<const SensorProfile>& sensor() const { return sensor_; }
+  /// Returns the numbers with a bound that no landmark of the requested types has.
+  std::vector<std::string> unknown_numbers(const geodb::MapStore& map) const;
   /// Returns landmarks in the map's CRS.
   std::vector<Landmark> run(const geodb::MapStore& map) const;
   /// Returns true if the result is sorted by the distance from a point.
