@@ -45,8 +45,9 @@ SceneFolder::SceneFolder(ViewPageRequest& request) : folder_(fs::temp_directory_
     if (option.empty()) option = file_if_there(file);
   };
   if (request.title.empty()) request.title = "Scene " + fs::weakly_canonical(scene).filename().string();
-  if (const std::string dem = file_if_there(scene / "dem.tif"); request.dem.empty() && !dem.empty())
-    request.dem = {dem};
+  for (const char* name : {"dem.tif", "dtm.tif"})
+    if (const std::string dem = file_if_there(scene / name); request.dem.empty() && !dem.empty())
+      request.dem = {dem};
   if (request.cameras.empty()) {
     use(request.cameras, scene / "truth" / "cameras.json");
     use(request.cameras, scene / "cameras.json");

@@ -66,7 +66,7 @@ function revolve(profile, sides) {
   return new Float32Array(data);
 }
 
-const PLAIN = [1, 1, 1], BARK = [1.25, 0.75, 0.55];
+const PLAIN = [1, 1, 1], BARK = [1.25, 0.75, 0.55], RIM = [0.85, 0.85, 0.85];
 const ended = point => Object.assign(point, {end: true});
 const arc = count => Array.from({length: count + 1}, (_, i) => {
   const a = Math.PI * (i / count - 0.5);
@@ -80,7 +80,7 @@ const SOLIDS = {
   tree: {data: revolve([[0.1, 0, BARK], ended([0.1, 0.35, BARK]), [0.55, 0.22, PLAIN], [1, 0.36, PLAIN],
                         [0.82, 0.58, PLAIN], [0.45, 0.84, PLAIN], [0, 1, PLAIN]], 7), pixels: 2.5},
   // A rim that stands a little above the terrain it is draped on.
-  bowl: {data: revolve([[0.9, 0.15, [0.8, 0.8, 0.8]], [1, 1, PLAIN], [1.1, 0.15, [0.8, 0.8, 0.8]]], 40), pixels: 3},
+  bowl: {data: revolve([[0.94, 0.2, RIM], [1, 1, PLAIN], [1.06, 0.2, RIM]], 40), pixels: 3},
   // A pointer that shows where a robot heads.
   robot: {data: (() => {
     const top = [[-1, -0.7], [1.6, 0], [-1, 0.7], [-0.5, 0]], data = [];

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The eye: it turns about a target on the terrain.
 const FIELD_OF_VIEW = 40 * Math.PI / 180;
-const eye = {x: 0, y: 0, z: 0, distance: 2.1 * scene.radius, azimuth: 20 * Math.PI / 180, elevation: 38 * Math.PI / 180};
+const eye = {x: 0, y: 0, lift: 0, distance: 2.1 * scene.radius, azimuth: 20 * Math.PI / 180, elevation: 38 * Math.PI / 180};
 const options = {picture: true, images: true, frusta: true, ellipses: true, rays: true, labels: true, follow: false,
                  enlarge: 1, stretch: 1, confidence: 0, quality: 0};
+// Low relief is raised, so that mountains of a wide map can be seen.
+const STRETCHES = [1, 1.5, 2, 3, 5];
+if (terrain.known) {
+  const slope = (terrain.highest - terrain.lowest) / scene.radius;
+  options.stretch = slope > 0.12 || slope === 0 ? 1 : slope > 0.05 ? 2 : 3;
+}
 let selected = null;
 const view = {ink: [0.1, 0.12, 0.14], ground: [0.75, 0.76, 0.74], stretch: 1, ratio: 1};
 
@@ -31,16 +37,17 @@ function resize() {
 function aim() {
   resize();
   eye.elevation = Math.min(Math.max(eye.elevation, 0.03), Math.PI / 2 - 1e-3);
-  eye.distance = Math.min(Math.max(eye.distance, 2), 12 * scene.radius);
+  eye.distance = Math.min(Math.max(eye.distance, 2), 12 * scene.radius + 4 * eye.lift);
   view.stretch = options.stretch;
   const level = z => (z - terrain.lowest) * view.stretch;
-  const target = [eye.x, eye.y, level(groundAt(eye.x, eye.y))];
+  const lift = eye.lift * Math.min(1, eye.distance / focus.distance) ** 2;  // towards the cameras, in a wide view
+  const target = [eye.x, eye.y, level(groundAt(eye.x, eye.y)) + lift];
   const flat = Math.cos(eye.elevation) * eye.distance;
   view.eye = [target[0] - flat * Math.sin(eye.azimuth), target[1] - flat * Math.cos(eye.azimuth),
               target[2] + Math.sin(eye.elevation) * eye.distance];
   const floor = level(groundAt(view.eye[0], view.eye[1])) + 0.01 * eye.distance + 0.5;  // never below the terrain
   view.eye[2] = Math.max(view.eye[2], floor);
-  const far = eye.distance + 6 * scene.radius;
+  const far = eye.distance + 6 * scene.radius + 6 * eye.lift;
   view.seen = multiply(perspective(FIELD_OF_VIEW, canvas.width / canvas.height, eye.distance * 0.02, far),
                        lookAt(view.eye, target));
   view.pixel = 2 * Math.tan(FIELD_OF_VIEW / 2) / canvas.height * view.ratio;
@@ -130,12 +137,14 @@ const focus = (() => {
     add(terrain.west, terrain.south);
     add(terrain.west + terrain.width, terrain.south + terrain.length);
   }
-  return {x: (west + east) / 2, y: (south + top) / 2, radius: Math.max(Math.hypot(east - west, top - south) / 2, 5)};
+  const x = (west + east) / 2, y = (south + top) / 2;
+  const above = scene.tracks.length ? 0 : Math.max(0, ...scene.images.map(i => i.centre[2] - groundAt(x, y)));
+  const radius = Math.max(Math.hypot(east - west, top - south) / 2, 5);
+  return {x, y, lift: 0.34 * above, distance: 2.2 * Math.max(radius, 0.8 * above)};
 })();
 
 function home() {
-  const {x, y, radius} = focus;
   const fits = Math.min(1, canvas.clientWidth / Math.max(canvas.clientHeight, 1) / 1.25);
-  Object.assign(eye, {x, y, distance: 2.2 * radius / Math.max(fits, 0.3), azimuth: 20 * Math.PI / 180,
-                      elevation: 38 * Math.PI / 180});
+  Object.assign(eye, {x: focus.x, y: focus.y, lift: focus.lift, distance: focus.distance / Math.max(fits, 0.3),
+                      azimuth: 20 * Math.PI / 180, elevation: (focus.lift > 0 ? 24 : 38) * Math.PI / 180});
 }

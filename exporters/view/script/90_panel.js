@@ -56,8 +56,8 @@ function fillLegend() {
     more.push(range('Ellipses', {min: 0, max: 5, step: 1, value: 0},
                     v => { options.enlarge = [1, 2, 5, 10, 20, 50][v]; return `\u00d7${options.enlarge}`; }));
   if (terrain.known && terrain.highest > terrain.lowest)
-    more.push(range('Heights', {min: 0, max: 4, step: 1, value: options.stretch === 1 ? 0 : 1},
-                    v => { options.stretch = [1, 1.5, 2, 3, 5][v]; return `\u00d7${options.stretch}`; }));
+    more.push(range('Heights', {min: 0, max: 4, step: 1, value: STRETCHES.indexOf(options.stretch)},
+                    v => { options.stretch = STRETCHES[v]; return `\u00d7${options.stretch}`; }));
   if (scene.layers.length) {
     more.push(range('Confidence', {min: 0, max: 1, step: 0.05, value: 0},
                     v => { options.confidence = v; return `\u2265 ${v.toFixed(2)}`; }));
@@ -105,7 +105,7 @@ function fillDetails(layer, i) {
     element('p', {textContent: `${layer.uids[i]}`}), element('p', {textContent: layer.positions[i]}), list);
   if (counts[3] > 0)
     details.append(element('h3', {textContent: counts[2] > counts[3]
-      ? `Evidence: ${counts[3]} of ${counts[2]} observations` : `Evidence: ${counts[3]} observations`}), evidence);
+      ? `Evidence: ${counts[3]} of ${counts[2]} observations` : `Evidence: ${counts[3]} observation${counts[3] === 1 ? '' : 's'}`}), evidence);
 }
 
 function choose(one) {

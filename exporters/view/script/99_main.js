@@ -26,9 +26,9 @@ function frame(time) {
   const lead = options.follow ? leadTrack() : null;
   if (lead) {
     const pose = poseAt(lead, now);
-    eye.x += 0.35 * (pose.x - eye.x);
-    eye.y += 0.35 * (pose.y - eye.y);
-    if (Math.hypot(pose.x - eye.x, pose.y - eye.y) > 0.02) redraw();
+    const part = playing ? 0.35 : 1;  // smooth while it moves
+    eye.x += part * (pose.x - eye.x);
+    eye.y += part * (pose.y - eye.y);
   }
   draw();
   placeLabels();
