@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/json_text.hpp"
+
 namespace waymark::workflows {
 namespace {
 
@@ -97,7 +99,7 @@ class MapMover {
 
   // An orthophoto that is turned has no grid of the new frame; it gets no camera.
   std::string camera(const std::string& text) const {
-    nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    nlohmann::json json = nlohmann::json::parse(json_or_empty(text), nullptr, false);
     if (!json.is_object() || !json.contains("centre") || !json.contains("grid_from_camera")) return "{}";
     const auto centre = json["centre"].get<std::vector<double>>();
     auto rows = json["grid_from_camera"].get<std::vector<std::vector<double>>>();
