@@ -18,13 +18,15 @@ class Report final : public Command {
             "Shaded relief with the landmarks, the most important of each type, histograms, the size-"
             "frequency distribution of craters, landmark quality, images with their detections, and what "
             "the run read and did. The page needs no network and no other file. Relief and images come "
-            "from the map, or from the run's input files if they still exist.",
+            "from the map, or from the run's input files if they still exist. In a browser that runs "
+            "scripts, the map zooms, landmarks are filtered and tables sorted.",
         .arguments =
             {file_word("MAP.gpkg", &map_, "Map to read"),
              Argument{"-o,--output", "REPORT.html", &html_, "Report to write; an older one is replaced"}
                  .needed()
                  .offering(Offer::file),
              Argument{"--title", "TEXT", &options_.title, "Title of the page"}.or_else("the file's name"),
+             Argument{"--static", "", &static_, "Write the page without a script"},
              Argument{"--top", "N", &options_.top, "Landmarks listed per type"}.or_else("25"),
              Argument{"--images", "N", &options_.images, "Images shown with what was found in them"}.or_else(
                  "4"),
@@ -38,6 +40,7 @@ class Report final : public Command {
   }
 
   int run(const Session&) override {
+    options_.interactive = !static_;
     if (!truth_.empty()) options_.checks = workflows::check_quality(map_, truth_);
     exporters::write_report(map_, html_, options_);
     log_summary(html_ + "\n");
@@ -46,6 +49,7 @@ class Report final : public Command {
 
  private:
   std::string map_, html_, truth_;
+  bool static_ = false;
   exporters::ReportOptions options_;
 };
 

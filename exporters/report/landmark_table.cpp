@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "exporters/formatting.hpp"
+#include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
 
@@ -116,7 +117,7 @@ std::string landmark_table(const LandmarkSection& section, const Crs& crs, std::
     html += fmt::format("<th scope='col' title='{}'>{}</th>", escape_markup(column.tip), column.heading);
   html += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < count; ++i) {
-    html += fmt::format("<tr><th scope='row'>{}</th>", i + 1);
+    html += fmt::format("<tr {}><th scope='row'>{}</th>", landmark_attributes(rows[i]), i + 1);
     for (const TableColumn& column : columns) html += "<td>" + column.cell(rows[i]) + "</td>";
     html += "</tr>\n";
   }

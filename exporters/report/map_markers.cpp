@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "exporters/formatting.hpp"
+#include "exporters/vector/export_columns.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -141,6 +142,12 @@ class Labels {
 
 }  // namespace
 
+std::string landmark_attributes(const Landmark& landmark) {
+  const auto quality = equal_weight_quality(landmark);
+  return fmt::format("data-uid='{}' data-confidence='{:.3f}' data-quality='{}'", escape_markup(landmark.uid),
+                     landmark.confidence, quality ? fmt::format("{:.3f}", *quality) : "");
+}
+
 MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>& sections) {
   MapMarkers result;
   Labels labels(view);
@@ -151,9 +158,9 @@ MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>&
                               escape_markup(section.type.colour));
     for (auto m = markers.rbegin(); m != markers.rend(); ++m)  // the foremost on top
       result.svg +=
-          fmt::format("<g{} transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>",
-                      m->radius < kModest ? " class='modest'" : "", m->x, m->y, m->radius,
-                      shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
+          fmt::format("<g{} {} transform='translate({:.1f} {:.1f}) scale({:.2f})'>{}<title>{}</title></g>",
+                      m->radius < kModest ? " class='modest'" : "", landmark_attributes(*m->landmark), m->x,
+                      m->y, m->radius, shape_of(section.type.drawn_as), tooltip(*m->landmark, section.type));
     result.svg += "</g>\n";
     for (const Marker& marker : markers) labels.add(marker, label_text(*marker.landmark, section.type));
     result.drawn += markers.size();

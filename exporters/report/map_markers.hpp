@@ -19,6 +19,9 @@ struct MapMarkers {
 /// - Labels that would cover one another or a marker of a labelled landmark are omitted.
 MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>& sections);
 
+/// Returns the attributes by which the script of a report finds a landmark: uid, confidence and quality.
+std::string landmark_attributes(const Landmark& landmark);
+
 /// Returns the symbol of a type for legends, `size` drawing units wide.
 std::string svg_symbol(const LandmarkType& type, double size);
 

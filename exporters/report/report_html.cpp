@@ -17,6 +17,7 @@
 #include "exporters/report/page_style.hpp"
 #include "exporters/report/quality_section.hpp"
 #include "exporters/report/run_section.hpp"
+#include "exporters/report/script_policy.hpp"
 #include "exporters/report/size_frequency.hpp"
 #include "geodb/map_store.hpp"
 
@@ -85,7 +86,8 @@ std::string page(const geodb::MapStore& map, const std::string& title, const Rep
       "content='Waymark'>\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header><h1>{0}</h1><p>{2}</p></"
       "header>\n<main>\n",
-      escape_markup(title), kPageStyle, escape_markup(place_of(map.crs())), kContentPolicy);
+      escape_markup(title), kPageStyle, escape_markup(place_of(map.crs())),
+      options.interactive ? script_policy(kReportScript) : std::string(kContentPolicy));
   html += facts(sections, runs) + warning_list(latest) + map_figure(map, sections, options.relief_pixels);
   const auto area = counts_craters(sections) ? counting_area(map) : std::nullopt;
   for (const LandmarkSection& section : sections) html += section_html(section, map.crs(), area, options.top);
@@ -98,9 +100,11 @@ std::string page(const geodb::MapStore& map, const std::string& title, const Rep
           fmt::format(
               "<details><summary>Coordinate reference system</summary><pre>{}</pre></details></section>\n",
               escape_markup(map.crs().wkt2()));
+  const std::string script =
+      options.interactive ? fmt::format("<script>{}</script>\n", kReportScript) : std::string();
   return html +
-         fmt::format("</main>\n<footer>Report of {} \u00b7 no network needed</footer>\n</body>\n</html>\n",
-                     escape_markup(map.path().filename().string()));
+         fmt::format("</main>\n<footer>Report of {} \u00b7 no network needed</footer>\n{}</body>\n</html>\n",
+                     escape_markup(map.path().filename().string()), script);
 }
 
 }  // namespace

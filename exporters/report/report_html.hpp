@@ -27,9 +27,12 @@ struct ReportOptions {
   std::int64_t top = 25;                  ///< landmarks listed per type
   std::int64_t images = 4;                ///< images shown with their observations
   std::vector<QualityCheck> checks = {};  ///< comparisons with the truth
+  /// Whether map and tables react to the pointer (zoom, filter, sort), by a script inside the page.
+  bool interactive = false;
 };
 
-/// Writes a report of `map` as one HTML file without scripts or external references. It shows:
+/// Writes a report of `map` as one HTML file without external references, and without scripts unless it is
+/// interactive; it can be read and printed without running them. It shows:
 /// - a shaded-relief map with the landmarks, the foremost landmarks of each type, histograms;
 /// - the size-frequency distribution of craters, quality of the landmarks, images with their observations;
 /// - inputs, stages and warnings of the run.

@@ -3,6 +3,7 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -150,6 +151,29 @@ TEST_F(ViewCommand, FiltersHideLandmarks) {
   if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
   EXPECT_GT(compare(all, none).different, 0.001);
   EXPECT_TRUE(values[4].is_null());
+}
+
+TEST_F(ViewCommand, TheReportsTableAndMapAnswerEachOther) {
+  ASSERT_EQ(waymark({"report", map_, "-o", page_}).code, 0);
+  const auto values = browse(
+      {"eval:document.querySelector(\".landmarks tbody tr .go\").click()",
+       "eval:document.querySelectorAll(\".chosen\").length",
+       "eval:document.querySelector(\".map svg > g > g\").getAttribute(\"transform\")",
+       "eval:document.querySelectorAll(\".landmarks .sort\")[2].click()",
+       "eval:[...document.querySelectorAll(\".landmarks tbody tr\")].map(row => "
+       "parseFloat(row.cells[2].textContent))",
+       "eval:(() => { const one = document.querySelector(\".controls input\"); one.value = 1; one.oninput();"
+       " return document.querySelector(\".controls > output\").textContent; })()",
+       "errors", "requests"});
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_EQ(values[1], 2);  // the row and the symbol
+  EXPECT_THAT(values[2].get<std::string>(), HasSubstr("scale(4)"));
+  const auto sizes = values[4].get<std::vector<double>>();
+  EXPECT_GT(sizes.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(sizes.rbegin(), sizes.rend()));
+  EXPECT_EQ(values[5], fmt::format("{0} of {0} shown", made_rocks().size()));  // all have confidence 1
+  EXPECT_THAT(values[6], IsEmpty());
+  EXPECT_EQ(values[7].size(), 1u);
 }
 
 TEST_F(ViewCommand, AFolderThatIsNoSceneIsNamed) {

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "exporters/report/script_policy.hpp"
 #include "geodb/write_map.hpp"
 #include "small_dem.hpp"
 #include "small_map.hpp"
@@ -41,6 +42,23 @@ TEST_F(ReportHtml, NeedsNothingButItself) {
   for (const std::string attribute : {"src=", "href="})
     for (auto at = report.find(attribute); at != std::string::npos; at = report.find(attribute, at + 1))
       EXPECT_EQ(report.substr(at + attribute.size() + 1, 5), "data:");
+}
+
+TEST_F(ReportHtml, AnInteractiveOneAllowsItsOwnScriptOnly) {
+  geodb::MapContents hostile = andes();
+  hostile.landmarks[0].uid = "'><script>alert(1)</script>";
+  geodb::write_map(map, hostile);
+  write_report(map, html, {.interactive = true});
+  const std::string report = content_of(html);
+  EXPECT_THAT(report, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(report, Not(HasSubstr("://")));
+  EXPECT_EQ(report.find("<script"), report.rfind("<script"));
+  const auto from = report.find("<script>") + 8;
+  const std::string script = report.substr(from, report.find("</script>") - from);
+  EXPECT_THAT(report, HasSubstr(script_policy(script)));
+  EXPECT_THAT(report, HasSubstr("<tr data-uid='mt-two' data-confidence='1.000' data-quality='"));
+  write_report(map, folder / "static.html");
+  EXPECT_THAT(content_of(folder / "static.html"), Not(HasSubstr("<script")));
 }
 
 TEST_F(ReportHtml, ShowsPlacesFeaturesAndCertifiedBounds) {
