@@ -154,8 +154,8 @@ ssize_t pwrite64(int file, const void* bytes, size_t count, off64_t at) {
 }
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
   static auto* const call = real<size_t(const void*, size_t, size_t, FILE*)>("fwrite");
-  const bool below = is_below(::fileno(file));
-  return below && fails(Need::space) ? 0 : call(bytes, size, below ? allowed(count) : count, file);
+  const bool failed = is_below(::fileno(file)) && fails(Need::space);
+  return failed ? 0 : call(bytes, size, count, file);  // the C library itself finishes a short write
 }
 int fsync(int file) {
   static auto* const call = real<int(int)>("fsync");
