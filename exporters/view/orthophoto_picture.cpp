@@ -43,8 +43,8 @@ OrthophotoPicture read_orthophoto(const std::string& path, const Crs& crs, doubl
                 "convert it: gdalwarp -t_srs " + crs.id() + " IN OUT");
   const double columns = file->GetRasterXSize(), rows = file->GetRasterYSize();
   if (crs.kind() == CrsKind::geographic) t[0] += 360 * std::round((near_x - t[0] - columns * t[1] / 2) / 360);
-  const auto clamped = [](double at, double most) {
-    return static_cast<std::int64_t>(std::clamp(at, 0.0, most));
+  const auto clamped = [](double at, double max_value) {
+    return static_cast<std::int64_t>(std::clamp(at, 0.0, max_value));
   };
   Window part;
   part.column = clamped(std::floor((within.west - t[0]) / t[1]), columns);

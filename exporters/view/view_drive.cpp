@@ -8,10 +8,10 @@
 namespace waymark::exporters {
 namespace {
 
-/// Returns indices 0 .. count - 1, at most `most` of them, evenly spread, with the first and the last.
-std::vector<std::size_t> thinned(std::size_t count, std::size_t most) {
+/// Returns indices 0 .. count - 1, at most `max_count` of them, evenly spread, with the first and the last.
+std::vector<std::size_t> thinned(std::size_t count, std::size_t max_count) {
   std::vector<std::size_t> kept;
-  const std::size_t shown = std::min(count, most);
+  const std::size_t shown = std::min(count, max_count);
   for (std::size_t i = 0; i < shown; ++i) kept.push_back(shown < 2 ? 0 : i * (count - 1) / (shown - 1));
   return kept;
 }

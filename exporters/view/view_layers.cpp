@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
@@ -38,7 +39,7 @@ ViewLandmark view_landmark(const Landmark& landmark, const LandmarkType& type, c
   const double size = value_of(landmark, find_feature(type, type.body.feature));
   out.radius = positive_or_zero(type.body.radius_per_value * size);
   out.height = positive_or_zero(
-      value_of(landmark, find_feature(type, type.drawn_as == Solid::bowl ? "depth" : "height")));
+      value_of(landmark, find_feature(type, type.evidence == EvidenceModel::bowl ? "depth" : "height")));
   out.confidence = static_cast<float>(landmark.confidence);
   out.quality =
       static_cast<float>(equal_weight_quality(landmark).value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -62,19 +63,19 @@ ViewFeature view_feature(const LandmarkSection& section, std::size_t i) {
   return {title_of(feature.name), feature.summary, number_format(feature, largest)};
 }
 
-ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std::size_t most,
+ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std::size_t max_count,
                      double max_distance) {
   const LandmarkType& type = section.type;
   ViewLayer layer{.name = type.name,
                   .title = title_of(type.name),
                   .colour = type.colour,
-                  .shape = view_shape(type),
+                  .shape = solid_name(type),
                   .total = section.count,
                   .features = {},
                   .landmarks = {}};
   for (std::size_t i = 0; i < type.features.size(); ++i) layer.features.push_back(view_feature(section, i));
   for (const Landmark& landmark : section.landmarks) {
-    if (layer.landmarks.size() == most) break;
+    if (layer.landmarks.size() == max_count) break;
     const Eigen::Vector3d at = frame.from_crs(landmark.position);
     if (at.allFinite() && at.norm() <= max_distance)
       layer.landmarks.push_back(view_landmark(landmark, type, frame.crs(), at));
@@ -99,23 +100,6 @@ void add_evidence(const geodb::MapStore& map, ViewLayers& view) {
 
 }  // namespace
 
-std::string view_shape(const LandmarkType& type) {
-  if (type.evidence == EvidenceModel::canopy) return "tree";
-  switch (type.drawn_as) {
-    case Solid::sphere:
-      return "sphere";
-    case Solid::cylinder:
-      return "cylinder";
-    case Solid::cone:
-      return "cone";
-    case Solid::bowl:
-      return "bowl";
-    case Solid::point:
-      return "point";
-  }
-  return "point";
-}
-
 ViewLayers make_view_layers(const geodb::MapStore& map, const std::vector<LandmarkSection>& sections,
                             const ViewFrame& frame, std::int64_t max_landmarks, double max_distance) {
   std::int64_t total = 0;
@@ -124,8 +108,8 @@ ViewLayers make_view_layers(const geodb::MapStore& map, const std::vector<Landma
   ViewLayers view;
   for (const LandmarkSection& section : sections) {
     if (section.count == 0) continue;
-    const auto most = static_cast<std::size_t>(std::ceil(share * double(section.count)));
-    view.layers.push_back(view_layer(section, frame, most, max_distance));
+    const auto max_count = static_cast<std::size_t>(std::ceil(share * double(section.count)));
+    view.layers.push_back(view_layer(section, frame, max_count, max_distance));
   }
   add_evidence(map, view);
   return view;

@@ -18,9 +18,6 @@ struct ViewLayers {
   std::vector<std::string> sources;
 };
 
-/// Returns the form of a type's solid: "tree" for a canopy, else the name of `drawn_as`.
-std::string view_shape(const LandmarkType& type);
-
 /// Makes the layers of sections: the foremost `max_landmarks` of all types together, in proportion to their
 /// numbers, within `max_distance` metres of the middle of the view. Each landmark has up to eight of its
 /// observations.
