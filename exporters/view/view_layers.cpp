@@ -6,9 +6,9 @@
 #include <limits>
 #include <unordered_map>
 
+#include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
-#include "exporters/view/view_shape.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark::exporters {
@@ -38,7 +38,8 @@ ViewLandmark view_landmark(const Landmark& landmark, const LandmarkType& type, c
                    .at = at.cast<float>()};
   const double size = value_of(landmark, find_feature(type, type.body.feature));
   out.radius = positive_or_zero(type.body.radius_per_value * size);
-  out.height = positive_or_zero(value_of(landmark, height_of_shape(type)));
+  out.height = positive_or_zero(
+      value_of(landmark, find_feature(type, type.evidence == EvidenceModel::bowl ? "depth" : "height")));
   out.confidence = static_cast<float>(landmark.confidence);
   out.quality =
       static_cast<float>(equal_weight_quality(landmark).value_or(std::numeric_limits<double>::quiet_NaN()));
@@ -68,7 +69,7 @@ ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std
   ViewLayer layer{.name = type.name,
                   .title = title_of(type.name),
                   .colour = type.colour,
-                  .shape = view_shape(type),
+                  .shape = solid_name(type),
                   .total = section.count,
                   .features = {},
                   .landmarks = {}};

@@ -48,7 +48,7 @@ struct ViewLandmark {
 /// Landmarks of one type.
 struct ViewLayer {
   std::string name = {}, title = {}, colour = {};
-  std::string shape = {};  ///< point, sphere, cylinder, cone, tree or bowl
+  std::string shape = {};  ///< point, sphere, cylinder, cone, canopy or bowl
   std::int64_t total = 0;  ///< in the map
   std::vector<ViewFeature> features = {};
   std::vector<ViewLandmark> landmarks = {};  ///< the foremost first

@@ -77,7 +77,7 @@ const SOLIDS = {
   sphere: {data: revolve(arc(8), 14), pixels: 2.5},
   cylinder: {data: revolve([[1, 0, PLAIN], [1, 1, PLAIN], [0, 1, PLAIN]], 8), pixels: 2.5},
   cone: {data: revolve([[1, 0, PLAIN], [0, 1, PLAIN]], 14), pixels: 6},
-  crown: {data: revolve([[0.1, 0, BARK], ended([0.1, 0.35, BARK]), [0.55, 0.22, PLAIN], [1, 0.36, PLAIN],
+  canopy: {data: revolve([[0.1, 0, BARK], ended([0.1, 0.35, BARK]), [0.55, 0.22, PLAIN], [1, 0.36, PLAIN],
                         [0.82, 0.58, PLAIN], [0.45, 0.84, PLAIN], [0, 1, PLAIN]], 7), pixels: 2.5},
   // A rim that stands a little above the terrain it is draped on.
   bowl: {data: revolve([[0.94, 0.2, RIM], [1, 1, PLAIN], [1.06, 0.2, RIM]], 40), pixels: 3},
@@ -119,7 +119,7 @@ function drawnSize(layer, i) {
   switch (layer.shape) {
     case 'bowl': return [radius, 0.05 * radius];
     case 'sphere': return [radius, 2 * radius];
-    case 'crown': return [radius || 0.15 * height, height || 4 * radius];
+    case 'canopy': return [radius || 0.15 * height, height || 4 * radius];
     case 'cone': return [radius || 1e-3, height || 2 * radius || 2.2e-3];
     case 'point': return [radius || 1e-3, 2 * (radius || 1e-3)];
     default: return [radius || 0.1 * height, height || radius];
@@ -131,7 +131,8 @@ for (const layer of scene.layers) {
   for (let i = 0; i < layer.count; ++i) {
     const n = layer.numbers.subarray(i * LANDMARK.size, (i + 1) * LANDMARK.size);
     const quality = n[LANDMARK.quality];
-    instances.set([n[0], n[1], n[2], ...drawnSize(layer, i), n[LANDMARK.confidence],
+    // The foot is computed once here: a texture access per corner costs more than all else.
+    instances.set([n[0], n[1], terrain.known ? groundAt(n[0], n[1]) : n[2], ...drawnSize(layer, i), n[LANDMARK.confidence],
                    Number.isNaN(quality) ? -1 : quality], 7 * i);
   }
   layer.instances = makeInstances(layer.shape in SOLIDS ? layer.shape : 'point', instances);
@@ -159,7 +160,8 @@ function drawLandmarks(view, picking = false) {
   scene.layers.forEach((layer, k) => {
     if (!layer.shown || layer.count === 0) return;
     const chosen = selected && selected.layer === layer ? selected.index : -1;
-    drawInstances(view, layer.instances, layer.rgb, {number: picking ? k + 1 : 0, chosen});
+    drawInstances(view, layer.instances, layer.rgb,
+                  {number: picking ? k + 1 : 0, chosen, onGround: terrain.known && layer.shape === 'bowl'});
   });
 }
 
