@@ -26,10 +26,11 @@ std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
 
 std::string unusual_ground_warning(const LightCoherence& seen) {
   return fmt::format(
-      "the ground is none that the detector of rocks was made for: {:.0f} % of {} supposed rocks have their "
-      "bright side along the light (50 % by chance, 62 % or more among rocks), as on leaves, roofs and "
-      "ripples; "
-      "their confidences are lowered so that at most {:.0f} % count as real",
+      "{:.0f} % of {} supposed rocks have their bright side along the light (50 % by chance, 62 % or more "
+      "among "
+      "rocks), as on leaves, roofs and ripples or under a wrong sun: their confidences are lowered so that "
+      "at "
+      "most {:.0f} % count as real",
       100 * seen.fraction(), seen.rocks, 100 * seen.real_fraction());
 }
 

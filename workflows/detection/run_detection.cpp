@@ -39,20 +39,21 @@ std::optional<Light> estimate_light(const Pixels& pixels, const std::string& typ
   return {};
 }
 
-/// Returns the most certain of the estimates that most others agree with; none if as many contradict it.
+/// Returns the most certain of the estimates with which most others agree; none if as many contradict it.
 std::optional<Light> agreed_light(const std::vector<Light>& all) {
   constexpr double kAgree = 30;  // degrees
   const Light* best = nullptr;
-  std::size_t most = 0;
+  std::size_t max_agreeing = 0;
   for (const Light& one : all) {
     const auto agreeing = static_cast<std::size_t>(std::ranges::count_if(all, [&](const Light& other) {
       return std::abs(std::remainder(other.angle - one.angle, 360)) < kAgree;
     }));
-    if (best != nullptr && (agreeing < most || (agreeing == most && !(one.sd < best->sd)))) continue;
+    if (best != nullptr && (agreeing < max_agreeing || (agreeing == max_agreeing && !(one.sd < best->sd))))
+      continue;
     best = &one;
-    most = agreeing;
+    max_agreeing = agreeing;
   }
-  if (best == nullptr || 2 * most <= all.size()) return {};
+  if (best == nullptr || 2 * max_agreeing <= all.size()) return {};
   return *best;
 }
 
@@ -147,7 +148,8 @@ std::optional<Radians> choose_light(const DetectionPlan& plan, DetectResult& fou
         plan.type == "crater"
             ? "the image does not show where its light comes from: few craters will be found; pass "
               "--image-sun-angle"
-            : "the image does not show where its light comes from, so shadows cannot be told from other dark "
+            : "the image does not show where its light comes from, so shadows cannot be distinguished from "
+              "other dark "
               "spots: no rocks are reported; pass --image-sun-angle");
     return {};
   }
