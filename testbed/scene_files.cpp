@@ -56,7 +56,7 @@ std::string job_file(const Scenario& scenario) {
   if (scenario.crs == "local") dem["crs"] = "local";
   stages.push_back(dem);
   stages.push_back(images);
-  for (const char* stage : {"rocks_from_shadows", "craters_from_bowls", "project_to_ground",
+  for (const char* stage : {"check_sun", "rocks_from_shadows", "craters_from_bowls", "project_to_ground",
                             "reject_implausible", "reject_terrain_shadows", "reject_rim_shadows",
                             "align_images", "merge_observations", "value_landmarks"})
     stages.push_back({{"stage", stage}});

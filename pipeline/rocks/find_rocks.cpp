@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "pipeline/rocks/find_classic_rocks.hpp"
 #include "pipeline/rocks/find_shadow_rocks.hpp"
-#include "pipeline/vision/sun_angle.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 namespace waymark::pipeline {
 namespace {
 
@@ -41,28 +41,28 @@ void check(const RockSearch& search) {
            "give a standard deviation from 0 to 10; 0: unknown");
 }
 
-// The direction pooled from shadows and lit faces is precise, but hollows can reverse it; the number of rocks
-// under either direction decides.
-std::optional<Radians> light_of(const Pixels& image, const RockSearch& search) {
-  const auto estimate = estimate_sun_angle(image);
-  const auto pooled = estimate ? std::optional(estimate->angle) : std::nullopt;
-  const auto decided = sun_angle_by_rock_count(image, search, pooled);
-  return decided ? decided : pooled;
-}
-
 }  // namespace
 
-std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search) {
+RocksFound search_rocks(const Pixels& image, const RockSearch& search) {
   check(search);
-  const auto sun_angle = search.sun_angle ? search.sun_angle : light_of(image, search);
+  std::optional<Radians> sun_angle = search.sun_angle;
+  if (!sun_angle)
+    if (const auto seen = estimate_rock_sun_angle(image, search.crater_sun)) sun_angle = seen->angle;
   if (!sun_angle) return {};
-  auto found = search.method == RockMethod::classic ? find_classic_rocks(image, search, *sun_angle)
-                                                    : find_shadow_rocks(image, search, *sun_angle);
-  std::sort(found.begin(), found.end(), [](const Detection& a, const Detection& b) {
+  RocksFound found = search.method == RockMethod::classic
+                         ? RocksFound{.rocks = find_classic_rocks(image, search, *sun_angle),
+                                      .light = sun_angle,
+                                      .coherence = {}}
+                         : find_shadow_rocks(image, search, *sun_angle);
+  std::sort(found.rocks.begin(), found.rocks.end(), [](const Detection& a, const Detection& b) {
     if (a.confidence != b.confidence) return a.confidence > b.confidence;
     return a.outline.y != b.outline.y ? a.outline.y < b.outline.y : a.outline.x < b.outline.x;
   });
   return found;
+}
+
+std::vector<Detection> find_rocks(const Pixels& image, const RockSearch& search) {
+  return search_rocks(image, search).rocks;
 }
 
 }  // namespace waymark::pipeline

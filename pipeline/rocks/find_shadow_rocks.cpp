@@ -47,6 +47,37 @@ void adapt_to_prior(std::vector<ScoredRock>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + shift)));
 }
 
+LightCoherence light_coherence(const std::vector<ScoredRock>& all, const LightFrame& light) {
+  LightCoherence seen;
+  for (const ScoredRock& one : all) {
+    if (!(one.confidence > 0.5) || !(one.bright.weight > 0)) continue;
+    const double x = std::cos(one.bright.angle), y = std::sin(one.bright.angle);
+    ++seen.rocks;
+    seen.along += std::abs(light.along(x, y)) > std::abs(light.across(x, y));
+  }
+  return seen;
+}
+
+// Shifts the log odds of all candidates so that the sum of their probabilities is `fraction` of what it was.
+void lower_to_fraction(std::vector<ScoredRock>& all, double fraction) {
+  if (!(fraction < 1) || all.empty()) return;
+  std::vector<double> log_odds;
+  double target = 0;
+  for (const ScoredRock& one : all) {
+    const double p = std::clamp(one.confidence, 1e-9, 1 - 1e-9);
+    log_odds.push_back(std::log(p / (1 - p)));
+    target += fraction * p;
+  }
+  double low = -25, high = 0;  // of the shift
+  for (int round = 0; round < 40; ++round) {
+    const double shift = 0.5 * (low + high);
+    double sum = 0;
+    for (const double l : log_odds) sum += 1 / (1 + std::exp(-(l + shift)));
+    (sum > target ? high : low) = shift;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + high)));
+}
+
 Pixels half_size(const Pixels& image) {
   Pixels half(image.columns() / 2, image.rows() / 2);
   for (std::int64_t y = 0; y < half.rows(); ++y)
@@ -180,6 +211,10 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
     judged[i].evidence = gather_evidence(map, judged[i].rock, light, contexts[i], table);
     judged[i].prediction = predict_rock(network, judged[i].evidence);
     judged[i].confidence = judged[i].prediction.confidence;
+    const ShadowShape& shadow = judged[i].rock.shadow;
+    constexpr double kPossible = 0.1;
+    if (judged[i].confidence > kPossible)
+      judged[i].bright = bright_side(map, {shadow.x, shadow.y, shadow.area, shadow.peak});
   }
   return judged;
 }
@@ -220,53 +255,19 @@ std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& sear
   return all;
 }
 
-std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSearch& search,
-                                               std::optional<Radians> pooled) {
-  constexpr std::int64_t kSide = 1000;
-  const std::int64_t columns = std::min(kSide, image.columns()), rows = std::min(kSide, image.rows());
-  const std::int64_t x0 = (image.columns() - columns) / 2, y0 = (image.rows() - rows) / 2;
-  Pixels middle(columns, rows);
-  for (std::int64_t y = 0; y < rows; ++y)
-    for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
-  const auto map = map_shadows(middle, kTile);
-  if (!map) return std::nullopt;
-  const RockTable table(search.sun_elevation.value_or(kDefaultElevation), search.sun_elevation.has_value(),
-                        search.blur > 0 ? search.blur : 0.6);
-  const auto rocks_under = [&](double angle) {
-    double sum = 0;
-    for (const ScoredRock& one : score_shadows(*map, LightFrame::of(Radians{angle}), table))
-      if (one.confidence > 0.5) sum += one.confidence;
-    return sum;
-  };
-  double best = 0, max_sum = -1;
-  const auto look = [&](double angle) {
-    const double sum = rocks_under(angle);
-    if (sum > max_sum) {
-      max_sum = sum;
-      best = angle;
-    }
-  };
-  constexpr double kTurn = 6.283185307179586;
-  for (int k = 0; k < 16; ++k) look(k * kTurn / 16);
-  const double coarse = best;
-  for (const double step : {-0.26, -0.13, 0.13, 0.26}) look(coarse + step);
-  if (max_sum < 2) return std::nullopt;
-  if (pooled && rocks_under(pooled->value) > 0.5 * max_sum) return pooled;
-  if (pooled && rocks_under(pooled->value + kTurn / 2) > 0.5 * max_sum)
-    return Radians{std::remainder(pooled->value + kTurn / 2, kTurn)};
-  return Radians{std::remainder(best, kTurn)};
-}
-
-std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
+RocksFound find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
   const LightFrame light = LightFrame::of(sun_angle);
-  std::vector<Detection> found;
-  for (const ScoredRock& judged : score_scales(image, search, sun_angle)) {
+  std::vector<ScoredRock> scored = score_scales(image, search, sun_angle);
+  RocksFound found{.rocks = {}, .light = sun_angle, .coherence = light_coherence(scored, light)};
+  lower_to_fraction(scored, found.coherence.real_fraction());
+  for (const ScoredRock& judged : scored) {
     const double diameter = 2 * judged.scale * judged.radius();
     if (judged.confidence >= search.min_confidence && diameter >= search.min_diameter &&
         diameter <= search.max_diameter)
-      found.push_back(detection_of(judged, search, light));
+      found.rocks.push_back(detection_of(judged, search, light));
   }
-  return remove_duplicates(std::move(found), light);
+  found.rocks = remove_duplicates(std::move(found.rocks), light);
+  return found;
 }
 
 }  // namespace waymark::pipeline

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/rocks/bright_side.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/rock_evidence.hpp"
 namespace waymark::pipeline {
@@ -15,6 +16,7 @@ struct ScoredRock {
   double confidence = 0;          ///< adapted to the image's fraction of rocks
   double noise = 0, texture = 0;  ///< standard deviations in alpha at its position
   double scale = 1;               ///< pixel size of its map, image pixels
+  BrightSide bright;              ///< of its surroundings; only known for candidates above 0.1
 
   double radius() const;  ///< after correction by the network, pixels of its scale
   /// Position from the table, shifted by what relief displacement hides of the shadow; the prediction refers
@@ -34,16 +36,9 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
 /// (prior_shift).
 std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
-/// Returns the direction towards the sun; `std::nullopt` if no direction yields two probable rocks.
-/// - `pooled` (from estimate_sun_angle) if it yields at least half as many rocks as the best of twenty
-///   directions.
-/// - Else its opposite by the same rule, since hollows reverse the pooled direction.
-/// - Else the best direction.
-/// Uses the central 1000 x 1000 pixels.
-std::optional<Radians> sun_angle_by_rock_count(const Pixels& image, const RockSearch& search,
-                                               std::optional<Radians> pooled);
-
-/// Finds rocks by the method `shadow` for a known direction of light.
-std::vector<Detection> find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);
+/// Finds rocks by the method `shadow` for a known direction of light, and checks whether they are lit from
+/// it. Where too few are, confidences are lowered so that their sum is at most that of the rocks that can be
+/// real.
+RocksFound find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
 }  // namespace waymark::pipeline

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "geo/image_source.hpp"
-#include "pipeline/craters/find_craters.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/vision/sun_angle.hpp"
+#include "pipeline/light_in_image.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 
 namespace waymark::pipeline {
@@ -43,7 +43,7 @@ struct CheckSun {
   static StageSpec spec() {
     return {.name = "check_sun",
             .summary = "Compares the given sun with the shadows in each image and warns where they disagree",
-            .version = 1,
+            .version = 2,
             .scope = Scope::image,
             .inputs = {image_set}};
   }
@@ -63,18 +63,15 @@ struct CheckSun {
     const auto given = sun_angle_in_image(image.info());
     made.known = given.has_value();
     if (!given) return made;
-    const auto seen = estimate_sun_angle(central_window(image, options.max_pixels));
+    const Pixels pixels = central_window(image, options.max_pixels);
+    auto seen = estimate_rock_sun_angle(pixels);
+    // Hollows look like rocks under the opposite sun, so craters decide before a warning.
+    if (!seen || angle_between(seen->angle, *given) > options.tolerance.value)
+      seen = estimate_rock_sun_angle(pixels, crater_sun_angle(pixels));
     if (!seen) return made;
     made.off = angle_between(seen->angle, *given);
     made.sd = seen->sd.value / kRadiansPerDegree;
     made.shadows = seen->shadows;
-    // Small hollows look like rocks under the opposite sun, so craters decide.
-    if (made.off > 180 - options.tolerance.value) {
-      constexpr std::int64_t kEnough = 1024;  // a second of work
-      const auto bowls =
-          estimate_crater_sun_angle(central_window(image, std::min(options.max_pixels, kEnough)));
-      if (bowls && angle_between(bowls->angle, *given) < options.tolerance.value + 30) return made;
-    }
     made.seen = true;
     return made;
   }

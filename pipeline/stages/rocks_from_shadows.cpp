@@ -3,6 +3,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/light_in_image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
@@ -40,7 +41,7 @@ struct RocksFromShadows {
   static StageSpec spec() {
     return {.name = "rocks_from_shadows",
             .summary = "Finds rocks in an image by their shadows, with widths, heights and confidence",
-            .version = 6,
+            .version = 7,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};
@@ -60,9 +61,15 @@ struct RocksFromShadows {
     if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
-    auto found = find_rocks(pixels, search);
-    unit.count_out(static_cast<std::int64_t>(found.size()));
-    unit.write(detections, std::move(found));
+    if (!search.sun_angle) search.crater_sun = crater_sun_angle(pixels);
+    RocksFound found = search_rocks(pixels, search);
+    if (!found.light)
+      unit.warn(image.info().name +
+                ": the sun is unknown, and the image does not show where its light comes from: no rocks");
+    if (found.coherence.real_fraction() < 1)
+      unit.warn(image.info().name + ": " + unusual_ground_warning(found.coherence));
+    unit.count_out(static_cast<std::int64_t>(found.rocks.size()));
+    unit.write(detections, std::move(found.rocks));
   }
 };
 

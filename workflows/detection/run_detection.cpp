@@ -5,20 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 
 #include "pipeline/craters/find_craters.hpp"
+#include "pipeline/light_in_image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
-#include "pipeline/vision/sun_angle.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 #include "workflows/detection/tree_detection.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::workflows {
 namespace {
 
-constexpr std::int64_t kSample = 1536;    // side of the pieces the light is estimated from, pixels
-constexpr std::int64_t kMinSide = 16;     // detectors see nothing in smaller images
-constexpr double kMaxSaturated = 0.05;    // fraction of saturated pixels worth a warning
-constexpr double kMaxSunDifference = 15;  // degrees between the given and the estimated sun
+constexpr std::int64_t kSample = 1536;      // side of the pieces the light is estimated from, pixels
+constexpr std::int64_t kRockSample = 1000;  // the same for rocks
+constexpr std::int64_t kMinSide = 16;       // detectors see nothing in smaller images
+constexpr double kMaxSaturated = 0.05;      // fraction of saturated pixels worth a warning
+constexpr double kMaxSunDifference = 15;    // degrees between the given and the estimated sun
 
 struct Light {
   double angle = 0, sd = 0;  ///< degrees
@@ -31,19 +34,36 @@ std::optional<Light> estimate_light(const Pixels& pixels, const std::string& typ
     if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->craters};
     return {};
   }
-  const auto seen = pipeline::estimate_sun_angle(pixels);
+  const auto seen = pipeline::estimate_rock_sun_angle(pixels, pipeline::crater_sun_angle(pixels));
   if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
   return {};
 }
 
-/// Returns the estimate with the most support; a small image is read whole.
+/// Returns the most certain of the estimates with which most others agree; none if as many contradict it.
+std::optional<Light> agreed_light(const std::vector<Light>& all) {
+  constexpr double kAgree = 30;  // degrees
+  const Light* best = nullptr;
+  std::size_t max_agreeing = 0;
+  for (const Light& one : all) {
+    const auto agreeing = static_cast<std::size_t>(std::ranges::count_if(all, [&](const Light& other) {
+      return std::abs(std::remainder(other.angle - one.angle, 360)) < kAgree;
+    }));
+    if (best != nullptr && (agreeing < max_agreeing || (agreeing == max_agreeing && !(one.sd < best->sd))))
+      continue;
+    best = &one;
+    max_agreeing = agreeing;
+  }
+  if (best == nullptr || 2 * max_agreeing <= all.size()) return {};
+  return *best;
+}
+
 std::optional<Light> best_light(const ImageSource& image, const std::string& type) {
-  std::optional<Light> best;
-  for (const Window& window : sample_windows(image.info(), kSample))
-    if (const auto light = estimate_light(image.read(window), type);
-        light && (!best || light->support > best->support))
-      best = light;
-  return best;
+  std::vector<Light> all;
+  for (const Window& window : sample_windows(image.info(), type == "rock" ? kRockSample : kSample))
+    if (const auto light = estimate_light(image.read(window), type)) all.push_back(*light);
+  if (type == "rock") return agreed_light(all);
+  const auto best = std::ranges::max_element(all, {}, &Light::support);
+  return best == all.end() ? std::optional<Light>{} : *best;
 }
 
 std::string percent(std::int64_t part, std::int64_t of) {
@@ -69,7 +89,14 @@ std::string reason_for_no_detections(const ImageSource& image, std::vector<std::
   return {};
 }
 
-ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Radians> sun) {
+/// Sum over the pieces of an image in which rocks are not lit as rocks are.
+struct DoubtfulGround {
+  std::mutex mutex;
+  pipeline::LightCoherence seen;
+};
+
+ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Radians> sun,
+                        DoubtfulGround& doubtful) {
   if (plan.type == "crater")
     return [=, &plan](const Pixels& pixels, double min, double max) {
       pipeline::CraterSearch search;
@@ -84,7 +111,7 @@ ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Ra
         return std::vector<Detection>{};
       return pipeline::find_craters(pixels, search);
     };
-  return [=, &plan](const Pixels& pixels, double min, double max) {
+  return [=, &plan, &doubtful](const Pixels& pixels, double min, double max) {
     pipeline::RockSearch search;
     search.method = plan.method == "classic" ? pipeline::RockMethod::classic : pipeline::RockMethod::shadow;
     search.type = type;
@@ -93,14 +120,19 @@ ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Ra
     search.min_diameter = min;
     search.max_diameter = max;
     search.min_confidence = plan.min_confidence;
-    return pipeline::find_rocks(pixels, search);
+    pipeline::RocksFound found = pipeline::search_rocks(pixels, search);
+    if (found.coherence.real_fraction() < 1) {
+      const std::scoped_lock lock(doubtful.mutex);
+      doubtful.seen += found.coherence;
+    }
+    return std::move(found.rocks);
   };
 }
 
 /// Returns the direction to search with; notes an estimate or a conflict in `found`.
 std::optional<Radians> choose_light(const DetectionPlan& plan, DetectResult& found) {
   const auto seen = best_light(*plan.image, plan.type);
-  const char* witness = plan.type == "crater" ? "craters" : "shadows";
+  const char* witness = plan.type == "crater" ? "craters" : "shadows or craters";
   if (plan.image_sun_angle) {
     const double given = plan.image_sun_angle->value;
     const double off = seen ? std::abs(std::remainder(seen->angle - given, 360)) : 0;
@@ -113,9 +145,12 @@ std::optional<Radians> choose_light(const DetectionPlan& plan, DetectResult& fou
   }
   if (!seen) {
     found.warnings.push_back(
-        fmt::format("the image does not show where its light comes from: few {} will be found; pass "
-                    "--image-sun-angle",
-                    plan.type == "crater" ? "craters" : "rocks"));
+        plan.type == "crater"
+            ? "the image does not show where its light comes from: few craters will be found; pass "
+              "--image-sun-angle"
+            : "the image does not show where its light comes from, so shadows cannot be distinguished from "
+              "other dark "
+              "spots: no rocks are reported; pass --image-sun-angle");
     return {};
   }
   found.light = fmt::format("light from {:.1f} +- {:.1f} degrees in the image, by {} {}", seen->angle,
@@ -153,7 +188,10 @@ DetectResult run_detection(const DetectionPlan& plan, int threads,
   ImageSearch search = plan.search;
   search.threads = threads;
   search.progress = progress;
-  found.detections.detections = search_image(*plan.image, search, detector(plan, type, sun));
+  if (plan.type == "rock" && !sun) return found;
+  DoubtfulGround doubtful;
+  found.detections.detections = search_image(*plan.image, search, detector(plan, type, sun, doubtful));
+  if (doubtful.seen.rocks > 0) found.warnings.push_back(pipeline::unusual_ground_warning(doubtful.seen));
   if (plan.type == "rock" && !plan.sun_elevation && (info.ortho || plan.gsd))
     found.warnings.push_back("rocks have no heights: they need --sun-elevation");
   return found;

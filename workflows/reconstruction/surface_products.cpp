@@ -106,8 +106,11 @@ std::string job_text(const PosedImages& posed, const pipeline::SurfaceHeights& d
   }
   JobJson stages = JobJson::array(
       {load, JobJson{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
-  std::vector<const char*> names{"rocks_from_shadows", "craters_from_bowls", "project_to_ground",
-                                 "reject_implausible"};
+  std::vector<const char*> names;
+  if (suns) names.push_back("check_sun");
+  for (const char* name :
+       {"rocks_from_shadows", "craters_from_bowls", "project_to_ground", "reject_implausible"})
+    names.push_back(name);
   if (suns) names.push_back("reject_terrain_shadows");
   for (const char* name :
        {"reject_rim_shadows", "align_images", "merge_observations", "value_landmarks", "find_mountain_tops",

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+
+#include "geo/image_source.hpp"
+#include "pipeline/rocks/light_coherence.hpp"
+#include "pipeline/vision/sun_angle.hpp"
+namespace waymark::pipeline {
+
+/// Returns the direction towards the sun that the craters of the central 1024 x 1024 pixels show;
+/// `std::nullopt` if there are hardly any. The standard deviation is that of their mean.
+std::optional<SunAngle> crater_sun_angle(const Pixels& image);
+
+/// Returns the warning about ground on which the detector of rocks cannot be trusted.
+std::string unusual_ground_warning(const LightCoherence& seen);
+
+}  // namespace waymark::pipeline
