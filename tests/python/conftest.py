@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The program, and a map and a drive made once for all tests of a file."""
+"""The program, and a map made once for all tests of a file."""
 
 import csv
 import io
-import json
 import os
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-
-import waymark
 
 SOURCE = Path(os.environ["SOURCE"])
 DEM = SOURCE / "sample_data/jacksboro/dem.tif"
@@ -45,14 +42,3 @@ def peaks_map(tmp_path_factory):
     path = tmp_path_factory.mktemp("maps") / "peaks.gpkg"
     program("peaks", DEM, "-o", path, "--min-prominence", "50")
     return path
-
-
-@pytest.fixture(scope="session")
-def landing(tmp_path_factory):
-    """A simulated landing site with images, a drive and its truth."""
-    folder = tmp_path_factory.mktemp("landing") / "site"
-    scenario = json.loads((SOURCE / "sample_data/mars_mission/scenario.json").read_text())
-    file = folder.parent / "scenario.json"
-    file.write_text(json.dumps(scenario))
-    waymark.simulate(file, folder, drive_only=True)
-    return folder
