@@ -11,36 +11,21 @@ namespace {
 const Keywords<workflows::DetectRequest>& detect_keywords() {
   using R = workflows::DetectRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "kind", [](R & r) -> auto& { return r.kind; })
-                              .add(
-                                  "image", [](R & r) -> auto& { return r.image; })
-                              .add(
-                                  "output", [](R & r) -> auto& { return r.output; })
-                              .add(
-                                  "method", [](R & r) -> auto& { return r.method; })
-                              .add(
-                                  "crs", [](R & r) -> auto& { return r.crs; })
-                              .add(
-                                  "sun_azimuth", [](R & r) -> auto& { return r.sun_azimuth; })
-                              .add(
-                                  "sun_elevation", [](R & r) -> auto& { return r.sun_elevation; })
-                              .add(
-                                  "image_sun_angle", [](R & r) -> auto& { return r.image_sun_angle; })
-                              .add(
-                                  "gsd", [](R & r) -> auto& { return r.gsd; })
-                              .add(
-                                  "min_diameter", [](R & r) -> auto& { return r.min_diameter; })
-                              .add(
-                                  "max_diameter", [](R & r) -> auto& { return r.max_diameter; })
-                              .add(
-                                  "min_confidence", [](R & r) -> auto& { return r.min_confidence; })
-                              .add(
-                                  "band", [](R & r) -> auto& { return r.band; })
-                              .add(
-                                  "piece", [](R & r) -> auto& { return r.piece; })
-                              .add(
-                                  "threads", [](R & r) -> auto& { return r.threads; });
+                              .add("kind", &R::kind)
+                              .add("image", &R::image)
+                              .add("output", &R::output)
+                              .add("method", &R::method)
+                              .add("crs", &R::crs)
+                              .add("sun_azimuth", &R::sun_azimuth)
+                              .add("sun_elevation", &R::sun_elevation)
+                              .add("image_sun_angle", &R::image_sun_angle)
+                              .add("gsd", &R::gsd)
+                              .add("min_diameter", &R::min_diameter)
+                              .add("max_diameter", &R::max_diameter)
+                              .add("min_confidence", &R::min_confidence)
+                              .add("band", &R::band)
+                              .add("tile_pixels", &R::piece)
+                              .add("threads", &R::threads);
   return all;
 }
 

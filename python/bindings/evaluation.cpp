@@ -5,6 +5,7 @@
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/callbacks.hpp"
 #include "python/bindings/keywords.hpp"
+#include "workflows/evaluation/track_study.hpp"
 
 namespace waymark::python {
 namespace {
@@ -12,52 +13,32 @@ namespace {
 const Keywords<workflows::LandmarkEvaluation>& landmark_keywords() {
   using R = workflows::LandmarkEvaluation;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "result", [](R & r) -> auto& { return r.result; })
-                              .add(
-                                  "truth", [](R & r) -> auto& { return r.truth; })
-                              .add(
-                                  "ignore", [](R & r) -> auto& { return r.ignore; })
-                              .add(
-                                  "type", [](R & r) -> auto& { return r.type; })
-                              .add(
-                                  "match_by", [](R & r) -> auto& { return r.match_by; })
-                              .add(
-                                  "max_distance", [](R & r) -> auto& { return r.max_distance; })
-                              .add(
-                                  "min_tolerance", [](R & r) -> auto& { return r.always_allowed_distance; })
-                              .add(
-                                  "min_diameter", [](R & r) -> auto& { return r.min_diameter; })
-                              .add(
-                                  "min_pixels", [](R & r) -> auto& { return r.min_pixels; })
-                              .add(
-                                  "size_edges", [](R & r) -> auto& { return r.size_edges; });
+                              .add("result", &R::result)
+                              .add("truth", &R::truth)
+                              .add("ignore", &R::ignore)
+                              .add("type", &R::type)
+                              .add("by", &R::match_by)
+                              .add("tolerance", &R::max_distance)
+                              .add("min_tolerance", &R::always_allowed_distance)
+                              .add("min_diameter", &R::min_diameter)
+                              .add("min_pixels", &R::min_pixels)
+                              .add("size_edges", &R::size_edges);
   return all;
 }
 
 const Keywords<workflows::TrackEvaluation>& track_keywords() {
   using R = workflows::TrackEvaluation;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "track", [](R & r) -> auto& { return r.track; })
-                              .add(
-                                  "truth", [](R & r) -> auto& { return r.truth; })
-                              .add(
-                                  "align", [](R & r) -> auto& { return r.align; })
-                              .add(
-                                  "log_format", [](R & r) -> auto& { return r.log_format.format; })
-                              .add(
-                                  "columns", [](R & r) -> auto& { return r.log_format.columns; })
-                              .add(
-                                  "robot", [](R & r) -> auto& { return r.log_format.robot; })
-                              .add(
-                                  "max_gap", [](R & r) -> auto& { return r.max_gap; })
-                              .add(
-                                  "picture", [](R & r) -> auto& { return r.picture; })
-                              .add(
-                                  "map", [](R & r) -> auto& { return r.map; })
-                              .add(
-                                  "also", [](R & r) -> auto& { return r.also; });
+                              .add("track", &R::track)
+                              .add("truth", &R::truth)
+                              .add("align", &R::align)
+                              .add("log_format", &log_format<R>)
+                              .add("columns", &log_columns<R>)
+                              .add("robot", &log_robot<R>)
+                              .add("max_gap", &R::max_gap)
+                              .add("picture", &R::picture)
+                              .add("map", &R::map)
+                              .add("also", &R::also);
   return all;
 }
 
@@ -70,9 +51,11 @@ std::string evaluate_landmarks(const py::dict& keywords, py::object progress, py
 }
 
 /// Returns what `waymark evaluate track --format json` prints.
-std::string evaluate_track(const py::dict& keywords) {
+std::string evaluate_track(const py::dict& keywords, const std::vector<std::string>& more_drives) {
   const workflows::TrackEvaluation request = track_keywords().request(keywords);
   const py::gil_scoped_release no_gil;
+  if (!more_drives.empty())
+    return apps::track_study_as_json(workflows::evaluate_drives(request, more_drives), request.align);
   return apps::track_score_as_json(workflows::evaluate(request), request.align);
 }
 
@@ -82,7 +65,7 @@ void bind_evaluation(py::module_& module) {
   module.def("evaluate_landmarks", &evaluate_landmarks, py::arg("keywords"), py::arg("progress"),
              py::arg("message"));
   module.def("evaluate_landmarks_keywords", [] { return landmark_keywords().defaults(); });
-  module.def("evaluate_track", &evaluate_track, py::arg("keywords"));
+  module.def("evaluate_track", &evaluate_track, py::arg("keywords"), py::arg("more_drives"));
   module.def("evaluate_track_keywords", [] { return track_keywords().defaults(); });
 }
 

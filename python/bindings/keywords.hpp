@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -16,13 +17,14 @@ namespace py = pybind11;
 template <class Request>
 class Keywords {
  public:
-  /// Adds a keyword; `member` returns a reference to the member of a request.
+  /// Adds a keyword; `member` is a member of a request, or a function that returns a reference to one.
   template <class Member>
   Keywords& add(std::string name, Member member) {
-    using Value = std::remove_cvref_t<decltype(member(std::declval<Request&>()))>;
-    all_.push_back({std::move(name),
-                    [member](Request& request, py::handle given) { set<Value>(member(request), given); },
-                    [member](Request& request) -> py::object { return py::cast(member(request)); }});
+    using Value = std::remove_cvref_t<std::invoke_result_t<Member, Request&>>;
+    all_.push_back(
+        {std::move(name),
+         [member](Request& request, py::handle given) { set<Value>(std::invoke(member, request), given); },
+         [member](Request& request) -> py::object { return py::cast(std::invoke(member, request)); }});
     return *this;
   }
 
@@ -71,5 +73,20 @@ class Keywords {
 
   std::vector<Keyword> all_;
 };
+
+// Members of the format of a log, for requests that read one.
+
+template <class Request>
+std::string& log_format(Request& request) {
+  return request.log_format.format;
+}
+template <class Request>
+std::string& log_columns(Request& request) {
+  return request.log_format.columns;
+}
+template <class Request>
+std::int64_t& log_robot(Request& request) {
+  return request.log_format.robot;
+}
 
 }  // namespace waymark::python

@@ -39,48 +39,27 @@ py::array_t<Estimate> estimates(const Track& track, std::size_t first) {
 const Keywords<workflows::LocalizeRequest>& localize_keywords() {
   using R = workflows::LocalizeRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "map", [](R & r) -> auto& { return r.map; })
-                              .add(
-                                  "log", [](R & r) -> auto& { return r.log; })
-                              .add(
-                                  "output", [](R & r) -> auto& { return r.output; })
-                              .add(
-                                  "method", [](R & r) -> auto& { return r.method; })
-                              .add(
-                                  "sensor", [](R & r) -> auto& { return r.sensor; })
-                              .add(
-                                  "min_confidence", [](R & r) -> auto& { return r.min_confidence; })
-                              .add(
-                                  "seed", [](R & r) -> auto& { return r.seed; })
-                              .add(
-                                  "log_format", [](R & r) -> auto& { return r.log_format.format; })
-                              .add(
-                                  "columns", [](R & r) -> auto& { return r.log_format.columns; })
-                              .add(
-                                  "robot", [](R & r) -> auto& { return r.log_format.robot; })
-                              .add(
-                                  "use_identities", [](R & r) -> auto& { return r.use_identities; })
-                              .add(
-                                  "start", [](R & r) -> auto& { return r.start; })
-                              .add(
-                                  "write_map", [](R & r) -> auto& { return r.write_map; })
-                              .add(
-                                  "update_map", [](R & r) -> auto& { return r.update_map; })
-                              .add(
-                                  "set", [](R & r) -> auto& { return r.set; })
-                              .add(
-                                  "dem", [](R & r) -> auto& { return r.dem; })
-                              .add(
-                                  "in_map_crs", [](R & r) -> auto& { return r.in_map_crs; })
-                              .add(
-                                  "layers", [](R & r) -> auto& { return r.layers; })
-                              .add(
-                                  "timing", [](R & r) -> auto& { return r.timing; })
-                              .add(
-                                  "live", [](R & r) -> auto& { return r.live; })
-                              .add(
-                                  "threads", [](R & r) -> auto& { return r.threads; });
+                              .add("map", &R::map)
+                              .add("log", &R::log)
+                              .add("output", &R::output)
+                              .add("method", &R::method)
+                              .add("sensor", &R::sensor)
+                              .add("min_confidence", &R::min_confidence)
+                              .add("seed", &R::seed)
+                              .add("log_format", &log_format<R>)
+                              .add("columns", &log_columns<R>)
+                              .add("robot", &log_robot<R>)
+                              .add("use_identities", &R::use_identities)
+                              .add("start", &R::start)
+                              .add("write_map", &R::write_map)
+                              .add("update_map", &R::update_map)
+                              .add("set", &R::set)
+                              .add("dem", &R::dem)
+                              .add("in_map_crs", &R::in_map_crs)
+                              .add("layers", &R::layers)
+                              .add("timing", &R::timing)
+                              .add("live", &R::live)
+                              .add("threads", &R::threads);
   return all;
 }
 

@@ -20,54 +20,36 @@ namespace {
 const Keywords<workflows::MapRequest>& run_keywords() {
   using R = workflows::MapRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "output", [](R & r) -> auto& { return r.map; })
-                              .add(
-                                  "work", [](R & r) -> auto& { return r.work; })
-                              .add(
-                                  "rerun_from", [](R & r) -> auto& { return r.rerun_from; })
-                              .add(
-                                  "unit", [](R & r) -> auto& { return r.unit; })
-                              .add(
-                                  "check", [](R & r) -> auto& { return r.check; })
-                              .add(
-                                  "with_dem", [](R & r) -> auto& { return r.with_dem; })
-                              .add(
-                                  "threads", [](R & r) -> auto& { return r.threads; });
+                              .add("output", &R::map)
+                              .add("work", &R::work)
+                              .add("rerun_from", &R::rerun_from)
+                              .add("unit", &R::unit)
+                              .add("check", &R::check)
+                              .add("with_dem", &R::with_dem)
+                              .add("threads", &R::threads);
   return all;
 }
 
 const Keywords<workflows::CanopyFiles>& canopy_keywords() {
   using R = workflows::CanopyFiles;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "chm", [](R & r) -> auto& { return r.chm; })
-                              .add(
-                                  "dsm", [](R & r) -> auto& { return r.dsm; })
-                              .add(
-                                  "dtm", [](R & r) -> auto& { return r.dtm; })
-                              .add(
-                                  "las", [](R & r) -> auto& { return r.las; })
-                              .add(
-                                  "flights", [](R & r) -> auto& { return r.flights; })
-                              .add(
-                                  "crowns", [](R & r) -> auto& { return r.crowns; });
+                              .add("chm", &R::chm)
+                              .add("dsm", &R::dsm)
+                              .add("dtm", &R::dtm)
+                              .add("las", &R::las)
+                              .add("flights", &R::flights)
+                              .add("crowns", &R::crowns);
   return all;
 }
 
 const Keywords<workflows::SimulateRequest>& simulate_keywords() {
   using R = workflows::SimulateRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "scenario", [](R & r) -> auto& { return r.scenario; })
-                              .add(
-                                  "folder", [](R & r) -> auto& { return r.folder; })
-                              .add(
-                                  "seed", [](R & r) -> auto& { return r.seed; })
-                              .add(
-                                  "drive_seed", [](R & r) -> auto& { return r.drive_seed; })
-                              .add(
-                                  "drive_only", [](R & r) -> auto& { return r.drive_only; });
+                              .add("scenario", &R::scenario)
+                              .add("folder", &R::folder)
+                              .add("seed", &R::seed)
+                              .add("drive_seed", &R::drive_seed)
+                              .add("drive_only", &R::drive_only);
   return all;
 }
 

@@ -18,30 +18,18 @@ using Kind = AttributeSpec::Kind;
 const Keywords<workflows::QueryRequest>& query_keywords() {
   using R = workflows::QueryRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "types", [](R & r) -> auto& { return r.types; })
-                              .add(
-                                  "bbox", [](R & r) -> auto& { return r.bbox; })
-                              .add(
-                                  "near", [](R & r) -> auto& { return r.near; })
-                              .add(
-                                  "nearest", [](R & r) -> auto& { return r.nearest; })
-                              .add(
-                                  "min", [](R & r) -> auto& { return r.min_features; })
-                              .add(
-                                  "max", [](R & r) -> auto& { return r.max_features; })
-                              .add(
-                                  "crs", [](R & r) -> auto& { return r.crs; })
-                              .add(
-                                  "sensor", [](R & r) -> auto& { return r.sensor; })
-                              .add(
-                                  "min_confidence", [](R & r) -> auto& { return r.min_confidence; })
-                              .add(
-                                  "min_quality", [](R & r) -> auto& { return r.min_quality; })
-                              .add(
-                                  "largest", [](R & r) -> auto& { return r.largest; })
-                              .add(
-                                  "limit", [](R & r) -> auto& { return r.limit; });
+                              .add("types", &R::types)
+                              .add("bbox", &R::bbox)
+                              .add("near", &R::near)
+                              .add("nearest", &R::nearest)
+                              .add("min", &R::min_features)
+                              .add("max", &R::max_features)
+                              .add("crs", &R::crs)
+                              .add("sensor", &R::sensor)
+                              .add("min_confidence", &R::min_confidence)
+                              .add("min_quality", &R::min_quality)
+                              .add("largest", &R::largest)
+                              .add("limit", &R::limit);
   return all;
 }
 

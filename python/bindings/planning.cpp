@@ -19,76 +19,44 @@ struct Station {
 const Keywords<workflows::RouteRequest>& route_keywords() {
   using R = workflows::RouteRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "map", [](R & r) -> auto& { return r.map; })
-                              .add(
-                                  "start", [](R & r) -> auto& { return r.from; })
-                              .add(
-                                  "goal", [](R & r) -> auto& { return r.to; })
-                              .add(
-                                  "output", [](R & r) -> auto& { return r.output; })
-                              .add(
-                                  "via", [](R & r) -> auto& { return r.via; })
-                              .add(
-                                  "hazards", [](R & r) -> auto& { return r.hazards; })
-                              .add(
-                                  "sensor", [](R & r) -> auto& { return r.sensor; })
-                              .add(
-                                  "range", [](R & r) -> auto& { return r.range; })
-                              .add(
-                                  "view", [](R & r) -> auto& { return r.view; })
-                              .add(
-                                  "limit_sigma", [](R & r) -> auto& { return r.limit_sigma; })
-                              .add(
-                                  "keep_landmarks", [](R & r) -> auto& { return r.keep_landmarks; })
-                              .add(
-                                  "weight", [](R & r) -> auto& { return r.weight; })
-                              .add(
-                                  "by_quality", [](R & r) -> auto& { return r.by_quality; })
-                              .add(
-                                  "cell", [](R & r) -> auto& { return r.cell; })
-                              .add(
-                                  "start_sd", [](R & r) -> auto& { return r.start_sd; })
-                              .add(
-                                  "worlds", [](R & r) -> auto& { return r.worlds; })
-                              .add(
-                                  "alternatives", [](R & r) -> auto& { return r.alternatives; })
-                              .add(
-                                  "seed", [](R & r) -> auto& { return r.seed; });
+                              .add("map", &R::map)
+                              .add("start", &R::from)
+                              .add("goal", &R::to)
+                              .add("output", &R::output)
+                              .add("via", &R::via)
+                              .add("hazards", &R::hazards)
+                              .add("sensor", &R::sensor)
+                              .add("range", &R::range)
+                              .add("view", &R::view)
+                              .add("limit_sigma", &R::limit_sigma)
+                              .add("keep_landmarks", &R::keep_landmarks)
+                              .add("weight", &R::weight)
+                              .add("by_quality", &R::by_quality)
+                              .add("cell", &R::cell)
+                              .add("start_sd", &R::start_sd)
+                              .add("worlds", &R::worlds)
+                              .add("alternatives", &R::alternatives)
+                              .add("seed", &R::seed);
   return all;
 }
 
 const Keywords<workflows::HazardMapRequest>& hazard_keywords() {
   using R = workflows::HazardMapRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "input", [](R & r) -> auto& { return r.input; })
-                              .add(
-                                  "output", [](R & r) -> auto& { return r.output; })
-                              .add(
-                                  "dem", [](R & r) -> auto& { return r.dem; })
-                              .add(
-                                  "vehicle", [](R & r) -> auto& { return r.vehicle; })
-                              .add(
-                                  "polygons", [](R & r) -> auto& { return r.polygons; })
-                              .add(
-                                  "nav2", [](R & r) -> auto& { return r.nav2; })
-                              .add(
-                                  "height_sd", [](R & r) -> auto& { return r.height_sd; })
-                              .add(
-                                  "height_correlation", [](R & r) -> auto& { return r.height_correlation; })
-                              .add(
-                                  "rock_cover", [](R & r) -> auto& { return r.rock_cover; })
-                              .add(
-                                  "detection_limit", [](R & r) -> auto& { return r.detection_limit; })
-                              .add(
-                                  "min_uncertain", [](R & r) -> auto& { return r.min_uncertain; })
-                              .add(
-                                  "min_hazard", [](R & r) -> auto& { return r.min_hazard; })
-                              .add(
-                                  "tile_cells", [](R & r) -> auto& { return r.tile_cells; })
-                              .add(
-                                  "threads", [](R & r) -> auto& { return r.threads; });
+                              .add("input", &R::input)
+                              .add("output", &R::output)
+                              .add("dem", &R::dem)
+                              .add("vehicle", &R::vehicle)
+                              .add("polygons", &R::polygons)
+                              .add("nav2", &R::nav2)
+                              .add("height_sd", &R::height_sd)
+                              .add("height_correlation", &R::height_correlation)
+                              .add("rock_cover", &R::rock_cover)
+                              .add("detection_limit", &R::detection_limit)
+                              .add("uncertain", &R::min_uncertain)
+                              .add("hazard", &R::min_hazard)
+                              .add("tile_cells", &R::tile_cells)
+                              .add("threads", &R::threads);
   return all;
 }
 

@@ -11,30 +11,18 @@ namespace {
 const Keywords<workflows::ReconstructRequest>& reconstruct_keywords() {
   using R = workflows::ReconstructRequest;
   static const auto all = Keywords<R>()
-                              .add(
-                                  "images", [](R & r) -> auto& { return r.images; })
-                              .add(
-                                  "folder", [](R & r) -> auto& { return r.folder; })
-                              .add(
-                                  "cameras", [](R & r) -> auto& { return r.cameras; })
-                              .add(
-                                  "lens", [](R & r) -> auto& { return r.lens; })
-                              .add(
-                                  "control", [](R & r) -> auto& { return r.control; })
-                              .add(
-                                  "marks", [](R & r) -> auto& { return r.marks; })
-                              .add(
-                                  "dem", [](R & r) -> auto& { return r.dem; })
-                              .add(
-                                  "crs", [](R & r) -> auto& { return r.crs; })
-                              .add(
-                                  "cell", [](R & r) -> auto& { return r.cell; })
-                              .add(
-                                  "until", [](R & r) -> auto& { return r.until; })
-                              .add(
-                                  "map", [](R & r) -> auto& { return r.map; })
-                              .add(
-                                  "threads", [](R & r) -> auto& { return r.threads; });
+                              .add("images", &R::images)
+                              .add("folder", &R::folder)
+                              .add("cameras", &R::cameras)
+                              .add("lens", &R::lens)
+                              .add("control", &R::control)
+                              .add("marks", &R::marks)
+                              .add("dem", &R::dem)
+                              .add("crs", &R::crs)
+                              .add("cell", &R::cell)
+                              .add("until", &R::until)
+                              .add("map", &R::map)
+                              .add("threads", &R::threads);
   return all;
 }
 

@@ -12,6 +12,7 @@ import numpy as np
 from . import _waymark
 from ._arrays import image_path, raster_files
 from ._call import call, keywords
+from ._describe import takes
 from .mapping import run
 
 
@@ -23,6 +24,7 @@ def _table(text):
     return table
 
 
+@takes("detect")
 def detect(kind, image, *, progress=None, **options):
     """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
 
@@ -36,11 +38,13 @@ def detect(kind, image, *, progress=None, **options):
     return _table(table)
 
 
+@takes("detect", but=["kind"])
 def find_rocks(image, *, progress=None, **options):
     """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation."""
     return detect("rocks", image, progress=progress, **options)
 
 
+@takes("detect", but=["kind"])
 def find_craters(image, *, progress=None, **options):
     """Returns the craters of an image: see `detect`."""
     return detect("craters", image, progress=progress, **options)

@@ -3,6 +3,7 @@
 
 from . import _waymark
 from ._call import Work, assignments, keywords
+from ._describe import takes
 from .maps import Map
 
 
@@ -46,7 +47,8 @@ class Localization:
         self._work.stop()
 
 
-def localize(map, log, *, method="ekf", settings=None, start=None, progress=None, **options):
+@takes("localize", but=["set"])
+def localize(map, log, *, method="ekf", settings: "_Settings" = None, start=None, progress=None, **options):
     """Follows a robot through a map by its log, as `waymark localize`; returns a Localization.
 
     map is a Map or a file ("none": without a map). start is (x, y, yaw) in metres and radians, "truth" or "none".

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from . import _waymark, errors
 from ._call import assignments, call, keywords
+from ._describe import takes
 from .maps import Map
 
 
@@ -23,6 +24,7 @@ class Run:
         return self.map._repr_html_() if self.map else None
 
 
+@takes("run")
 def run(job, output=None, *, settings=None, folder=None, progress=None, **options):
     """Runs a job and returns a Run; `output` is the map to write.
 
@@ -57,6 +59,7 @@ def _raise(result, exit_code):
     raise failed
 
 
+@takes("simulate")
 def simulate(scenario, folder, *, progress=None, **options):
     """Makes a site with its truth in a folder, as `waymark simulate`; returns counts. options: seed, drive_seed,
     drive_only.

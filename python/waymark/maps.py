@@ -8,6 +8,7 @@ import numpy as np
 
 from . import _picture, _waymark
 from ._call import keywords
+from ._describe import takes
 
 _KINDS = {"real": np.float64, "integer": np.int64}
 
@@ -93,21 +94,28 @@ class Map:
                 given[side] = texts
         return _waymark.query(self.path, keywords(types=types, **given))
 
+    @takes("query", more=True)
     def query(self, types=None, **conditions):
-        """Returns a structured array per type: {"rock": array, ...}. See `landmarks` for the conditions."""
+        """Returns a structured array per type: {"rock": array, ...}. 
+
+        min_FEATURE and max_FEATURE bound any number of the landmarks: min_prominence=300.
+        """
         if isinstance(types, str):
             types = [types]
         found = self._query(types, conditions)
         return {name: _structured(columns) for name, columns in found["types"].items()}
 
+    @takes("query", but=["types"], more=True)
     def landmarks(self, type=None, **conditions):
         """Returns the landmarks of one type as a structured array with the columns of `waymark query`.
 
         type may be left out if the map has landmarks of one type only. Unknown numbers are NaN.
+        min_FEATURE and max_FEATURE bound any number of the landmarks: min_prominence=300.
         """
         type = type or self._only_type()
         return self.query([type], **conditions)[type]
 
+    @takes("query", but=["types"], more=True)
     def to_geopandas(self, type=None, **conditions):
         """Returns the landmarks of one type as a GeoDataFrame of points, indexed by uid."""
         import geopandas

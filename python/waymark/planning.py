@@ -3,6 +3,7 @@
 
 from . import _waymark
 from ._call import call, keywords
+from ._describe import takes
 from .maps import Map
 
 
@@ -14,6 +15,7 @@ def _position(position):
     return position if isinstance(position, str) else ",".join(repr(float(one)) for one in position)
 
 
+@takes("route")
 def route(map, start, goal, output, *, sensor, via=None, progress=None, **options):
     """Plans a route and writes it to `output`, as `waymark route`.
 
@@ -26,6 +28,7 @@ def route(map, start, goal, output, *, sensor, via=None, progress=None, **option
     return call(_waymark.route, given, progress=progress)
 
 
+@takes("hazards", but=["input"])
 def hazards(map, output, *, progress=None, **options):
     """Writes a hazard map of a map or a DEM, as `waymark hazards`. options: vehicle, dem, polygons, nav2, ..."""
     call(_waymark.hazards, keywords(input=_path(map), output=output, **options), progress=progress)

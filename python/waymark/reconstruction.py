@@ -3,8 +3,10 @@
 
 from . import _waymark, errors
 from ._call import call, keywords
+from ._describe import takes
 
 
+@takes("reconstruct")
 def reconstruct(images, folder, *, until="ortho", progress=None, **options):
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 

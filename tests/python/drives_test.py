@@ -82,6 +82,9 @@ def test_scores_are_those_of_the_program(site, tmp_path):
     score = waymark.evaluate_track(track, log)
     assert score == json.loads(program("evaluate", "track", track, "--truth", log, "--format", "json"))
     assert 0 < score["ate_rmse"] < 1
+    study = waymark.evaluate_track(track, log, drive=[(track, log)])
+    assert study == json.loads(program("evaluate", "track", track, "--truth", log, "--drive", f"{track}={log}",
+                                       "--format", "json"))
     map, truth = waymark.open(site / "map.gpkg"), site / "site/truth/landmarks.csv"
     scores = waymark.evaluate(map, truth)
     assert scores == json.loads(program("evaluate", "landmarks", map.path, "--truth", truth, "--format", "json"))
