@@ -12,7 +12,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string word(Scale scale) {
-  return scale == Scale::ratio ? "ratio" : scale == Scale::interval ? "interval" : "axis";
+  switch (scale) {
+    case Scale::ratio:
+      return "ratio";
+    case Scale::interval:
+      return "interval";
+    case Scale::axis:
+      return "axis";
+    case Scale::direction:
+      return "direction";
+  }
+  return "";
 }
 
 std::string word(AttributeSpec::Kind kind) {

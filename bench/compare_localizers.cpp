@@ -81,7 +81,7 @@ SensorKind kind_of(const localization::LogEvent& e) {
 }
 
 localization::RobotLog filter_log(const localization::RobotLog& log, const std::string& sensor, bool features,
-                                  const localization::ScanTypes& types) {
+                                  const localization::LaserDetector& detect) {
   localization::RobotLog some = log;
   std::erase_if(some.events, [&](const localization::LogEvent& e) {
     if (!std::holds_alternative<localization::LaserScan>(e.what) &&
@@ -96,7 +96,7 @@ localization::RobotLog filter_log(const localization::RobotLog& log, const std::
   // Detectors run once per scan, so that all methods get the same sightings and only the update is timed.
   for (localization::LogEvent& e : some.events) {
     if (const auto* scan = std::get_if<localization::LaserScan>(&e.what)) {
-      localization::SightingSet set = localization::sightings_of_scan(*scan, types, {});
+      localization::SightingSet set = detect(*scan);
       e.what = std::move(set);
     }
     if (auto* set = std::get_if<localization::SightingSet>(&e.what); set && !features)
@@ -206,7 +206,8 @@ int main(int argc, char** argv) {
     for (localization::MapLandmark& l : flat)
       quality += l.quality / static_cast<double>(flat.size()), l.quality = 1;
     const localization::LandmarkGrid with(site.landmarks), without(flat);
-    const localization::ScanTypes types{{}, site.store.types().id("rock")};
+    const localization::LaserDetector detect =
+        localization::make_laser_detector(site.store.types(), {.find = "rocks"});
     std::vector<Sum> sums(variants.size());
     for (int r = 0; r < runs; ++r) {
       testbed::DriveSettings drive = site.scenario.drive;
@@ -225,7 +226,7 @@ int main(int argc, char** argv) {
         const Variant& v = variants[i];
         if (laser_only && (v.sensor != "laser" || v.method == "slam" || v.method == "pf, recovery")) continue;
         const auto [at, made] = logs.try_emplace({v.sensor, v.features});
-        if (made) at->second = filter_log(log, v.sensor, v.features, types);
+        if (made) at->second = filter_log(log, v.sensor, v.features, detect);
         run(v, at->second, site, v.quality ? with : without, sums[i]);
         if (r == 0)
           fmt::print(stderr,

@@ -15,19 +15,24 @@ double weighted_mean(std::span<const WeightedValue> seen, double total) {
   return sum / total;
 }
 
-// Axes at 1 deg and 179 deg are 2 deg apart. Doubling the angles maps axes to directions, whose mean is the
+// Axes at 1 deg and 179 deg are 2 deg apart. Angles times 2 pi / period are directions, whose mean is the
 // direction of the sum of their unit vectors.
-double weighted_axis(std::span<const WeightedValue> seen, double total) {
+double weighted_angle(std::span<const WeightedValue> seen, double total, double period) {
+  const double turns = 2 * std::numbers::pi / period;
   std::complex<double> sum = 0;
-  for (const auto& s : seen) sum += s.weight * std::polar(1.0, 2 * s.value);
+  for (const auto& s : seen) sum += s.weight * std::polar(1.0, turns * s.value);
   if (!(std::abs(sum) > 1e-12 * total)) return seen.front().value;
-  return std::arg(sum) / 2;
+  return std::arg(sum) / turns;
 }
 
 }  // namespace
 
+double period(Scale scale) {
+  return scale == Scale::axis ? std::numbers::pi : scale == Scale::direction ? 2 * std::numbers::pi : 0;
+}
+
 double difference(double a, double b, Scale scale) {
-  return scale == Scale::axis ? std::remainder(a - b, std::numbers::pi) : a - b;
+  return is_angle(scale) ? std::remainder(a - b, period(scale)) : a - b;
 }
 
 FeatureValue merge(std::span<const WeightedValue> seen, Scale scale) {
@@ -38,7 +43,8 @@ FeatureValue merge(std::span<const WeightedValue> seen, Scale scale) {
     total += s.weight;
     squares += s.weight * s.weight;
   }
-  const double value = scale == Scale::axis ? weighted_axis(seen, total) : weighted_mean(seen, total);
+  const double value =
+      is_angle(scale) ? weighted_angle(seen, total, period(scale)) : weighted_mean(seen, total);
 
   double spread = 0;
   for (const auto& s : seen) {

@@ -8,9 +8,10 @@ namespace waymark::inline core {
 
 /// Scale of measurement of a feature. The paper's formulas give wrong values if it is ignored.
 enum class Scale {
-  ratio,     ///< has a true zero: radius, height
-  interval,  ///< zero is a convention: elevation above a datum
-  axis,      ///< undirected axis, period pi, radians: the long axis of an ellipse
+  ratio,      ///< has a true zero: radius, height
+  interval,   ///< zero is a convention: elevation above a datum
+  axis,       ///< undirected axis, period pi, radians: the long axis of an ellipse
+  direction,  ///< directed, period 2 pi, radians: the normal of a wall
 };
 
 /// Declaration of one feature of a landmark type. Values outside [min_value, max_value] are implausible.
@@ -21,7 +22,7 @@ struct FeatureSpec {
   double min_value = -std::numeric_limits<double>::infinity();
   double max_value = std::numeric_limits<double>::infinity();
   std::string summary;  ///< one line for the user
-  /// Interval and axis: spread at which a value carries no information (see core/quality.hpp).
+  /// Interval, axis and direction: spread at which a value carries no information (see core/quality.hpp).
   double reference = 0;
 };
 
@@ -47,10 +48,21 @@ struct WeightedValue {
 /// - The variance is the weighted spread about the merged value, unbiased for equal weights.
 /// - The variance of a single observation is 0 and carries no information about confidence.
 /// - Departure from the paper: axes are averaged as doubled angles, so 1 and 179 degrees give 0 and not 90.
-/// - The merged axis lies in (-pi/2, pi/2]. If the doubled angles cancel, it is the first value.
+/// - Directions are averaged as unit vectors.
+/// - The merged axis lies in (-pi/2, pi/2], the direction in (-pi, pi]. If the vectors cancel, it is the
+/// first
+///   value.
 FeatureValue merge(std::span<const WeightedValue> seen, Scale scale);
 
-/// Returns a - b; for an axis the smallest signed angle between both, radians.
+/// Returns the angle after which values of a scale repeat, radians; 0 for a scale that is no angle.
+double period(Scale scale);
+
+/// Returns whether values of a scale are angles, which turn with the frame that they are given in.
+inline bool is_angle(Scale scale) {
+  return scale == Scale::axis || scale == Scale::direction;
+}
+
+/// Returns a - b; for an axis or a direction the smallest signed angle between both, radians.
 double difference(double a, double b, Scale scale);
 
 }  // namespace waymark::inline core

@@ -20,7 +20,7 @@ bool is_column_name(std::string_view name) {
 }
 
 constexpr std::array<std::string_view, 5> kEvidenceModels = {"none", "shadow_caster", "bowl", "canopy",
-                                                             "pole"};
+                                                             "upright"};
 
 bool is_positive(double value) {
   return std::isfinite(value) && value > 0;

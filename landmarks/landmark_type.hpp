@@ -21,7 +21,7 @@ enum class EvidenceModel {
   shadow_caster,  ///< compact body on the ground, detected by the shadow it casts
   bowl,           ///< depression with a rim; its position is the centre of the rim
   canopy,         ///< crown above the ground; its position is the foot of the stem
-  pole,           ///< thin and upright, detected from the side
+  upright,        ///< stands on the ground, detected from the side: a post, a wall, a corner
 };
 
 /// Feature that holds the horizontal extent of a type, by which its observations are associated.

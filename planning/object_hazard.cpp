@@ -61,7 +61,7 @@ HazardObject hazard_object(const Landmark& landmark, const LandmarkType& type, c
       object.probability *= radius ? rim_is_steep(landmark, type, *radius, vehicle) : 1;
       break;
     case EvidenceModel::canopy:
-    case EvidenceModel::pole:
+    case EvidenceModel::upright:
       radius = feature(landmark, type, "diameter");  // of the stem
       if (radius) radius->value /= 2, radius->sd /= 2;
       break;

@@ -32,8 +32,7 @@ double quantile(std::vector<double> values, double fraction) {
 ErrorSummary summary(const std::vector<double>& found, const std::vector<double>& truth, Scale scale) {
   std::vector<double> error, magnitude, relative, deviation;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const double off = found[i] - truth[i];
-    error.push_back(scale == Scale::axis ? std::remainder(off, std::numbers::pi) : off);
+    error.push_back(difference(found[i], truth[i], scale));
     magnitude.push_back(std::abs(error.back()));
     if (scale == Scale::ratio && truth[i] != 0) relative.push_back(found[i] / truth[i] - 1);
   }

@@ -42,7 +42,7 @@ std::string facts(const std::vector<LandmarkSection>& sections, const std::vecto
     for (std::size_t i = 0; i < section.type.features.size() && shown < kFactsPerType; ++i) {
       const std::vector<double>& values = section.values[i];
       const FeatureSpec& feature = section.type.features[i];
-      if (values.empty() || feature.scale == Scale::axis) continue;
+      if (values.empty() || is_angle(feature.scale)) continue;
       const double largest = *std::max_element(values.begin(), values.end());
       items +=
           fact(number_format(feature, largest)(largest), "largest " + readable_name(whose + feature.name));

@@ -13,7 +13,7 @@
 namespace waymark::geodb {
 namespace {
 
-constexpr std::array<std::string_view, 3> kScales = {"ratio", "interval", "axis"};
+constexpr std::array<std::string_view, 4> kScales = {"ratio", "interval", "axis", "direction"};
 constexpr std::array<std::string_view, 3> kKinds = {"real", "integer", "text"};
 constexpr std::array<std::string_view, 5> kSolids = {"point", "sphere", "cylinder", "cone", "bowl"};
 

@@ -126,7 +126,7 @@ CREATE TABLE waymark_type (
   id INTEGER PRIMARY KEY,           -- from 1; rows of its table have ids from (id - 1) * 1e9 + 1
   name TEXT NOT NULL UNIQUE,        -- of the table
   summary TEXT NOT NULL,
-  evidence TEXT NOT NULL,           -- how it shows itself: none, shadow_caster, bowl, canopy, pole
+  evidence TEXT NOT NULL,           -- how it shows itself: none, shadow_caster, bowl, canopy, upright
   body_feature TEXT NOT NULL,       -- its horizontal extent; '' for none
   radius_per_value DOUBLE NOT NULL, -- of body_feature: 1 for a radius, 0.5 for a diameter
   identification_reach DOUBLE NOT NULL,  -- m: largest range at which a bearing is associated with it
@@ -144,7 +144,7 @@ CREATE TABLE waymark_feature (
   position INTEGER NOT NULL,        -- from 0
   name TEXT NOT NULL,
   unit TEXT NOT NULL,               -- 'm', 'rad', '' for a pure number
-  scale TEXT NOT NULL,              -- ratio, interval, axis
+  scale TEXT NOT NULL,              -- ratio, interval, axis, direction
   lowest DOUBLE,                    -- plausible values; NULL: unbounded
   highest DOUBLE,
   reference DOUBLE NOT NULL,        -- spread at which an interval or axis value says nothing

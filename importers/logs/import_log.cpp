@@ -24,6 +24,7 @@ std::string recognised(const fs::path& path) {
   if (path.extension() == ".csv" || path.extension() == ".tsv") return "csv";
   if (path.extension() == ".dat") return "mrclam";
   const std::string name = path.filename().string();
+  if (path.extension() == ".clf" || name.ends_with(".clf.gz") || name.ends_with(".clf.bz2")) return "carmen";
   if (name == "LASER.txt" || name == "DRS.txt") return "victoria-park";
   const std::string graph = graph_format(path);
   return graph.empty() ? "waymark" : graph;
@@ -59,9 +60,10 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
+  if (format == "carmen") return import_carmen_log(path);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
-              "known are waymark, csv, mrclam, victoria-park, isam, g2o and toro");
+              "known are waymark, csv, mrclam, victoria-park, carmen, isam, g2o and toro");
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace waymark::importers {
 
 /// Options for reading a log.
 struct LogImport {
-  std::string format =
-      {};  ///< waymark, csv, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
+  std::string format = {};   ///< waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty:
+                             ///< recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
 };
@@ -52,5 +52,9 @@ localization::RobotLog import_graph_log(const std::filesystem::path& file, const
 /// Reads ACFR Victoria Park as text: a folder with DRS.txt, LASER.txt, GPS.txt. Scans are of a laser on the
 /// front bumper; the truth is GPS, positions only (yaw 0).
 localization::RobotLog import_victoria_park(const std::filesystem::path& folder);
+
+/// Reads a CARMEN log (Montemerlo et al. 2003): odometry as steps, and the scans of FLASER, RLASER and
+/// ROBOTLASER1. Times are those of the sender. Lines that cannot be read are skipped and counted.
+localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 
 }  // namespace waymark::importers

@@ -9,7 +9,7 @@ void register_type_beacon(TypeRegistry& types) {
       .summary = "Post or tag put up for robots; may say who it is (bar code, reflector)",
       .features = {{"height", "m", Scale::ratio, 0.01, 100, "Ground to top"},
                    {"diameter", "m", Scale::ratio, 0.001, 10, "Width of the post"}},
-      .evidence = EvidenceModel::pole,
+      .evidence = EvidenceModel::upright,
       .body = {"diameter", 0.5},
       .identifies_itself = true,
       .drawn_as = Solid::cylinder,

@@ -68,6 +68,7 @@ bool stands_out(std::span<const double> ranges, const BeamSegment& run, double m
 
 LaserStemOptions forest_stem_options() {
   return {.type = {},
+          .diameter_feature = 1,
           .jump = 0.35,
           .clear = 0.4,
           .max_diameter = 1.5,
@@ -80,6 +81,23 @@ LaserStemOptions forest_stem_options() {
           .range_sd = 0,
           .bearing_sd = 0,
           .partly_hidden = true};
+}
+
+LaserStemOptions post_options() {
+  LaserStemOptions options = forest_stem_options();
+  options.jump = 0.3;
+  options.min_diameter = 0.04, options.max_diameter = 0.3;
+  options.max_range = 30;
+  options.partly_hidden = false;
+  return options;
+}
+
+LaserStemOptions pillar_options() {
+  LaserStemOptions options = post_options();
+  options.min_diameter = 0.3, options.max_diameter = 2;
+  options.roughness_base = 0.03, options.roughness_per_metre = 0.02;
+  options.min_beams = 5;
+  return options;
 }
 
 std::vector<Stem> find_stems(const LaserScan& scan, const LaserStemOptions& options) {
@@ -112,9 +130,8 @@ SightingSet sightings_of_stems(const LaserScan& scan, const LaserStemOptions& op
     s.bearing = wrap_angle(bearing);
     s.bearing_sd = options.bearing_sd > 0 ? options.bearing_sd : stem.bearing_sd;
     if (options.type) {
-      constexpr std::size_t kDiameter = 1;
-      s.features.value[kDiameter] = stem.diameter;
-      s.features.variance[kDiameter] = stem.diameter_sd * stem.diameter_sd;
+      s.features.value[options.diameter_feature] = stem.diameter;
+      s.features.variance[options.diameter_feature] = stem.diameter_sd * stem.diameter_sd;
     }
     set.sightings.push_back(s);
   }

@@ -8,14 +8,15 @@ namespace waymark::localization {
 
 /// Options of the detector of tree stems (or round posts) for a level line scanner.
 struct LaserStemOptions {
-  std::optional<TypeId> type;      ///< of the sightings; its second feature is the diameter (as `tree`)
-  double jump = 0.5;               ///< m between neighbouring beams that separates two objects
-  double clear = 1.0;              ///< m by which the background must be farther away
-  double max_diameter = 1.5;       ///< m
-  double min_diameter = 0.02;      ///< m
-  double max_range = 70;           ///< m; too few beams hit a stem farther away
-  double roughness = 1;            ///< m: largest RMS of the ranges about a cylinder; bushes exceed it
-  double roughness_base = 1;       ///< m: limit of the RMS for a diameter of 0
+  std::optional<TypeId> type;        ///< of the sightings
+  std::size_t diameter_feature = 1;  ///< index of the diameter among the features of the type
+  double jump = 0.5;                 ///< m between neighbouring beams that separates two objects
+  double clear = 1.0;                ///< m by which the background must be farther away
+  double max_diameter = 1.5;         ///< m
+  double min_diameter = 0.02;        ///< m
+  double max_range = 70;             ///< m; too few beams hit a stem farther away
+  double roughness = 1;              ///< m: largest RMS of the ranges about a cylinder; bushes exceed it
+  double roughness_base = 1;         ///< m: limit of the RMS for a diameter of 0
   double roughness_per_metre = 0;  ///< increase of that limit per metre of diameter: thin stems are smoother
   int min_beams = 1;               ///< per stem
   double range_sd = 0.3;           ///< m; 0: estimated from the scan
@@ -25,6 +26,11 @@ struct LaserStemOptions {
 
 /// Returns options for a machine in a forest: rejects bushes and estimates errors from the scan.
 LaserStemOptions forest_stem_options();
+
+/// Returns options for lamps, masts and bollards up to 0.3 m wide.
+LaserStemOptions post_options();
+/// Returns options for round columns from 0.3 to 2 m wide.
+LaserStemOptions pillar_options();
 
 /// A stem detected in a laser scan.
 struct Stem {

@@ -1,28 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <optional>
 #include <string>
 #include "core/options.hpp"
-#include "localization/laser_scan.hpp"
-#include "localization/sighting.hpp"
+#include "localization/detectors/detector_table.hpp"
 namespace waymark::localization {
 
 /// Options of landmark detection in laser scans.
 struct ScanDetectionOptions {
-  std::string find = "auto";  ///< `stems`, `rocks`; `auto`: the types of the map, rocks if it has both
-  bool features = true;       ///< give diameters and radii to the sightings
+  /// Names of detectors, separated by commas. `auto`: those whose types are in the map; `stems` without a
+  /// type if there are none.
+  std::string find = "auto";
+  bool features = true;  ///< give diameters, radii and angles to the sightings
 
   void describe(OptionVisitor& option);
 };
 
-/// Types of the map; absent: the sightings have no type.
-struct ScanTypes {
-  std::optional<TypeId> tree, rock;
-};
+/// Returns all detectors for laser scans.
+const DetectorTable& laser_detectors();
 
-/// Detects landmarks in a scan. Uses the stem options for forests if the log gives the width of the beams,
-/// otherwise those for single trees in a park.
-SightingSet sightings_of_scan(const LaserScan& scan, const ScanTypes& types,
-                              const ScanDetectionOptions& options);
+/// Returns the detectors that the options name, for the types of a map, as one. Throws Error{usage} for an
+/// unknown name.
+LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options);
 
 }  // namespace waymark::localization

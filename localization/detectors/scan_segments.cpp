@@ -25,11 +25,14 @@ std::vector<double> bridge_outliers(const LaserScan& scan, double jump) {
   return ranges;
 }
 
-std::vector<BeamSegment> split_at_jumps(std::span<const double> ranges, double jump) {
+std::vector<BeamSegment> split_at_jumps(std::span<const double> ranges, double jump, double jump_per_metre) {
   std::vector<BeamSegment> runs;
   for (std::size_t first = 0; first < ranges.size();) {
     std::size_t last = first;
-    while (last + 1 < ranges.size() && std::abs(ranges[last + 1] - ranges[last]) < jump) ++last;
+    const auto joined = [&](double a, double b) {
+      return std::abs(b - a) < jump + jump_per_metre * std::min(a, b);
+    };
+    while (last + 1 < ranges.size() && joined(ranges[last], ranges[last + 1])) ++last;
     runs.push_back({first, last});
     first = last + 1;
   }
@@ -44,6 +47,19 @@ double angular_width(const LaserScan& scan, std::size_t beams) {
 double cylinder_radius(double front, double width) {
   const double half_sine = std::sin(std::min(width, 2.0) / 2);
   return front * half_sine / (1 - half_sine);
+}
+
+SeenLandmark sighting_of_point(const LaserScan& scan, const Eigen::Vector2d& at,
+                               const Eigen::Matrix2d& covariance) {
+  SeenLandmark s;
+  const double range = std::max(at.norm(), 1e-3);
+  const Eigen::Vector2d radial = at / range, across(-radial.y(), radial.x());
+  const auto [level_range, bearing] = level_range_bearing(scan, range, std::atan2(at.y(), at.x()));
+  s.range = level_range;
+  s.bearing = wrap_angle(bearing);
+  s.range_sd = std::sqrt(std::max(radial.dot(covariance * radial), 1e-8));
+  s.bearing_sd = std::sqrt(std::max(across.dot(covariance * across), 1e-8)) / range;
+  return s;
 }
 
 RangeBearing level_range_bearing(const LaserScan& scan, double range, double bearing) {

@@ -51,10 +51,18 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   } else if (!uses.empty()) {
     missed_ = 0;
     correct(uses, seen.robot_from_sensor);
+    for (const MatchedSighting& use : uses) correct_heading(*use.seen, seen.robot_from_sensor, *use.landmark);
   } else if (strange && ++missed_ >= options_.lost_after && options_.search_growth > 1) {
     widen(options_.search_growth);
   }
   return matches;
+}
+
+void KalmanLocalizer::correct_heading(const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                                      const MapLandmark& landmark) {
+  for (const AngleFix& fix : headings_from_angles(seen, robot_from_sensor, landmark, estimate().pose.yaw,
+                                                  matcher_.scales(), matcher_.options()))
+    replace(update_pose(estimate(), fix.heading).estimate);
 }
 
 // Position and heading are components of the state: the update is linear, the same for both filters.

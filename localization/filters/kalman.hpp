@@ -37,6 +37,8 @@ class KalmanLocalizer : public Localizer {
   virtual void widen(double factor) = 0;
 
  private:
+  /// Corrects the estimate by the angles of a matched sighting, which measure the heading.
+  void correct_heading(const SeenLandmark& seen, const Pose2& robot_from_sensor, const MapLandmark& landmark);
   template <class Fix>
   bool apply_fix(const Fix& measured, int rows);
 

@@ -80,6 +80,7 @@ PoseEstimate MultiHypothesisFilter::update_component(const Component& component,
                                                      const LandmarkGrid& map) const {
   PoseEstimate at = component.at;
   JointEvidence evidence;
+  std::vector<AngleFix> fixes;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     if (how.choice[i] < 0) continue;
     MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
@@ -91,8 +92,13 @@ PoseEstimate MultiHypothesisFilter::update_component(const Component& component,
     else
       evidence += evidence_of(seen, expect(component.at.pose, some.robot_from_sensor, landmark.at),
                               landmark.covariance, trust);
+    for (const AngleFix& fix :
+         headings_from_angles(seen, some.robot_from_sensor, landmark, component.at.pose.yaw,
+                              matcher_.scales(), matcher_.options()))
+      fixes.push_back(fix);
   }
   if (!options_.unscented) at = update_pose(component.at, evidence);
+  for (const AngleFix& fix : fixes) at = update_pose(at, fix.heading).estimate;
   return at;
 }
 

@@ -95,7 +95,7 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
     p.known = identification.use_identities && s.identity;
     if (s.type)
       for (std::size_t i = 0; i < kMaxFeatures; ++i)
-        p.turns = p.turns || (s.features.known(i) && scales.is_axis(*s.type, i));
+        p.turns = p.turns || (s.features.known(i) && scales.is_angle(*s.type, i));
     if (p.known) {
       if (const auto l = map.find(*s.identity))
         if (const auto alike = pose_free_terms(p, *l))
@@ -137,12 +137,12 @@ double SightingScore::unseen(const Pose2& robot, std::span<const std::uint32_t> 
   return unseen(sensor.at(), std::cos(sensor.yaw), std::sin(sensor.yaw), matched);
 }
 
-// For a sighting with an axis: an upper bound, without it.
+// For a sighting with an angle: an upper bound, without it.
 std::optional<SightingScore::PoseFreeTerms> SightingScore::pose_free_terms(const Prepared& p,
                                                                            std::uint32_t landmark) const {
   return feature_terms(
       p, landmark,
-      p.turns ? features_without_axes(*scales_, *p.seen.type, p.seen.features) : p.seen.features);
+      p.turns ? features_without_angles(*scales_, *p.seen.type, p.seen.features) : p.seen.features);
 }
 
 std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const Prepared& p,

@@ -75,7 +75,7 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   if (!s.is_valid() || !s.range || s.type == kNoSuchType) return;
   Seen p{.index = i,
          .sighting = &s,
-         .features = s.type ? features_without_axes(index_.scales_, *s.type, s.features) : s.features,
+         .features = s.type ? features_without_angles(index_.scales_, *s.type, s.features) : s.features,
          .at = {},
          .covariance = {},
          .range = *s.range,

@@ -105,7 +105,7 @@ void SightingMemory::integrate(const BodyMotion& motion, const SightingSet& set)
   state_->predict(motion);
   SightingSet seen = set;
   for (SeenLandmark& s : seen.sightings) {
-    if (s.type) s.features = features_without_axes(scales_, *s.type, s.features);
+    if (s.type) s.features = features_without_angles(scales_, *s.type, s.features);
     if (is_usable(s)) reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
   }
   std::vector<bool> is_new(seen.sightings.size(), true), used = std::vector<bool>(is_new.size(), false);

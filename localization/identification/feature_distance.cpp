@@ -30,8 +30,13 @@ double FeatureScales::difference(TypeId type, std::size_t feature, double a, dou
   return type < scales_.size() ? waymark::difference(a, b, scales_[type][feature]) : a - b;
 }
 
-bool FeatureScales::has_axis(TypeId type) const {
-  return type < scales_.size() && std::ranges::find(scales_[type], Scale::axis) != scales_[type].end();
+bool FeatureScales::has_angles(TypeId type) const {
+  return type < scales_.size() && std::ranges::any_of(scales_[type], waymark::is_angle);
+}
+
+double FeatureScales::tolerance_sd(TypeId type, std::size_t feature, double value, double tolerance) const {
+  return tolerance *
+         (is_angle(type, feature) ? weights_[type][feature].reference : std::max(std::abs(value), 1e-3));
 }
 
 double FeatureScales::identification_reach(std::optional<TypeId> type) const {
@@ -79,20 +84,35 @@ void set_alphas(FeatureScales& scales, const TypeRegistry& types, std::string_vi
 KnownFeatures features_in_map(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
                               double sensor_yaw, double yaw_variance) {
   KnownFeatures mapped = seen;
-  if (!scales.has_axis(type)) return mapped;
+  if (!scales.has_angles(type)) return mapped;
   for (std::size_t i = 0; i < kMaxFeatures; ++i) {
-    if (!seen.known(i) || !scales.is_axis(type, i)) continue;
-    mapped.value[i] = std::remainder(std::numbers::pi / 2 - sensor_yaw - seen.value[i], std::numbers::pi);
+    if (!seen.known(i) || !scales.is_angle(type, i)) continue;
+    mapped.value[i] = scales.difference(type, i, std::numbers::pi / 2 - sensor_yaw, seen.value[i]);
     mapped.variance[i] += yaw_variance;
   }
   return mapped;
 }
 
-KnownFeatures features_without_axes(const FeatureScales& scales, TypeId type, KnownFeatures seen) {
-  if (!scales.has_axis(type)) return seen;
+KnownFeatures features_without_angles(const FeatureScales& scales, TypeId type, KnownFeatures seen) {
+  if (!scales.has_angles(type)) return seen;
   for (std::size_t i = 0; i < kMaxFeatures; ++i)
-    if (scales.is_axis(type, i)) seen.value[i] = std::numeric_limits<double>::quiet_NaN();
+    if (scales.is_angle(type, i)) seen.value[i] = std::numeric_limits<double>::quiet_NaN();
   return seen;
+}
+
+std::vector<AngleFix> yaws_from_angles(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
+                                       const KnownFeatures& mapped, double sensor_yaw, double tolerance) {
+  std::vector<AngleFix> fixes;
+  if (!scales.has_angles(type)) return fixes;
+  for (std::size_t i = 0; i < kMaxFeatures; ++i) {
+    if (!seen.known(i) || !mapped.known(i) || !scales.is_angle(type, i)) continue;
+    const double off =
+        scales.difference(type, i, std::numbers::pi / 2 - mapped.value[i] - seen.value[i], sensor_yaw);
+    const double slack = scales.tolerance_sd(type, i, mapped.value[i], tolerance);
+    const double variance = seen.variance[i] + mapped.variance[i] + slack * slack + 1e-12;
+    fixes.push_back({{wrap_angle(sensor_yaw + off), std::sqrt(variance)}, scales.period(type, i)});
+  }
+  return fixes;
 }
 
 FeatureComparison compare_features(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
@@ -105,7 +125,7 @@ FeatureComparison compare_features(const FeatureScales& scales, TypeId type, con
       continue;
     }
     const double d = scales.difference(type, i, seen.value[i], mapped.value[i]);
-    const double slack = tolerance * std::max(std::abs(mapped.value[i]), 1e-3);
+    const double slack = scales.tolerance_sd(type, i, mapped.value[i], tolerance);
     const double square = d * d / (seen.variance[i] + mapped.variance[i] + slack * slack + 1e-12);
     all.squares += square;
     all.largest = std::max(all.largest, square);

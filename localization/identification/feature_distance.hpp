@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 #include "landmarks/landmark_type.hpp"
+#include "localization/absolute_fix.hpp"
 #include "localization/identification/known_features.hpp"
 namespace waymark::localization {
 
@@ -13,13 +14,21 @@ class FeatureScales {
  public:
   FeatureScales() = default;
   explicit FeatureScales(const TypeRegistry& types);
-  /// Returns a - b, the short way round for an axis. Types beyond the registry count as ratio.
+  /// Returns a - b, the short way round for an axis or a direction. Types beyond the registry count as ratio.
   double difference(TypeId type, std::size_t feature, double a, double b) const;
-  /// Returns whether a feature is a direction, and whether the type has any.
-  bool is_axis(TypeId type, std::size_t feature) const {
-    return type < scales_.size() && scales_[type][feature] == Scale::axis;
+  /// Returns whether a feature is an angle, which turns with the sensor: an axis or a direction.
+  bool is_angle(TypeId type, std::size_t feature) const {
+    return type < scales_.size() && waymark::is_angle(scales_[type][feature]);
   }
-  bool has_axis(TypeId type) const;
+  /// Returns whether the type has features that are angles.
+  bool has_angles(TypeId type) const;
+  /// Returns the period of an angle, 0 for other features.
+  double period(TypeId type, std::size_t feature) const {
+    return type < scales_.size() ? waymark::period(scales_[type][feature]) : 0;
+  }
+  /// Returns the standard deviation of a feature between two sensors: the fraction `tolerance` of its value,
+  /// or of its reference for an angle, whose value has no size.
+  double tolerance_sd(TypeId type, std::size_t feature, double value, double tolerance) const;
   /// Returns LandmarkType::identification_reach. Without a type the smallest of the registry, so that one
   /// type with a far reach does not make all landmarks candidates; 100 m for an empty registry.
   double identification_reach(std::optional<TypeId> type) const;
@@ -41,13 +50,26 @@ class FeatureScales {
   std::vector<std::array<Weight, kMaxFeatures>> weights_;
 };
 
-/// Returns the features of a sighting as a map states them: axes, which a sensor measures from its x axis to
-/// the left, become azimuths clockwise from the map's north. `sensor_yaw`, rad, has variance `yaw_variance`.
+/// Returns the features of a sighting as a map states them: angles, which a sensor measures from its x axis
+/// to the left, become azimuths clockwise from the map's north. `sensor_yaw`, rad, has variance
+/// `yaw_variance`.
 KnownFeatures features_in_map(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
                               double sensor_yaw, double yaw_variance = 0);
 
-/// Returns the features that do not depend on the heading of the sensor: all but axes.
-KnownFeatures features_without_axes(const FeatureScales& scales, TypeId type, KnownFeatures seen);
+/// Returns the features that do not depend on the heading of the sensor: all but angles.
+KnownFeatures features_without_angles(const FeatureScales& scales, TypeId type, KnownFeatures seen);
+
+/// Heading measured by a feature that is an angle.
+struct AngleFix {
+  HeadingFix heading;
+  double period = 0;  ///< of the feature, rad
+};
+
+/// Returns the yaws of the sensor that the angles of a sighting measure if it shows `mapped`, a landmark of
+/// the map; an axis allows two, and gives the nearer to `sensor_yaw`. The variances are those of both angles
+/// and the tolerance between sensors.
+std::vector<AngleFix> yaws_from_angles(const FeatureScales& scales, TypeId type, const KnownFeatures& seen,
+                                       const KnownFeatures& mapped, double sensor_yaw, double tolerance);
 
 /// Sets alpha_f of eq. 11 from a list as "rock.radius=4,rock.height=2". Throws Error{usage} for an unknown
 /// type or feature, and for a value that is not positive.

@@ -211,6 +211,21 @@ std::string_view wording(Verdict verdict) {
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
+std::vector<AngleFix> headings_from_angles(const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                                           const MapLandmark& landmark, double robot_yaw,
+                                           const FeatureScales& scales,
+                                           const IdentificationOptions& options) {
+  if (!seen.type || *seen.type != landmark.type) return {};
+  std::vector<AngleFix> fixes =
+      yaws_from_angles(scales, landmark.type, seen.features, landmark.features,
+                       robot_yaw + robot_from_sensor.yaw, options.feature_tolerance);
+  for (AngleFix& fix : fixes) {
+    fix.heading.yaw = wrap_angle(fix.heading.yaw - robot_from_sensor.yaw);
+    fix.heading.sd /= std::sqrt(noise_divisor(landmark, options));
+  }
+  return fixes;
+}
+
 Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
                       const LandmarkGrid& map, const FeatureScales& scales,
                       const IdentificationOptions& options) {
@@ -247,6 +262,15 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     CandidatePair p{
         .landmark = i,
         .evidence = evidence_of(seen, expected, landmark.covariance, noise_divisor(landmark, options))};
+    // Angles depend on the heading as bearings do: they are rows of the innovation, not features apart.
+    if (!paper && seen.type && *seen.type == landmark.type && scales.has_angles(landmark.type)) {
+      for (const AngleFix& fix :
+           headings_from_angles(seen, robot_from_sensor, landmark, robot.pose.yaw, scales, options))
+        p.evidence += evidence_of(fix.heading, robot.pose, fix.period);
+      features = compare_features(scales, landmark.type,
+                                  features_without_angles(scales, landmark.type, seen_features),
+                                  landmark.features, options.feature_tolerance);
+    }
     const JointDistance d = joint_distance(p.evidence, robot.covariance);
     p.features = features.squares + features.missing;
     p.feature_count = features.used + features.missing;

@@ -121,6 +121,11 @@ inline double existence_prior(const MapLandmark& landmark, const IdentificationO
   return options.quality == "existence" && options.quality_floor < 1 ? landmark.quality : 1;
 }
 
+/// Returns the headings of the robot that the angles of a sighting measure if it shows a landmark.
+std::vector<AngleFix> headings_from_angles(const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                                           const MapLandmark& landmark, double robot_yaw,
+                                           const FeatureScales& scales, const IdentificationOptions& options);
+
 /// Returns the candidates by type, position and features (section 4.1, first step): landmarks within the
 /// gate of the pose's and the sensor's uncertainty. For sightings without range, those in the wedge of
 /// figure 2.

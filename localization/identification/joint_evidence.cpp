@@ -40,6 +40,17 @@ JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expe
   return e;
 }
 
+JointEvidence evidence_of(const HeadingFix& fix, const Pose2& robot, double period) {
+  const double v = wrap_angle(fix.yaw - robot.yaw), variance = fix.sd * fix.sd;
+  JointEvidence e;
+  e.information(2, 2) = 1 / variance;
+  e.information_vector[2] = v / variance;
+  e.squares = v * v / variance;
+  e.log_det = std::log(variance / (period * period));
+  e.rows = 1;
+  return e;
+}
+
 // (P^-1 + L)^-1 = P (I + L P)^-1 holds for singular P too; |S| = |R| |I + L P|.
 JointDistance joint_distance(const JointEvidence& evidence, const Eigen::Matrix3d& p) {
   const Eigen::Matrix3d m = Eigen::Matrix3d::Identity() + evidence.information * p;

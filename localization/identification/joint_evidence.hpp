@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include "localization/absolute_fix.hpp"
 #include "localization/filters/measurement.hpp"
 namespace waymark::localization {
 
@@ -22,6 +23,10 @@ struct JointEvidence {
 /// `trust` in (0, 1].
 JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expected,
                           const Eigen::Matrix2d& landmark_covariance, double trust = 1);
+
+/// Returns the evidence of an angle that repeats after `period` and measures the heading of the robot.
+/// Its density is that of angles over the period: compared with objects that face anywhere.
+JointEvidence evidence_of(const HeadingFix& fix, const Pose2& robot, double period);
 
 /// Distance of all innovations together.
 struct JointDistance {

@@ -18,8 +18,13 @@ class CompatibilitySearch {
   CompatibilitySearch(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
                       const IdentificationOptions& options)
       : sets_(sets), pose_(pose), left_(options.node_limit), choice_(sets.size(), -1) {
-    for (std::size_t rows = 1; rows <= 2 * sets.size(); ++rows)
-      gates_.push_back(chi_square_quantile(options.gate, static_cast<double>(rows)));
+    int max_rows = 0;
+    for (const Candidates& set : sets) {
+      int rows = 0;
+      for (const CandidatePair& p : set.pairings) rows = std::max(rows, p.evidence.rows);
+      max_rows += rows;
+    }
+    for (int rows = 1; rows <= max_rows; ++rows) gates_.push_back(chi_square_quantile(options.gate, rows));
   }
 
   std::optional<JointChoice> best() {

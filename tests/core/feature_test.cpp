@@ -36,6 +36,19 @@ TEST(MergeFeature, CrossedAxesHaveNoMeanAndGiveTheFirst) {
   EXPECT_EQ(merge(seen, Scale::axis).value, 30 * kDegree);
 }
 
+TEST(MergeFeature, DirectionsNearTheWrapAverageToTheWrap) {
+  const WeightedValue seen[] = {{-179 * kDegree, 1}, {179 * kDegree, 1}};
+  const FeatureValue direction = merge(seen, Scale::direction);
+  EXPECT_NEAR(std::abs(direction.value), 180 * kDegree, 1e-12);
+  EXPECT_NEAR(std::sqrt(direction.variance), std::sqrt(2.0) * kDegree, 1e-12);
+}
+
+TEST(MergeFeature, OppositeDirectionsHaveNoMeanAndGiveTheFirst) {
+  const WeightedValue seen[] = {{30 * kDegree, 1}, {-150 * kDegree, 1}};
+  EXPECT_EQ(merge(seen, Scale::direction).value, 30 * kDegree);
+  EXPECT_NEAR(merge(seen, Scale::axis).variance, 0, 1e-12) << "but they are one axis";
+}
+
 TEST(MergeFeature, OneObservationHasNoSpread) {
   const WeightedValue seen[] = {{3.0, 0.5}};
   const FeatureValue merged = merge(seen, Scale::ratio);
@@ -82,14 +95,16 @@ RC_GTEST_PROP(MergeFeature, DoesNotDependOnOrderOrOnTheUnitOfWeights, ()) {
   }
 }
 
-RC_GTEST_PROP(MergeFeature, TurningEveryAxisTurnsTheMean, ()) {
+RC_GTEST_PROP(MergeFeature, TurningEveryAngleTurnsTheMean, ()) {
   std::vector<WeightedValue> seen;
   for (int i = 0; i < 5; ++i) seen.push_back({*rc::gen::inRange(-40, 40) * kDegree, 1});
   auto turned = seen;
   const double by = *rc::gen::inRange(-720, 720) * kDegree;
   for (auto& s : turned) s.value += by;
-  const double moved = merge(turned, Scale::axis).value - merge(seen, Scale::axis).value;
-  RC_ASSERT(std::abs(difference(moved, by, Scale::axis)) < 1e-9);
+  for (const Scale scale : {Scale::axis, Scale::direction}) {
+    const double moved = merge(turned, scale).value - merge(seen, scale).value;
+    RC_ASSERT(std::abs(difference(moved, by, scale)) < 1e-9);
+  }
 }
 
 }  // namespace

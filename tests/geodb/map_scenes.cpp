@@ -44,7 +44,7 @@ LandmarkType lamp_post() {
           .attributes = {{"bulb", "", Kind::text, "Kind of lamp"},
                          {"fixtures", "", Kind::integer, "Lamps on it"},
                          {"height_low", "m", Kind::real, "Certified lower bound of the height"}},
-          .evidence = EvidenceModel::pole,
+          .evidence = EvidenceModel::upright,
           .body = {"diameter", 0.5},
           .identification_reach = 300,
           .identifies_itself = true,

@@ -44,7 +44,7 @@ TEST(LandmarkType, BodyAndReachMustBeUsable) {
 
 TEST(LandmarkType, EvidenceModelsHaveNames) {
   for (const EvidenceModel model : {EvidenceModel::none, EvidenceModel::shadow_caster, EvidenceModel::bowl,
-                                    EvidenceModel::canopy, EvidenceModel::pole})
+                                    EvidenceModel::canopy, EvidenceModel::upright})
     EXPECT_EQ(parse_evidence_model(to_string(model)), model);
   EXPECT_EQ(to_string(EvidenceModel::shadow_caster), "shadow_caster");
   EXPECT_THROW(parse_evidence_model("cylinder"), std::logic_error);
@@ -52,12 +52,12 @@ TEST(LandmarkType, EvidenceModelsHaveNames) {
 
 TEST(LandmarkType, IsFoundByWhatItDeclares) {
   TypeRegistry types;
-  EXPECT_FALSE(find_type(types, EvidenceModel::pole));
+  EXPECT_FALSE(find_type(types, EvidenceModel::upright));
   types.add(post());
   LandmarkType tag = post();
-  tag.name = "tag", tag.evidence = EvidenceModel::pole, tag.identifies_itself = true;
+  tag.name = "tag", tag.evidence = EvidenceModel::upright, tag.identifies_itself = true;
   types.add(tag);
-  EXPECT_EQ(find_type(types, EvidenceModel::pole), TypeId{1});
+  EXPECT_EQ(find_type(types, EvidenceModel::upright), TypeId{1});
   EXPECT_EQ(find_self_identifying_type(types), TypeId{1});
 }
 

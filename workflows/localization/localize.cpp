@@ -41,7 +41,7 @@ void set_coverage(const SensorCoverage& coverage, localization::WeightOptions& w
   weight.detection = coverage.detection;
 }
 
-void check_output(const std::string& output) {
+void check_track_output(const std::string& output) {
   const std::filesystem::path file(output);
   if (file.extension() != ".csv" && file.extension() != ".gpkg" && !pose_format(output))
     throw Error(ErrorCode::usage, "a track is written as .csv, .gpkg, .tum, .kitti or .g2o", output,
@@ -196,7 +196,7 @@ const MethodTable& method_table() {
 }  // namespace
 
 LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbacks) {
-  if (!request.output.empty()) check_output(request.output);
+  if (!request.output.empty()) check_track_output(request.output);
   MethodTable methods;  // of this call: a method keeps its settings
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);

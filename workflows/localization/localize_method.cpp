@@ -8,7 +8,6 @@
 
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
-#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 
 namespace waymark::workflows {
@@ -54,13 +53,9 @@ std::vector<std::string> set_option(const DescribeOptions& describe, const std::
 }
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
-  const localization::DetectedTypes types = localization::detected_types(task.map.map.types());
-  const localization::ScanTypes seen{types.tree, types.rock};
   return localization::replay(
       task.log, localizer, task.settings.play,
-      [&](const localization::LaserScan& scan) {
-        return localization::sightings_of_scan(scan, seen, task.settings.scans);
-      },
+      localization::make_laser_detector(task.map.map.types(), task.settings.scans),
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       },

@@ -17,7 +17,6 @@
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 #include "landmarks/semantic_map.hpp"
-#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "workflows/provenance.hpp"
@@ -134,16 +133,15 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
 
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer) {
-  const localization::DetectedTypes types = localization::detected_types(task.map.map.types());
-  const localization::ScanTypes seen{types.tree, types.rock};
   localization::ScanDetectionOptions scans = task.settings.scans;
   // A map without landmarks has all types, so the log decides: that of a park has odometry. Its beams are so
   // far apart that a stem is one or two wide: diameters mislead (ATE 1.9 m with, 1.2 m without).
-  if (scans.find == "auto" && task.log.odometry) scans = {.find = "stems", .features = false};
+  if (scans.find == "auto" && task.log.odometry)
+    scans = {.find = "stems", .features = false};
+  else if (scans.find == "auto" && task.map.map.landmarks == 0)
+    scans.find = "rocks";
   return localization::replay(
-      task.log, localizer, setup.play,
-      [&](const localization::LaserScan& scan) { return localization::sightings_of_scan(scan, seen, scans); },
-      [] {
+      task.log, localizer, setup.play, localization::make_laser_detector(task.map.map.types(), scans), [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       });
 }

@@ -44,8 +44,8 @@ class MapMover {
     for (std::size_t i = 0; i < std::min(features.size(), type.features.size()); ++i) {
       const FeatureSpec& spec = type.features[i];
       FeatureValue& f = features[i];
-      if (spec.scale == Scale::axis) {
-        f.value = std::remainder(f.value - move_.plane.yaw, kHalfTurn);
+      if (is_angle(spec.scale)) {
+        f.value = difference(f.value, move_.plane.yaw, spec.scale);
         continue;
       }
       const double factor = factor_of(spec.unit);

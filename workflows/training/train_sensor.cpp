@@ -11,7 +11,6 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
-#include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/sensor_fit.hpp"
@@ -38,14 +37,14 @@ void append_sightings(const std::string& file, const RobotMap& map,
   localization::convert_to_map_frame(log, map.frame);
   if (log.truth.empty())
     throw Error(ErrorCode::input, "the log has no true poses", file, "a sensor is fitted to known poses");
-  const localization::DetectedTypes found = localization::detected_types(map.types());
+  const localization::LaserDetector detect = localization::make_laser_detector(map.types(), {});
   for (const localization::LogEvent& event : log.events) {
     const auto pose = localization::pose_at(log.truth, event.t);
     if (!pose) continue;
     if (const auto* seen = std::get_if<localization::SightingSet>(&event.what))
       sets.push_back({*pose, *seen});
     else if (const auto* scan = std::get_if<localization::LaserScan>(&event.what))
-      sets.push_back({*pose, localization::sightings_of_scan(*scan, {found.tree, found.rock}, {})});
+      sets.push_back({*pose, detect(*scan)});
   }
 }
 

@@ -57,6 +57,11 @@ ObservedObjects observed_objects(std::span<const Observation> observations, cons
     s.at = o.position.xyz.head<2>();
     s.covariance = usable_covariance(o.covariance, body ? body->metres : 0, rules);
     if (body) s.log_size = std::log(body->metres), s.log_size_variance = body->log_variance;
+    const auto& features = types[o.type].features;
+    const auto direction = std::ranges::find(features, Scale::direction, &FeatureSpec::scale);
+    const auto index = static_cast<std::size_t>(direction - features.begin());
+    if (direction != features.end() && index < o.features.size() && o.features[index].known())
+      s.direction = o.features[index].value, s.direction_variance = o.features[index].variance;
     s.type = o.type;
     s.source = sources.at(o.source);
     found.all.push_back(s);

@@ -15,6 +15,9 @@ struct ObservedObject {
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();    ///< east, north; square metres, definite
   double log_size = std::numeric_limits<double>::quiet_NaN();  ///< ln of the radius in metres; NaN: unknown
   double log_size_variance = 0;
+  /// Azimuth of the first feature that is a direction, rad; NaN: none. Two faces of one wall differ by it.
+  double direction = std::numeric_limits<double>::quiet_NaN();
+  double direction_variance = 0;
   TypeId type = 0;
   std::uint32_t source = 0;  ///< image or survey
 };
@@ -23,8 +26,15 @@ struct ObservedObject {
 struct AssociationRules {
   /// Gate of the squared Mahalanobis distance of positions; 99.99 % of chi-square with 2 degrees of freedom.
   double position_gate = 18.4;
+  /// Standard deviation of a position beyond its measured error, metres: of poses whose errors many
+  /// observations share, so that fused positions look surer than they are.
+  double position_floor = 0;
   /// Gate of the squared normalised difference of ln(size), 1 degree of freedom.
   double size_gate = 15.1;
+  /// Gate of the squared normalised difference of directions, 1 degree of freedom.
+  double direction_gate = 15.1;
+  /// Standard deviation of a direction beyond its measured error, radians.
+  double direction_floor = 0.05;
   /// Largest distance, metres, regardless of covariances.
   double max_distance = std::numeric_limits<double>::infinity();
   /// Bodies of similar size in different images whose centres are nearer than this fraction of the smaller
@@ -47,13 +57,14 @@ bool are_duplicates(const ObservedObject& a, const ObservedObject& b, const MapP
                     const AssociationRules& rules);
 
 /// Returns twice the negative log likelihood that two independent objects of one type show one body, up to
-/// a constant: squared Mahalanobis distance + ln det of the summed covariance, for position and ln(size).
+/// a constant: squared Mahalanobis distance + ln det of the summed covariance, for position, direction and
+/// ln(size).
 /// The determinant keeps an uncertain object from being the best match of all others. `std::nullopt` if a
 /// gate fails.
 std::optional<double> association_cost(const ObservedObject& a, const ObservedObject& b,
                                        const MapPlane& plane, const AssociationRules& rules);
 
-/// Returns the information-weighted mean of position and size, with type and source of `a`.
+/// Returns the information-weighted mean of position, direction and size, with type and source of `a`.
 ObservedObject fuse(const ObservedObject& a, const ObservedObject& b, const MapPlane& plane);
 
 }  // namespace waymark::pipeline

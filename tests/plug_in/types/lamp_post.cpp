@@ -9,7 +9,7 @@ void register_type_lamp_post(TypeRegistry& types) {
              .summary = "Street light",
              .features = {{"radius", "m", Scale::ratio, 0.05, 2, "Of the pole"},
                           {"height", "m", Scale::ratio, 2, 20, "Ground to lamp"}},
-             .evidence = EvidenceModel::pole,
+             .evidence = EvidenceModel::upright,
              .body = {"radius"},
              .identification_reach = 400,
              .existence = {.min_probability = 0.6},

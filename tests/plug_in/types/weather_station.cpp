@@ -7,7 +7,7 @@ void register_type_weather_station(TypeRegistry& types) {
   types.add({.name = "weather_station",
              .summary = "Mast with instruments on a summit",
              .features = {{"height", "m", Scale::ratio, 1, 100, "Of the mast"}},
-             .evidence = EvidenceModel::pole,
+             .evidence = EvidenceModel::upright,
              .drawn_as = Solid::cylinder});
 }
 

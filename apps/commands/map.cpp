@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/command.hpp"
+#include "apps/console.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
+#include "workflows/mapping/map_drive.hpp"
+
+namespace waymark::apps {
+namespace {
+
+class MapDrive final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "map",
+        .group = Group::make,
+        .summary = "Make a map from a robot's log and its known poses",
+        .about =
+            "Detects landmarks in the scans of a drive, or takes its sightings, and merges those of one "
+            "landmark. "
+            "Each landmark has its evidence, its quality and the number of looks that saw it and that could "
+            "have. "
+            "Poses may cover parts of the drive; the rest is not used.",
+        .arguments =
+            {Argument{"", "LOG", &request_.log, "Log of the robot: a file, or the folder of a dataset"}
+                 .needed()
+                 .offering(Offer::file),
+             Argument{"-o,--output", "MAP.gpkg", &request_.map, "Map to write"}.needed().offering(
+                 Offer::file),
+             Argument{"--poses", "TRACK.csv", &request_.poses,
+                      "Poses of the robot: columns t, x, y, yaw; seconds, metres, radians"}
+                 .offering(Offer::file)
+                 .or_else("the true poses of the log"),
+             Argument{"--scans", "NAME,...", &request_.scans,
+                      fmt::format("Detectors for laser scans: {}",
+                                  fmt::join(localization::laser_detectors().names(), ", "))}
+                 .or_else("walls"),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else("local"),
+             Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
+                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen"})
+                 .or_else("recognised by the files"),
+             Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"}},
+        .examples = {
+            {"waymark map intel.clf --poses corrected.csv -o office.gpkg", "Corners and ends of walls"},
+            {"waymark map drive.jsonl --scans poles -o street.gpkg",
+             "Posts, by the true poses of a simulated drive"}}};
+  }
+
+  int run(const Session& session) override {
+    request_.command_line = session.command_line;
+    workflows::map_drive(request_, console_callbacks(session));
+    return 0;
+  }
+
+ private:
+  workflows::DriveMapRequest request_;
+};
+
+}  // namespace
+
+void register_command_map(CommandTable& commands);
+void register_command_map(CommandTable& commands) {
+  commands.add<MapDrive>();
+}
+
+}  // namespace waymark::apps

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/detectors/wall_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "localization/detectors/scan_segments.hpp"
+
+namespace waymark::localization {
+namespace {
+
+using Hits = std::vector<Eigen::Vector2d>;
+
+WallLine fit_wall(const Hits& hits, const BeamSegment& run, double beam_sd) {
+  WallLine line{.first = run.first, .last = run.last};
+  const auto n = static_cast<double>(run.beams());
+  for (std::size_t i = run.first; i <= run.last; ++i) line.centre += hits[i] / n;
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = run.first; i <= run.last; ++i) {
+    const Eigen::Vector2d d = hits[i] - line.centre;
+    xx += d.x() * d.x(), xy += d.x() * d.y(), yy += d.y() * d.y();
+  }
+  // The axis of the larger moment of inertia of the scatter.
+  const double axis = std::atan2(2 * xy, xx - yy) / 2;
+  line.along = {std::cos(axis), std::sin(axis)};
+  if (line.along.dot(hits[run.last] - hits[run.first]) < 0) line.along = -line.along;
+  line.normal = {-line.along.y(), line.along.x()};
+  if (line.normal.dot(line.centre) > 0) line.normal = -line.normal;
+  line.begin = line.along.dot(hits[run.first] - line.centre);
+  line.end = line.along.dot(hits[run.last] - line.centre);
+  double across = 0, along = 0;
+  for (std::size_t i = run.first; i <= run.last; ++i) {
+    const Eigen::Vector2d d = hits[i] - line.centre;
+    across += std::pow(line.normal.dot(d), 2);
+    along += std::pow(line.along.dot(d), 2);
+  }
+  const double variance = std::max(beam_sd * beam_sd, n > 2 ? across / (n - 2) : 0);
+  line.centre_variance = variance / n;
+  line.angle_variance = along > 0 ? std::min(variance / along, 1.0) : 1;
+  return line;
+}
+
+bool fits_line(const Hits& hits, const WallLine& line, double tolerance) {
+  for (std::size_t i = line.first; i <= line.last; ++i)
+    if (!(std::abs(line.normal.dot(hits[i] - line.centre)) <= tolerance)) return false;
+  return true;
+}
+
+// Splits at the hit farthest from the chord until all are within the tolerance. That hit, on a corner or
+// beside it, belongs to no piece: on the wrong wall it would turn the line.
+void split_at_farthest(const Hits& hits, const BeamSegment& run, double tolerance,
+                       std::vector<BeamSegment>& pieces) {
+  const Eigen::Vector2d chord = hits[run.last] - hits[run.first];
+  const double length = chord.norm();
+  double max_distance = 0;
+  std::size_t farthest = run.first;
+  for (std::size_t i = run.first + 1; i < run.last; ++i) {
+    const Eigen::Vector2d d = hits[i] - hits[run.first];
+    const double distance =
+        length > 1e-9 ? std::abs(chord.x() * d.y() - chord.y() * d.x()) / length : d.norm();
+    if (distance > max_distance) max_distance = distance, farthest = i;
+  }
+  if (!(max_distance > tolerance)) {
+    pieces.push_back(run);
+    return;
+  }
+  split_at_farthest(hits, {run.first, farthest - 1}, tolerance, pieces);
+  split_at_farthest(hits, {farthest + 1, run.last}, tolerance, pieces);
+}
+
+}  // namespace
+
+std::vector<WallLine> find_wall_lines(const LaserScan& scan, const WallLineOptions& options) {
+  const std::vector<double> ranges = bridge_outliers(scan, options.jump);
+  Hits hits(ranges.size());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double angle = scan.first_angle + static_cast<double>(i) * scan.angle_step;
+    hits[i] = ranges[i] * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  }
+  std::vector<WallLine> walls;
+  for (const BeamSegment& run : split_at_jumps(ranges, options.jump, options.jump_per_metre)) {
+    if (!(ranges[run.first] < scan.max_range)) continue;  // no return
+    std::vector<BeamSegment> pieces;
+    split_at_farthest(hits, run, options.tolerance, pieces);
+    std::vector<WallLine> lines;
+    for (const BeamSegment& piece : pieces) {
+      const BeamSegment both{lines.empty() ? piece.first : lines.back().first, piece.last};
+      const WallLine joined = fit_wall(hits, both, options.beam_sd);
+      if (!lines.empty() && fits_line(hits, joined, options.tolerance))
+        lines.back() = joined;
+      else
+        lines.push_back(fit_wall(hits, piece, options.beam_sd));
+    }
+    for (const WallLine& line : lines)
+      if (line.length() >= options.min_length && line.last - line.first + 1 >= options.min_beams)
+        walls.push_back(line);
+  }
+  return walls;
+}
+
+}  // namespace waymark::localization

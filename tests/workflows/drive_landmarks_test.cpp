@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/mapping/drive_landmarks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "localization/detectors/scan_landmarks.hpp"
+#include "tests/localization/made_rooms.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::test {
+using namespace workflows;
+namespace {
+
+constexpr double kRight = std::numbers::pi / 2;
+
+// A room of 8 x 6 m with a thin partition that ends at (4, 3), seen from both of its sides.
+std::vector<MadeWall> partitioned_room() {
+  std::vector<MadeWall> walls = chain({{0, 0}, {8, 0}, {8, 6}, {0, 6}, {0, 0}});
+  for (const MadeWall& wall : chain({{0, 3}, {4, 3}, {4, 3.1}, {0, 3.1}})) walls.push_back(wall);
+  return walls;
+}
+
+RobotLog drive_around(std::vector<StampedPose>& poses, double sd = 0.01) {
+  RobotLog log;
+  const std::vector<MadeWall> walls = partitioned_room();
+  double t = 0;
+  for (const auto& [from, to] : {std::pair(Pose2{1, 1.5, 0}, Pose2{6, 1.5, 0}),
+                                 std::pair(Pose2{6, 1.5, kRight}, Pose2{6, 4.5, kRight}),
+                                 std::pair(Pose2{6, 4.5, std::numbers::pi}, Pose2{1, 4.5, std::numbers::pi})})
+    for (int i = 0; i <= 20; ++i) {
+      const double k = i / 20.0;
+      const Pose2 pose{from.x + k * (to.x - from.x), from.y + k * (to.y - from.y), from.yaw};
+      poses.push_back({t, pose});
+      log.events.push_back(
+          {t, scan_walls(walls, pose, 361, std::numbers::pi, sd, static_cast<std::uint64_t>(10 * t) + 1)});
+      t += 0.1;
+    }
+  return log;
+}
+
+std::vector<DriveLook> made_looks() {
+  std::vector<StampedPose> poses;
+  const RobotLog log = drive_around(poses);
+  return looks_of_drive(log, poses, make_laser_detector(all_types(), {.find = "walls"}), "made");
+}
+
+TEST(DriveLandmarks, AreTheCornersOfTheRoom) {
+  const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
+  const TypeId corner = all_types().id("wall_corner");
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(8, 0), Eigen::Vector2d(8, 6), Eigen::Vector2d(0, 0)}) {
+    const auto found = std::ranges::count_if(made.landmarks, [&](const Landmark& l) {
+      return l.type == corner && (l.position.xyz.head<2>() - at).norm() < 0.05;
+    });
+    EXPECT_EQ(found, 1) << at.transpose();
+  }
+  for (const Landmark& l : made.landmarks) {
+    EXPECT_GE(l.quality.visible, l.quality.seen) << l.uid;
+    EXPECT_GT(l.quality.seen, 1) << l.uid;
+    EXPECT_GE(l.confidence, 0.5) << l.uid;
+    EXPECT_LT(std::sqrt(l.covariance(0, 0)), 0.1) << l.uid;
+  }
+  for (const Observation& o : made.evidence)
+    EXPECT_EQ(o.rejected.empty(), !o.landmark_uid.empty());
+}
+
+// Both faces of the partition end within 0.1 m of each other, and look in opposite directions.
+TEST(DriveLandmarks, OfTwoFacesOfOneWallStayTwo) {
+  const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
+  const TypeId end = all_types().id("wall_end");
+  std::vector<double> facing;
+  for (const Landmark& l : made.landmarks)
+    if (l.type == end && (l.position.xyz.head<2>() - Eigen::Vector2d(4, 3.05)).norm() < 0.15)
+      facing.push_back(l.features[0].value);
+  std::ranges::sort(facing, {}, [](double azimuth) { return std::abs(azimuth); });
+  ASSERT_EQ(facing.size(), 2u);
+  EXPECT_NEAR(facing[0], 0, 0.03);                           // north
+  EXPECT_NEAR(std::abs(facing[1]), std::numbers::pi, 0.03);  // south
+}
+
+TEST(DriveLandmarks, AStandingRobotLooksOnce) {
+  RobotLog log;
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 50; ++i) {
+    poses.push_back({0.1 * i, {1, 1.5, 0}});
+    log.events.push_back({0.1 * i, scan_walls(partitioned_room(), {1, 1.5, 0}, 181, std::numbers::pi)});
+  }
+  const auto detect = make_laser_detector(all_types(), {.find = "walls"});
+  EXPECT_EQ(looks_of_drive(log, poses, detect, "made").size(), 1u);
+  EXPECT_TRUE(looks_of_drive(log, {}, detect, "made").empty());
+  EXPECT_TRUE(landmarks_of_looks({}, all_types(), Crs::local()).landmarks.empty());
+}
+
+TEST(DriveLandmarks, AreCoveredFromTheirOpenSideOnly) {
+  const DriveLook look{
+      .name = "a",
+      .map_from_sensor = {6, 1.5, std::numbers::pi},
+      .seen = {},
+      .scan = scan_walls(partitioned_room(), {6, 1.5, std::numbers::pi}, 361, std::numbers::pi)};
+  const double south = std::numbers::pi, nan = std::nan("");
+  EXPECT_TRUE(covers(look, {4, 3}, south, 10));
+  EXPECT_FALSE(covers(look, {4, 3}, 0, 10)) << "its face looks north";
+  EXPECT_FALSE(covers(look, {4, 3}, south, 2)) << "too far";
+  EXPECT_TRUE(covers(look, {0, 0}, nan, 10));
+  EXPECT_FALSE(covers(look, {0, 6}, nan, 10)) << "behind the partition";
+  EXPECT_FALSE(covers(look, {8, 1.5}, nan, 10)) << "behind the robot";
+}
+
+}  // namespace
+}  // namespace waymark::test

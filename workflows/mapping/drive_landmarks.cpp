@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/mapping/drive_landmarks.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "localization/identification/feature_distance.hpp"
+#include "pipeline/fusion/association/merging.hpp"
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+using localization::SeenLandmark;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBeamSlack = 0.1;  // m by which a beam may end before a landmark that it shows
+constexpr double kMinCosine = 0.3;  // of the angle between the open side and the sensor
+
+Observation observation_of(const SeenLandmark& s, const DriveLook& look, const TypeRegistry& types,
+                           const localization::FeatureScales& scales, const DriveMappingOptions& options) {
+  const localization::Pose2& sensor = look.map_from_sensor;
+  const double along = sensor.yaw + s.bearing;
+  const Eigen::Rotation2Dd turn(along);
+  const Eigen::Vector2d to = turn * Eigen::Vector2d(*s.range, 0);
+  const double across = *s.range * *s.range * (s.bearing_sd * s.bearing_sd + options.yaw_sd * options.yaw_sd);
+  Observation o;
+  o.type = *s.type;
+  o.source = look.name;
+  o.position.xyz << sensor.at() + to, 0;
+  o.covariance.setConstant(kUnknown);
+  const Eigen::Matrix2d r = turn.toRotationMatrix();
+  o.covariance.topLeftCorner<2, 2>() =
+      r * Eigen::Vector2d(s.range_sd * s.range_sd, across).asDiagonal() * r.transpose() +
+      options.position_sd * options.position_sd * Eigen::Matrix2d::Identity();
+  o.confidence = s.confidence;
+  const auto& features = types[o.type].features;
+  const localization::KnownFeatures mapped =
+      localization::features_in_map(scales, o.type, s.features, sensor.yaw, options.yaw_sd * options.yaw_sd);
+  o.features.resize(features.size());
+  for (std::size_t i = 0; i < std::min(features.size(), localization::kMaxFeatures); ++i) {
+    const double value = mapped.value[i];
+    if (mapped.known(i) && value >= features[i].min_value && value <= features[i].max_value)
+      o.features[i] = {value, mapped.variance[i], 1};
+  }
+  return o;
+}
+
+double direction_of(const Landmark& landmark, const LandmarkType& type) {
+  for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i)
+    if (type.features[i].scale == Scale::direction && landmark.features[i].known())
+      return landmark.features[i].value;
+  return kUnknown;
+}
+
+void value_landmark(Landmark& landmark, std::span<const Observation* const> evidence,
+                    std::span<const DriveLook> looks, const std::map<std::string_view, std::size_t>& by_name,
+                    const LandmarkType& type) {
+  const Eigen::Vector2d at = landmark.position.xyz.head<2>();
+  std::set<std::size_t> detected;
+  std::vector<double> confidences;
+  double farthest = 0;
+  for (const Observation* o : evidence) {
+    const std::size_t look = by_name.at(o->source);
+    detected.insert(look);
+    confidences.push_back(o->confidence);
+    farthest = std::max(farthest, (looks[look].map_from_sensor.at() - at).norm());
+  }
+  const double direction = direction_of(landmark, type);
+  int visible = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i)
+    visible += detected.contains(i) || covers(looks[i], at, direction, farthest);
+  landmark.quality.seen = static_cast<int>(detected.size());
+  landmark.quality.visible = visible;
+  landmark.quality.feature_confidences.assign(type.features.size(), std::nullopt);
+  for (std::size_t f = 0; f < std::min(type.features.size(), landmark.features.size()); ++f)
+    landmark.quality.feature_confidences[f] =
+        spread_confidence(landmark.features[f], type.features[f].scale, type.features[f].reference);
+  landmark.confidence =
+      pipeline::existence_probability(confidences, visible - landmark.quality.seen, type.existence);
+}
+
+}  // namespace
+
+std::vector<DriveLook> looks_of_drive(const localization::RobotLog& log,
+                                      std::span<const localization::StampedPose> poses,
+                                      const localization::ScanDetector& detect, const std::string& name,
+                                      const DriveMappingOptions& options) {
+  std::vector<DriveLook> looks;
+  std::set<std::string> names;
+  std::optional<localization::Pose2> last;
+  double last_time = kUnknown;
+  for (const localization::LogEvent& event : log.events) {
+    const auto* scan = std::get_if<localization::LaserScan>(&event.what);
+    const auto* seen = std::get_if<localization::SightingSet>(&event.what);
+    if (!scan && !seen) continue;
+    const auto robot = localization::pose_at(poses, event.t, options.max_gap);
+    if (!robot) continue;
+    const bool is_near = last && (robot->at() - last->at()).norm() < options.min_step &&
+                         std::abs(localization::wrap_angle(robot->yaw - last->yaw)) < options.min_turn;
+    if (is_near && event.t != last_time) continue;  // several sensors look at one time
+    last = robot, last_time = event.t;
+    DriveLook look{.name = fmt::format("{}@{:.3f}", name, event.t),
+                   .map_from_sensor = {},
+                   .seen = scan ? detect(*scan) : *seen,
+                   .scan = scan ? *scan : localization::LaserScan{}};
+    while (!names.insert(look.name).second) look.name += "+";
+    look.map_from_sensor = *robot * (scan ? scan->robot_from_sensor : seen->robot_from_sensor);
+    looks.push_back(std::move(look));
+  }
+  return looks;
+}
+
+bool covers(const DriveLook& look, const Eigen::Vector2d& at, double direction, double max_range) {
+  const Eigen::Vector2d to = at - look.map_from_sensor.at();
+  const double range = to.norm();
+  if (!(range <= max_range && range > 0)) return false;
+  const double north = std::numbers::pi / 2 - direction;  // direction in the frame of the map, from x to y
+  if (std::isfinite(direction) &&
+      -to.dot(Eigen::Vector2d(std::cos(north), std::sin(north))) < kMinCosine * range)
+    return false;
+  const double bearing = localization::wrap_angle(std::atan2(to.y(), to.x()) - look.map_from_sensor.yaw);
+  const localization::LaserScan& scan = look.scan;
+  if (scan.ranges.empty())  // within the bearings of the sightings
+    return std::ranges::any_of(look.seen.sightings,
+                               [&](const SeenLandmark& s) { return s.bearing >= bearing; }) &&
+           std::ranges::any_of(look.seen.sightings,
+                               [&](const SeenLandmark& s) { return s.bearing <= bearing; });
+  const double turn = std::remainder(bearing - scan.first_angle, 2 * std::numbers::pi);
+  for (const double angle : {turn, turn + 2 * std::numbers::pi, turn - 2 * std::numbers::pi}) {
+    const double beam = std::round(angle / scan.angle_step);
+    if (!(beam >= 0 && beam < static_cast<double>(scan.ranges.size()))) continue;
+    const auto reached = static_cast<double>(scan.ranges[static_cast<std::size_t>(beam)]);
+    return std::isfinite(reached) && reached > 0 && reached >= range - kBeamSlack;
+  }
+  return false;
+}
+
+DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types, const Crs& crs,
+                                  const DriveMappingOptions& options) {
+  const localization::FeatureScales scales(types);
+  std::vector<Observation> observations;
+  std::map<std::string_view, std::size_t> by_name;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    by_name.emplace(looks[i].name, i);
+    for (const SeenLandmark& s : looks[i].seen.sightings)
+      if (s.is_valid() && s.range && *s.range <= options.max_range && s.type && *s.type < types.size())
+        observations.push_back(observation_of(s, looks[i], types, scales, options));
+  }
+  pipeline::MergeRules rules;
+  rules.weights = pipeline::FeatureWeights::precision;
+  rules.min_sd = options.position_sd;
+  rules.association.max_distance = options.max_distance;
+  rules.association.position_floor = options.association_sd;
+  pipeline::MergedObservations merged =
+      pipeline::merge_observations(std::move(observations), types, crs, rules);
+  std::map<std::string_view, std::vector<const Observation*>> evidence;
+  for (const Observation& o : merged.evidence)
+    if (o.rejected.empty()) evidence[o.landmark_uid].push_back(&o);
+  for (Landmark& landmark : merged.landmarks)
+    value_landmark(landmark, evidence[landmark.uid], looks, by_name, types[landmark.type]);
+  DriveLandmarks made{.landmarks = std::move(merged.landmarks), .evidence = std::move(merged.evidence)};
+  made.improbable = pipeline::remove_improbable(made.landmarks, made.evidence, types);
+  return made;
+}
+
+}  // namespace waymark::workflows

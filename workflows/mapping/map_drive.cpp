@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/mapping/map_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "core/error.hpp"
+#include "exporters/vector/track_file.hpp"
+#include "geodb/write_map.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
+#include "workflows/mapping/drive_landmarks.hpp"
+#include "workflows/output_path.hpp"
+#include "workflows/provenance.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+std::vector<localization::StampedPose> read_poses(const DriveMapRequest& request,
+                                                  const localization::RobotLog& log) {
+  std::vector<localization::StampedPose> poses = log.truth;
+  if (!request.poses.empty()) {
+    poses.clear();
+    for (const localization::TrackRow& row : exporters::read_track_csv(request.poses).rows)
+      poses.push_back({row.t, row.at.pose});
+  }
+  if (poses.empty())
+    throw Error(ErrorCode::usage, "the poses of the drive are unknown", request.log,
+                "give --poses TRACK.csv: t, x, y, yaw");
+  return poses;
+}
+
+Crs crs_of_poses(const std::string& text) {
+  const Crs crs = text == "local" ? Crs::local() : Crs::from_text(text);
+  if (crs.kind() == CrsKind::geographic)
+    throw Error(ErrorCode::usage, "the poses of a drive are in metres, not in degrees", "--crs " + text,
+                "give a projected CRS, or local");
+  return crs;
+}
+
+}  // namespace
+
+void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
+  check_map_output(request.map);
+  const auto started = std::chrono::system_clock::now();
+  const TypeRegistry& types = all_types();
+  const localization::ScanDetector detect =
+      localization::make_laser_detector(types, {.find = request.scans, .features = true});
+  const localization::RobotLog log = importers::import_log(request.log, types, request.log_format);
+  for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
+  const std::vector<localization::StampedPose> poses = read_poses(request, log);
+  geodb::MapContents contents;
+  contents.types = types;
+  contents.crs = crs_of_poses(request.crs);
+  std::filesystem::path name(request.log);
+  if (!name.has_filename()) name = name.parent_path();
+  const std::vector<DriveLook> looks = looks_of_drive(log, poses, detect, name.filename().string());
+  if (looks.empty())
+    throw Error(ErrorCode::input, "no scan or sighting of the log has a known pose", request.log,
+                "are the poses of the same drive, with the same clock?");
+  DriveLandmarks made = landmarks_of_looks(looks, types, contents.crs);
+  std::size_t sightings = 0;
+  for (const DriveLook& look : looks) sightings += look.seen.sightings.size();
+  contents.landmarks = std::move(made.landmarks);
+  contents.observations = std::move(made.evidence);
+  pipeline::StageReport stage;
+  stage.stage = "map_drive";
+  stage.units = stage.made = static_cast<std::int64_t>(looks.size());
+  stage.counts.in = static_cast<std::int64_t>(sightings);
+  stage.counts.out = static_cast<std::int64_t>(contents.landmarks.size());
+  if (made.improbable) stage.counts.rejected["landmark improbable"] = made.improbable;
+  contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
+  std::set<std::string> made_types;
+  for (const localization::DetectorSpec& detector : localization::laser_detectors())
+    if (request.scans.find(detector.name) != std::string::npos)
+      made_types.insert(detector.types.begin(), detector.types.end());
+  const auto written =
+      geodb::write_map(request.map, contents,
+                       {.empty_tables = std::vector<std::string>(made_types.begin(), made_types.end())});
+  callbacks.summary(fmt::format("{} looks, {} sightings, {} improbable landmarks removed\n", looks.size(),
+                                sightings, made.improbable));
+  for (const auto& [type, count] : written) callbacks.summary(fmt::format("    {} {}\n", count, type));
+  callbacks.summary(
+      fmt::format("{}: {} landmarks in {}\n", request.map, contents.landmarks.size(), contents.crs.id()));
+}
+
+}  // namespace waymark::workflows

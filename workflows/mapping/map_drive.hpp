@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+#include "importers/logs/import_log.hpp"
+#include "workflows/callbacks.hpp"
+namespace waymark::workflows {
+
+/// A drive with known poses that becomes a map.
+struct DriveMapRequest {
+  std::string log;            ///< file, or folder of a dataset
+  std::string poses;          ///< track.csv: t, x, y, yaw; empty: the true poses of the log
+  std::string map;            ///< to write; an older map of that name is replaced
+  std::string crs = "local";  ///< of the poses, local or projected
+  importers::LogImport log_format = {};
+  std::string scans = "walls";    ///< detectors for laser scans, separated by commas
+  std::string command_line = {};  ///< recorded in the map
+};
+
+/// Makes a map of what a robot saw from known poses: its sightings become landmarks with evidence, counts and
+/// quality. Poses may cover parts of the drive; the rest is not used.
+/// Throws Error{usage} for unknown detectors, Error{input} for a log without a look at a known pose.
+/// Messages: remarks on the log, counts.
+void map_drive(const DriveMapRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows
