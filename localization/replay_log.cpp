@@ -24,7 +24,7 @@ class Replay {
                    options.error_memory * log.error_memory.bearing}) {}
 
   Track replay(const TrackWatcher& watch) {
-    if (!log_.events.empty()) now_ = log_.events.front().t;
+    if (!log_.events.empty()) now_ = last_step_ = log_.events.front().t;
     for (const LogEvent& event : log_.events) {
       advance(event.t);
       TrackRow row;

@@ -76,7 +76,9 @@ double ConstellationSearch::support(const Guess& g) const {
     if (!is_plane) at *= anchor.at.norm() / at.norm();
     const double radius = kSupportSlack * o_.sigmas * std::hypot(s.sd, index_.typical_sd_);
     bool fits = false;
-    index_.cells_.near(at, radius, [&](std::uint32_t i, double) { fits = fits || alike(s, i); });
+    index_.cells_.near(at, radius, [&](std::uint32_t i, double) {
+      fits = fits || (alike(s, i) && faces_alike(s, i, g.yaw));
+    });
     if (fits) sum -= std::log(-std::expm1(-density * s.rarity * std::numbers::pi * radius * radius));
   }
   return sum;
@@ -159,7 +161,9 @@ ConstellationSearch::Matches ConstellationSearch::match(const Pose2& pose, const
       if (square > gate * (a + d)) continue;
       const double b = seen(0, 1) + mapped(0, 1);
       const double squares = (d * dx * dx - 2 * b * dx * dy + a * dy * dy) / (a * d - b * b);
-      if (squares <= gate && alike(points_[i], locals[k].landmark)) pairs.push_back({squares, i, k});
+      if (squares <= gate && alike(points_[i], locals[k].landmark) &&
+          faces_alike(points_[i], locals[k].landmark, pose.yaw))
+        pairs.push_back({squares, i, k});
     }
   }
   std::ranges::stable_sort(pairs, {}, &Pair::squares);

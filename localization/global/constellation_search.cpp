@@ -76,6 +76,7 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   Seen p{.index = i,
          .sighting = &s,
          .features = s.type ? features_without_angles(index_.scales_, *s.type, s.features) : s.features,
+         .mount_yaw = seen.robot_from_sensor.yaw,
          .at = {},
          .covariance = {},
          .range = *s.range,
@@ -104,6 +105,20 @@ bool ConstellationSearch::alike(const Seen& s, std::uint32_t landmark) const {
   if (*s.sighting->type != l.type) return false;
   return compare_features(index_.scales_, l.type, s.features, l.features, o_.identification.feature_tolerance)
              .largest <= o_.identification.feature_limit;
+}
+
+bool ConstellationSearch::faces_alike(const Seen& s, std::uint32_t landmark, double yaw) const {
+  constexpr double kYawSd = 0.05;  // rad, of the heading of a guess
+  if (s.named || !s.sighting->type || !index_.scales_.has_angles(*s.sighting->type)) return true;
+  const double sensor_yaw = yaw + s.mount_yaw;
+  for (const AngleFix& fix : yaws_from_angles(index_.scales_, *s.sighting->type, s.sighting->features,
+                                              index_.landmarks_[landmark].features, sensor_yaw,
+                                              o_.identification.feature_tolerance)) {
+    const double off = wrap_angle(fix.heading.yaw - sensor_yaw);
+    const double variance = fix.heading.sd * fix.heading.sd + kYawSd * kYawSd;
+    if (!(off * off <= o_.identification.feature_limit * variance)) return false;
+  }
+  return true;
 }
 
 double ConstellationSearch::rarity(const Seen& s) const {

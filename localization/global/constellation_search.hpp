@@ -22,7 +22,8 @@ class ConstellationSearch {
   struct Seen {
     std::size_t index = 0;  // in the set
     const SeenLandmark* sighting = nullptr;
-    KnownFeatures features;  // without axes, since the heading is unknown
+    KnownFeatures features;  // without angles, since the heading is unknown
+    double mount_yaw = 0;    // of the sensor that measured the angles
     Eigen::Vector2d at;      // from the robot
     Eigen::Matrix2d covariance;
     double range = 0, sd = 0, rarity = 1;
@@ -37,6 +38,8 @@ class ConstellationSearch {
   using Matches = std::vector<std::optional<std::uint32_t>>;
   using Hit = std::pair<std::array<const Seen*, 3>, std::array<std::uint32_t, 3>>;
   void add(const SightingSet& seen, std::size_t i);
+  /// Returns whether the angles of a sighting agree with those of a landmark of its type at a heading.
+  bool faces_alike(const Seen& s, std::uint32_t landmark, double yaw) const;
   bool alike(const Seen& s, std::uint32_t landmark) const;
   /// Returns the fraction of the landmarks that a sighting could be by type and features.
   double rarity(const Seen& s) const;

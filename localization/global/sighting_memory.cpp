@@ -23,14 +23,16 @@ constexpr double kFeatureTolerance = 0.15;
 constexpr double kFeatureLimit = 9;  // squared standard deviations
 constexpr double kMaxError = 1;      // m, standard deviation of a recalled object
 
-bool may_be_same(const SeenLandmark& a, const SeenLandmark& b) {
+bool may_be_same(const SeenLandmark& a, const SeenLandmark& b, const FeatureScales& scales) {
   if (a.identity || b.identity) return a.identity == b.identity;
   if (a.type != b.type) return false;
   for (std::size_t i = 0; i < kMaxFeatures; ++i) {
     if (!a.features.known(i) || !b.features.known(i)) continue;
-    const double d = a.features.value[i] - b.features.value[i];
+    const double larger = std::max(std::abs(a.features.value[i]), std::abs(b.features.value[i]));
+    const double d = a.type ? scales.difference(*a.type, i, a.features.value[i], b.features.value[i])
+                            : a.features.value[i] - b.features.value[i];
     const double size =
-        kFeatureTolerance * std::max(std::abs(a.features.value[i]), std::abs(b.features.value[i]));
+        a.type ? scales.tolerance_sd(*a.type, i, larger, kFeatureTolerance) : kFeatureTolerance * larger;
     if (d * d > kFeatureLimit * (a.features.variance[i] + b.features.variance[i] + size * size)) return false;
   }
   return true;
@@ -91,7 +93,8 @@ std::vector<SightingMemory::Candidate> SightingMemory::candidates(const Sighting
       const double squares = v.dot(spread.inverse() * v);
       const bool is_near = std::hypot(v[0], v[1] * e.value[0]) < kMinSpacing;
       if (squares < kNewGate || is_near || same_identity) is_new[i] = false;
-      if (squares < kMatchGate && may_be_same(s, objects_[slot].seen)) all.push_back({i, slot, squares});
+      if (squares < kMatchGate && may_be_same(s, objects_[slot].seen, scales_))
+        all.push_back({i, slot, squares});
     }
   }
   std::ranges::sort(all, [](const Candidate& a, const Candidate& b) {
@@ -105,7 +108,9 @@ void SightingMemory::integrate(const BodyMotion& motion, const SightingSet& set)
   state_->predict(motion);
   SightingSet seen = set;
   for (SeenLandmark& s : seen.sightings) {
-    if (s.type) s.features = features_without_angles(scales_, *s.type, s.features);
+    if (s.type)  // angles are kept as azimuths of the memory's frame
+      s.features =
+          features_in_map(scales_, *s.type, s.features, state_->pose().yaw + set.robot_from_sensor.yaw);
     if (is_usable(s)) reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
   }
   std::vector<bool> is_new(seen.sightings.size(), true), used = std::vector<bool>(is_new.size(), false);
@@ -204,6 +209,7 @@ RememberedSightings SightingMemory::recall(std::size_t max_count) {
     if (!(range > 1e-6) || !(covariance.trace() < kMaxError * kMaxError)) continue;
     const Eigen::Vector2d radial = at / range, across(-radial.y(), radial.x());
     SeenLandmark s = object.seen;
+    if (s.type) s.features = features_in_map(scales_, *s.type, s.features, now.pose().yaw);  // from the robot
     s.range = range;
     s.bearing = std::atan2(at.y(), at.x());
     s.range_sd = std::sqrt(std::max(1e-12, radial.dot(covariance * radial)));

@@ -9,7 +9,8 @@ void merge_signature(const FeatureScales& scales, TypeId type, KnownFeatures& kn
                      const KnownFeatures& seen, double tolerance) {
   for (std::size_t i = 0; i < kMaxFeatures; ++i) {
     if (!seen.known(i)) continue;
-    const double spread = tolerance * seen.value[i];
+    const double spread = scales.is_angle(type, i) ? scales.tolerance_sd(type, i, seen.value[i], tolerance)
+                                                   : tolerance * seen.value[i];
     const double noise = std::max({seen.variance[i], spread * spread, 1e-12});
     if (!known.known(i)) {
       known.value[i] = seen.value[i];

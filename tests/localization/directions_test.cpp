@@ -7,6 +7,7 @@
 
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
+#include "localization/global/constellation.hpp"
 #include "tests/localization/made_world.hpp"
 
 namespace waymark::test {
@@ -144,6 +145,33 @@ TEST(Directions, LeaveTheFilterConsistent) {
     squares += error.dot(after.covariance.inverse() * error) / 3;
   }
   EXPECT_NEAR(squares / kRuns, 1, 0.25);
+}
+
+// Two rooms alike but for the faces of their landmarks: positions alone fit both.
+TEST(Directions, DistinguishPlacesThatPositionsDoNot) {
+  std::vector<MapLandmark> all;
+  const std::vector<Eigen::Vector2d> room = {{0, 0}, {5, 0.5}, {4.2, 6}, {-1, 3.7}, {2, 9}, {7, 4}};
+  for (std::size_t i = 0; i < room.size(); ++i)
+    for (const double east : {0.0, 100.0}) {
+      MapLandmark face = face_at(room[i].x() + east, room[i].y(), 0.9 * static_cast<double>(i) + 0.02 * east);
+      face.key = all.size() + 1;
+      all.push_back(face);
+    }
+  const Pose2 truth{2, 2, 0.7};
+  const auto find = [&](const FeatureScales& scales, bool with_faces) {
+    SightingSet seen;
+    for (std::size_t i = 0; i < all.size(); i += 2) {
+      seen.sightings.push_back(sight_of(all[i], truth));
+      if (!with_faces) seen.sightings.back().features = {};
+    }
+    ConstellationOptions options;
+    return ConstellationIndex(all, scales, options).find(seen);
+  };
+  const FeatureScales scales(facing_types());
+  EXPECT_FALSE(find(scales, false).fix) << "the rooms are alike: the place is unknown";
+  const auto answer = find(scales, true);
+  ASSERT_TRUE(answer.fix) << answer.reason;
+  EXPECT_NEAR((answer.fix->pose().pose.at() - truth.at()).norm(), 0, 0.1);
 }
 
 TEST(Directions, ToleratedBetweenSensorsDoNotDependOnTheirValue) {

@@ -156,6 +156,17 @@ TEST(ReplayLog, ASpeedHoldsNoLongerThanItMay) {
   EXPECT_DOUBLE_EQ(track.rows.back().at.pose.x, 2);
 }
 
+// The first step of a log has no step before it: it did not last since the epoch.
+TEST(Replay, StampsOfAnEpochDoNotWidenTheFirstStep) {
+  RobotLog log;
+  log.events.push_back({976052890.0, StepReading{{0.1, 0, 0}}});
+  log.events.push_back({976052890.5, StepReading{{0.1, 0, 0}}});
+  DeadReckoning robot({});
+  const Track track = replay(log, robot, {});
+  EXPECT_NEAR(track.rows.back().at.pose.x, 0.2, 1e-9);
+  EXPECT_LT(std::sqrt(track.rows.back().at.covariance(0, 0)), 0.1);
+}
+
 TEST(LaserStems, FindsAPostBeforeTheBackground) {
   LaserScan scan{.robot_from_sensor = {},
                  .first_angle = -1.5,
