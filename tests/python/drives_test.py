@@ -57,6 +57,18 @@ def test_estimates_come_while_the_log_plays_and_the_loop_may_be_left(site):
         drive.track
 
 
+def test_a_loop_continues_where_it_was_left(site):
+    drive = waymark.localize(site / "map.gpkg", site / "site/log.jsonl", settings=NOISE)
+    seen = []
+    for estimate in drive:
+        seen.append(estimate["t"])
+        if len(seen) == 10:
+            break
+    seen += [estimate["t"] for estimate in drive]
+    assert seen == list(drive.track["t"])
+    assert list(drive) == []
+
+
 def test_errors_of_the_program_are_exceptions(site):
     with pytest.raises(waymark.UsageError, match="ekff") as unknown:
         waymark.localize(site / "map.gpkg", site / "site/log.jsonl", method="ekff").track
