@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls of workflows in a thread of their own, so that Ctrl-C and callbacks reach the caller."""
 
+import atexit
 import logging
 import os
 import queue
 import threading
 import warnings
+import weakref
 
 from . import errors
 
 log = logging.getLogger("waymark")
 _END = object()
+_running = weakref.WeakSet()
+
+
+@atexit.register
+def _stop_all():
+    """Stops what runs before the interpreter goes away beneath it."""
+    for work in list(_running):
+        work.stop()
 
 
 def plain(value):
@@ -52,6 +62,7 @@ class Work:
         arguments += (self._post_rows,) if watch else ()
         self._thread = threading.Thread(
             target=self._run, args=(function, arguments), name="waymark", daemon=True)
+        _running.add(self)
         self._thread.start()
 
     def _run(self, function, arguments):
