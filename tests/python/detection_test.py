@@ -118,7 +118,7 @@ def test_a_bowl_in_a_dem_array_is_a_crater(tmp_path):
     """A crater 60 m across and 12 m deep, with a rim that falls off outside, in cells of 2 m."""
     row, column = np.mgrid[0:100, 0:100]
     r = np.hypot(row - 50, column - 40) / 15
-    heights = 12 * np.where(r < 1, r**2, np.clip(1 - 0.5 * (r - 1) ** 0.5, 0.6, 1)) + 0.01 * np.sin(row * 1.7 + column)
+    heights = 12 * np.where(r < 1, r**2, np.clip(1 - 0.5 * np.maximum(r - 1, 0) ** 0.5, 0.6, 1)) + 0.01 * np.sin(row * 1.7 + column)
     craters = waymark.find_craters_in_dem(heights, cell=2.0, output=tmp_path / "craters.gpkg").landmarks("crater")
     assert len(craters) == 1
     assert craters["x"][0] == pytest.approx(80, abs=2) and craters["y"][0] == pytest.approx(-100, abs=2)
