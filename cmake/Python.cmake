@@ -2,6 +2,14 @@
 if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)  # Debian's, whose GDAL rasterio and geopandas share, before any other
 endif()
+if(NOT DEFINED Python3_INCLUDE_DIR AND Python3_EXECUTABLE)
+  # Its own headers: CMake takes those of the first python3-config in the PATH.
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import sysconfig; print(sysconfig.get_path('include'))"
+                  OUTPUT_VARIABLE Python3_INCLUDE_DIR OUTPUT_STRIP_TRAILING_WHITESPACE)
+  if(NOT EXISTS "${Python3_INCLUDE_DIR}/Python.h")
+    unset(Python3_INCLUDE_DIR)
+  endif()
+endif()
 find_package(Python3 QUIET COMPONENTS Interpreter Development.Module NumPy)
 if(Python3_FOUND)  # pybind11 would look for another Python
   find_package(pybind11 2.10 QUIET CONFIG)

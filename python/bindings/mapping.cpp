@@ -10,6 +10,7 @@
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/callbacks.hpp"
 #include "python/bindings/keywords.hpp"
+#include "workflows/mapping/image_stages.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/registries.hpp"
 #include "workflows/simulation/simulate.hpp"
@@ -39,6 +40,17 @@ const Keywords<workflows::CanopyFiles>& canopy_keywords() {
                               .add("las", &R::las)
                               .add("flights", &R::flights)
                               .add("crowns", &R::crowns);
+  return all;
+}
+
+const Keywords<workflows::ImageFiles>& image_keywords() {
+  using R = workflows::ImageFiles;
+  static const auto all = Keywords<R>()
+                              .add("images", &R::images)
+                              .add("cameras", &R::cameras)
+                              .add("dem", &R::dem)
+                              .add("crs", &R::crs)
+                              .add("height_sd", &R::height_sd);
   return all;
 }
 
@@ -96,6 +108,13 @@ void write_raster(const std::string& path, const FloatArray& cells, const std::a
   exporters::write_raster(path, grid, where);
 }
 
+/// Returns the job of `waymark images` likewise; `find` is a list such as "rocks,craters".
+std::string image_job(const py::dict& keywords, const std::string& find) {
+  pipeline::Pipeline stages(workflows::all_stages());
+  workflows::add_image_stages(stages, image_keywords().request(keywords), workflows::parse_image_finds(find));
+  return pipeline::job_as_json("images", stages);
+}
+
 std::string stages_as_json() {
   std::string text;
   const pipeline::Registry& stages = workflows::all_stages();
@@ -122,6 +141,8 @@ void bind_mapping(py::module_& module) {
              py::arg("progress"), py::arg("message"));
   module.def("run_keywords", [] { return run_keywords().defaults(); });
   module.def("shortcut_job", &shortcut_job, py::arg("command"), py::arg("files"), py::arg("canopy"));
+  module.def("image_job", &image_job, py::arg("keywords"), py::arg("find"));
+  module.def("images_keywords", [] { return image_keywords().defaults(); });
   module.def("canopy_keywords", [] { return canopy_keywords().defaults(); });
   module.def("write_raster", &write_raster, py::arg("path"), py::arg("cells"), py::arg("place"),
              py::arg("crs"));

@@ -9,7 +9,8 @@ Each function is a command of the program and gives the same results; docs/refer
 
 from . import stages
 from ._waymark import version as _version
-from .detection import detect, find_craters, find_craters_in_dem, find_mountain_tops, find_rocks, find_trees
+from .detection import (
+    detect, find_craters, find_craters_in_dem, find_mountain_tops, find_rocks, find_trees, map_images)
 from .errors import EnvironmentError, Error, InputError, OutputError, UnitsFailed, UsageError, Warning
 from .evaluation import evaluate, evaluate_track
 from .localization import Localization, localize, localize_methods, localize_settings
@@ -23,5 +24,5 @@ __all__ = [
     "EnvironmentError", "Error", "Feature", "InputError", "LandmarkType", "Localization", "Map", "OutputError", "Run",
     "UnitsFailed", "UsageError", "Warning", "detect", "evaluate", "evaluate_track", "find_craters",
     "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "localize",
-    "localize_methods", "localize_settings", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages",
+    "localize_methods", "localize_settings", "map_images", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages",
 ]

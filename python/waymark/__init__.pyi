@@ -576,7 +576,7 @@ class Localization:
     track: all estimates as a structured array; settings: every setting of the method with its effect, as text. Both
     wait until the log has ended. Leaving the loop early and calling close() stops the work."""
     def __iter__(self) -> Iterator[np.void]:
-        """"""
+        """Continues where an earlier loop was left."""
         ...
     @property
     def track(self) -> np.ndarray:
@@ -838,6 +838,18 @@ def localize_methods() -> list[str]:
 
 def localize_settings(method: Any = ...) -> dict[str, tuple[str, str]]:
     """Returns {setting: (value, effect)} of a method."""
+    ...
+
+def map_images(images: Any, output: Any, *, find: Any = ..., progress: Any = ..., cameras: _Path = ..., dem: Sequence[Any] | _Path = ..., crs: _Path = ..., height_sd: float = ..., **options: Any) -> Run:
+    """Maps the rocks and craters that images show, as `waymark images`; returns a Run.
+
+    images: files, patterns or folders. Options of the stage load_images: camera_format, sun_azimuth, gsd, ...
+
+    Keywords:
+        cameras: camera file or pattern; empty: the images are orthophotos
+        dem: empty: level ground at height 0
+        crs: of the DEM instead of its own, or of level ground
+        height_sd: metres, of a height of the ground; 0: not known"""
     ...
 
 def open(path: Any) -> Map:

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls of workflows in a thread of their own, so that Ctrl-C and callbacks reach the caller."""
 
+import atexit
 import logging
 import os
 import queue
 import threading
 import warnings
+import weakref
 
 from . import errors
 
 log = logging.getLogger("waymark")
 _END = object()
+_running = weakref.WeakSet()
+
+
+@atexit.register
+def _stop_all():
+    """Stops what runs before the interpreter goes away beneath it."""
+    for work in list(_running):
+        work.stop()
 
 
 def plain(value):
@@ -38,7 +48,9 @@ def assignments(settings):
 
 
 class Work:
-    """A workflow in a thread. Iterating yields what it posts; `result` is what it returned."""
+    """A workflow in a thread. Iterating yields what it posts; `result` is what it returned, `failure` what it
+    raised.
+    """
 
     def __init__(self, function, *arguments, progress=None, watch=False):
         self._posts = queue.SimpleQueue()
@@ -46,17 +58,18 @@ class Work:
         self._user_progress = progress
         self._finished = False
         self.result = None
-        self._failure = None
+        self.failure = None
         arguments += (self._post_rows,) if watch else ()
         self._thread = threading.Thread(
             target=self._run, args=(function, arguments), name="waymark", daemon=True)
+        _running.add(self)
         self._thread.start()
 
     def _run(self, function, arguments):
         try:
             self.result = function(*arguments, self._post_progress, self._post_message)
         except BaseException as failure:  # raised in the caller's thread
-            self._failure = failure
+            self.failure = failure
         self._posts.put((_END, None))
 
     def _post_progress(self, stage, done, total, rate):
@@ -89,8 +102,8 @@ class Work:
         except BaseException:
             self.stop()
             raise
-        if self._failure is not None:
-            raise self._failure
+        if self.failure is not None:
+            raise self.failure
 
     def _deliver(self, kind, post):
         if kind == "progress":

@@ -110,6 +110,17 @@ def _find_trees(given, canopy, place, output, progress, options):
         return _find_trees(given, {**canopy, name: files}, place, output, progress, options)
 
 
+@takes("images", more=True)
+def map_images(images, output, *, find="rocks,craters", progress=None, **options):
+    """Maps the rocks and craters that images show, as `waymark images`; returns a Run.
+
+    images: files, patterns or folders. Options of the stage load_images: camera_format, sun_azimuth, gsd, ...
+    """
+    files = {name: options.pop(name) for name in _waymark.images_keywords() if name in options}
+    job = json.loads(_waymark.image_job(keywords(images=images, **files), find))
+    return run(_with_options(job, options), output, progress=progress)
+
+
 def _crs_of_array(options, crs, *rasters):
     """An array without a CRS is local; files keep their own unless `crs` is given."""
     if crs is not None:

@@ -16,22 +16,25 @@ class Localization:
 
     def __init__(self, work):
         self._work = work
-        self._rows = iter(work)
-        self._ended = False
+        self._estimates = self._stream()
 
-    def __iter__(self):
+    def _stream(self):
         yielded = 0
-        for rows in self._rows:
+        for rows in self._work:
             yielded += len(rows)
             yield from rows
-        self._ended = True
         # Methods that estimate the whole track at once have no rows before the end.
         yield from self._work.result[0][yielded:]
 
+    def __iter__(self):
+        """Continues where an earlier loop was left."""
+        return self._estimates
+
     def _finish(self):
-        if not self._ended:
-            for _ in self:
-                pass
+        for _ in self._estimates:
+            pass
+        if self._work.failure is not None:
+            raise self._work.failure
         return self._work.result
 
     @property

@@ -112,3 +112,15 @@ def test_options_of_no_stage_are_refused():
         waymark.find_mountain_tops(DEM, min_prominenz=5)
     with pytest.raises(waymark.UsageError, match="min_prominence"):
         waymark.find_mountain_tops(DEM, min_prominence=-5)
+
+
+def test_a_bowl_in_a_dem_array_is_a_crater(tmp_path):
+    """A crater 60 m across and 12 m deep, with a rim that falls off outside, in cells of 2 m."""
+    row, column = np.mgrid[0:100, 0:100]
+    r = np.hypot(row - 50, column - 40) / 15
+    heights = 12 * np.where(r < 1, r**2, np.clip(1 - 0.5 * np.maximum(r - 1, 0) ** 0.5, 0.6, 1)) + 0.01 * np.sin(row * 1.7 + column)
+    craters = waymark.find_craters_in_dem(heights, cell=2.0, output=tmp_path / "craters.gpkg").landmarks("crater")
+    assert len(craters) == 1
+    assert craters["x"][0] == pytest.approx(80, abs=2) and craters["y"][0] == pytest.approx(-100, abs=2)
+    assert craters["radius"][0] == pytest.approx(30, rel=0.15)
+    assert_same_as_csv(craters, program("query", tmp_path / "craters.gpkg", "--type", "crater", "--format", "csv"))

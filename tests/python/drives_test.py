@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 import csv
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -55,6 +57,27 @@ def test_estimates_come_while_the_log_plays_and_the_loop_may_be_left(site):
     drive.close()
     with pytest.raises(KeyboardInterrupt):
         drive.track
+
+
+def test_a_loop_continues_where_it_was_left(site):
+    drive = waymark.localize(site / "map.gpkg", site / "site/log.jsonl", settings=NOISE)
+    seen = []
+    for estimate in drive:
+        seen.append(estimate["t"])
+        if len(seen) == 10:
+            break
+    seen += [estimate["t"] for estimate in drive]
+    assert seen == list(drive.track["t"])
+    assert list(drive) == []
+
+
+def test_python_may_end_while_a_log_plays(site):
+    done = subprocess.run([sys.executable, "-c", f"""
+import waymark
+drive = waymark.localize({str(site / 'map.gpkg')!r}, {str(site / 'site/log.jsonl')!r}, method="pf", start="none")
+next(iter(drive))
+"""], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_errors_of_the_program_are_exceptions(site):

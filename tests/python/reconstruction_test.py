@@ -2,7 +2,7 @@
 import json
 
 import pytest
-from conftest import program
+from conftest import assert_same_as_csv, program
 
 import waymark
 
@@ -32,6 +32,15 @@ def test_heights_are_those_of_the_program(flight, tmp_path):
     assert made["images"] == 6 and made["failed"] == 0 and 0 < made["kept"] <= made["cells"]
     assert not (tmp_path / "python/orthophoto.tif").exists()
     assert stages
+
+
+def test_images_give_the_map_of_the_program(flight, tmp_path):
+    files = dict(cameras=flight / "truth/cameras.json", dem=flight / "dem.tif", crs="local")
+    done = waymark.map_images(flight / "images", tmp_path / "python.gpkg", find="rocks", **files)
+    program("images", flight / "images", "--cameras", files["cameras"], "--dem", files["dem"], "--crs", "local",
+            "--find", "rocks", "-o", tmp_path / "program.gpkg")
+    assert_same_as_csv(done.map.landmarks("rock"),
+                       program("query", tmp_path / "program.gpkg", "--type", "rock", "--format", "csv"))
 
 
 def test_wrong_requests_are_usage_errors(flight, tmp_path):
