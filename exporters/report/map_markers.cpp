@@ -142,6 +142,10 @@ class Labels {
 
 }  // namespace
 
+std::string solid_name(const LandmarkType& type) {
+  return std::string(type.evidence == EvidenceModel::canopy ? "canopy" : to_string(type.drawn_as));
+}
+
 std::string landmark_attributes(const Landmark& landmark) {
   const auto quality = equal_weight_quality(landmark);
   return fmt::format("data-uid='{}' data-confidence='{:.3f}' data-quality='{}'", escape_markup(landmark.uid),
