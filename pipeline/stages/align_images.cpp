@@ -6,6 +6,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/checked_alignment.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/projection/dem_shift.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
 
@@ -38,7 +39,7 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Corrects the poses of images by the landmarks they share",
-            .version = 5,
+            .version = 6,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};
@@ -79,6 +80,23 @@ struct AlignImages {
     unit.warn(fmt::format("{}; {}", problem, kCauses));
   }
 
+  // Warns where the relief in the images lies beside that of the DEM. Positions become uncertain by as much,
+  // since images and DEM do not determine which of them is right.
+  static void report_dem_shift(std::vector<ImageView>& images, StageContext& unit) {
+    const auto seen = common_dem_shift(images);
+    if (!seen || !seen->significant) return;
+    unit.warn(fmt::format(
+        "images and DEM do not lie on each other: in {} of {} images the relief is {:.2g} m (sd {:.2g} m) "
+        "from "
+        "that of the DEM, {:+.2g} m east and {:+.2g} m north, where the poses state {:.2g} m; check the "
+        "positions of poses and DEM (datum, projection, corner or centre of cells)",
+        seen->measured, images.size(), seen->metres.norm(), seen->sd, seen->metres.x(), seen->metres.y(),
+        seen->stated_sd));
+    for (ImageView& image : images)
+      image.common_covariance +=
+          seen->metres * seen->metres.transpose() + seen->sd * seen->sd * Eigen::Matrix2d::Identity();
+  }
+
   static void run(const Options& options, StageContext& unit) {
     const TypeRegistry& types = unit.types();
     std::vector<ImageView> images;
@@ -96,6 +114,7 @@ struct AlignImages {
     if (aligned.too_many)
       unit.warn(fmt::format("{} images are not aligned: max_images allows {}", aligned.images.size(),
                             options.max_images));
+    report_dem_shift(aligned.images, unit);
     unit.write(observations, std::move(aligned.observations));
     unit.write(aligned_views, std::move(aligned.images));
   }

@@ -7,6 +7,7 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/cleaning/rim_closure.hpp"
 #include "pipeline/fusion/projection/dem_registration.hpp"
+#include "pipeline/fusion/projection/dem_shift.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/detection_projection.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
@@ -71,7 +72,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Projects detections onto the DEM, with covariances and footprints",
-            .version = 9,
+            .version = 10,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};
@@ -120,11 +121,12 @@ struct ProjectToGround {
         o.rejected = "more probably no crater";
       o.rejected.empty() ? void(++kept) : unit.reject(o.rejected);
     }
-    if (options.register_to_dem && rules.heights_known && image.view && image.view->covariance.trace() > 0) {
+    if (options.register_to_dem && rules.heights_known && image.view && image.sun) {
       const Pixels pixels = unit.read(image_set)
                                 .at(static_cast<std::size_t>(unit.image().index))
                                 ->read({0, 0, info.columns, info.rows});
       image.dem_constraint = register_to_dem(pixels, image, terrain, metres_per_unit);
+      image.dem_shift = measure_dem_shift(pixels, image, terrain, metres_per_unit);
     }
     unit.count_in(0), unit.count_out(kept);
     unit.write(placed_observations, std::move(all));

@@ -25,6 +25,14 @@ struct PoseConstraint {
   Eigen::Vector<double, 6> information_vector = Eigen::Vector<double, 6>::Zero();
 };
 
+/// Distance between the relief that an image shows and that of the DEM (dem_shift.hpp).
+struct DemShift {
+  Eigen::Vector2d metres = Eigen::Vector2d::Zero();      ///< east, north: image minus DEM
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of `metres`
+  Eigen::Matrix2d stated = Eigen::Matrix2d::Zero();      ///< covariance that the stated pose gives the ground
+  double cell = 0;                                       ///< size of the cells compared, metres
+};
+
 /// View of an image: everything that merging, valuation and the map's layer `image` need after its pixels
 /// were read.
 /// Either `view` or `ortho` is set.
@@ -44,6 +52,7 @@ struct ImageView {
   /// covariances of aligned observations (alignment.hpp).
   Eigen::Matrix2d common_covariance = Eigen::Matrix2d::Zero();
   std::optional<PoseConstraint> dem_constraint;  ///< from registration to the DEM (dem_registration.hpp)
+  std::optional<DemShift> dem_shift;  ///< where shading and brightness determine it (dem_shift.hpp)
 };
 
 /// Returns camera model and pose, or the georeference of the orthophoto, as one line of JSON for the map's

@@ -47,6 +47,11 @@ void layout(auto& io, auto& tie) requires requires {
 }
 { layout(io, tie.information), layout(io, tie.information_vector); }
 
+void layout(auto& io, auto& shift) requires requires {
+  shift.stated;
+}
+{ layout(io, shift.metres), layout(io, shift.covariance), layout(io, shift.stated), io(shift.cell); }
+
 template <class T>
 void write_optional(ByteWriter& out, const std::optional<T>& value) {
   out(value.has_value());
@@ -68,7 +73,7 @@ void write(ByteWriter& out, const ImageView& image) {
   }
   out(image.area), out(image.gsd);
   layout(out, image.common_covariance);
-  write_optional(out, image.dem_constraint);
+  write_optional(out, image.dem_constraint), write_optional(out, image.dem_shift);
 }
 
 ImageView read_image(ByteReader& in) {
@@ -83,7 +88,7 @@ ImageView read_image(ByteReader& in) {
   }
   in(image.area), in(image.gsd);
   layout(in, image.common_covariance);
-  read_optional(in, image.dem_constraint);
+  read_optional(in, image.dem_constraint), read_optional(in, image.dem_shift);
   return image;
 }
 
@@ -111,7 +116,7 @@ std::string Codec<std::vector<ImageView>>::encode(const std::vector<ImageView>& 
 
 std::vector<ImageView> Codec<std::vector<ImageView>>::decode(std::string_view bytes) {
   ByteReader in(bytes);
-  std::vector<ImageView> images(in.length(84));
+  std::vector<ImageView> images(in.length(85));
   for (ImageView& image : images) image = read_image(in);
   in.expect_end();
   return images;

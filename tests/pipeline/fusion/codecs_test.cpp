@@ -62,6 +62,9 @@ TEST(FusionCodecs, ImageViews) {
   image.dem_constraint.emplace();
   image.dem_constraint->information(5, 1) = 2;
   image.dem_constraint->information_vector(4) = 3;
+  image.dem_shift.emplace();
+  image.dem_shift->metres = Eigen::Vector2d(3, -2);
+  image.dem_shift->cell = 1.5;
   image.view->covariance(5, 0) = 0.25;
   image.sun = Sun{{120}, {35}, {0.5}};
   image.taken_utc = "2026-11-21T10:00:00Z";
@@ -75,6 +78,9 @@ TEST(FusionCodecs, ImageViews) {
   EXPECT_EQ(back.view->camera, image.view->camera);
   EXPECT_EQ(back.view->covariance, image.view->covariance);
   EXPECT_EQ(back.sun, image.sun);
+  ASSERT_TRUE(back.dem_shift);
+  EXPECT_EQ(back.dem_shift->metres, image.dem_shift->metres);
+  EXPECT_EQ(back.dem_shift->cell, image.dem_shift->cell);
   EXPECT_EQ(back.footprint, image.footprint);
 }
 
