@@ -30,22 +30,6 @@ std::string word(AttributeSpec::Kind kind) {
   return kind == Kind::real ? "number" : kind == Kind::integer ? "integer" : "string";
 }
 
-std::string word(Solid solid) {
-  switch (solid) {
-    case Solid::point:
-      return "point";
-    case Solid::sphere:
-      return "sphere";
-    case Solid::cylinder:
-      return "cylinder";
-    case Solid::cone:
-      return "cone";
-    case Solid::bowl:
-      return "bowl";
-  }
-  return "";
-}
-
 std::string range(const FeatureSpec& feature) {
   const std::string unit = feature.unit.empty() ? "" : " " + feature.unit;
   return fmt::format("{} to {}{}", feature.min_value, feature.max_value, unit);
@@ -68,7 +52,7 @@ std::string as_text(const LandmarkType& type) {
     text += fmt::format("  {:<18} {}{}\n", attribute.name, attribute.summary,
                         attribute.unit.empty() ? "" : ", " + attribute.unit);
   return text + "\n" + evidence_line(type) +
-         fmt::format("Drawn as a {} in {}\n", word(type.drawn_as), type.colour);
+         fmt::format("Drawn as a {} in {}\n", to_string(type.drawn_as), type.colour);
 }
 
 std::string as_markdown(const LandmarkType& type) {
@@ -90,7 +74,7 @@ std::string as_json(const LandmarkType& type) {
               {"summary", type.summary},
               {"features", Json::array()},
               {"attributes", Json::array()},
-              {"drawn_as", word(type.drawn_as)},
+              {"drawn_as", to_string(type.drawn_as)},
               {"colour", type.colour},
               {"evidence", to_string(type.evidence)},
               {"identification_reach", type.identification_reach}};

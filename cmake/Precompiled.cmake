@@ -24,3 +24,6 @@ function(waymark_use_precompiled TARGET FROM)
 endfunction()
 
 waymark_precompile(waymark_precompiled HEADERS <Eigen/Dense> <fmt/format.h> USES Eigen3::Eigen fmt::fmt)
+if(TARGET waymark_precompiled)
+  target_compile_options(waymark_precompiled PRIVATE ${waymark_shareable_code})
+endif()

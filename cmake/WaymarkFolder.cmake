@@ -26,7 +26,8 @@ function(waymark_folder)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(${target} PUBLIC ${arg_USES} PRIVATE ${arg_PRIVATE})
   # Not linked: an exported static library names all that it links.
-  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:waymark_build_rules,INTERFACE_COMPILE_OPTIONS> ${waymark_compiler_memory})
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:waymark_build_rules,INTERFACE_COMPILE_OPTIONS>
+                         ${waymark_compiler_memory} ${waymark_shareable_code})
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${arg_NAME})
   # A header stands alone: its own .cpp includes it first (which the asan preset, without precompiled headers,

@@ -6,7 +6,7 @@
 namespace waymark::inline core {
 
 /// Returns the solution of `matrix` x = `right` for a symmetric semidefinite matrix by its LDL' factors.
-/// Sizes: 2, 3, 5, 6, 7 and Eigen::Dynamic.
+/// Sizes: 3, 6 and Eigen::Dynamic.
 template <int N>
 Eigen::Vector<double, N> solve_symmetric(const Eigen::Matrix<double, N, N>& matrix,
                                          const Eigen::Vector<double, N>& right);

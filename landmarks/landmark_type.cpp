@@ -88,6 +88,11 @@ std::string_view to_string(EvidenceModel evidence) {
   return kEvidenceModels.at(static_cast<std::size_t>(evidence));
 }
 
+std::string_view to_string(Solid solid) {
+  constexpr std::array<std::string_view, 5> kNames{"point", "sphere", "cylinder", "cone", "bowl"};
+  return kNames.at(static_cast<std::size_t>(solid));
+}
+
 EvidenceModel parse_evidence_model(std::string_view name) {
   const auto found = std::ranges::find(kEvidenceModels, name);
   if (found == kEvidenceModels.end())

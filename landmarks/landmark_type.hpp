@@ -82,6 +82,10 @@ std::optional<TypeId> find_self_identifying_type(const TypeRegistry& types);
 
 /// Returns the name of an evidence model: "shadow_caster".
 std::string_view to_string(EvidenceModel evidence);
+
+/// Returns the name of a solid, e.g. "cylinder".
+std::string_view to_string(Solid solid);
+
 /// Returns the evidence model of a name. Throws std::logic_error for other words.
 EvidenceModel parse_evidence_model(std::string_view name);
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/solve.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -115,7 +115,7 @@ DetectionOdds fit_odds(std::span<const DetectionTrial> trials) {
       gradient += (t.detected - p) * x;
       information += std::max(p * (1 - p), 1e-9) * x * x.transpose();
     }
-    Eigen::Vector3d step = information.ldlt().solve(gradient);
+    Eigen::Vector3d step = solve_symmetric<3>(information, gradient);
     if (const double length = step.norm(); length > 2) step *= 2 / length;
     odds += step;
     if (step.norm() < 1e-9) break;

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/options/file_kind.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/text_file.hpp"
 
@@ -107,13 +108,8 @@ double Vehicle::obstacle_height() const {
 }
 
 Vehicle parse_vehicle(std::string_view json, const std::string& name, const std::string& source) {
-  const Json file = Json::parse(checked_json(json, source, ErrorCode::usage));
-  if (!file.is_object() || !file.contains("waymark_vehicle"))
-    throw Error(ErrorCode::usage, "this is no vehicle file", source,
-                R"(it begins {"waymark_vehicle": 1, ...}; `waymark vehicles NAME --as json` prints one)");
-  if (file["waymark_vehicle"] != 1)
-    throw Error(ErrorCode::usage, "the version of the vehicle file is unknown", source,
-                R"(this program reads "waymark_vehicle": 1)");
+  check_file_kind(json, "vehicle", source);
+  const Json file = Json::parse(json_or_empty(json));
   Vehicle vehicle{.name = name, .summary = {}, .supports = {}};
   read_and_warn([&](OptionVisitor& option) { vehicle.describe(option); }, json,
                 {.owner = "the vehicle", .where = source, .also = {"waymark_vehicle", "name", "supports"}},

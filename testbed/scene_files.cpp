@@ -46,23 +46,6 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
   return file.dump(1) + "\n";
 }
 
-std::string job_file(const Scenario& scenario) {
-  Json stages = Json::array();
-  Json dem{{"stage", "load_dem"},
-           {"files", {"dem.tif"}},
-           {"nodata", "unknown"},
-           {"height_sd", scenario.dem.height_sd}};
-  Json images{{"stage", "load_images"}, {"files", {"images/*.png"}}, {"cameras", "cameras.json"}};
-  if (scenario.crs == "local") dem["crs"] = "local";
-  stages.push_back(dem);
-  stages.push_back(images);
-  for (const char* stage : {"check_sun", "rocks_from_shadows", "craters_from_bowls", "project_to_ground",
-                            "reject_implausible", "reject_terrain_shadows", "reject_rim_shadows",
-                            "align_images", "merge_observations", "value_landmarks"})
-    stages.push_back({{"stage", stage}});
-  return Json{{"name", scenario.name}, {"stages", stages}}.dump(2) + "\n";
-}
-
 SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
   const Terrain& ground = scene.terrain;
   const double cell = scenario.dem.cell;

@@ -9,9 +9,6 @@ namespace waymark::testbed {
 /// deviations.
 std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots, bool exact);
 
-/// Returns the job that maps the files; names are relative to its own folder.
-std::string job_file(const Scenario& scenario);
-
 /// Truth tables as CSV.
 /// - `landmarks`: every rock and every crater still visible.
 /// - `ignored`: craters too degraded or overprinted to count in evaluation.

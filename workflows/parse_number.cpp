@@ -29,4 +29,13 @@ std::int64_t parse_integer(const std::string& what, const std::string& word) {
   return number<std::int64_t>(what, word, "whole number");
 }
 
+std::pair<std::string, double> parse_feature_value(const std::string& option, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw Error(ErrorCode::usage, option + " takes FEATURE=VALUE, is '" + text + "'", "",
+                "e.g. " + option + " prominence=300");
+  const std::string feature = text.substr(0, equals);
+  return {feature, parse_number(option + " " + feature, text.substr(equals + 1))};
+}
+
 }  // namespace waymark::workflows

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/options/file_kind.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/text_file.hpp"
 #include "workflows/registries.hpp"
@@ -84,13 +85,8 @@ std::vector<FeatureWeight> read_weights(const SensorJson& weights, const std::st
 }  // namespace
 
 SensorProfile parse_sensor(std::string_view json, const std::string& name, const std::string& source) {
-  const SensorJson file = SensorJson::parse(checked_json(json, source, ErrorCode::usage));
-  if (!file.is_object() || !file.contains("waymark_sensor"))
-    throw Error(ErrorCode::usage, "this is no sensor file", source,
-                R"(it begins {"waymark_sensor": 1, ...}; `waymark sensors NAME --as json` prints one)");
-  if (file["waymark_sensor"] != 1)
-    throw Error(ErrorCode::usage, "the version of the sensor file is unknown", source,
-                R"(this program reads "waymark_sensor": 1)");
+  check_file_kind(json, "sensor", source);
+  const SensorJson file = SensorJson::parse(json_or_empty(json));
   SensorProfile sensor{.name = name, .summary = {}, .weights = {}};
   read_and_warn(
       [&](OptionVisitor& option) {

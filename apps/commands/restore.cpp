@@ -15,11 +15,12 @@ class Restore final : public Command {
             .group = Group::make,
             .summary = "Undo the last update of a map",
             .about =
-                "Puts back the state a map had before `waymark localize --update-map` last changed it. "
+                "Puts back the state a map had before `waymark edit` or `waymark localize --update-map` last "
+                "changed it. "
                 "That state lies beside the map as MAP.gpkg.before-run-N, N the number of the run; it "
                 "is used up. Earlier updates can be undone in turn.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to restore")},
-            .examples = {{"waymark restore site.gpkg", "Undo the changes of the last drive"}}};
+            .examples = {{"waymark restore site.gpkg", "Undo the changes of the last drive or edit"}}};
   }
 
   int run(const Session&) override {

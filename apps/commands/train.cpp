@@ -4,7 +4,7 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "core/error.hpp"
-#include "workflows/training/fit_sensor.hpp"
+#include "workflows/training/train_sensor.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -59,7 +59,7 @@ class Train final : public Command {
 
   int run(const Session& session) override {
     if (request_.what == "sensor") {
-      workflows::fit_sensor({request_.images, map_, request_.output}, console_callbacks(session));
+      workflows::train_sensor({request_.images, map_, request_.output}, console_callbacks(session));
       return 0;
     }
     if (!map_.empty())

@@ -142,23 +142,6 @@ class Labels {
 
 }  // namespace
 
-std::string solid_name(const LandmarkType& type) {
-  if (type.evidence == EvidenceModel::canopy) return "canopy";
-  switch (type.drawn_as) {
-    case Solid::sphere:
-      return "sphere";
-    case Solid::cylinder:
-      return "cylinder";
-    case Solid::cone:
-      return "cone";
-    case Solid::bowl:
-      return "bowl";
-    case Solid::point:
-      return "point";
-  }
-  return "point";
-}
-
 std::string landmark_attributes(const Landmark& landmark) {
   const auto quality = equal_weight_quality(landmark);
   return fmt::format("data-uid='{}' data-confidence='{:.3f}' data-quality='{}'", escape_markup(landmark.uid),

@@ -19,10 +19,6 @@ struct MapMarkers {
 /// - Labels that would cover one another or a marker of a labelled landmark are omitted.
 MapMarkers draw_markers(const MapView& view, const std::vector<LandmarkSection>& sections);
 
-/// Returns the name of the solid in which a type is drawn: point, sphere, cylinder, cone or bowl, and canopy
-/// for a type that shows a crown.
-std::string solid_name(const LandmarkType& type);
-
 /// Returns the attributes by which the script of a report finds a landmark: uid, confidence and quality.
 std::string landmark_attributes(const Landmark& landmark);
 

@@ -6,7 +6,6 @@
 #include <limits>
 #include <unordered_map>
 
-#include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
@@ -66,13 +65,14 @@ ViewFeature view_feature(const LandmarkSection& section, std::size_t i) {
 ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std::size_t max_count,
                      double max_distance) {
   const LandmarkType& type = section.type;
-  ViewLayer layer{.name = type.name,
-                  .title = title_of(type.name),
-                  .colour = type.colour,
-                  .shape = solid_name(type),
-                  .total = section.count,
-                  .features = {},
-                  .landmarks = {}};
+  ViewLayer layer{
+      .name = type.name,
+      .title = title_of(type.name),
+      .colour = type.colour,
+      .shape = std::string(type.evidence == EvidenceModel::canopy ? "canopy" : to_string(type.drawn_as)),
+      .total = section.count,
+      .features = {},
+      .landmarks = {}};
   for (std::size_t i = 0; i < type.features.size(); ++i) layer.features.push_back(view_feature(section, i));
   for (const Landmark& landmark : section.landmarks) {
     if (layer.landmarks.size() == max_count) break;

@@ -51,15 +51,19 @@ struct PlanCommand {
   std::string job;   ///< job file
   std::string work;  ///< work folder shared by all machines
   std::string program = "waymark";
+  std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
+  std::string map = {};  ///< the last call writes it; empty: the plan ends with the last stage
 };
 
 /// Returns one JSON object per line: unit, stage, item, fingerprint, done, after (ids).
 std::string plan_as_jsonl(const Plan& plan);
-/// Returns a Snakefile with one rule per unit and its manifest as output.
+/// Returns a Snakefile with one rule per unit and its manifest as output, and one for the map.
 std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command);
 /// Returns a shell script of sbatch calls: per stage one job or one array of shards, after the stages it
 /// reads.
 std::string plan_as_slurm(const Plan& plan, const PlanCommand& command);
+/// Returns a shell script that runs the stages in order, the shards of each by GNU parallel.
+std::string plan_as_parallel(const Plan& plan, const PlanCommand& command);
 
 /// Returns size and hash of a file that a stage reads. importers/ has an implementation that opens /vsi
 /// paths.

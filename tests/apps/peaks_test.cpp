@@ -248,6 +248,22 @@ TEST_F(Peaks, PlanNamesEveryUnit) {
   EXPECT_THAT(plan("slurm"), HasSubstr("sbatch"));
 }
 
+// Stands for GNU parallel where it is absent: one shard after the other.
+TEST_F(Peaks, APlanEndsInTheMap) {
+  const std::string dem = rolling(), job = folder_ / "job.json";
+  write_text(job, waymark({"peaks", dem, "--tile-cells", "100", "--print-job"}).out);
+  write_text(folder_ / "parallel",
+             "#!/bin/sh\nshift 2\nwhile read -r i; do sh -c \"$(echo \"$1\" | sed \"s/{}/$i/\")\" || exit 1; "
+             "done\n");
+  const Outcome ran =
+      bash("cd '" + folder_.path().string() + "' && chmod +x parallel && ln -s \"$WAYMARK\" waymark && " +
+           "PATH=$PWD:$PATH && " +
+           "$WAYMARK plan job.json --as parallel -o plan.gpkg --set find_mountain_tops.min_prominence=20" +
+           " > run.sh && sh run.sh");
+  ASSERT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(csv("plan.gpkg"), table({dem, "--min-prominence", "20"}));
+}
+
 TEST_F(Peaks, ProgressHasItsForms) {
   const std::string dem = twins();
   const auto said = [&](const std::string& form) {

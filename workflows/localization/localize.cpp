@@ -176,6 +176,14 @@ void write_track(const LocalizeRequest& request, const localization::Track& trac
   }
 }
 
+localization::TrackWatcher both(localization::TrackWatcher first, localization::TrackWatcher second) {
+  if (!first) return second;
+  return [=](const localization::Track& track) {
+    first(track);
+    second(track);
+  };
+}
+
 const MethodTable& method_table() {
   static const MethodTable table = [] {
     MethodTable made;
@@ -238,6 +246,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
                 "e.g. --layers MAP.gpkg --live 10");
   if (!request.layers.empty()) geodb::check_before_copy(request.layers);
   if (request.live > 0) task.watch = LiveLayers(request.layers, log, map.frame, request.live);
+  if (request.watch) task.watch = both(std::move(task.watch), request.watch);
   LocalizeResult result{.track = method.run(task), .settings = options_as_text(option_table(options))};
   if (!request.output.empty()) write_track(request, result.track, map);
   if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 #include "importers/logs/import_log.hpp"
+#include "localization/replay_log.hpp"
 #include "localization/track.hpp"
 #include "workflows/callbacks.hpp"
 namespace waymark::workflows {
@@ -31,6 +32,7 @@ struct LocalizeRequest {
   bool timing = false;                ///< a .csv has the duration of each update
   std::int64_t threads = 0;           ///< 0: one per processor
   std::string command_line = {};      ///< recorded in a written map
+  localization::TrackWatcher watch = {};  ///< receives the growing track of a filter; empty: nobody watches
 };
 
 /// Track of a robot.

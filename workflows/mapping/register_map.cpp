@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "core/error.hpp"
@@ -112,17 +111,16 @@ void check_register(const RegisterRequest& request) {
 }
 
 std::string text_of(const localization::CircleRegistration& placed, std::size_t craters) {
-  constexpr double kDegrees = 180 / std::numbers::pi;
   const localization::CircleFit& fit = *placed.fit;
   const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
   return fmt::format(
       "scale {:.5g} ({:.2g}), yaw {:.3f} ({:.2g}) degrees, middle at {:.1f}, {:.1f} ({:.2g}, {:.2g}) m; "
-      "standard "
-      "deviations in parentheses\n  {} of {} craters match within {:.3g} m; wrong with a probability of "
+      "standard deviations in parentheses\n  {} of {} craters match within {:.3g} m; wrong with a "
+      "probability of "
       "{:.2g}\n",
       std::exp(fit.catalogue_from_map.log_scale), std::exp(fit.catalogue_from_map.log_scale) * sd(3),
-      fit.catalogue_from_map.yaw * kDegrees, sd(2) * kDegrees, fit.pivot.x(), fit.pivot.y(), sd(0), sd(1),
-      fit.matched, craters, fit.residual, placed.wrong);
+      to_degrees(Radians{fit.catalogue_from_map.yaw}).value, to_degrees(Radians{sd(2)}).value, fit.pivot.x(),
+      fit.pivot.y(), sd(0), sd(1), fit.matched, craters, fit.residual, placed.wrong);
 }
 
 }  // namespace

@@ -37,16 +37,6 @@ void check_degrees(const std::string& option, double x, double y, const Crs& crs
       "", "e.g. 8.0 46.5; for metres name their CRS: --crs EPSG:...");
 }
 
-/// Parses "prominence=300" of --min or --max.
-std::pair<std::string, double> parse_bound(const std::string& option, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos)
-    throw Error(ErrorCode::usage, option + " takes FEATURE=VALUE, is '" + text + "'", "",
-                "e.g. " + option + " prominence=300");
-  const std::string feature = text.substr(0, equals);
-  return {feature, parse_number(option + " " + feature, text.substr(equals + 1))};
-}
-
 CrsTransform::XY in_map(const std::string& option, const std::vector<double>& point, const Crs& from,
                         const geodb::MapStore& map) {
   check_degrees(option, point[0], point[1], from);
@@ -74,11 +64,11 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
   if (!request.sensor.empty()) sensor_ = find_sensor(request.sensor);
   query_.sensor = sensor_.get();
   for (const std::string& text : request.min_features) {
-    const auto [feature, value] = parse_bound("--min", text);
+    const auto [feature, value] = parse_feature_value("--min", text);
     query_.features.push_back({.feature = feature, .min_value = value});
   }
   for (const std::string& text : request.max_features) {
-    const auto [feature, value] = parse_bound("--max", text);
+    const auto [feature, value] = parse_feature_value("--max", text);
     query_.features.push_back({.feature = feature, .max_value = value});
   }
   set_centre(request, map);

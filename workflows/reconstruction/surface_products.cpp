@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "exporters/raster/cog_file.hpp"
+#include "workflows/mapping/image_stages.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -106,17 +107,8 @@ std::string job_text(const PosedImages& posed, const pipeline::SurfaceHeights& d
   }
   JobJson stages = JobJson::array(
       {load, JobJson{{"stage", "load_images"}, {"files", files}, {"cameras", "cameras.json"}}});
-  std::vector<const char*> names;
-  if (suns) names.push_back("check_sun");
-  for (const char* name :
-       {"rocks_from_shadows", "craters_from_bowls", "project_to_ground", "reject_implausible"})
-    names.push_back(name);
-  if (suns) names.push_back("reject_terrain_shadows");
-  for (const char* name :
-       {"reject_rim_shadows", "align_images", "merge_observations", "value_landmarks", "find_mountain_tops",
-        "join_mountain_tops", "measure_isolation", "map_mountain_tops"})
-    names.push_back(name);
-  for (const char* name : names) stages.push_back({{"stage", name}});
+  for (const std::string& stage : image_stages({.mountain_tops = true}, suns))
+    stages.push_back({{"stage", stage}});
   return JobJson{{"name", "Map from pictures"}, {"stages", stages}}.dump(2) + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/atomic_file.hpp"
@@ -20,6 +21,7 @@
 #include "testbed/landing/lit_terrain.hpp"
 #include "testbed/scenario.hpp"
 #include "testbed/scene_files.hpp"
+#include "workflows/mapping/image_stages.hpp"
 #include "workflows/simulation/write_forest.hpp"
 
 namespace waymark::workflows {
@@ -64,6 +66,20 @@ void check_other_images(const fs::path& images, const std::vector<testbed::Shot>
   }
 }
 
+/// Returns the job that maps the files of a landing; names are relative to its own folder.
+std::string landing_job(const testbed::Scenario& scenario) {
+  using JobJson = nlohmann::ordered_json;
+  JobJson dem{{"stage", "load_dem"},
+              {"files", {"dem.tif"}},
+              {"nodata", "unknown"},
+              {"height_sd", scenario.dem.height_sd}};
+  if (scenario.crs == "local") dem["crs"] = "local";
+  JobJson stages = JobJson::array(
+      {dem, JobJson{{"stage", "load_images"}, {"files", {"images/*.png"}}, {"cameras", "cameras.json"}}});
+  for (const std::string& stage : image_stages({})) stages.push_back({{"stage", stage}});
+  return JobJson{{"name", scenario.name}, {"stages", stages}}.dump(2) + "\n";
+}
+
 void write_site(const fs::path& folder, const testbed::Scenario& scenario, const testbed::Scene& scene,
                 const std::vector<testbed::Shot>& shots, const Crs& crs) {
   for (const char* part : {"images", "truth"}) make_folder(folder / part);
@@ -80,7 +96,7 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
   }
   const testbed::TruthTables truth = testbed::truth_tables(scenario, scene, shots);
   write_file(folder / "cameras.json", testbed::camera_file(scenario, shots, false));
-  write_file(folder / "job.json", testbed::job_file(scenario));
+  write_file(folder / "job.json", landing_job(scenario));
   write_file(folder / "scenario.json", testbed::scenario_json(scenario));
   write_file(folder / "truth/cameras.json", testbed::camera_file(scenario, shots, true));
   write_file(folder / "truth/landmarks.csv", truth.landmarks);

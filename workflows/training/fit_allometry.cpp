@@ -12,7 +12,7 @@
 namespace waymark::workflows {
 namespace {
 
-void check_output(const std::string& output) {
+void check_table_output(const std::string& output) {
   const std::filesystem::path path(output);
   if (path.extension() != ".csv")
     throw Error(ErrorCode::usage, "an allometry table is written as .csv", output,
@@ -37,7 +37,7 @@ std::vector<pipeline::Allometry> fit_table(const importers::MeasuredTrees& read,
 }  // namespace
 
 std::vector<pipeline::Allometry> fit_allometry(const AllometryRequest& request, const Callbacks& callbacks) {
-  if (!request.output.empty()) check_output(request.output);
+  if (!request.output.empty()) check_table_output(request.output);
   if (request.min_trees < 5)
     throw Error(ErrorCode::usage, fmt::format("--min-trees is {}, below 5", request.min_trees), "",
                 "leave it out for the usual 20");

@@ -87,5 +87,23 @@ TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
             "waymark run 'my job.json' --work work --unit sum_squares/map\n");
 }
 
+TEST_F(PlanTest, EndsInTheMapWithTheSettings) {
+  const PlanCommand call{.job = "j.json", .work = "w", .settings = {"a.b=c d"}, .map = "{m}.gpkg"};
+  const std::string run = "waymark run j.json --work w --set 'a.b=c d'";
+  const std::string snakefile = plan_as_snakemake(the_plan(), call);
+  EXPECT_THAT(snakefile, testing::StartsWith("rule map:\n    input: \"w/list_numbers/map/"));
+  EXPECT_THAT(snakefile,
+              HasSubstr("\n    output: \"{m}.gpkg\"\n    shell: \"" + run + " -o '{{m}}.gpkg'\"\n"));
+  EXPECT_THAT(plan_as_slurm(the_plan(), call),
+              HasSubstr("map=$(sbatch --parsable --job-name=map "
+                        "--dependency=afterok:$stage_0:$stage_1:$stage_2 --wrap "));
+  EXPECT_THAT(
+      plan_as_parallel(the_plan(), {.job = "j.json", .work = "w", .map = "m.gpkg"}),
+      testing::EndsWith("waymark run j.json --work w --unit list_numbers/map\n"
+                        "seq 2 | parallel --halt now,fail=1 'waymark run j.json --work w --shard {}/2'\n"
+                        "waymark run j.json --work w --unit sum_squares/map\n"
+                        "waymark run j.json --work w -o m.gpkg\n"));
+}
+
 }  // namespace
 }  // namespace waymark::test

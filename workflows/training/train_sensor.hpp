@@ -16,6 +16,6 @@ struct SensorFitRequest {
 /// Fits range, view, noise and detection of a sensor (localization/sensor_fit.hpp) and gives equal weights to
 /// the features that it measured. Uses landmarks of confidence 0.5 or more. Throws Error{usage} without logs
 /// or map, Error{input} for logs without true poses. Messages: one summary.
-SensorProfile fit_sensor(const SensorFitRequest& request, const Callbacks& callbacks = {});
+SensorProfile train_sensor(const SensorFitRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

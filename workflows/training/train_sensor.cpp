@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workflows/training/fit_sensor.hpp"
+#include "workflows/training/train_sensor.hpp"
 
 #include <fmt/format.h>
 
@@ -64,7 +64,7 @@ std::vector<FeatureWeight> equal_weights(const std::vector<localization::Sightin
 
 }  // namespace
 
-SensorProfile fit_sensor(const SensorFitRequest& request, const Callbacks& callbacks) {
+SensorProfile train_sensor(const SensorFitRequest& request, const Callbacks& callbacks) {
   check(request);
   const OpenedMap opened = open_robot_map(request.map, nullptr, false, kMinConfidence);
   const localization::LandmarkGrid grid(all_landmarks(opened.map, nullptr));

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Detectors: rocks, craters and trees in images; mountain tops, craters and trees in rasters of heights."""
+
+import csv
+import io
+import json
+import os
+import tempfile
+
+import numpy as np
+
+from . import _waymark
+from ._arrays import image_path, raster_files
+from ._call import call, keywords
+from ._describe import takes
+from .mapping import run
+
+
+def _table(text):
+    header, *rows = csv.reader(io.StringIO(text))
+    table = np.empty(len(rows), dtype=[(name, np.float64) for name in header])
+    for i, row in enumerate(rows):
+        table[i] = tuple(float(cell) if cell else np.nan for cell in row)
+    return table
+
+
+@takes("detect")
+def detect(kind, image, *, progress=None, **options):
+    """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
+
+    image is a file or an array: (rows, columns) or (rows, columns, bands). The columns are those of
+    docs/reference/detection_table.md: pixels, and metres where the pixel size is known. The options are those of
+    `waymark detect`, with underscores.
+    """
+    path, kept = image_path(image)
+    table, _ = call(_waymark.detect, keywords(kind=kind, image=path, **options), progress=progress)
+    del kept
+    return _table(table)
+
+
+@takes("detect", but=["kind"])
+def find_rocks(image, *, progress=None, **options):
+    """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation."""
+    return detect("rocks", image, progress=progress, **options)
+
+
+@takes("detect", but=["kind"])
+def find_craters(image, *, progress=None, **options):
+    """Returns the craters of an image: see `detect`."""
+    return detect("craters", image, progress=progress, **options)
+
+
+def _with_options(job, options):
+    """Sets each option in the only stage of the job that has it."""
+    for name, value in options.items():
+        stages = [stage for stage in job["stages"] if name in stage]
+        if len(stages) != 1:
+            raise TypeError(f"{len(stages)} stages of {job['name']} have an option '{name}'")
+        stages[0][name] = value
+    return job
+
+
+def _shortcut(command, files, canopy, output, progress, options):
+    job = json.loads(_waymark.shortcut_job(command, files, canopy))
+    _with_options(job, options)
+    if output is not None:
+        return run(job, output, progress=progress).map
+    with tempfile.TemporaryDirectory(prefix="waymark_") as folder:
+        return run(job, os.path.join(folder, "map.gpkg"), progress=progress).map.landmarks(_FOUND[command])
+
+
+_FOUND = {"peaks": "mountain_top", "craters": "crater", "trees": "tree"}
+
+
+def find_mountain_tops(dem, *, output=None, transform=None, crs=None, cell=1.0, progress=None, **options):
+    """Returns the mountain tops of a DEM with exact prominence and isolation, as `waymark peaks`.
+
+    dem is an array, a file or a list of them. An array takes `transform` and `crs` as rasterio has them; without a
+    CRS it is in metres, with square cells of the side `cell`. With `output` the map is written and returned as a Map,
+    else the landmarks as a structured array. Options: min_prominence, min_isolation, nodata, base, ...
+    """
+    with raster_files(dem, transform, crs, cell) as files:
+        return _shortcut("peaks", files, {}, output, progress, _crs_of_array(options, crs, dem))
+
+
+def find_craters_in_dem(dem, *, output=None, transform=None, crs=None, cell=1.0, progress=None, **options):
+    """Returns the craters of a DEM, as `waymark craters`; arguments as for `find_mountain_tops`."""
+    with raster_files(dem, transform, crs, cell) as files:
+        return _shortcut("craters", files, {}, output, progress, _crs_of_array(options, crs, dem))
+
+
+def find_trees(chm=None, *, dsm=None, dtm=None, las=None, flights=None, crowns=None, output=None, transform=None,
+               crs=None, cell=1.0, progress=None, **options):
+    """Returns the trees of a canopy, as `waymark trees`.
+
+    chm is a canopy height model (array, file or list), or else give dsm and dtm, or las. Other arguments as for
+    `find_mountain_tops`. Options: preset, min_height, allometry, species, ...
+    """
+    given = {name: raster for name, raster in (("chm", chm), ("dsm", dsm), ("dtm", dtm)) if raster is not None}
+    canopy = keywords(las=las, flights=flights, crowns=crowns)
+    options = _crs_of_array(options, crs, *given.values())
+    return _find_trees(given, canopy, (transform, crs, cell), output, progress, options)
+
+
+def _find_trees(given, canopy, place, output, progress, options):
+    if not given:
+        return _shortcut("trees", [], canopy, output, progress, options)
+    name, raster = given.popitem()
+    with raster_files(raster, *place) as files:
+        return _find_trees(given, {**canopy, name: files}, place, output, progress, options)
+
+
+def _crs_of_array(options, crs, *rasters):
+    """An array without a CRS is local; files keep their own unless `crs` is given."""
+    if crs is not None:
+        return {**options, "crs": str(crs)}
+    if any(isinstance(raster, np.ndarray) for raster in rasters):
+        return {**options, "crs": "local"}
+    return options

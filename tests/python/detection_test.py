@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+import csv
+import io
+import json
+
+import numpy as np
+import pytest
+from conftest import DEM, SOURCE, assert_same_as_csv, program
+
+import waymark
+
+
+@pytest.fixture(scope="module")
+def photo(tmp_path_factory):
+    """An image of a simulated landing site, as a file and as an array, and its light."""
+    gdal = pytest.importorskip("osgeo.gdal")
+    folder = tmp_path_factory.mktemp("photo") / "site"
+    scenario = json.loads((SOURCE / "sample_data/mars_landing/scenario.json").read_text())
+    file = folder.parent / "scenario.json"
+    file.write_text(json.dumps(scenario))
+    counts = waymark.simulate(file, folder)
+    images = sorted((folder / "images").glob("*.png")) or sorted((folder / "images").glob("*.tif"))
+    assert len(images) == counts["images"] > 0
+    pixels = gdal.Open(str(images[-1])).ReadAsArray()
+    return images[-1], pixels
+
+
+def detections(command, path, tmp_path, *words):
+    out = tmp_path / "out.csv"
+    program("detect", command, path, "-o", out, *words)
+    return out.read_text()
+
+
+@pytest.mark.parametrize("kind", ["rocks", "craters"])
+def test_an_array_gives_the_objects_of_its_file(photo, tmp_path, kind):
+    path, pixels = photo
+    expected = detections(kind, path, tmp_path, "--gsd", 0.5, "--image-sun-angle", -15, "--sun-elevation", 35)
+    light = dict(gsd=0.5, image_sun_angle=-15, sun_elevation=35)
+    found = {"rocks": waymark.find_rocks, "craters": waymark.find_craters}[kind](pixels, **light)
+    assert_same_as_csv(found, expected)
+    assert_same_as_csv(waymark.detect(kind, path, **light), expected)
+
+
+def test_any_layout_of_memory_gives_the_same(photo):
+    pixels = photo[1]
+    light = dict(image_sun_angle=-15)
+    found = waymark.find_rocks(pixels, **light)
+    assert len(found) > 0
+    for same in (np.asfortranarray(pixels), pixels.astype(np.uint16).astype(">u2"), np.repeat(pixels, 2, axis=1)[:, ::2]):
+        if same.dtype == pixels.dtype:
+            assert waymark.find_rocks(same, **light).tobytes() == found.tobytes()
+        else:
+            assert len(waymark.find_rocks(same, **light)) > 0
+
+
+def test_an_image_that_cannot_be_read_is_a_clear_error(photo):
+    with pytest.raises(TypeError, match="complex128"):
+        waymark.find_rocks(np.zeros((8, 8), complex))
+    with pytest.raises(TypeError, match=r"\(64,\)"):
+        waymark.find_rocks(np.zeros(64, np.uint8))
+    with pytest.raises(waymark.UsageError):
+        waymark.detect("houses", photo[1])
+
+
+def test_no_contrast_is_a_warning_and_no_rocks():
+    with pytest.warns(waymark.Warning):
+        assert len(waymark.find_rocks(np.full((64, 64), 7, np.uint8), image_sun_angle=0)) == 0
+
+
+def test_a_dem_array_has_the_mountain_tops_of_its_file(peaks_map):
+    gdal = pytest.importorskip("osgeo.gdal")
+    file = gdal.Open(str(DEM))
+    left, width, _, top, _, height = file.GetGeoTransform()
+    band = file.GetRasterBand(1)
+    heights = np.ma.masked_equal(band.ReadAsArray(), band.GetNoDataValue())
+    found = waymark.find_mountain_tops(heights, transform=(width, 0, left, 0, height, top), crs="EPSG:4269",
+                                       min_prominence=50)
+    expected = waymark.open(peaks_map).landmarks()
+    np.testing.assert_array_equal(found["prominence"], expected["prominence"])
+    np.testing.assert_allclose(found["x"], expected["x"], atol=1e-9)
+    from_file = waymark.find_mountain_tops(DEM, min_prominence=50)
+    assert from_file.tobytes() == expected.tobytes()
+
+
+def test_a_dem_without_a_crs_is_in_metres():
+    """Two cones 40 and 30 m high, 100 cells apart; the saddle between them is at 0."""
+    row, column = np.mgrid[0:100, 0:200]
+    cone = lambda r, c, height: np.maximum(height - np.hypot(row - r, column - c), 0)
+    tops = waymark.find_mountain_tops(cone(50, 50, 40) + cone(50, 150, 30), cell=2.0, min_prominence=5)
+    assert sorted(tops["elevation"]) == [30, 40]
+    low = tops[tops["elevation"] == 30][0]
+    assert low["prominence"] == 30
+    assert (low["x"], low["y"]) == (2 * 150, -2 * 50)  # the first cell is at 0, 0
+    # The nearest higher cell of the higher cone: 31 m or more within 9 cells of its top.
+    assert low["isolation"] == pytest.approx(2 * 91, abs=2)
+
+
+def test_trees_of_a_canopy_array_are_where_they_were_put(tmp_path):
+    row, column = np.mgrid[0:120, 0:120]
+    places = [(30, 30), (30, 80), (80, 50)]
+    canopy = np.max([np.maximum(20 - 1.5 * np.hypot(row - r, column - c), 0) for r, c in places], axis=0)
+    trees = waymark.find_trees(canopy, cell=0.5, preset="conifer")
+    found = sorted((round(-tree["y"] / 0.5), round(tree["x"] / 0.5)) for tree in trees)
+    assert found == sorted(places)
+    np.testing.assert_allclose(trees["height"], 20)
+    map = waymark.find_trees(canopy, cell=0.5, preset="conifer", output=tmp_path / "trees.gpkg")
+    assert_same_as_csv(map.landmarks("tree"), program("query", map.path, "--format", "csv"))
+
+
+def test_options_of_no_stage_are_refused():
+    with pytest.raises(TypeError, match="min_prominenz"):
+        waymark.find_mountain_tops(DEM, min_prominenz=5)
+    with pytest.raises(waymark.UsageError, match="min_prominence"):
+        waymark.find_mountain_tops(DEM, min_prominence=-5)
