@@ -13,7 +13,7 @@ void register_type_pole(TypeRegistry& types) {
       .attributes = {{"kind", "", Kind::text, "Lamp, mast, bollard or as the source calls it"}},
       .evidence = EvidenceModel::upright,
       .body = {"diameter", 0.5},
-      // People and wheels look like posts, and move on (docs/evaluation/2026-11-23-indoor.md).
+      // Assumed: people and wheels look like posts, and move on.
       .existence = {.further_detection = 0.3, .missed_image = 0.3},
       .drawn_as = Solid::cylinder,
       .colour = "#ad1457",

@@ -7,8 +7,7 @@ namespace waymark::localization {
 
 namespace {
 
-// Fraction of the detections that other scans of the same place repeat
-// (docs/evaluation/2026-11-23-indoor.md).
+// Assumed: furniture and people imitate corners and ends of walls.
 constexpr double kCornerConfidence = 0.7, kEndConfidence = 0.7;
 
 struct CornerType {
