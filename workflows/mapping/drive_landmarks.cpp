@@ -20,7 +20,7 @@ namespace {
 
 using localization::SeenLandmark;
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBeamSlack = 0.1;  // m by which a beam may end before a landmark that it shows
 constexpr double kMinCosine = 0.3;  // of the angle between the open side and the sensor
 
@@ -35,7 +35,7 @@ Observation observation_of(const SeenLandmark& s, const DriveLook& look, const T
   o.type = *s.type;
   o.source = look.name;
   o.position.xyz << sensor.at() + to, 0;
-  o.covariance.setConstant(kUnknown);
+  o.covariance.setConstant(kNotMeasured);
   const Eigen::Matrix2d r = turn.toRotationMatrix();
   o.covariance.topLeftCorner<2, 2>() =
       r * Eigen::Vector2d(s.range_sd * s.range_sd, across).asDiagonal() * r.transpose() +
@@ -57,7 +57,7 @@ double direction_of(const Landmark& landmark, const LandmarkType& type) {
   for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i)
     if (type.features[i].scale == Scale::direction && landmark.features[i].known())
       return landmark.features[i].value;
-  return kUnknown;
+  return kNotMeasured;
 }
 
 void value_landmark(Landmark& landmark, std::span<const Observation* const> evidence,
@@ -96,7 +96,7 @@ std::vector<DriveLook> looks_of_drive(const localization::RobotLog& log,
   std::vector<DriveLook> looks;
   std::set<std::string> names;
   std::optional<localization::Pose2> last;
-  double last_time = kUnknown;
+  double last_time = kNotMeasured;
   for (const localization::LogEvent& event : log.events) {
     const auto* scan = std::get_if<localization::LaserScan>(&event.what);
     const auto* seen = std::get_if<localization::SightingSet>(&event.what);

@@ -21,7 +21,7 @@
 namespace waymark::workflows {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotStated = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kEditNames[] = {"accept", "reject", "add", "move"};
 
 struct OutlineCircle {
@@ -66,7 +66,7 @@ void check_edit(const EditRequest& request) {
 }
 
 Eigen::Matrix3d stated_covariance(double sd) {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kUnknown);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(kNotStated);
   if (sd > 0) covariance.topLeftCorner<2, 2>() = Eigen::Matrix2d::Identity() * sd * sd;
   return covariance;
 }

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kClassNames[] = {"safe", "uncertain", "hazard", "unknown"};
 
-bool is_map(const std::string& input) {
+bool has_map_suffix(const std::string& input) {
   return fs::path(input).extension() == ".gpkg";
 }
 
@@ -146,7 +146,7 @@ void check(const HazardMapRequest& request) {
   };
   if (fs::path(request.output).extension() != ".tif")
     refuse(fmt::format("the hazard map '{}' does not end in .tif", request.output), "it is a GeoTIFF");
-  if (!request.polygons.empty() && !is_map(request.polygons))
+  if (!request.polygons.empty() && !has_map_suffix(request.polygons))
     refuse(fmt::format("the polygons '{}' do not end in .gpkg", request.polygons), "they are a GeoPackage");
   if (!request.nav2.empty() && fs::path(request.nav2).extension() != ".yaml")
     refuse(fmt::format("the map of Nav2 '{}' does not end in .yaml", request.nav2), "");
@@ -170,7 +170,7 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   check(request);
   const planning::Vehicle vehicle = planning::find_vehicle(request.vehicle);
   std::optional<geodb::MapStore> map;
-  if (is_map(request.input))
+  if (has_map_suffix(request.input))
     map.emplace(geodb::MapStore::open(request.input));
   else if (!request.dem.empty())
     throw Error(ErrorCode::usage, "--dem is the elevation model of a map, and the input is a DEM itself",

@@ -19,7 +19,7 @@
 namespace waymark::workflows {
 namespace {
 
-constexpr int kSide = 640;              // pixels of a scene of craters
+constexpr int kSceneSide = 640;         // pixels of a scene of craters
 constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
 constexpr std::int64_t kCraterScenes = 120, kTreeForests = 120;
 constexpr int kParts = 3;  // of the images, left out in turn
@@ -72,7 +72,7 @@ CraterExamples make_crater_examples(std::int64_t scenes, const Callbacks& callba
     // In turn plain shading of relief that no testbed makes, and renderings of the testbed.
     const auto index = static_cast<std::uint64_t>(i / 2);
     const pipeline::LabelledScene scene =
-        i % 2 == 0 ? pipeline::shaded_scene(index, kSide) : make_testbed_scene(index, kSide);
+        i % 2 == 0 ? pipeline::shaded_scene(index, kSceneSide) : make_testbed_scene(index, kSceneSide);
     const auto bowls = make_crater_examples(scene, index);
     examples.bowls.insert(examples.bowls.end(), bowls.begin(), bowls.end());
     const auto patches = pipeline::make_patch_examples(scene, static_cast<std::uint64_t>(i));
@@ -105,8 +105,9 @@ TrainResult train_craters(const TrainRequest& request, const Callbacks& callback
           callbacks.summary(fmt::format("looks, network {} of {}, round {}: loss {:.4f}\n", net + 1,
                                         kNetworks, round + 1, loss));
         }));
-  model.trained_on = fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}",
-                                 scenes - 1, kSide, examples.bowls.size(), training.rounds, request.seed);
+  model.trained_on =
+      fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes - 1,
+                  kSceneSide, examples.bowls.size(), training.rounds, request.seed);
   TrainResult result{pipeline::as_text(model)};
   if (!request.output.empty()) write_crater_model(request, result.model);
   return result;
