@@ -81,11 +81,12 @@ std::unordered_map<std::string, std::string> pair_names(const geodb::MapContents
   return name_of;
 }
 
-// Returns the type whose landmarks have a name.
+// Returns the type whose landmarks have a prominence and a name.
 std::optional<TypeId> type_with_name(const TypeRegistry& types) {
   for (TypeId type = 0; type < types.size(); ++type)
-    for (const AttributeSpec& attribute : types[type].attributes)
-      if (attribute.name == "name") return type;
+    if (std::ranges::count(types[type].attributes, "name", &AttributeSpec::name) > 0 &&
+        std::ranges::count(types[type].features, "prominence", &FeatureSpec::name) > 0)
+      return type;
   return {};
 }
 
