@@ -63,8 +63,8 @@ class EkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -135,8 +135,8 @@ class GlobalSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -207,8 +207,8 @@ class GraphSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -295,8 +295,8 @@ class OdometrySettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -355,8 +355,8 @@ class PfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -427,8 +427,8 @@ class SlamSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -511,8 +511,8 @@ class UkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Landmarks to detect in laser scans
-    scan_features: bool  # Use the diameters and radii measured in scans
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, rocks, stems, walls; auto: those whose types the map has
+    scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
@@ -722,7 +722,7 @@ def evaluate_track(track: Any, truth: Any, *, drive: Any = ..., align: _Path = .
 
     Keywords:
         align: "none", "se2" or "sim2"
-        log_format: waymark, csv, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
+        log_format: waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty: recognised by what is there
         columns: csv: target=expression, separated by commas (import_csv_log)
         robot: MRCLAM: which of the five; 0: the robot of the named file
         max_gap: s between two true poses that may be interpolated
@@ -818,7 +818,7 @@ def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ...
         sensor: profile of eq. 8, for `quality=paper` and maps without confidence; empty: equal weights
         min_confidence: landmarks less probable than this are not used
         seed: of all random numbers
-        log_format: waymark, csv, mrclam, victoria-park, isam, g2o, toro; empty: recognised by what is there
+        log_format: waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty: recognised by what is there
         columns: csv: target=expression, separated by commas (import_csv_log)
         robot: MRCLAM: which of the five; 0: the robot of the named file
         use_identities: identities in the log are used for data association
