@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/engine/runner.hpp"
 
+#include <fmt/format.h>
+
 #include <iostream>
 
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "core/error.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/output_path.hpp"
 
@@ -19,20 +22,23 @@ class PlanJob final : public Command {
         .group = Group::make,
         .summary = "Print the units of work of a job, for a scheduler",
         .about =
-            "Each unit is one stage on one tile or on the whole map, with the units it waits for. Machines "
-            "that share the --work folder need share nothing else.",
-        .arguments = {file_word("JOB.json", &job_, "Job file"),
-                      Argument{"--as", "FORM", &as_,
-                               "JSON lines, a Snakefile, or a script of sbatch calls or of GNU parallel"}
-                          .one_of({"jsonl", "snakemake", "slurm", "parallel"})
-                          .or_else("jsonl"),
-                      Argument{"--work", "DIR", &work_, "Folder all units share"}
-                          .offering(Offer::folder)
-                          .or_else("work"),
-                      Argument{"-o,--output", "MAP.gpkg", &map_, "Map that the last call of the plan writes"}
-                          .offering(Offer::file),
-                      {"--set", "STAGE.OPTION=VALUE", &settings_,
-                       "Change an option of the job; may be repeated"}},
+            "Each unit is one stage on one tile or on the whole map, with the units it waits for. For a "
+            "scheduler the units of a stage are divided into shards, one call each. Machines that share the "
+            "--work folder need share nothing else.",
+        .arguments =
+            {file_word("JOB.json", &job_, "Job file"),
+             Argument{"--as", "FORM", &as_,
+                      "JSON lines, a Snakefile, or a script of sbatch calls or of GNU parallel"}
+                 .one_of({"jsonl", "snakemake", "slurm", "parallel"})
+                 .or_else("jsonl"),
+             Argument{"--work", "DIR", &work_, "Folder all units share"}
+                 .offering(Offer::folder)
+                 .or_else("work"),
+             Argument{"-o,--output", "MAP.gpkg", &map_, "Map that the last call of the plan writes"}.offering(
+                 Offer::file),
+             Argument{"--shards", "N", &shards_, "Most calls per stage: arrays of a site are limited"}
+                 .or_else("64"),
+             {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
         .examples = {{"waymark plan job.json --as jsonl", "One unit per line, done or not"},
                      {"waymark plan job.json --as snakemake -o map.gpkg > Snakefile && snakemake -j 8",
                       "Run by Snakemake"},
@@ -41,13 +47,20 @@ class PlanJob final : public Command {
   }
 
   int run(const Session& session) override {
+    if (shards_ < 1)
+      throw Error(ErrorCode::usage, fmt::format("--shards {} leaves no call for a stage", shards_), "",
+                  "give 1 or more");
     if (!map_.empty()) workflows::check_map_output(map_);
     const pipeline::Job job = workflows::load_job(job_, settings_);
     const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
     const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
     const pipeline::Plan units = pipeline::plan(job.pipeline, workflows::run_options(request, callbacks));
-    const pipeline::PlanCommand call{.job = job_, .work = work_, .settings = settings_, .map = map_};
+    const pipeline::PlanCommand call{.job = job_,
+                                     .work = work_,
+                                     .settings = settings_,
+                                     .map = map_,
+                                     .max_shards = static_cast<std::size_t>(shards_)};
     std::cout << (as_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
                   : as_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
                   : as_ == "parallel" ? pipeline::plan_as_parallel(units, call)
@@ -57,6 +70,7 @@ class PlanJob final : public Command {
 
  private:
   std::string job_, as_ = "jsonl", work_ = "work", map_;
+  long shards_ = 64;
   std::vector<std::string> settings_;
 };
 

@@ -27,6 +27,8 @@ class Run final : public Command {
         {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
     all.push_back(
         {"--shard", "I/N", &shard_, "Run the I-th of N shards; all shards use the same --work folder"});
+    all.push_back({"--stage", "NAME", &request_.stage,
+                   "Run this stage only, or with --shard its units of the shard; other results are reused"});
     all.push_back({"--unit", "ID", &request_.unit, "Run this unit of work only; `waymark plan` lists them"});
     return {
         .name = "run",
@@ -42,7 +44,9 @@ class Run final : public Command {
             {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
              "The same job with another threshold"},
             {"waymark run job.json --check", "Is the job sound?"},
-            {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"}}};
+            {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"},
+            {"waymark run job.json --work /shared/work --stage find_rocks --shard 3/8",
+             "The third of eight shards of one stage"}}};
   }
 
   int run(const Session& session) override {

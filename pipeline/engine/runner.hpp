@@ -52,12 +52,15 @@ struct PlanCommand {
   std::string work;  ///< work folder shared by all machines
   std::string program = "waymark";
   std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
-  std::string map = {};  ///< the last call writes it; empty: the plan ends with the last stage
+  std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
+  std::size_t max_shards = 64;  ///< calls per stage over tiles or images
 };
 
 /// Returns one JSON object per line: unit, stage, item, fingerprint, done, after (ids).
 std::string plan_as_jsonl(const Plan& plan);
-/// Returns a Snakefile with one rule per unit and its manifest as output, and one for the map.
+/// Returns a Snakefile with one rule per stage, whose wildcard is the shard, and one for the map. The empty
+/// files that mark finished shards stand in the work folder, named by what determines the results of the
+/// stage.
 std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command);
 /// Returns a shell script of sbatch calls: per stage one job or one array of shards, after the stages it
 /// reads.
@@ -86,6 +89,7 @@ struct RunOptions {
   int threads = 0;  ///< 0: all of the machine
   std::optional<Shard> shard = {};
   std::string unit = {};        ///< run only this unit: "find_mountain_tops/tile_000003"
+  std::string stage = {};       ///< run only this stage; with `shard`: its units of the shard
   std::string rerun_from = {};  ///< re-run this stage and its dependents
   /// Map-scope artifacts that the caller will read. The others are released after their last reader; empty:
   /// all are kept.

@@ -39,7 +39,7 @@ void check_files(const CanopyFiles& canopy) {
 }
 
 void check_request(const pipeline::Job& job, const MapRequest& request) {
-  const bool partial = request.shard || !request.unit.empty();
+  const bool partial = request.shard || !request.stage.empty() || !request.unit.empty();
   if (partial && request.work.empty())
     throw Error(ErrorCode::usage, "a part of a job needs --work DIR, which all parts use");
   if (request.map.empty() && !partial && !request.check)
@@ -129,6 +129,7 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   options.progress = callbacks.progress;
   options.hash_file = importers::hash_file;
   options.shard = request.shard;
+  options.stage = request.stage;
   options.unit = request.unit;
   options.work = request.work;
   options.max_bytes_in_memory = kScratchInMemory;

@@ -37,6 +37,7 @@ struct MapRequest {
   std::string work = {};        ///< folder of finished work; empty: everything in memory
   std::string rerun_from = {};  ///< stage to re-run with its dependents; empty: finished work is kept
   std::optional<pipeline::Shard> shard = {};  ///< part of the job to run; needs `work`
+  std::string stage = {};                     ///< single stage to run, or its part in `shard`; needs `work`
   std::string unit = {};                      ///< single unit of work to run; needs `work`
   bool check = false;                         ///< check options, wiring and files only
   bool with_dem = false;                      ///< store the DEM in the map

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "pipeline/engine/runner.hpp"
+#include "pipeline/engine/sha256.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -54,8 +55,7 @@ struct StageJobs {
   std::size_t shards = 0;       ///< 0: one job
 };
 
-std::vector<StageJobs> stage_jobs(const Plan& plan) {
-  constexpr std::size_t kMaxShards = 64;
+std::vector<StageJobs> stage_jobs(const Plan& plan, const PlanCommand& command) {
   std::vector<StageJobs> all;
   for (std::size_t stage = 0; stage < plan.stage_count(); ++stage) {
     const std::size_t begin = plan.begins[stage], end = plan.begins[stage + 1];
@@ -65,22 +65,33 @@ std::vector<StageJobs> stage_jobs(const Plan& plan) {
     for (const std::size_t read : first.after)
       jobs.after.insert(
           static_cast<std::size_t>(std::ranges::upper_bound(plan.begins, read) - plan.begins.begin()) - 1);
-    if (first.index()) jobs.shards = std::min(end - begin, kMaxShards);
+    if (first.index()) jobs.shards = std::min(end - begin, command.max_shards);
     all.push_back(std::move(jobs));
   }
   return all;
 }
 
 /// Returns the call of a job; `shard` stands for the number of the shard.
-std::string job_command(const Plan& plan, const StageJobs& jobs, const PlanCommand& command,
-                        const std::string& shard) {
-  if (jobs.shards == 0)
-    return fmt::format("{} --unit {}", run_command(command), plan.units[plan.begins[jobs.stage]].id());
-  return fmt::format("{} --shard {}/{}", run_command(command), shard, jobs.shards);
+std::string job_command(const StageJobs& jobs, const PlanCommand& command, const std::string& shard) {
+  const std::string call = fmt::format("{} --stage {}", run_command(command), jobs.name);
+  return jobs.shards == 0 ? call : fmt::format("{} --shard {}/{}", call, shard, jobs.shards);
 }
 
-std::string manifest(const Unit& unit, const PlanCommand& command) {
-  return python_string(fmt::format("{}/{}/{}/manifest.json", command.work, unit.id(), unit.fingerprint));
+/// Returns the names of the empty files that mark the finished shards of a job; {shard} stands for the
+/// number. They differ where any result of the stage does.
+std::string shard_mark(const Plan& plan, const StageJobs& jobs, const PlanCommand& command) {
+  std::string fingerprints;
+  for (std::size_t i = plan.begins[jobs.stage]; i < plan.begins[jobs.stage + 1]; ++i)
+    fingerprints += plan.units[i].fingerprint;
+  const std::string stem =
+      fmt::format("{}/shards/{}-{}", command.work, jobs.name, sha256(fingerprints).substr(0, 16));
+  return jobs.shards == 0 ? stem : fmt::format("{}/{{shard}}_of_{}", stem, jobs.shards);
+}
+
+/// Returns the marks of all shards of a job as an input of a Snakemake rule.
+std::string all_marks(const Plan& plan, const StageJobs& jobs, const PlanCommand& command) {
+  const std::string mark = python_string(shard_mark(plan, jobs, command));
+  return jobs.shards == 0 ? mark : fmt::format("expand({}, shard=range(1, {}))", mark, jobs.shards + 1);
 }
 
 }  // namespace
@@ -100,24 +111,30 @@ std::string plan_as_jsonl(const Plan& plan) {
 }
 
 std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command) {
-  const auto manifests = [&](const std::vector<std::size_t>& units) {
-    std::vector<std::string> paths;
-    for (const std::size_t i : units) paths.push_back(manifest(plan.units[i], command));
-    return fmt::format("{}", fmt::join(paths, ",\n           "));
+  const std::vector<StageJobs> stages = stage_jobs(plan, command);
+  const auto marks = [&](const auto& selected) {
+    std::vector<std::string> all;
+    for (const StageJobs& jobs : stages)
+      if (selected(jobs)) all.push_back(all_marks(plan, jobs, command));
+    return fmt::format("{}", fmt::join(all, ",\n           "));
   };
-  std::vector<std::size_t> all(plan.units.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  std::string text;
-  if (command.map.empty())
-    text = fmt::format("rule all:\n    input: {}\n", manifests(all));
-  else
-    text = fmt::format("rule map:\n    input: {}\n    output: {}\n    shell: {}\n", manifests(all),
-                       python_string(command.map), snakemake_shell(map_command(command)));
-  for (const Unit& unit : plan.units) {
-    text += fmt::format("\nrule {}_{}:\n", unit.stage, unit.item);
-    if (!unit.after.empty()) text += fmt::format("    input: {}\n", manifests(unit.after));
-    text += fmt::format("    output: {}\n    shell: {}\n", manifest(unit, command),
-                        snakemake_shell(fmt::format("{} --unit {}", run_command(command), unit.id())));
+  const std::string all = marks([](const StageJobs&) { return true; });
+  std::string text = "# One rule per stage; a stage over tiles or images is divided into shards.\n";
+  text += command.map.empty()
+              ? fmt::format("rule all:\n    input: {}\n", all)
+              : fmt::format("rule map:\n    input: {}\n    output: {}\n    shell: {}\n", all,
+                            python_string(command.map), snakemake_shell(map_command(command)));
+  for (const StageJobs& jobs : stages) {
+    text += fmt::format("\nrule {}:\n", jobs.name);
+    if (!jobs.after.empty())
+      text +=
+          fmt::format("    input: {}\n",
+                      marks([&](const StageJobs& earlier) { return jobs.after.contains(earlier.stage); }));
+    std::string call = snakemake_shell(job_command(jobs, command, "$shard"));
+    if (const std::size_t at = call.find("$shard"); at != std::string::npos)
+      call.replace(at, std::string_view("$shard").size(), "{wildcards.shard}");
+    text += fmt::format("    output: touch({})\n    shell: {}\n",
+                        python_string(shard_mark(plan, jobs, command)), call);
   }
   return text;
 }
@@ -131,26 +148,28 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
                           quote_for_shell(call));
   };
   std::string all;
-  for (const StageJobs& jobs : stage_jobs(plan)) {
+  for (const StageJobs& jobs : stage_jobs(plan, command)) {
     std::string options;
     for (const std::size_t earlier : jobs.after)
       options += fmt::format("{}$stage_{}", options.empty() ? " --dependency=afterok:" : ":", earlier);
+    if (!jobs.after.empty()) options += " --kill-on-invalid-dep=yes";
     if (jobs.shards > 0) options += fmt::format(" --array=1-{}", jobs.shards);
     submit(fmt::format("stage_{}", jobs.stage), jobs.name, options,
-           job_command(plan, jobs, command, "$SLURM_ARRAY_TASK_ID"));
+           job_command(jobs, command, "$SLURM_ARRAY_TASK_ID"));
     all += fmt::format(":$stage_{}", jobs.stage);
   }
-  if (!command.map.empty()) submit("map", "map", " --dependency=afterok" + all, map_command(command));
+  if (!command.map.empty())
+    submit("map", "map", " --dependency=afterok" + all + " --kill-on-invalid-dep=yes", map_command(command));
   return script;
 }
 
 std::string plan_as_parallel(const Plan& plan, const PlanCommand& command) {
   std::string script =
       "#!/bin/sh\n# The shards of each stage run side by side, the stages in order.\nset -eu\n";
-  for (const StageJobs& jobs : stage_jobs(plan))
-    script += jobs.shards == 0 ? job_command(plan, jobs, command, "") + "\n"
+  for (const StageJobs& jobs : stage_jobs(plan, command))
+    script += jobs.shards == 0 ? job_command(jobs, command, "") + "\n"
                                : fmt::format("seq {} | parallel --halt now,fail=1 {}\n", jobs.shards,
-                                             quote_for_shell(job_command(plan, jobs, command, "{}")));
+                                             quote_for_shell(job_command(jobs, command, "{}")));
   if (!command.map.empty()) script += map_command(command) + "\n";
   return script;
 }

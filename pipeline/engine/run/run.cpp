@@ -144,19 +144,23 @@ void Run::run_stages() {
     if (!planning_[stage]) run_stage(stage);
     release_read(stage);
   }
-  expect_wanted_unit();
+  expect_selected_units();
 }
 
-void Run::expect_wanted_unit() const {
-  if (options_.unit.empty()) return;
-  const auto wanted = std::ranges::find(plan_.units, options_.unit, &Unit::id);
-  if (states_[static_cast<std::size_t>(wanted - plan_.units.begin())].status != Status::waiting) return;
-  for (const std::size_t i : wanted->after)
-    if (!states_[i].ready())
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("cannot do {}: it reads {}, which is not done", options_.unit, plan_.units[i].id()),
-          options_.work.string(), fmt::format("first do --unit {}", plan_.units[i].id()));
+void Run::expect_selected_units() const {
+  if (options_.unit.empty() && options_.stage.empty()) return;
+  for (std::size_t selected = 0; selected < states_.size(); ++selected) {
+    if (states_[selected].assignment != UnitAssignment::own || states_[selected].status != Status::waiting)
+      continue;
+    for (const std::size_t i : plan_.units[selected].after)
+      if (!states_[i].ready())
+        throw Error(ErrorCode::usage,
+                    fmt::format("cannot do {}: it reads {}, which is not done", plan_.units[selected].id(),
+                                plan_.units[i].id()),
+                    options_.work.string(),
+                    options_.unit.empty() ? fmt::format("first do --stage {}", plan_.units[i].stage)
+                                          : fmt::format("first do --unit {}", plan_.units[i].id()));
+  }
 }
 
 void Run::run_stage(std::size_t stage) {

@@ -45,7 +45,7 @@ class Run {
   ArtifactPtr offload(std::size_t stage, const OutputPort& port, Artifact::Value value);
   void warn_about_missing_inputs(std::size_t stage, std::size_t unit);
   UnitInputs unit_inputs(std::size_t stage, std::size_t unit) const;
-  void expect_wanted_unit() const;
+  void expect_selected_units() const;
   void release_read(std::size_t stage);
   bool wanted(const Wire& wire) const;
   const Step& step(std::size_t stage) const { return *pipeline_.steps()[stage]; }

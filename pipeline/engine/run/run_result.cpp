@@ -23,7 +23,7 @@ Artifact::Value RunResult::find_one(std::string_view name, std::type_index type)
     throw Error(first.code, fmt::format("'{}' was not made: {} failed", name, first.unit), first.message);
   }
   throw Error(ErrorCode::input, fmt::format("'{}' was not made: part of the work is left", name), {},
-              "run without --check, --shard and --unit to finish the job");
+              "run without --check, --shard, --stage and --unit to finish the job");
 }
 
 bool RunResult::is_complete(std::string_view stage, std::string_view name) const {

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace waymark::pipeline {
 namespace {
@@ -18,7 +19,24 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
 }
 
-/// Selects one unit to run; the units that it reads are only reused.
+/// Selects the unit at a place to run; the units that it reads are only reused.
+void select(const Plan& plan, std::size_t at, std::vector<UnitState>& states) {
+  for (const std::size_t read : plan.units[at].after)
+    if (states[read].assignment == UnitAssignment::none) states[read].assignment = UnitAssignment::foreign;
+  states[at].assignment = UnitAssignment::own;
+}
+
+void select_nothing(std::vector<UnitState>& states) {
+  for (UnitState& state : states) state.assignment = UnitAssignment::none;
+}
+
+void select_of_stage(const Plan& plan, const std::string& stage,
+                     const std::function<bool(const Unit&)>& is_in_shard, std::vector<UnitState>& states) {
+  select_nothing(states);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    if (plan.units[i].stage == stage && is_in_shard(plan.units[i])) select(plan, i, states);
+}
+
 void select_unit(const Plan& plan, const std::string& id, std::vector<UnitState>& states) {
   const auto wanted = std::ranges::find(plan.units, id, &Unit::id);
   if (wanted == plan.units.end()) {
@@ -27,9 +45,8 @@ void select_unit(const Plan& plan, const std::string& id, std::vector<UnitState>
     refuse_division(fmt::format("the job has no unit '{}'{}", id, did_you_mean(id, ids)),
                     "waymark plan lists the units");
   }
-  for (UnitState& state : states) state.assignment = UnitAssignment::none;
-  for (const std::size_t read : wanted->after) states[read].assignment = UnitAssignment::foreign;
-  states[static_cast<std::size_t>(wanted - plan.units.begin())].assignment = UnitAssignment::own;
+  select_nothing(states);
+  select(plan, static_cast<std::size_t>(wanted - plan.units.begin()), states);
 }
 
 }  // namespace
@@ -38,28 +55,37 @@ void check_run_options(const RunOptions& options, const Pipeline& pipeline) {
   if (options.threads < 0)
     refuse_division(fmt::format("cannot run with {} threads", options.threads),
                     "0 uses all threads of the machine");
-  if (options.work.empty() && (options.shard || !options.unit.empty() || !options.rerun_from.empty()))
-    refuse_division("--shard, --unit and --rerun-from need the results of other runs",
+  if (options.work.empty() &&
+      (options.shard || !options.unit.empty() || !options.stage.empty() || !options.rerun_from.empty()))
+    refuse_division("--shard, --stage, --unit and --rerun-from need the results of other runs",
                     "add --work DIR, the same for all of them");
+  if (!options.unit.empty() && (options.shard || !options.stage.empty()))
+    refuse_division("--unit is given together with --shard or --stage",
+                    "a unit is the smallest part of a job: give --unit alone");
   if (options.shard && !(1 <= options.shard->index && options.shard->index <= options.shard->count))
     refuse_division(fmt::format("shard {}/{} does not exist", options.shard->index, options.shard->count),
                     "shards count from 1: 1/8 to 8/8");
   std::vector<std::string> names;
   for (const auto& step : pipeline.steps()) names.push_back(step->spec().name);
-  if (!options.rerun_from.empty() && std::ranges::find(names, options.rerun_from) == names.end())
-    refuse_division(fmt::format("the job has no stage '{}' to rerun from{}", options.rerun_from,
-                                did_you_mean(options.rerun_from, names)),
-                    fmt::format("its stages: {}", fmt::join(names, ", ")));
+  const auto check_stage = [&](const std::string& stage, std::string_view purpose) {
+    if (!stage.empty() && std::ranges::find(names, stage) == names.end())
+      refuse_division(
+          fmt::format("the job has no stage '{}' to {}{}", stage, purpose, did_you_mean(stage, names)),
+          fmt::format("its stages: {}", fmt::join(names, ", ")));
+  };
+  check_stage(options.rerun_from, "rerun from");
+  check_stage(options.stage, "run");
 }
 
 void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitState>& states) {
   if (!options.unit.empty()) return select_unit(plan, options.unit, states);
-  if (!options.shard) return;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const auto index = plan.units[i].index();
-    const bool ours = !index || *index % options.shard->count == options.shard->index - 1;
-    states[i].assignment = ours ? UnitAssignment::own : UnitAssignment::foreign;
-  }
+  const auto is_in_shard = [&](const Unit& unit) {
+    const auto index = unit.index();
+    return !options.shard || !index || *index % options.shard->count == options.shard->index - 1;
+  };
+  if (!options.stage.empty()) return select_of_stage(plan, options.stage, is_in_shard, states);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    states[i].assignment = is_in_shard(plan.units[i]) ? UnitAssignment::own : UnitAssignment::foreign;
 }
 
 }  // namespace waymark::pipeline

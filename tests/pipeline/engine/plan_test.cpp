@@ -59,15 +59,40 @@ TEST_F(PlanTest, JsonLines) {
 TEST_F(PlanTest, Snakemake) {
   const Plan plan = the_plan();
   const std::string file = plan_as_snakemake(plan, command);
-  const auto manifest = [&](std::size_t i) {
-    return "\"work/" + plan.units[i].id() + "/" + plan.units[i].fingerprint + "/manifest.json\"";
-  };
-  EXPECT_THAT(file,
-              HasSubstr("rule sum_squares_map:\n    input: " + manifest(1) + ",\n           " + manifest(2) +
-                        "\n    output: " + manifest(3) +
-                        "\n    shell: \"waymark run 'my job.json' --work work --unit sum_squares/map\"\n"));
+  EXPECT_THAT(file, testing::ContainsRegex(
+                        "rule square_number:\n    input: \"work/shards/list_numbers-[0-9a-f]{16}\"\n"
+                        "    output: touch\\(\"work/shards/square_number-[0-9a-f]{16}/"
+                        "\\{shard\\}_of_2\"\\)\n    shell: \"waymark run 'my job.json' --work work "
+                        "--stage square_number --shard \\{wildcards.shard\\}/2\"\n"));
+  EXPECT_THAT(file, testing::ContainsRegex(
+                        "rule sum_squares:\n    input: expand\\(\"work/shards/square_number-[0-9a-f]{16}/"
+                        "\\{shard\\}_of_2\", shard=range\\(1, 3\\)\\)\n"));
   EXPECT_THAT(plan_as_snakemake(plan, {.job = "{a}.json", .work = "w"}),
               HasSubstr("run '{{a}}.json' --work w"));
+}
+
+TEST_F(PlanTest, FormsForSchedulersDoNotGrowWithTheTiles) {
+  pipeline.set("list_numbers.tiles=20000");
+  const Plan plan = the_plan();
+  ASSERT_GT(plan.units.size(), 20000);
+  for (const auto& form : {plan_as_snakemake, plan_as_slurm, plan_as_parallel})
+    EXPECT_LT(form(plan, command).size(), 2000);
+}
+
+TEST_F(PlanTest, MarksOfShardsDifferWhereResultsDo) {
+  const std::string before = plan_as_snakemake(the_plan(), command);
+  EXPECT_EQ(plan_as_snakemake(the_plan(), command), before);
+  pipeline.set("list_numbers.tiles=3");
+  EXPECT_EQ(before.find("_of_3"), std::string::npos);
+  EXPECT_NE(plan_as_snakemake(the_plan(), command), before);
+}
+
+TEST_F(PlanTest, ShardsAreLimited) {
+  pipeline.set("list_numbers.tiles=9");
+  const PlanCommand limited{.job = "j.json", .work = "w", .map = {}, .max_shards = 4};
+  EXPECT_THAT(plan_as_slurm(the_plan(), limited), HasSubstr("--array=1-4"));
+  EXPECT_THAT(plan_as_slurm(the_plan(), limited), HasSubstr("--shard $SLURM_ARRAY_TASK_ID/4"));
+  EXPECT_THAT(plan_as_snakemake(the_plan(), limited), HasSubstr("shard=range(1, 5)"));
 }
 
 // A fake sbatch prints a job number and logs its arguments.
@@ -79,30 +104,32 @@ TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
   const std::string folder = std::filesystem::path(work).string();
   ASSERT_EQ(std::system(("PATH=" + folder + ":$PATH sh " + folder + "/submit.sh").c_str()), 0);
   EXPECT_EQ(read_text(work / "calls", "the calls"),
-            "--parsable --job-name=list_numbers --wrap waymark run 'my job.json' --work work --unit "
-            "list_numbers/map\n"
-            "--parsable --job-name=square_number --dependency=afterok:1 --array=1-2 --wrap "
-            "waymark run 'my job.json' --work work --shard $SLURM_ARRAY_TASK_ID/2\n"
-            "--parsable --job-name=sum_squares --dependency=afterok:2 --wrap "
-            "waymark run 'my job.json' --work work --unit sum_squares/map\n");
+            "--parsable --job-name=list_numbers --wrap waymark run 'my job.json' --work work --stage "
+            "list_numbers\n"
+            "--parsable --job-name=square_number --dependency=afterok:1 --kill-on-invalid-dep=yes "
+            "--array=1-2 --wrap "
+            "waymark run 'my job.json' --work work --stage square_number --shard $SLURM_ARRAY_TASK_ID/2\n"
+            "--parsable --job-name=sum_squares --dependency=afterok:2 --kill-on-invalid-dep=yes --wrap "
+            "waymark run 'my job.json' --work work --stage sum_squares\n");
 }
 
 TEST_F(PlanTest, EndsInTheMapWithTheSettings) {
   const PlanCommand call{.job = "j.json", .work = "w", .settings = {"a.b=c d"}, .map = "{m}.gpkg"};
   const std::string run = "waymark run j.json --work w --set 'a.b=c d'";
   const std::string snakefile = plan_as_snakemake(the_plan(), call);
-  EXPECT_THAT(snakefile, testing::StartsWith("rule map:\n    input: \"w/list_numbers/map/"));
+  EXPECT_THAT(snakefile, HasSubstr("\nrule map:\n    input: \"w/shards/list_numbers-"));
   EXPECT_THAT(snakefile,
               HasSubstr("\n    output: \"{m}.gpkg\"\n    shell: \"" + run + " -o '{{m}}.gpkg'\"\n"));
   EXPECT_THAT(plan_as_slurm(the_plan(), call),
               HasSubstr("map=$(sbatch --parsable --job-name=map "
-                        "--dependency=afterok:$stage_0:$stage_1:$stage_2 --wrap "));
-  EXPECT_THAT(
-      plan_as_parallel(the_plan(), {.job = "j.json", .work = "w", .map = "m.gpkg"}),
-      testing::EndsWith("waymark run j.json --work w --unit list_numbers/map\n"
-                        "seq 2 | parallel --halt now,fail=1 'waymark run j.json --work w --shard {}/2'\n"
-                        "waymark run j.json --work w --unit sum_squares/map\n"
-                        "waymark run j.json --work w -o m.gpkg\n"));
+                        "--dependency=afterok:$stage_0:$stage_1:$stage_2 --kill-on-invalid-dep=yes --wrap "));
+  EXPECT_THAT(plan_as_parallel(the_plan(), {.job = "j.json", .work = "w", .map = "m.gpkg"}),
+              testing::EndsWith(
+                  "waymark run j.json --work w --stage list_numbers\n"
+                  "seq 2 | parallel --halt now,fail=1 'waymark run j.json --work w --stage square_number "
+                  "--shard {}/2'\n"
+                  "waymark run j.json --work w --stage sum_squares\n"
+                  "waymark run j.json --work w -o m.gpkg\n"));
 }
 
 }  // namespace

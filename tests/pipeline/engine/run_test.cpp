@@ -129,9 +129,10 @@ TEST_F(RunTest, ChecksWithoutRunning) {
   const RunResult result = run(pipeline, {.check_only = true});
   EXPECT_THAT(ran(), ElementsAre(1, 0, 0));
   EXPECT_EQ(result.report.stages[1].waiting, 4);
-  EXPECT_EQ(message_of([&] { sum_of(result); }),
-            "'sum' was not made: part of the work is left\n  run without --check, --shard and --unit to "
-            "finish the job");
+  EXPECT_EQ(
+      message_of([&] { sum_of(result); }),
+      "'sum' was not made: part of the work is left\n  run without --check, --shard, --stage and --unit to "
+      "finish the job");
 }
 
 TEST_F(RunTest, ChecksTheWiringFirst) {
@@ -233,7 +234,8 @@ TEST_F(RunTest, RefusesOptionsThatContradict) {
   EXPECT_EQ(message_of([&] {
               run(pipeline, {.shard = Shard{1, 2}});
             }),
-            "--shard, --unit and --rerun-from need the results of other runs\n  add --work DIR, the same for "
+            "--shard, --stage, --unit and --rerun-from need the results of other runs\n  add --work DIR, the "
+            "same for "
             "all of them");
   EXPECT_EQ(message_of([&] {
               run(pipeline, {.work = work, .shard = Shard{3, 2}});

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real schedulers make the map of one machine, though their tasks are killed.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "made_dem.hpp"
+#include "program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A job of a thousand tiles and a program on the PATH that is killed ten times.
+class Schedulers : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string dem = make_dem(folder_ / "hills.tif", hills(2048, 2048));
+    write_text(folder_ / "job.json", waymark({"peaks", dem, "--tile-cells", "64", "--print-job"}).out);
+    write_text(folder_ / "waymark", R"sh(#!/bin/bash
+# Runs the program; as long as fewer than ten calls were killed, kills it after up to .4 s.
+cd "$(dirname "$0")"
+if [ "$(ls kills | wc -l)" -lt 10 ]; then
+  timeout --signal=KILL 0.$((RANDOM % 40 + 10)) "$WAYMARK" "$@" && exit
+  code=$?
+  mktemp kills/XXXXXXXX >/dev/null
+  exit $code
+fi
+exec "$WAYMARK" "$@"
+)sh");
+    ASSERT_EQ(in_folder("mkdir kills && chmod +x waymark").code, 0);
+    ASSERT_EQ(in_folder(kWholeJob + " -o one_machine.gpkg").code, 0);
+    ASSERT_EQ(in_folder("mv one_machine.gpkg expected && rm -r work").code, 0);
+  }
+
+  /// Runs a line in the folder, which comes first on the PATH. Times do not enter maps.
+  Outcome in_folder(const std::string& line) {
+    return bash("cd '" + folder_.path().string() +
+                "' && export PATH=$PWD:$PATH SOURCE_DATE_EPOCH=0 WAYMARK && " + line);
+  }
+  long kills() { return std::ranges::distance(std::filesystem::directory_iterator(folder_ / "kills")); }
+  std::string landmarks(const std::string& map) {
+    return waymark({"query", folder_ / map, "--format", "csv"}).out;
+  }
+  /// Expects the landmarks of one machine from the scheduler, and that all work is in the work folder.
+  void expect_map_of_one_machine() {
+    EXPECT_GE(kills(), 10);
+    EXPECT_EQ(landmarks("map.gpkg"), landmarks("expected"));
+    EXPECT_EQ(in_folder(kWholeJob + " -o one_machine.gpkg && cmp one_machine.gpkg expected").code, 0);
+  }
+
+  static inline const std::string kWholeJob = "$WAYMARK run job.json --work work";
+  TempFolder folder_;
+};
+
+TEST_F(Schedulers, GnuParallelIsResumedUntilTheMapIsMade) {
+  if (bash("parallel --version | grep GNU").code != 0) GTEST_SKIP() << "needs GNU parallel";
+  ASSERT_EQ(
+      in_folder("waymark --version; $WAYMARK plan job.json --as parallel --shards 8 -o map.gpkg > run.sh")
+          .code,
+      0);
+  for (int round = 0; round < 40 && !std::filesystem::exists(folder_ / "map.gpkg"); ++round)
+    in_folder("sh run.sh");
+  expect_map_of_one_machine();
+}
+
+TEST_F(Schedulers, SnakemakeTriesKilledTasksAgain) {
+  if (bash("snakemake --version").code != 0) GTEST_SKIP() << "needs snakemake";
+  ASSERT_EQ(in_folder("$WAYMARK plan job.json --as snakemake --shards 8 -o map.gpkg > Snakefile").code, 0);
+  const Outcome ran = in_folder("snakemake -j 2 --retries 12 --latency-wait 5");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  expect_map_of_one_machine();
+  EXPECT_THAT(in_folder("snakemake -j 2").err, HasSubstr("Nothing to be done"));
+}
+
+TEST_F(Schedulers, SlurmMakesTheMapAfterJobsAreSubmittedAgain) {
+  const std::string site = WAYMARK_SOURCE_DIR "/tests/apps/slurm_site ";
+  if (bash(site + "--available").code != 0)
+    GTEST_SKIP() << "needs root, slurmctld, slurmd, slurm-client and munge";
+  ASSERT_EQ(in_folder("$WAYMARK plan job.json --as slurm --shards 8 -o map.gpkg > submit.sh").code, 0);
+  const Outcome ran = in_folder(site +
+                                "'for i in $(seq 40); do [ -e map.gpkg ] || { sh submit.sh && "
+                                "while [ -n \"$(squeue --noheader)\" ]; do sleep 0.5; done; }; done'");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  expect_map_of_one_machine();
+}
+
+}  // namespace
+}  // namespace waymark::test
