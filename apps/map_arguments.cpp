@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/console.hpp"
+#include "core/json_text.hpp"
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/report.hpp"
 #include "workflows/registries.hpp"
@@ -20,7 +21,8 @@ std::string result_as_json(const workflows::MapResult& result, const std::string
   json["inputs"] = nlohmann::ordered_json::array();
   for (const auto& input : result.inputs)
     json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
-  json["run"] = nlohmann::ordered_json::parse(pipeline::report_as_json(result.report));
+  json["run"] =
+      nlohmann::ordered_json::parse(checked_json(pipeline::report_as_json(result.report), "report"));
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
