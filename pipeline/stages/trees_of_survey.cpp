@@ -50,7 +50,8 @@ struct TreesOfSurvey {
     unit.count_in(static_cast<std::int64_t>(made.landmarks.size()));
     unit.reject(kOutsideArea, remove_outside(made.landmarks, made.evidence,
                                              [&](double x, double y) { return surveys[0]->in_area(x, y); }));
-    std::erase_if(made.evidence, [](const Observation& o) { return !o.rejected.empty(); });  // as in other tiles
+    std::erase_if(made.evidence,
+                  [](const Observation& o) { return !o.rejected.empty(); });  // as in other tiles
     unit.write(crowns, name_crowns({&unit.read(seen_crowns), 1}, made.evidence, made.landmarks));
     unit.count_out(static_cast<std::int64_t>(made.landmarks.size()));
     unit.write(landmarks, std::move(made.landmarks));
