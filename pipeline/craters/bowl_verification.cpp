@@ -55,7 +55,7 @@ constexpr double kPriorWeight = 0.45;         // step towards the image's own fr
 
 // Factor on the final log odds, so that probabilities are those that labelled images show; the decision at
 // 0.5 does not depend on it (docs/evaluation/2026-11-23-overlapping-and-filled-craters.md).
-constexpr double kSharpness = 1.2;
+constexpr double kSharpness = 1.1;
 
 constexpr double kMinFirstProbability = 0.03;  // candidates below this first probability are discarded
 
