@@ -8,7 +8,7 @@ namespace waymark::localization {
 namespace {
 
 constexpr double kForget = 5;     // metres driven
-constexpr double kSlip = 0.05;    // standard deviation of the way driven, relative
+constexpr double kSlip = 0.05;    // standard deviation of the distance driven, relative
 constexpr double kSigmas = 3;     // of a sighting about its object
 constexpr double kCentre = 0.15;  // metres, how far the centre that is seen moves about an object
 
@@ -35,13 +35,14 @@ std::vector<SightingFollower::Seen> SightingFollower::follow(const SightingSet& 
     const Eigen::Vector2d at =
         sensor.at() + *s.range * Eigen::Vector2d(std::cos(direction), std::sin(direction));
     std::optional<std::size_t> nearest;
-    double least = 0;
+    double min_distance = 0;
     for (std::size_t i = 0; i < known; ++i) {
       const Object& o = objects_[i];
       const double metres = driven_ - o.driven, distance = (o.at - at).norm();
       const double sd = std::hypot(std::hypot(s.range_sd, *s.range * s.bearing_sd), kSlip * metres, kCentre);
-      if (taken[i] || o.type != s.type || distance > kSigmas * sd || (nearest && distance >= least)) continue;
-      nearest = i, least = distance;
+      if (taken[i] || o.type != s.type || distance > kSigmas * sd || (nearest && distance >= min_distance))
+        continue;
+      nearest = i, min_distance = distance;
     }
     if (!nearest) {
       result.push_back(fresh());
