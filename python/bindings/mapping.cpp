@@ -23,6 +23,7 @@ const Keywords<workflows::MapRequest>& run_keywords() {
   static const auto all = Keywords<R>()
                               .add("output", &R::map)
                               .add("work", &R::work)
+                              .add("stage", &R::stage)
                               .add("rerun_from", &R::rerun_from)
                               .add("unit", &R::unit)
                               .add("check", &R::check)

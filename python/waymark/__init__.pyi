@@ -900,16 +900,17 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         seed"""
     ...
 
-def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., progress: Any = ..., work: _Path = ..., rerun_from: _Path = ..., unit: _Path = ..., check: bool = ..., with_dem: bool = ..., threads: int = ...) -> Run:
+def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., progress: Any = ..., work: _Path = ..., stage: _Path = ..., rerun_from: _Path = ..., unit: _Path = ..., check: bool = ..., with_dem: bool = ..., threads: int = ...) -> Run:
     """Runs a job and returns a Run; `output` is the map to write.
 
     job is a job file or a dict {"name": ..., "stages": [...]}, made by hand or with waymark.stages. Relative paths of
-    a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, threads,
-    rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
+    a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, stage,
+    threads, rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
     Raises UnitsFailed if some units failed.
 
     Keywords:
         work: folder of finished work; empty: everything in memory
+        stage: single stage to run, or its part in `shard`; needs `work`
         rerun_from: stage to re-run with its dependents; empty: finished work is kept
         unit: single unit of work to run; needs `work`
         check: check options, wiring and files only

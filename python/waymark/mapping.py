@@ -29,8 +29,8 @@ def run(job, output=None, *, settings=None, folder=None, progress=None, **option
     """Runs a job and returns a Run; `output` is the map to write.
 
     job is a job file or a dict {"name": ..., "stages": [...]}, made by hand or with waymark.stages. Relative paths of
-    a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, threads,
-    rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
+    a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, stage,
+    threads, rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
     Raises UnitsFailed if some units failed.
     """
     given = keywords(output=output, **options)
