@@ -8,7 +8,6 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "apps/map_arguments.hpp"
 #include "core/error.hpp"
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/step_options.hpp"
@@ -88,7 +87,7 @@ void StageOptions::apply(pipeline::Pipeline& pipeline) const {
 
 CommandSpec Shortcut::describe() {
   CommandSpec spec = describe_own();
-  for (auto& argument : map_arguments(request_)) spec.arguments.push_back(std::move(argument));
+  for (auto& argument : map_arguments(asked_)) spec.arguments.push_back(std::move(argument));
   for (auto& argument : options_.arguments()) spec.arguments.push_back(std::move(argument));
   spec.arguments.push_back(
       {"--print-job", "", &print_job_, "Print the job instead of running it: the start of one of your own"});
@@ -100,7 +99,7 @@ int Shortcut::run(const Session& session) {
   add_stages(pipeline);
   options_.apply(pipeline);
   const pipeline::Job job{describe_own().name, std::move(pipeline)};
-  if (!print_job_) return make_map_command(job, request_, session);
+  if (!print_job_) return make_map_command(job, asked_, session);
   std::cout << pipeline::job_as_json(job.name, job.pipeline) << '\n';
   return 0;
 }
