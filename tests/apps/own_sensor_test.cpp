@@ -61,12 +61,16 @@ TEST_F(Localize, ASensorOfARunIsRecordedAndPlanned) {
   write_text(sensor, R"({"waymark_sensor": 1, "weights": {"mountain_top": {"elevation": 1}}})");
   const std::string dem = std::string(WAYMARK_SOURCE_DIR) + "/sample_data/jacksboro/dem.tif";
   write_text(job, waymark({"peaks", dem, "-o", folder_ / "peaks.gpkg", "--print-job"}).out);
-  const Outcome plan =
-      waymark({"plan", job, "--as", "parallel", "-o", folder_ / "peaks.gpkg", "--sensor", sensor});
+  const Outcome plan = waymark({"plan", job, "--work", folder_ / "work", "--format", "parallel", "-o",
+                                folder_ / "peaks.gpkg", "--sensor", sensor});
   EXPECT_EQ(plan.code, 0) << plan.err;
   EXPECT_THAT(plan.out, HasSubstr("--sensor '" + sensor + "' -o"));
-  EXPECT_THAT(waymark({"plan", job, "--sensor", sensor}).err, HasSubstr("the plan writes none"));
-  EXPECT_EQ(waymark({"plan", job, "-o", folder_ / "peaks.gpkg", "--sensor", "stereo_camra"}).code, 2);
+  EXPECT_THAT(waymark({"plan", job, "--work", folder_ / "work", "--sensor", sensor}).err,
+              HasSubstr("the plan writes none"));
+  EXPECT_EQ(waymark({"plan", job, "--work", folder_ / "work", "-o", folder_ / "peaks.gpkg", "--sensor",
+                     "stereo_camra"})
+                .code,
+            2);
   const Outcome run = waymark({"run", job, "-o", folder_ / "peaks.gpkg", "--sensor", sensor});
   ASSERT_EQ(run.code, 0) << run.err;
   EXPECT_EQ(waymark({"query", folder_ / "peaks.gpkg", "--sensor", "map"}).code, 0);
