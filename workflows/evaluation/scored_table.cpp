@@ -80,6 +80,9 @@ ScoredTables from_map(const geodb::MapStore& map, const std::string& only, const
       for (std::size_t f = 0; f < type.features.size(); ++f)
         if (landmark.features[f].known()) values[type.features[f].name] = landmark.features[f].value;
       testbed::EvaluatedObject thing = thing_of(values, 0);
+      for (std::size_t f = 0; f < type.features.size(); ++f)
+        if (landmark.features[f].known() && landmark.features[f].variance > 0)
+          thing.deviations[type.features[f].name] = std::sqrt(landmark.features[f].variance);
       thing.covariance = landmark.covariance.topLeftCorner<2, 2>();
       thing.confidence = landmark.confidence;
       thing.quality = sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark);
