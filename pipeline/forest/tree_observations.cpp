@@ -8,7 +8,7 @@ namespace waymark::pipeline {
 TreeErrors tree_errors(std::string_view forest_type, bool built_in_allometry) {
   TreeErrors errors;
   if (forest_type == "conifer") errors.height = 1.0;
-  if (forest_type == "mixed") errors.height = 0.85;
+  if (forest_type == "mixed") errors.height = 0.95;
   if (forest_type == "conifer" && built_in_allometry) errors.allometry = 0.2;
   return errors;
 }

@@ -16,9 +16,11 @@ struct FeatureError {
 
 // Fitted so that 90 % of true values lie within 1.645 deviations in each quarter of sizes in pixels.
 constexpr std::array kFeatureErrors{
-    FeatureError{EvidenceModel::shadow_caster, "radius", {.fraction = 0.07, .pixels = 0.28}},
+    FeatureError{EvidenceModel::shadow_caster, "radius", {.fraction = 0.09, .pixels = 0.28}},
     FeatureError{EvidenceModel::shadow_caster, "height", {.fraction = 0.14, .pixels = 0.15}},
     FeatureError{EvidenceModel::bowl, "radius", {.fraction = 0.08, .pixels = 0.90}},
+    FeatureError{EvidenceModel::bowl, "major_axis", {.fraction = 0.08, .pixels = 1.80}},
+    FeatureError{EvidenceModel::bowl, "minor_axis", {.fraction = 0.08, .pixels = 1.80}},
     FeatureError{EvidenceModel::bowl, "depth", {.fraction = 0.13, .pixels = 0.20}},
 };
 

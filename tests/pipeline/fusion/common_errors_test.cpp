@@ -32,11 +32,11 @@ double radius_variance(int observations, double variance, double gsd) {
 }
 
 TEST(CommonErrors, DoNotShrinkWithObservations) {
-  const double common = 0.14 * 0.14 + 0.028 * 0.028;  // 0.07 x 2 m and 0.28 pixels of 0.1 m
+  const double common = 0.18 * 0.18 + 0.028 * 0.028;  // 0.09 x 2 m and 0.28 pixels of 0.1 m
   EXPECT_NEAR(radius_variance(4, 0.04, 0.1), 0.01 + common, 1e-12);
   EXPECT_NEAR(radius_variance(1000000, 0.04, 0.1), common, 1e-6);
   EXPECT_NEAR(radius_variance(1, 0.04, 0.1), 0.04 + common, 1e-12) << "as the observation states it";
-  EXPECT_NEAR(radius_variance(4, 0.04, std::nan("")), 0.01 + 0.14 * 0.14, 1e-12);
+  EXPECT_NEAR(radius_variance(4, 0.04, std::nan("")), 0.01 + 0.18 * 0.18, 1e-12);
   EXPECT_EQ(radius_variance(1, 0, 0.1), 0) << "unknown stays unknown";
 }
 
@@ -62,7 +62,7 @@ TEST(CommonErrors, AreThoseOfTheFinestImageAndLeaveQualityAsItIs) {
     return l;
   };
   const Landmark l = valued({});
-  EXPECT_NEAR(l.features[0].variance, 0.02 + 0.14 * 0.14 + 0.056 * 0.056, 1e-12);
+  EXPECT_NEAR(l.features[0].variance, 0.02 + 0.18 * 0.18 + 0.056 * 0.056, 1e-12);
   EXPECT_NEAR(l.quality.feature_confidences[0].value(), 0.9, 1e-12) << "the spread, 0.2 of 2 m";
   const Landmark literal = valued({.spread = SpreadRule::paper});
   EXPECT_NEAR(literal.features[0].variance, 0.04, 1e-12) << "the paper's variance is that of eq. 6";
