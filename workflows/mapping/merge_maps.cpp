@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "core/error.hpp"
@@ -30,11 +31,14 @@ void check_request(const MergeRequest& request) {
                   "pass another file by -o");
 }
 
-/// Returns the maps in the order of their contents, so that the order of the request does not matter.
+/// Returns the maps in the order of their names and contents, so that the order of the request does not
+/// matter.
 std::vector<InputFile> sorted_inputs(const std::vector<std::string>& maps) {
   std::vector<InputFile> inputs;
   for (const std::string& map : maps) inputs.push_back(importers::hash_file(map));
-  std::ranges::sort(inputs, {}, [](const InputFile& file) { return std::pair(file.sha256, file.path); });
+  std::ranges::sort(inputs, {}, [](const InputFile& file) {
+    return std::tuple(std::filesystem::path(file.path).filename().string(), file.sha256, file.path);
+  });
   return inputs;
 }
 

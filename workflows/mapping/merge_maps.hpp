@@ -19,8 +19,9 @@ struct MergeResult {
 };
 
 /// Merges maps by join_maps() into one, which does not depend on their order.
-/// - The record of the run has the time of the latest run of the maps, and their names in the order of their
-///   hashes, so equal maps give equal bytes.
+/// - Maps are taken in the order of their file names, of equal names in that of their hashes. The record of
+/// the
+///   run has the time of the latest run of the maps. So equal maps give equal bytes.
 /// - Elevation tiles are left out, with a warning.
 /// - Throws Error{usage} for fewer than two maps, maps of different CRSs, or a result that is one of the
 /// maps;
