@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "pipeline/engine/registry.hpp"
+#include "pipeline/engine/step.hpp"
 #include "pipeline/engine/step_options.hpp"
 #include "workflows/registries.hpp"
 
@@ -77,6 +78,12 @@ void StageOptions::apply(pipeline::Pipeline& pipeline) const {
   for (const Offered& option : offered_) {
     if (option.given.empty()) continue;
     const std::string place = option.stage + "." + option.row.name;
+    const auto is_its_stage = [&](const auto& step) { return step->spec().name == option.stage; };
+    if (std::ranges::none_of(pipeline.steps(), is_its_stage))
+      throw Error(ErrorCode::usage,
+                  fmt::format("{} is an option of {}, which this job does not have",
+                              flag_name(option.row.name), option.stage),
+                  "", "--print-job shows the stages");
     try {
       pipeline.set(place + "=" + option.given);
     } catch (const Error& error) {
