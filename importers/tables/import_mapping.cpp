@@ -22,12 +22,12 @@ void read_type(const JsonValue& type, TableImport& table) {
   }
   if (!type.is_object())
     type.refuse("the type is a name, or a column with words",
-                R"({"column": "kind", "words": {"boulder": "rock"}})");
+                R"({"column": "kind", "words": {"word": "type"}})");
   type.expect_only({"column", "words"});
   table.type_column = type["column"].text();
   const JsonValue words = type["words"];
   for (const std::string& word : words.keys()) table.type_words[word] = words[word].text();
-  if (table.type_words.empty()) words.refuse("no word stands for a landmark type", R"({"boulder": "rock"})");
+  if (table.type_words.empty()) words.refuse("no word stands for a landmark type", R"({"word": "type"})");
 }
 
 }  // namespace

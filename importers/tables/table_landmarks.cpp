@@ -21,8 +21,7 @@
 namespace waymark::importers {
 namespace {
 
-/// Types of the rows of a table: one type, or the one in their column `type`, or the one that stands for the
-/// word in a column.
+/// Types of the rows of a table: one type for all, or by the words of a column.
 class RowTypes {
  public:
   RowTypes(const TableHeader& table, const TypeRegistry& types, const TableImport& how) : types_(&types) {
