@@ -42,6 +42,9 @@ std::vector<Argument> map_arguments(MapCommand& asked) {
                "Re-run this stage and its dependents, even if --work has their results"}
           .offering(workflows::all_stages().names()),
       {"--with-dem", "", &request.with_dem, "Store the DEM in the map as a gridded coverage"},
+      Argument{"--sensor", "NAME|FILE", &request.sensor,
+               "Record this sensor profile with the run: `--sensor map` of other commands uses it"}
+          .offering(workflows::all_sensors().names()),
       {"--check", "", &request.check, "Check options, wiring and files, then stop"},
       format_option(&asked.format),
   };

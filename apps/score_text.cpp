@@ -41,12 +41,15 @@ std::string as_text(const testbed::Score& s) {
   if (s.with_covariance)
     text += fmt::format("inside the 90 % ellipse {} of {}; NEES {} (2 is honest)\n", percent(s.inside_90),
                         s.with_covariance, number(s.nees, 2));
-  for (const auto& [name, e] : s.features)
+  for (const auto& [name, e] : s.features) {
     text += std::isfinite(e.relative_bias)
                 ? fmt::format("{}: bias {} ({}), spread {}, median error {}, n = {}\n", name, number(e.bias),
                               percent(e.relative_bias), percent(e.relative_sd), number(e.absolute), e.count)
                 : fmt::format("{}: bias {}, median error {}, n = {}\n", name, number(e.bias),
                               number(e.absolute), e.count);
+    if (e.with_deviation)
+      text += fmt::format("  inside the 90 % interval {} of {}\n", percent(e.inside_90), e.with_deviation);
+  }
   const auto calibration = [&](const char* what, const std::vector<testbed::CalibrationBin>& bins,
                                double error) {
     if (bins.empty()) return;
@@ -98,7 +101,9 @@ json as_json(const testbed::Score& s) {
                                 {"bias", finite(e.bias)},
                                 {"relative_bias", finite(e.relative_bias)},
                                 {"relative_sd", finite(e.relative_sd)},
-                                {"median_error", finite(e.absolute)}};
+                                {"median_error", finite(e.absolute)},
+                                {"inside_90", finite(e.inside_90)},
+                                {"with_deviation", e.with_deviation}};
   if (!s.by_confidence.empty())
     object["confidence"] = {{"calibration_error", s.confidence_error}, {"bins", as_json(s.by_confidence)}};
   if (!s.by_quality.empty())

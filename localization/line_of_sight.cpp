@@ -2,6 +2,8 @@
 #include "localization/line_of_sight.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace waymark::localization {
 
@@ -34,6 +36,22 @@ LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions
     }
     return true;
   };
+}
+
+bool is_hidden(const Pose2& sensor, const Eigen::Matrix2d& covariance, const Eigen::Vector2d& landmark,
+               const LineOfSight& visible) {
+  if (!visible || visible(sensor, landmark)) return false;
+  // Axes of the ellipse: half the difference of the eigenvalues along the angle of the larger one.
+  const double mean = covariance.trace() / 2;
+  const double half = std::hypot((covariance(0, 0) - covariance(1, 1)) / 2, covariance(0, 1));
+  const double angle = std::atan2(2 * covariance(0, 1), covariance(0, 0) - covariance(1, 1)) / 2;
+  const Eigen::Vector2d along(std::cos(angle), std::sin(angle)), across(-along.y(), along.x());
+  for (const auto& [axis, variance] : {std::pair(along, mean + half), std::pair(across, mean - half)})
+    for (const double sigmas : {-2.0, 2.0}) {
+      const Eigen::Vector2d at = sensor.at() + sigmas * std::sqrt(std::max(0.0, variance)) * axis;
+      if (visible({at.x(), at.y(), sensor.yaw}, landmark)) return false;
+    }
+  return true;
 }
 
 std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkGrid& map, double range,

@@ -26,6 +26,12 @@ struct LineOfSightOptions {
 /// hide landmarks, not rocks that do.
 LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions& options);
 
+/// Returns whether the terrain hides a landmark for every position of the sensor within two standard
+/// deviations: at the pose, and at the ends of both axes of the covariance of its position. False if
+/// `visible` is empty.
+bool is_hidden(const Pose2& sensor, const Eigen::Matrix2d& covariance, const Eigen::Vector2d& landmark,
+               const LineOfSight& visible);
+
 /// Returns the landmarks within `range` metres of the sensor that it cannot see, ascending.
 std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkGrid& map, double range,
                                             const LineOfSight& visible);

@@ -14,6 +14,7 @@ namespace waymark::testbed {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNormal90 = 1.6448536;       // deviations that hold 90 % of errors, both sides
 constexpr double kChiSquare90 = 4.605170186;  // of 2 degrees of freedom: -2 ln 0.1
 
 std::size_t at(int index) {
@@ -143,6 +144,11 @@ void measure_positions(Score& s, std::span<const EvaluatedObject> found,
 void measure_features(Score& s, std::span<const EvaluatedObject> found,
                       std::span<const EvaluatedObject> truth, const std::map<std::string, Scale>& scales) {
   std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> values;
+  std::map<std::string, std::vector<double>> normalized;  // errors in deviations
+  const auto scale_of = [&](const std::string& name) {
+    const auto scale = scales.find(name);
+    return scale == scales.end() ? Scale::ratio : scale->second;
+  };
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] < 0) continue;
     const EvaluatedObject& t = truth[at(s.match[f])];
@@ -150,14 +156,24 @@ void measure_features(Score& s, std::span<const EvaluatedObject> found,
       if (std::isfinite(a) && std::isfinite(b))
         values[name].first.push_back(a), values[name].second.push_back(b);
     };
-    add("diameter", found[f].diameter, t.diameter);
+    if (!found[f].features.contains("diameter") || !t.features.contains("diameter"))
+      add("diameter", found[f].diameter, t.diameter);
     for (const auto& [name, value] : found[f].features)
-      if (const auto other = t.features.find(name); other != t.features.end())
+      if (const auto other = t.features.find(name); other != t.features.end()) {
         add(name, value, other->second);
+        const auto sd = found[f].deviations.find(name);
+        if (sd != found[f].deviations.end() && std::isfinite(other->second))
+          normalized[name].push_back(difference(value, other->second, scale_of(name)) / sd->second);
+      }
   }
   for (const auto& [name, pair] : values) {
-    const auto scale = scales.find(name);
-    s.features[name] = summary(pair.first, pair.second, scale == scales.end() ? Scale::ratio : scale->second);
+    ErrorSummary& e = s.features[name] = summary(pair.first, pair.second, scale_of(name));
+    const std::vector<double>& errors = normalized[name];
+    if (errors.empty()) continue;
+    e.with_deviation = static_cast<int>(errors.size());
+    const auto inside =
+        std::ranges::count_if(errors, [](double error) { return std::abs(error) <= kNormal90; });
+    e.inside_90 = static_cast<double>(inside) / static_cast<double>(errors.size());
   }
 }
 

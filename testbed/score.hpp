@@ -15,6 +15,7 @@ struct EvaluatedObject {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double diameter = std::numeric_limits<double>::quiet_NaN();  ///< NaN: unknown
   std::map<std::string, double> features;                      ///< compared by name if both have it
+  std::map<std::string, double> deviations = {};               ///< of features of detections, 1 sigma
   std::optional<Eigen::Matrix2d> covariance;                   ///< of `at`, for detections
   std::optional<double> confidence, quality;                   ///< of detections
   bool ignored = false;  ///< true object that does not count; its matches are not false either
@@ -48,6 +49,8 @@ struct ErrorSummary {
   double absolute = 0;  ///< median of |detected - true|
   double relative_bias = 0, relative_sd = 0;  ///< of detected / true - 1: median; 1.4826 x median
                                               ///< deviation; NaN for features without a true zero
+  int with_deviation = 0;  ///< pairs whose detection states the standard deviation of the feature
+  double inside_90 = std::numeric_limits<double>::quiet_NaN();  ///< fraction of their errors within 1.645 sd
 };
 
 /// Counts of a range of diameters.
@@ -80,7 +83,7 @@ struct Score {
   double nees = 0;       ///< mean squared Mahalanobis distance; 2 for consistent covariances
   int duplicates =
       0;  ///< false detections within the matching radius of an already matched object of similar size
-  std::map<std::string, ErrorSummary> features;  ///< including "diameter"
+  std::map<std::string, ErrorSummary> features;  ///< "diameter": the feature, else that of the circle
   std::vector<CalibrationBin> by_confidence, by_quality;
   double confidence_error = 0, quality_error = 0;  ///< expected calibration error of the bins
   std::vector<int> match;  ///< per detection: index of its true object, -1 false, -2 ignored

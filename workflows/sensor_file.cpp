@@ -14,6 +14,7 @@
 #include "core/options/file_kind.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/text_file.hpp"
+#include "geodb/map_store.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::workflows {
@@ -145,6 +146,27 @@ std::shared_ptr<const SensorProfile> find_sensor(const std::string& name_or_file
     return std::make_shared<const SensorProfile>(parse_sensor(
         read_text(path, "the sensor file", ErrorCode::usage), path.stem().string(), name_or_file));
   return std::make_shared<const SensorProfile>(all_sensors().at(name_or_file));  // throws the nearest name
+}
+
+std::shared_ptr<const SensorProfile> find_sensor(const std::string& name_or_file, const std::string& map) {
+  if (name_or_file != "map") return find_sensor(name_or_file);
+  const std::vector<geodb::RunRecord> runs = geodb::MapStore::open(map).runs();
+  for (auto run = runs.rbegin(); run != runs.rend(); ++run) {
+    const SensorJson job = SensorJson::parse(json_or_empty(run->job_json));
+    if (!job.is_object() || !job.contains("sensor")) continue;
+    const SensorJson& sensor = job["sensor"];
+    const bool named = sensor.is_object() && sensor.contains("name") && sensor["name"].is_string();
+    const std::string name = named ? sensor["name"].get<std::string>() : "map";
+    return std::make_shared<const SensorProfile>(parse_sensor(sensor.dump(), name, map));
+  }
+  throw Error(ErrorCode::usage, "no run of the map records a sensor", map,
+              "pass --sensor NAME or FILE.json; `waymark run --sensor` records one");
+}
+
+void record_sensor(std::string& job_json, const SensorProfile& sensor) {
+  SensorJson job = SensorJson::parse(json_or_empty(job_json));
+  job["sensor"] = SensorJson::parse(json_or_empty(sensor_as_json(sensor)));
+  job_json = job.dump();
 }
 
 }  // namespace waymark::workflows

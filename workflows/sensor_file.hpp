@@ -17,4 +17,11 @@ std::string sensor_as_json(const SensorProfile& sensor);
 /// with the nearest name if there is none.
 std::shared_ptr<const SensorProfile> find_sensor(const std::string& name_or_file);
 
+/// Returns the same, and for the name "map" the profile of the latest run of the map file that records one.
+/// Throws Error{usage} if none does.
+std::shared_ptr<const SensorProfile> find_sensor(const std::string& name_or_file, const std::string& map);
+
+/// Adds a profile to the job of a run under "sensor". An empty job becomes an object.
+void record_sensor(std::string& job_json, const SensorProfile& sensor);
+
 }  // namespace waymark::workflows

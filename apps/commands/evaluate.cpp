@@ -4,8 +4,10 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "apps/score_text.hpp"
+#include "core/error.hpp"
 #include "workflows/evaluation/evaluate.hpp"
 #include "workflows/evaluation/track_study.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -67,6 +69,10 @@ class Evaluate final : public Command {
                  .offering(Offer::file),
              Argument{"--type", "TYPE", &landmarks_.type, "Compare one landmark type only"}.or_else(
                  "all that the truth has"),
+             Argument{"--sensor", "NAME|FILE", &landmarks_.sensor,
+                      "landmarks: check the quality of a map as this sensor weighs it (eq. 8); map: the "
+                      "profile that the map records"}
+                 .offering(workflows::all_sensors().names()),
              Argument{"--by", "RULE", &landmarks_.match_by, "How pairs are found"}
                  .one_of({"distance", "overlap"})
                  .or_else("distance"),
@@ -98,6 +104,9 @@ class Evaluate final : public Command {
   }
 
   int run(const Session& session) override {
+    if (what_ == "track" && !landmarks_.sensor.empty())
+      throw Error(ErrorCode::usage, "--sensor weighs the quality of landmarks; a track has none", "",
+                  "leave it out, or `waymark evaluate landmarks`");
     if (what_ == "track") {
       track_.track = landmarks_.result;
       track_.truth = landmarks_.truth;

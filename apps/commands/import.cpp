@@ -46,6 +46,9 @@ class Import final : public Command {
                       Argument{"--columns", "TARGET=EXPRESSION,...", &request_.options.columns,
                                "What the columns are"}
                           .or_else("by their names"),
+                      Argument{"--mapping", "FILE.json", &request_.mapping,
+                               "Mapping file: types by the words of a column, columns, CRSs; options win"}
+                          .offering(Offer::file),
                       Argument{"--layer", "NAME", &request_.layer, "Layer of a file that holds several"},
                       {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
                        "Reject rows that cannot be read, instead of stopping at the first"}},

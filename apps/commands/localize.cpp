@@ -45,7 +45,8 @@ class Localize final : public Command {
                  .or_else("ekf"),
              Argument{"--sensor", "NAME|FILE", &request_.sensor,
                       "Sensor profile, built-in or FILE.json: eq. 8 for --set quality=paper and maps without "
-                      "confidence; its range, view and detection for --set expect_unseen=true"}
+                      "confidence; its range, view and detection for --set expect_unseen=true; its standard "
+                      "deviations for sightings without any. map: the profile that the map records"}
                  .offering(workflows::all_sensors().names()),
              Argument{"--min-confidence", "P", &request_.min_confidence,
                       "Use only landmarks that exist with at least this probability, 0 to 1"}

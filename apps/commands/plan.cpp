@@ -10,6 +10,8 @@
 #include "core/error.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/output_path.hpp"
+#include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -37,6 +39,9 @@ class PlanJob final : public Command {
                  .or_else("work"),
              Argument{"-o,--output", "MAP.gpkg", &map_, "Map that the last call of the plan writes"}.offering(
                  Offer::file),
+             Argument{"--sensor", "NAME|FILE", &sensor_,
+                      "Sensor profile that the last call of the plan records in the map"}
+                 .offering(workflows::all_sensors().names()),
              Argument{"--shards", "N", &shards_, "Most calls per stage: arrays of a site are limited"}
                  .or_else("64"),
              {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
@@ -51,6 +56,10 @@ class PlanJob final : public Command {
     if (shards_ < 1)
       throw Error(ErrorCode::usage, fmt::format("--shards {} leaves no call for a stage", shards_), "",
                   "give 1 or more");
+    if (!sensor_.empty()) static_cast<void>(workflows::find_sensor(sensor_));
+    if (!sensor_.empty() && map_.empty())
+      throw Error(ErrorCode::usage, "--sensor is recorded in a map, but the plan writes none",
+                  "--sensor " + sensor_, "pass -o MAP.gpkg");
     if (!map_.empty()) workflows::check_map_output(map_);
     const pipeline::Job job = workflows::load_job(job_, settings_);
     const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
@@ -61,6 +70,7 @@ class PlanJob final : public Command {
                                      .work = work_,
                                      .settings = settings_,
                                      .map = map_,
+                                     .sensor = sensor_,
                                      .max_shards = static_cast<std::size_t>(shards_)};
     std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
                   : format_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
@@ -70,7 +80,7 @@ class PlanJob final : public Command {
   }
 
  private:
-  std::string job_, format_ = "jsonl", work_ = "work", map_;
+  std::string job_, format_ = "jsonl", work_ = "work", map_, sensor_;
   long shards_ = 64;
   std::vector<std::string> settings_;
 };

@@ -27,7 +27,8 @@ std::vector<Argument> query_arguments(workflows::QueryRequest& request) {
        "Landmarks whose feature or other number is at most this; may be repeated"},
       Argument{"--crs", "CRS", &request.crs, "CRS of the coordinates given and printed"}.or_else("the map's"),
       Argument{"--sensor", "NAME|FILE", &request.sensor,
-               "Quality as this sensor sees it; `waymark sensors` lists them, FILE.json is one of your own"}
+               "Quality as this sensor sees it; `waymark sensors` lists them, FILE.json is one of your "
+               "own, map: the profile that the map records"}
           .offering(workflows::all_sensors().names()),
       {"--min-confidence", "P", &request.min_confidence,
        "Landmarks that exist with at least this probability, 0 to 1"},

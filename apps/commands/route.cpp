@@ -37,7 +37,8 @@ class RouteCommand final : public Command {
                  .offering(Offer::file)
                  .or_else("none"),
              Argument{"--sensor", "NAME|FILE", &request_.sensor,
-                      "Sensor with its coverage; `waymark sensors` lists them, FILE.json is one of your own"}
+                      "Sensor with its coverage; `waymark sensors` lists them, FILE.json is one of "
+                      "your own, map: the profile that the map records"}
                  .needed()
                  .offering(workflows::all_sensors().names()),
              Argument{"--range", "METRES", &request_.range, "Range of the sensor"}.or_else(

@@ -119,7 +119,7 @@ LandmarkLayout::LandmarkLayout(const LandmarkType& type, TypeId id) : type_(&typ
   for (const auto& f : type.features) {
     columns_.push_back({f.name, "DOUBLE", heading(f.name, f.unit), f.summary});
     columns_.push_back({f.name + "_sd", "DOUBLE", heading(f.name + " deviation", f.unit),
-                        "Standard deviation of the observations, of one as it states itself; NULL: unknown"});
+                        "Standard deviation, by docs/reference/map.md of Waymark; NULL: unknown"});
     columns_.push_back({f.name + "_q", "DOUBLE", heading(f.name + " agreement", ""),
                         "Variance confidence, 0 to 1; NULL where one observation gives no spread"});
   }

@@ -207,10 +207,11 @@ class CsvLog {
 }  // namespace
 
 localization::RobotLog import_csv_log(const std::filesystem::path& file, const std::string& columns,
-                                      const TypeRegistry& types) {
+                                      const TypeRegistry& types,
+                                      const std::optional<SensorCoverage>& sensor) {
   CsvLog csv(file, columns);
   const std::vector<LogRecord> records = csv.records();
-  localization::RobotLog log = read_log_records(file, records, types);
+  localization::RobotLog log = read_log_records(file, records, types, sensor);
   for (std::string& remark : csv.remarks()) log.remarks.push_back(std::move(remark));
   return log;
 }

@@ -55,8 +55,8 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (!how.columns.empty() && format != "csv")
     throw Error(ErrorCode::usage, "columns are given for a log of the format " + format, path.string(),
                 "only text tables (csv) have columns");
-  if (format == "csv") return import_csv_log(path, how.columns, types);
-  if (format == "waymark") return import_waymark_log(path, types);
+  if (format == "csv") return import_csv_log(path, how.columns, types, how.sensor);
+  if (format == "waymark") return import_waymark_log(path, types, how.sensor);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());

@@ -2,9 +2,11 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
+#include "landmarks/sensor_profile.hpp"
 namespace waymark::localization {
 struct RobotLog;
 }
@@ -17,6 +19,8 @@ struct LogImport {
                              ///< recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
+  /// waymark, csv: its standard deviations are those of sightings for which the log gives none.
+  std::optional<SensorCoverage> sensor = {};
 };
 
 /// Reads a log of any format. `types` maps the types of the sightings to ids; other types become kNoSuchType.
@@ -24,15 +28,18 @@ struct LogImport {
 localization::RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types,
                                   const LogImport& how = {});
 
-/// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md).
-localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types);
+/// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md). `sensor` gives the
+/// standard deviations of sightings that state none.
+localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
+                                          const std::optional<SensorCoverage>& sensor = {});
 
 /// Reads a text table with a time per line, and readings in its columns (docs/reference/log_format.md).
 /// `columns` assigns expressions to targets: "t=stamp/1000,v=speed,omega=rad(rate)"; columns named like a
 /// target are used without. A line gives a record of each kind whose needed fields it has.
 /// Throws Error{usage} for unknown targets and columns, and for kinds that lack a needed field.
 localization::RobotLog import_csv_log(const std::filesystem::path& file, const std::string& columns,
-                                      const TypeRegistry& types);
+                                      const TypeRegistry& types,
+                                      const std::optional<SensorCoverage>& sensor = {});
 
 /// Reads UTIAS MRCLAM (Leung et al. 2011): the folder of a dataset with `robot`, or one of its RobotK_*.dat.
 /// Landmarks have type `beacon` and their subject number as uid ("6"); other robots have no type. If the map

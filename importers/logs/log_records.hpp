@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include "landmarks/landmark_type.hpp"
+#include "landmarks/sensor_profile.hpp"
 #include "localization/robot_log.hpp"
 namespace waymark::importers {
 
@@ -13,9 +15,11 @@ struct LogRecord {
   std::string json;
 };
 
-/// Reads records (docs/reference/log_format.md). `file` is named in errors and must outlive the call. Throws
-/// Error{input} with file and line.
+/// Reads records (docs/reference/log_format.md). `file` is named in errors and must outlive the call.
+/// `sensor` gives the standard deviations of sightings that state none. Throws Error{input} with file and
+/// line.
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
-                                        const TypeRegistry& types);
+                                        const TypeRegistry& types,
+                                        const std::optional<SensorCoverage>& sensor = {});
 
 }  // namespace waymark::importers

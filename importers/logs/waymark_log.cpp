@@ -26,7 +26,8 @@ constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
 class Reader {
  public:
-  explicit Reader(const TypeRegistry& types) : types_(types) {}
+  Reader(const TypeRegistry& types, const std::optional<SensorCoverage>& sensor)
+      : types_(types), sensor_(sensor) {}
 
   void read(const LogLine& line) {
     const std::string kind = line.text("kind");
@@ -115,9 +116,12 @@ class Reader {
     s.bearing = line.angle("bearing");
     if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
       line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", s.bearing));
-    s.bearing_sd = line.positive("bearing_sd", 0.02);
+    s.bearing_sd =
+        line.positive("bearing_sd", sensor_ ? to_radians(Degrees{sensor_->bearing_sd}).value : 0.02);
     if (line.has("range")) s.range = line.number("range");
-    s.range_sd = line.positive("range_sd", s.range ? 0.05 + 0.02 * std::abs(*s.range) : 0.1);
+    s.range_sd = line.positive("range_sd", sensor_ && sensor_->range_sd > 0 ? sensor_->range_sd
+                                           : s.range                        ? 0.05 + 0.02 * std::abs(*s.range)
+                                                                            : 0.1);
     s.confidence = line.number("confidence", 1);
     if (!(s.confidence > 0 && s.confidence <= 1)) line.fail("\"confidence\" must be within (0, 1]");
     if (line.has("elevation")) {
@@ -234,6 +238,7 @@ class Reader {
 
   double last_truth_yaw_ = 0;
   const TypeRegistry& types_;
+  std::optional<SensorCoverage> sensor_;  // absent: assumed deviations
   localization::RobotLog log_;
   std::map<std::string, std::size_t> unknown_, no_type_;
 };
@@ -241,14 +246,16 @@ class Reader {
 }  // namespace
 
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
-                                        const TypeRegistry& types) {
+                                        const TypeRegistry& types,
+                                        const std::optional<SensorCoverage>& sensor) {
   if (records.empty()) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
-  Reader reader(types);
+  Reader reader(types, sensor);
   for (const LogRecord& record : records) reader.read({file, record.line, record.json});
   return reader.take();
 }
 
-localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types) {
+localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
+                                          const std::optional<SensorCoverage>& sensor) {
   std::istringstream text(read_text(file, "the file"));
   std::vector<LogRecord> records;
   std::size_t number = 0;
@@ -256,7 +263,7 @@ localization::RobotLog import_waymark_log(const std::filesystem::path& file, con
     ++number;
     if (line.find_first_not_of(" \t\r") != std::string::npos) records.push_back({number, std::move(line)});
   }
-  return read_log_records(file, records, types);
+  return read_log_records(file, records, types, sensor);
 }
 
 }  // namespace waymark::importers

@@ -21,36 +21,51 @@
 namespace waymark::importers {
 namespace {
 
-/// Types of the rows of a table: one type, or the one in their column `type`.
+/// Types of the rows of a table: one type for all, or by the words of a column.
 class RowTypes {
  public:
-  RowTypes(const TableHeader& table, const TypeRegistry& types, const std::string& asked) : types_(&types) {
-    if (std::ranges::count(table.columns, "type") == 1) column_ = column_index(table.columns, "type");
-    if (!asked.empty())
-      only_ = types.id(asked);
-    else if (types.find(table.layer) != nullptr)
+  RowTypes(const TableHeader& table, const TypeRegistry& types, const TableImport& how) : types_(&types) {
+    for (const auto& [word, type] : how.type_words) words_[word] = types.id(type);
+    if (!how.type_column.empty())
+      column_ = column_index(table.columns, how.type_column);
+    else if (std::ranges::count(table.columns, "type") == 1)
+      column_ = column_index(table.columns, "type");
+    if (!how.type.empty())
+      only_ = types.id(how.type);
+    else if (how.type_column.empty() && types.find(table.layer) != nullptr)
       only_ = types.id(table.layer);
     else if (!column_)
       throw Error(ErrorCode::usage, "the table does not name the type of its rows", table.path,
-                  "pass --type, e.g. --type crater; `waymark types` lists them");
+                  "pass --type, e.g. --type crater, or a --mapping; `waymark types` lists them");
   }
 
   std::vector<std::string> names() const {
-    return only_ ? std::vector{(*types_)[*only_].name} : types_->names();
+    if (only_) return {(*types_)[*only_].name};
+    if (words_.empty()) return types_->names();
+    std::vector<std::string> named;
+    for (TypeId id = 0; id < types_->size(); ++id)
+      if (std::ranges::any_of(words_, [&](const auto& word) { return word.second == id; }))
+        named.push_back((*types_)[id].name);
+    return named;
   }
 
   /// Returns the type of a row; `std::nullopt` for another or unknown type.
   std::optional<TypeId> of(const TableRow& row) const {
     const std::string said = column_ ? row.cells[*column_] : "";
-    if (only_) {  // other words in a column `type`, such as "standard", are ignored
-      const bool other = types_->find(said) != nullptr && types_->id(said) != *only_;
-      return other ? std::nullopt : only_;
-    }
-    return types_->find(said) != nullptr ? std::optional(types_->id(said)) : std::nullopt;
+    std::optional<TypeId> type;
+    if (const auto word = words_.find(said); word != words_.end())
+      type = word->second;
+    else if (words_.empty() && types_->find(said) != nullptr)
+      type = types_->id(said);
+    if (!only_) return type;
+    if (!words_.empty()) return type == only_ ? type : std::nullopt;
+    // Other words in a column `type`, such as "standard", are ignored.
+    return type && *type != *only_ ? std::nullopt : only_;
   }
 
  private:
   const TypeRegistry* types_;
+  std::map<std::string, TypeId> words_;
   std::optional<std::size_t> column_;
   std::optional<TypeId> only_;
 };
@@ -220,17 +235,24 @@ void refuse_empty_result(const ImportedTable& result, const std::string& path) {
 ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how,
                            const std::function<void(Landmark&&)>& take) {
   const TableHeader& header = table.header();
-  const RowTypes row_types(header, types, how.type);
+  const RowTypes row_types(header, types, how);
   ImportedTable result;
   result.types = row_types.names();
   const ColumnBindings bindings = bindings_of(header, types, result.types, how.columns);
   for (const auto& [target, expression] : bindings)
     result.bindings.push_back(
         target == expression.text() ? target : fmt::format("{} = {}", target, expression.text()));
+  std::map<TypeId, ColumnBindings> bindings_of_type;
+  for (const auto& [type, columns] : how.columns_of_type) {
+    const TypeId id = types.id(type);
+    if (std::ranges::find(result.types, type) == result.types.end()) continue;
+    for (const ColumnAssignment& one : column_assignments(columns))
+      result.bindings.push_back(fmt::format("{}: {} = {}", type, one.target, one.expression));
+    bindings_of_type.emplace(id, bindings_of(header, types, result.types, how.columns + "," + columns));
+  }
   TablePositions positions(header, how.table_crs, how.map_crs, names_imply_degrees(bindings));
   result.crs = positions.map_crs();
 
-  const Cells cells(table, bindings);
   Rejections rejections(result, table);
   TableRow row;
   for (;;) {
@@ -245,6 +267,8 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
         rejections.add(row, "of another type");
         continue;
       }
+      const auto own = bindings_of_type.find(*type);
+      const Cells cells(table, own == bindings_of_type.end() ? bindings : own->second);
       Landmark landmark = read_landmark(cells, row, types[*type], *type);
       if (const std::string nowhere = positions.transform_to_map(landmark.position); !nowhere.empty()) {
         rejections.add(row, nowhere);

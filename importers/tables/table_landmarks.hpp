@@ -14,8 +14,11 @@ class TableSource;
 
 /// Options for importing a table as landmarks.
 struct TableImport {
-  std::string type;       ///< landmark type; empty: the column `type`, or else the layer's name
-  std::string columns;    ///< "x=lon,y=lat,radius=diam/2"; see bind_columns
+  std::string type;              ///< landmark type; empty: the column `type`, or else the layer's name
+  std::string columns;           ///< "x=lon,y=lat,radius=diam/2"; see bind_columns
+  std::string type_column = {};  ///< column that holds the type of a row; empty: `type`
+  std::map<std::string, std::string> type_words = {};       ///< word of that column -> landmark type
+  std::map<std::string, std::string> columns_of_type = {};  ///< landmark type -> more `columns`, for its rows
   std::string table_crs;  ///< of the table's positions, overriding the table's own; empty: the table's own
   std::string map_crs;    ///< of the map; empty: the table's
   bool skip_bad_rows = false;  ///< reject rows that cannot be read instead of throwing

@@ -192,6 +192,8 @@ void IdentificationOptions::describe(OptionVisitor& option) {
          {.help = "Smallest quality that the noise of a landmark is divided by; 1 turns quality off",
           .min = 1e-3,
           .max = 1});
+  option("use_terrain", use_terrain,
+         {.help = "With --dem: landmarks that the terrain hides from the sensor are no candidates"});
   option("use_identities", use_identities, {.help = "Use the identities of landmarks in the log"});
 }
 
@@ -242,6 +244,10 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     reach = {*found};
   } else {
     reach = landmarks_in_reach(seen, sensor, robot, map, scales, options);
+    if (options.use_terrain)
+      std::erase_if(reach, [&](std::uint32_t i) {
+        return is_hidden(sensor, robot.covariance.topLeftCorner<2, 2>(), map[i].at, options.visible);
+      });
   }
   result.verdict = Verdict::nothing_near;
   const KnownFeatures seen_features =

@@ -11,6 +11,7 @@
 #include "localization/identification/feature_distance.hpp"
 #include "localization/identification/joint_evidence.hpp"
 #include "localization/identification/landmark_grid.hpp"
+#include "localization/line_of_sight.hpp"
 namespace waymark::localization {
 
 /// Options of data association.
@@ -38,6 +39,9 @@ struct IdentificationOptions {
   double bearing_reach = 0;         ///< m: largest range of a sighting without range; 0: that of its type
   std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` is used
   bool use_identities = true;       ///< use the identities of landmarks
+  /// Landmarks that the terrain hides are no candidates, unless the log identifies them.
+  bool use_terrain = false;
+  LineOfSight visible = {};  ///< over the terrain, for `use_terrain`; no option
   /// `existence`: the probability that a landmark exists is the prior of its pairings. `paper`: the noise of
   /// a landmark of quality q (eq. 8) is divided by max(q, quality_floor) (section 4.3).
   std::string quality = "existence";

@@ -53,6 +53,7 @@ struct PlanCommand {
   std::string program = "waymark";
   std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
   std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
+  std::string sensor = {};      ///< name or file of the profile that the map records; empty: none
   std::size_t max_shards = 64;  ///< calls per stage over tiles or images
 };
 

@@ -5,6 +5,14 @@
 
 namespace waymark::pipeline {
 
+TreeErrors tree_errors(std::string_view forest_type, bool built_in_allometry) {
+  TreeErrors errors;
+  if (forest_type == "conifer") errors.height = 1.0;
+  if (forest_type == "mixed") errors.height = 0.95;
+  if (forest_type == "conifer" && built_in_allometry) errors.allometry = 0.2;
+  return errors;
+}
+
 Observation observation_of(const DetectedTree& tree, const CanopySource& canopy, const LandmarkType& type,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
                            const TreeErrors& errors) {
@@ -31,7 +39,7 @@ Observation observation_of(const DetectedTree& tree, const CanopySource& canopy,
   if (tree.crown_diameter > 0) set("crown_diameter", tree.crown_diameter, crown_sd);
   if (const Allometry* row_of = allometry_of(table, species))
     if (const auto stem = stem_diameter(*row_of, tree.height, errors.height, tree.crown_diameter, crown_sd))
-      set("diameter", stem->metres, stem->sd);
+      set("diameter", stem->metres, std::hypot(stem->sd, errors.allometry * stem->metres));
   return seen;
 }
 

@@ -61,7 +61,7 @@ struct TreesFromCanopy {
   static StageSpec spec() {
     return {.name = "trees_from_canopy",
             .summary = "Finds treetops and crowns in canopy models; stem diameters by allometry",
-            .version = 3,
+            .version = 4,
             .scope = Scope::tile,
             .inputs = {canopies},
             .outputs = {observations, seen_crowns},
@@ -111,8 +111,10 @@ struct TreesFromCanopy {
       const Window owned = tile_window(canopy->geometry(), common, unit.tile().cells);
       const std::uint32_t survey = outlines.add_survey(*canopy);
       for (const DetectedTree& tree : find_trees(*canopy, owned, search)) {
-        seen.push_back(
-            observation_of(tree, *canopy, types[id], id, table, tree_species(tree, *canopy, options)));
+        const std::string forest = forest_type(tree, *canopy, options);
+        seen.push_back(observation_of(tree, *canopy, types[id], id, table,
+                                      options.species.empty() ? forest : options.species,
+                                      tree_errors(forest, options.allometry.empty())));
         if (options.crowns) outlines.add(survey, tree);
       }
     }
@@ -123,9 +125,8 @@ struct TreesFromCanopy {
     unit.write(seen_crowns, std::move(outlines));
   }
 
-  static std::string tree_species(const DetectedTree& tree, const CanopySource& canopy,
-                                  const Options& options) {
-    if (!options.species.empty()) return options.species;
+  static std::string forest_type(const DetectedTree& tree, const CanopySource& canopy,
+                                 const Options& options) {
     const Grid<std::uint8_t> type = canopy.forest_types({tree.top.column, tree.top.row, 1, 1});
     const auto known = type.columns() ? static_cast<ForestType>(type(0, 0)) : ForestType::unknown;
     return known == ForestType::unknown ? options.preset : forest_preset(known).name;

@@ -47,7 +47,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: multiplicity, spread of features, probability of existence",
-            .version = 5,
+            .version = 6,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};

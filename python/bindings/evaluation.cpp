@@ -17,6 +17,7 @@ const Keywords<workflows::LandmarkEvaluation>& landmark_keywords() {
                               .add("truth", &R::truth)
                               .add("ignore", &R::ignore)
                               .add("type", &R::type)
+                              .add("sensor", &R::sensor)
                               .add("by", &R::match_by)
                               .add("tolerance", &R::max_distance)
                               .add("min_tolerance", &R::always_allowed_distance)

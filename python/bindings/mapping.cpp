@@ -12,6 +12,7 @@
 #include "python/bindings/keywords.hpp"
 #include "workflows/mapping/image_stages.hpp"
 #include "workflows/mapping/make_map.hpp"
+#include "workflows/mapping/merge_maps.hpp"
 #include "workflows/registries.hpp"
 #include "workflows/simulation/simulate.hpp"
 
@@ -28,6 +29,7 @@ const Keywords<workflows::MapRequest>& run_keywords() {
                               .add("unit", &R::unit)
                               .add("check", &R::check)
                               .add("with_dem", &R::with_dem)
+                              .add("sensor", &R::sensor)
                               .add("threads", &R::threads);
   return all;
 }
@@ -135,6 +137,23 @@ py::dict simulate(const py::dict& keywords, py::object progress, py::object mess
                   py::arg("craters") = made.craters, py::arg("trees") = made.trees);
 }
 
+const Keywords<workflows::MergeRequest>& merge_keywords() {
+  using R = workflows::MergeRequest;
+  static const auto all = Keywords<R>().add("maps", &R::maps).add("output", &R::result);
+  return all;
+}
+
+py::dict merge(const py::dict& keywords, py::object progress, py::object message) {
+  const workflows::MergeRequest request = merge_keywords().request(keywords);
+  const workflows::Callbacks callbacks = python_callbacks(std::move(progress), std::move(message));
+  const workflows::MergeResult made = [&] {
+    const py::gil_scoped_release no_gil;
+    return workflows::merge_maps(request, callbacks);
+  }();
+  return py::dict(py::arg("landmarks") = made.landmarks, py::arg("fused") = made.fused,
+                  py::arg("identical") = made.identical);
+}
+
 }  // namespace
 
 void bind_mapping(py::module_& module) {
@@ -149,6 +168,8 @@ void bind_mapping(py::module_& module) {
              py::arg("crs"));
   module.def("stages_as_json", &stages_as_json);
   module.def("simulate", &simulate, py::arg("keywords"), py::arg("progress"), py::arg("message"));
+  module.def("merge", &merge, py::arg("keywords"), py::arg("progress"), py::arg("message"));
+  module.def("merge_keywords", [] { return merge_keywords().defaults(); });
   module.def("simulate_keywords", [] { return simulate_keywords().defaults(); });
 }
 

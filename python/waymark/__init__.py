@@ -14,7 +14,7 @@ from .detection import (
 from .errors import EnvironmentError, Error, InputError, OutputError, UnitsFailed, UsageError, Warning
 from .evaluation import evaluate, evaluate_track
 from .localization import Localization, localize, localize_methods, localize_settings
-from .mapping import Run, run, simulate
+from .mapping import Run, merge, run, simulate
 from .maps import Feature, LandmarkType, Map, open, read_map
 from .planning import hazards, route
 from .reconstruction import reconstruct
@@ -24,5 +24,5 @@ __all__ = [
     "EnvironmentError", "Error", "Feature", "InputError", "LandmarkType", "Localization", "Map", "OutputError", "Run",
     "UnitsFailed", "UsageError", "Warning", "detect", "evaluate", "evaluate_track", "find_craters",
     "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "localize",
-    "localize_methods", "localize_settings", "map_images", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages",
+    "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages",
 ]

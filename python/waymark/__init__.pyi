@@ -699,7 +699,7 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
         threads: 0: one per processor"""
     ...
 
-def evaluate(result: Any, truth: Any, *, progress: Any = ..., ignore: _Path = ..., type: _Path = ..., by: _Path = ..., tolerance: float = ..., min_tolerance: float = ..., min_diameter: float = ..., min_pixels: float = ..., size_edges: Sequence[Any] | _Path = ...) -> dict[str, Any]:
+def evaluate(result: Any, truth: Any, *, progress: Any = ..., ignore: _Path = ..., type: _Path = ..., sensor: _Path = ..., by: _Path = ..., tolerance: float = ..., min_tolerance: float = ..., min_diameter: float = ..., min_pixels: float = ..., size_edges: Sequence[Any] | _Path = ...) -> dict[str, Any]:
     """Compares a map or table of landmarks with the truth, as `waymark evaluate landmarks --format json`.
 
     Returns scores by type. options: ignore, type, by, tolerance, min_diameter, ...
@@ -707,6 +707,7 @@ def evaluate(result: Any, truth: Any, *, progress: Any = ..., ignore: _Path = ..
     Keywords:
         ignore: true objects that count neither way; empty: none
         type: compare one landmark type; empty: all that the truth has
+        sensor: profile that weighs the quality of a map; empty: equal weights
         by: "distance" or "overlap"
         tolerance: of a pair, in diameters
         min_tolerance: of a pair, in units of the positions
@@ -852,6 +853,12 @@ def map_images(images: Any, output: Any, *, find: Any = ..., progress: Any = ...
         height_sd: metres, of a height of the ground; 0: not known"""
     ...
 
+def merge(maps: Any, output: Any, *, progress: Any = ...) -> dict[str, int]:
+    """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical.
+
+    Keywords:"""
+    ...
+
 def open(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
@@ -900,12 +907,12 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         seed"""
     ...
 
-def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., progress: Any = ..., work: _Path = ..., stage: _Path = ..., rerun_from: _Path = ..., unit: _Path = ..., check: bool = ..., with_dem: bool = ..., threads: int = ...) -> Run:
+def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., progress: Any = ..., work: _Path = ..., stage: _Path = ..., rerun_from: _Path = ..., unit: _Path = ..., check: bool = ..., with_dem: bool = ..., sensor: _Path = ..., threads: int = ...) -> Run:
     """Runs a job and returns a Run; `output` is the map to write.
 
     job is a job file or a dict {"name": ..., "stages": [...]}, made by hand or with waymark.stages. Relative paths of
     a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, stage,
-    threads, rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
+    threads, rerun_from, check, with_dem, sensor. progress(stage, done, total, rate) is called now and then.
     Raises UnitsFailed if some units failed.
 
     Keywords:
@@ -915,6 +922,7 @@ def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., 
         unit: single unit of work to run; needs `work`
         check: check options, wiring and files only
         with_dem: store the DEM in the map
+        sensor: profile recorded in the map; empty: none
         threads: 0: one per processor"""
     ...
 

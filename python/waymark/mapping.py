@@ -30,7 +30,7 @@ def run(job, output=None, *, settings=None, folder=None, progress=None, **option
 
     job is a job file or a dict {"name": ..., "stages": [...]}, made by hand or with waymark.stages. Relative paths of
     a dict start at `folder` (default: the current one). settings: {"stage.option": value}. options: work, stage,
-    threads, rerun_from, check, with_dem. progress(stage, done, total, rate) is called now and then.
+    threads, rerun_from, check, with_dem, sensor. progress(stage, done, total, rate) is called now and then.
     Raises UnitsFailed if some units failed.
     """
     given = keywords(output=output, **options)
@@ -57,6 +57,13 @@ def _raise(result, exit_code):
     failed = kind(f"{len(failures)} units of the job failed", failures[0]["unit"] if failures else "", first)
     failed.result = result
     raise failed
+
+
+@takes("merge")
+def merge(maps, output, *, progress=None, **options):
+    """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical."""
+    return call(_waymark.merge, keywords(maps=[os.fspath(map) for map in maps], output=output, **options),
+                progress=progress)
 
 
 @takes("simulate")

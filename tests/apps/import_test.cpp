@@ -182,6 +182,51 @@ TEST_F(Import, TableWithoutHeaderAndColumnTypes) {
   EXPECT_THAT(said.err, AllOf(HasSubstr("2 landmarks"), HasSubstr("1 of another type")));
 }
 
+TEST_F(Import, AMappingFileReadsTablesOfOtherPeople) {
+  const std::string table = folder_ / "survey.csv", mapping = folder_ / "mapping.json";
+  write_text(
+      table,
+      "Nr,Klasse,Rechts,Hoch,Durchmesser,Hoehe_cm,Tiefe\n"
+      "1,Felsblock,10,20,1.0,40,\n2,Krater,30,20,8,,1.5\n3,Baum,50,20,3,900,\n4,Findling,70,20,2,80,\n");
+  const std::string good = R"({"waymark_mapping": 1,
+    "type": {"column": "Klasse", "words": {"Felsblock": "rock", "Findling": "rock", "Krater": "crater"}},
+    "columns": {"uid": "Nr", "x": "Rechts", "y": "Hoch", "position_sd": "0.2"},
+    "columns_of_type": {"rock": {"radius": "Durchmesser/2", "radius_sd": "0.05", "height": "Hoehe_cm/100"},
+                        "crater": {"radius": "Durchmesser/2", "depth": "Tiefe"}},
+    "map_crs": "EPSG:25833"})";
+  const auto import = [&](const std::string& text, std::vector<std::string> more = {}) {
+    write_text(mapping, text);
+    more.insert(more.begin(), {"import", table, "-o", map_, "--mapping", mapping});
+    return waymark(more);
+  };
+  const Outcome made = import(good);
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("4 rows, 3 landmarks, 1 rejected"));
+  EXPECT_THAT(made.err, HasSubstr("1 of another type"));
+  EXPECT_THAT(
+      bash("sqlite3 '" + map_ + "' \"SELECT uid, radius, radius_sd, height, var_x FROM rock ORDER BY uid\"")
+          .out,
+      HasSubstr("1|0.5|0.05|0.4|0.04\n4|1.0|0.05|0.8|0.04"));
+  EXPECT_EQ(bash("sqlite3 '" + map_ + "' \"SELECT uid, radius, radius_sd, depth FROM crater\"").out,
+            "2|4.0||1.5\n");
+
+  const Outcome only = import(good, {"--type", "crater"});
+  EXPECT_THAT(only.err, HasSubstr("1 landmarks")) << "options win";
+  const auto refusal = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    const Outcome said = import(text);
+    EXPECT_NE(said.code, 0);
+    return said.err;
+  };
+  EXPECT_THAT(refusal("\"rock\", \"Krater\"", "\"rokc\", \"Krater\""), HasSubstr("rock"));
+  EXPECT_THAT(refusal("\"Klasse\"", "\"Klase\""), HasSubstr("Klasse"));
+  EXPECT_THAT(refusal("\"columns\"", "\"colums\""), HasSubstr("columns"));
+  EXPECT_THAT(refusal("\"Tiefe\"", "7"), HasSubstr("/columns_of_type/crater/depth"));
+  EXPECT_THAT(refusal("\"waymark_mapping\": 1", "\"waymark_mapping\": 2"), HasSubstr("not known"));
+  EXPECT_THAT(import("[]").err, HasSubstr("no mapping file"));
+}
+
 TEST_F(Import, ForeignGeoPackageWithPolygons) {
   const std::string crowns = folder_ / "crowns.gpkg";
   write_text(folder_.path() / "crowns.csv",

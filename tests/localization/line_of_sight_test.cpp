@@ -46,6 +46,46 @@ TEST(LineOfSight, HiddenLandmarksAreThoseOfASearchOfAll) {
   EXPECT_TRUE(hidden_landmarks(sensor, map, 15, {}).empty());
 }
 
+TEST(LineOfSight, HiddenIsWhatNoProbablePositionSees) {
+  const LineOfSight sees = terrain_line_of_sight(wall, {});
+  const Eigen::Matrix2d sharp = Eigen::Matrix2d::Identity() * 1e-4;
+  EXPECT_TRUE(is_hidden({0, 3, 0}, sharp, {10, 3}, sees));
+  EXPECT_FALSE(is_hidden({0, 3, 0}, sharp, {3, 3}, sees));
+  EXPECT_FALSE(is_hidden({0, 3, 0}, sharp, {10, 3}, {}));
+  const Eigen::Matrix2d wide = (Eigen::Matrix2d() << 1e-4, 0, 0, 25).finished();
+  EXPECT_FALSE(is_hidden({0, 3, 0}, wide, {10, -6}, sees)) << "from y = -7 it is seen";
+  const Eigen::Matrix2d turned = (Eigen::Matrix2d() << 12.5, 12.5, 12.5, 12.5001).finished();
+  EXPECT_FALSE(is_hidden({0, 3, 0}, turned, {10, -6}, sees)) << "from (-7, -4), along the axis";
+}
+
+TEST(LineOfSight, HiddenLandmarksAreNoCandidates) {
+  // A bearing to the east from (0, 3): one landmark before the wall, two behind it.
+  const LandmarkGrid map({landmark_at(3, 3, 1), landmark_at(9, 3, 2), landmark_at(12, 3.05, 3)});
+  const PoseEstimate robot{{0, 3, 0}, Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal()};
+  SightingSet set;
+  SeenLandmark seen;
+  seen.type = map[0].type;
+  seen.bearing = 0;
+  seen.bearing_sd = 0.01;
+  set.sightings = {seen};
+  IdentificationOptions options;
+  const auto landmarks = [&] {
+    std::vector<LandmarkKey> keys;
+    for (const CandidatePair& p : candidates(seen, {}, robot, map, {}, options).pairings)
+      keys.push_back(map[p.landmark].key);
+    std::ranges::sort(keys);
+    return keys;
+  };
+  options.visible = terrain_line_of_sight(wall, {});
+  EXPECT_EQ(landmarks(), (std::vector<LandmarkKey>{1, 2, 3})) << "unless asked for";
+  EXPECT_EQ(identify(set, robot, map, {}, options).matches[0].verdict, Verdict::ambiguous);
+  options.use_terrain = true;
+  EXPECT_EQ(landmarks(), std::vector<LandmarkKey>{1});
+  EXPECT_EQ(identify(set, robot, map, {}, options).matches[0].verdict, Verdict::matched);
+  options.visible = {};
+  EXPECT_EQ(landmarks().size(), 3u) << "without a DEM nothing is hidden";
+}
+
 // A landmark 3 m ahead: the one at x = 3 seen from x = 0, or the one at x = 5 seen from x = 2. From there a
 // third one behind the wall would be in view.
 double x_of_estimate(const LineOfSight& visible) {

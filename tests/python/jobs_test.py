@@ -34,6 +34,17 @@ def test_a_dict_is_a_job_whose_paths_begin_at_the_folder(tmp_path):
     assert done.map.landmarks().tobytes() == same.map.landmarks().tobytes()
 
 
+def test_a_merge_gives_the_map_of_the_program(tmp_path):
+    whole = waymark.run(job(), tmp_path / "whole.gpkg")
+    few = waymark.run(job(), tmp_path / "few.gpkg", settings={"find_mountain_tops.min_prominence": 100.0})
+    counts = waymark.merge([few.map.path, tmp_path / "whole.gpkg"], tmp_path / "python.gpkg")
+    assert counts == {"landmarks": len(whole.map), "fused": 0, "identical": len(few.map)}
+    program("merge", tmp_path / "whole.gpkg", few.map.path, "-o", tmp_path / "program.gpkg")
+    assert (tmp_path / "python.gpkg").read_bytes() == (tmp_path / "program.gpkg").read_bytes()
+    with pytest.raises(waymark.UsageError, match="two maps"):
+        waymark.merge([few.map.path], tmp_path / "python.gpkg")
+
+
 def test_progress_is_reported_in_the_thread_of_the_caller(tmp_path):
     heard = []
     waymark.run(job(), tmp_path / "map.gpkg", progress=lambda *at: heard.append((threading.get_ident(), *at)))

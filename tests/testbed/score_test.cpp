@@ -104,6 +104,33 @@ TEST(Score, FeaturesAreComparedByName) {
   EXPECT_FALSE(s.features.contains("other"));
 }
 
+TEST(Score, AFeatureNamedDiameterIsNotThatOfTheCircle) {
+  std::vector<EvaluatedObject> found{thing(0, 0, 4)}, truth{thing(0, 0, 5)};
+  found[0].features = {{"diameter", 0.3}};
+  truth[0].features = {{"diameter", 0.2}};
+  const Score s = score(found, truth, {});
+  EXPECT_EQ(s.features.at("diameter").count, 1);
+  EXPECT_NEAR(s.features.at("diameter").bias, 0.1, 1e-12) << "a stem, not its crown";
+}
+
+TEST(Score, DeviationsOfFeaturesAreChecked) {
+  std::vector<EvaluatedObject> found, truth;
+  for (int i = 0; i < 4; ++i) {
+    found.push_back(thing(100.0 * i, 0, 20));
+    truth.push_back(thing(100.0 * i, 0, 20));
+    found.back().features = {{"height", 1 + 0.2 * i}, {"orientation", 3.1}};
+    truth.back().features = {{"height", 1}, {"orientation", 0}};
+    if (i < 3) found.back().deviations = {{"height", 0.2}, {"orientation", 0.05}};
+  }
+  const MatchRules rules{.scales = {{"orientation", Scale::axis}}};
+  const Score s = score(found, truth, rules);
+  EXPECT_EQ(s.features.at("height").with_deviation, 3);
+  EXPECT_NEAR(s.features.at("height").inside_90, 2.0 / 3, 1e-12) << "2 deviations are outside";
+  EXPECT_NEAR(s.features.at("orientation").inside_90, 1, 1e-12) << "half a turn is none";
+  EXPECT_EQ(s.features.at("diameter").with_deviation, 0);
+  EXPECT_TRUE(std::isnan(s.features.at("diameter").inside_90));
+}
+
 TEST(Score, AnAxisErrsByAQuarterTurnAtMostAndAnElevationHasNoPercentage) {
   std::vector<EvaluatedObject> found{thing(0, 0, 4)}, truth{thing(0, 0, 4)};
   found[0].features = {{"orientation", 3.1}, {"elevation", 12}};

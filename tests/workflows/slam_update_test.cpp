@@ -62,6 +62,29 @@ class SlamUpdateOfARock : public ::testing::Test {
   Landmark rock_;
 };
 
+TEST_F(SlamUpdateOfARock, ErrorsCommonToAllImagesAreKept) {
+  static_cast<void>(make_map());  // sets rock_
+  constexpr double common = 0.05;
+  const double spread = rock_.features[radius_].variance;
+  const auto after = [&] {
+    geodb::MapContents contents;
+    contents.types = types_;
+    contents.landmarks = {rock_};
+    geodb::write_map(folder_.path() / "map.gpkg", contents);
+    const OpenedMap opened = open_robot_map((folder_.path() / "map.gpkg").string(), nullptr);
+    localization::SlamLandmark found = after_drive(10, 10, 1);
+    found.key = localization::landmark_key("rock-1");
+    found.was_mapped = true;
+    return make_slam_update({&found, 1}, opened.map, {}, "drive", 2).changed.at(0);
+  };
+  const Landmark plain = after();
+  rock_.features[radius_].variance = spread / 2 + common;
+  const Landmark both = after();
+  EXPECT_NEAR(both.quality.feature_confidences[radius_].value(),
+              plain.quality.feature_confidences[radius_].value(), 1e-9);
+  EXPECT_NEAR(both.features[radius_].variance, plain.features[radius_].variance / 3 + common, 1e-9);
+}
+
 TEST_F(SlamUpdateOfARock, ADriveCountsAsOneSurvey) {
   const OpenedMap opened = make_map();
   localization::SlamLandmark found = after_drive(400, 500, 1);

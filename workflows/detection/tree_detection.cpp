@@ -119,9 +119,9 @@ std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double me
   for (const pipeline::DetectedTree& tree :
        search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads, progress)) {
     TreeCandidate one{detection_of(tree, type, metres, imagery), {}};
-    one.features =
-        pipeline::observation_of(tree, *canopy, tree_type, type, pipeline::built_in_allometry(), "mixed")
-            .features;
+    one.features = pipeline::observation_of(tree, *canopy, tree_type, type, pipeline::built_in_allometry(),
+                                            "mixed", pipeline::tree_errors("mixed", true))
+                       .features;
     if (imagery)
       one.features[feature_index(tree_type, "height")] =
           one.features[feature_index(tree_type, "diameter")] = {};

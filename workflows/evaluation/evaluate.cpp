@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 
 #include "core/atomic_file.hpp"
@@ -18,6 +19,7 @@
 #include "workflows/evaluation/scored_table.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -154,7 +156,9 @@ std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request
                                                const Callbacks& callbacks) {
   if (!(request.max_distance >= 0) || !(request.always_allowed_distance >= 0) || !(request.min_diameter >= 0))
     throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
-  const ScoredTables found = read_scored_things(request.result, request.type, 0);
+  const std::shared_ptr<const SensorProfile> sensor =
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.result);
+  const ScoredTables found = read_scored_things(request.result, request.type, 0, sensor.get());
   const ScoredTables truth = read_truth(request);
   testbed::MatchRules rules{.by = request.match_by == "overlap" ? testbed::MatchRules::By::overlap
                                                                 : testbed::MatchRules::By::distance,

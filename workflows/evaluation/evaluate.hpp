@@ -16,6 +16,7 @@ struct LandmarkEvaluation {
   std::string result, truth;            ///< map, CSV or any layer of points
   std::string ignore = {};              ///< true objects that count neither way; empty: none
   std::string type = {};                ///< compare one landmark type; empty: all that the truth has
+  std::string sensor = {};              ///< profile that weighs the quality of a map; empty: equal weights
   std::string match_by = "distance";    ///< "distance" or "overlap"
   double max_distance = 0.75;           ///< of a pair, in diameters
   double always_allowed_distance = 0;   ///< of a pair, in units of the positions

@@ -67,7 +67,7 @@ testbed::EvaluatedObject thing_of(const std::map<std::string, double>& values, d
   return thing;
 }
 
-ScoredTables from_map(const geodb::MapStore& map, const std::string& only) {
+ScoredTables from_map(const geodb::MapStore& map, const std::string& only, const SensorProfile* sensor) {
   ScoredTables tables;
   for (const LandmarkType& type : map.types()) {
     if (!only.empty() && type.name != only) continue;
@@ -80,9 +80,12 @@ ScoredTables from_map(const geodb::MapStore& map, const std::string& only) {
       for (std::size_t f = 0; f < type.features.size(); ++f)
         if (landmark.features[f].known()) values[type.features[f].name] = landmark.features[f].value;
       testbed::EvaluatedObject thing = thing_of(values, 0);
+      for (std::size_t f = 0; f < type.features.size(); ++f)
+        if (landmark.features[f].known() && landmark.features[f].variance > 0)
+          thing.deviations[type.features[f].name] = std::sqrt(landmark.features[f].variance);
       thing.covariance = landmark.covariance.topLeftCorner<2, 2>();
       thing.confidence = landmark.confidence;
-      thing.quality = quality_of(type, landmark);
+      thing.quality = sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark);
       things.push_back(thing);
     }
   }
@@ -134,8 +137,12 @@ bool is_map(const std::string& path) {
 
 }  // namespace
 
-ScoredTables read_scored_things(const std::string& path, const std::string& type, double min_pixels) {
-  if (is_map(path)) return from_map(geodb::MapStore::open(path), type);
+ScoredTables read_scored_things(const std::string& path, const std::string& type, double min_pixels,
+                                const SensorProfile* sensor) {
+  if (is_map(path)) return from_map(geodb::MapStore::open(path), type, sensor);
+  if (sensor)
+    throw Error(ErrorCode::usage, "--sensor weighs the quality of a map, but the result is a table", path,
+                "leave out --sensor, or evaluate the map");
   return from_table(*importers::open_table(path, importers::TableFormat::by_name, "", type), type,
                     min_pixels);
 }

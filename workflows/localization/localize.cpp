@@ -147,9 +147,11 @@ std::optional<localization::PoseEstimate> choose_start(const LocalizeRequest& re
               "give --start X,Y,YAW (metres and radians), or use --method pf");
 }
 
-localization::RobotLog read_log(const LocalizeRequest& request, const RobotMap& map,
-                                const Callbacks& callbacks) {
-  localization::RobotLog log = importers::import_log(request.log, map.types(), request.log_format);
+localization::RobotLog read_log(const LocalizeRequest& request, const SensorProfile* sensor,
+                                const RobotMap& map, const Callbacks& callbacks) {
+  importers::LogImport how = request.log_format;
+  if (sensor) how.sensor = sensor->coverage;
+  localization::RobotLog log = importers::import_log(request.log, map.types(), how);
   check_crs(log, map, request.log);
   localization::convert_to_map_frame(log, map.frame);
   if (map.unsound_covariances)
@@ -202,7 +204,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   LocalizeMethod& method = methods.find(request.method);
   check_written_map(request, method);
   const std::shared_ptr<const SensorProfile> sensor =
-      request.sensor.empty() ? nullptr : find_sensor(request.sensor);
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings;
   if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
   settings.particles.seed = request.seed;
@@ -223,7 +225,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
           ? make_empty_robot_map()
           : open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
   const RobotMap map = opened.map;
-  localization::RobotLog log = read_log(request, map, callbacks);
+  localization::RobotLog log = read_log(request, sensor.get(), map, callbacks);
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);
@@ -258,7 +260,7 @@ std::string localize_settings(const LocalizeRequest& request) {
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);
   const std::shared_ptr<const SensorProfile> sensor =
-      request.sensor.empty() ? nullptr : find_sensor(request.sensor);
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings;
   if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
   settings.particles.seed = request.seed;

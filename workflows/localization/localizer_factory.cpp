@@ -46,8 +46,9 @@ std::vector<localization::HorizonTop> horizon_tops(const localization::SightingS
 localization::LandmarkMatcher make_matcher(LocalizeTask& task) {
   localization::FeatureScales scales(task.map.map.types());
   set_alphas(scales, task.map.map.types(), task.settings.identification.alpha);
-  return localization::LandmarkMatcher(std::move(task.map.window), std::move(scales),
-                                       task.settings.identification);
+  localization::IdentificationOptions options = task.settings.identification;
+  if (options.use_terrain) options.visible = line_of_sight(task);
+  return localization::LandmarkMatcher(std::move(task.map.window), std::move(scales), std::move(options));
 }
 
 /// Returns the growth of the search, 1 without identities unless set otherwise: in a map of many landmarks a

@@ -19,6 +19,7 @@
 #include "landmarks/semantic_map.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/slam/existence_log_odds.hpp"
+#include "pipeline/fusion/valuation/common_errors.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
 #include "workflows/sensor_file.hpp"
@@ -58,8 +59,13 @@ void add_features(const localization::SlamLandmark& seen, const LandmarkType& ty
     if (!of_drive.known() || !(of_drive.value >= spec.min_value && of_drive.value <= spec.max_value))
       continue;
     FeatureValue& value = into.features[i];
+    std::optional<double>& confidence = into.quality.feature_confidences[i];
+    const pipeline::VarianceParts parts =
+        value.known() ? pipeline::split_variance(value, spec, confidence) : pipeline::VarianceParts{};
+    value.variance = parts.spread;
     value = value.known() ? refined_feature(value, of_drive.value, spec.scale) : of_drive;
-    into.quality.feature_confidences[i] = spread_confidence(value, spec.scale, spec.reference);
+    confidence = spread_confidence(value, spec.scale, spec.reference);
+    if (parts.common > 0) value.variance = value.variance / value.observations + parts.common;
   }
 }
 
@@ -104,8 +110,8 @@ geodb::RunRecord run_record(const LocalizeTask& task, const SlamUpdate& update, 
   Json job{{"method", method},
            {"log", task.log_file},
            {"settings", Json::parse(json_or_empty(task.settings_json))}};
-  if (task.sensor) job["sensor"] = Json::parse(json_or_empty(sensor_as_json(*task.sensor)));
   run.job_json = job.dump();
+  if (task.sensor) record_sensor(run.job_json, *task.sensor);
   run.report_json = nlohmann::json{
       {"changed", update.changed.size()},
       {"added", update.added.size()},

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
+#include "importers/tables/import_mapping.hpp"
 #include "importers/tables/table.hpp"
 #include "workflows/mapping/staged_landmarks.hpp"
 #include "workflows/output_path.hpp"
@@ -20,6 +21,25 @@ namespace waymark::workflows {
 namespace {
 
 constexpr std::size_t kLandmarksInMemory = 10'000;  // 1 to 2 kB each
+
+/// Returns the request with what its mapping file states and itself does not.
+ImportRequest with_mapping(ImportRequest request) {
+  if (request.mapping.empty()) return request;
+  const importers::ImportMapping stated = importers::read_import_mapping(request.mapping);
+  const auto fill = [](std::string& own, const std::string& from_file) {
+    if (own.empty()) own = from_file;
+  };
+  importers::TableImport& own = request.options;
+  fill(request.layer, stated.layer);
+  fill(own.table_crs, stated.table.table_crs);
+  fill(own.map_crs, stated.table.map_crs);
+  fill(own.columns, stated.table.columns);
+  fill(own.type, stated.table.type);
+  own.type_column = stated.table.type_column;
+  own.type_words = stated.table.type_words;
+  own.columns_of_type = stated.table.columns_of_type;
+  return request;
+}
 
 importers::ImportedTable read_table(const ImportRequest& request, StagedLandmarks& landmarks) {
   const importers::TableFormat format = request.format == "csv"   ? importers::TableFormat::csv
@@ -83,7 +103,7 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
     const std::string coded = all_types()[find_self_identifying_type(all_types()).value()].name;
     table = read_mrclam_table(file, request.options.type.empty() ? coded : request.options.type, landmarks);
   } else {
-    table = read_table(request, landmarks);
+    table = read_table(with_mapping(request), landmarks);
   }
   geodb::MapContents contents;
   contents.types = all_types();

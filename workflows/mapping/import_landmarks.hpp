@@ -10,6 +10,7 @@ struct ImportRequest {
   std::string table;                    ///< any path that GDAL opens; for mrclam also the dataset's folder
   std::string map;                      ///< to write; an older map of that name is replaced
   std::string format = {};              ///< "csv", "ogr" or "mrclam"; empty: by the name of the file
+  std::string mapping = {};             ///< file that says what the columns are; the other members win
   std::string layer = {};               ///< of a file that holds several
   importers::TableImport options = {};  ///< type, CRSs and columns
   std::string command_line = {};        ///< recorded in the map

@@ -16,6 +16,7 @@
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
+#include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -151,6 +152,8 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
   options.scratch = std::filesystem::path(request.map).parent_path();
   if (options.scratch.empty()) options.scratch = ".";
   check_request(job, request);
+  const std::shared_ptr<const SensorProfile> sensor =
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor);
   for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
   MapResult made;
   if (request.check) {
@@ -169,8 +172,10 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
     callbacks.summary(request.map + " is not written: some units of work are missing\n");
     return made;
   }
-  const geodb::MapContents contents = assemble_map(
-      result, *options.types, run_record(job, result, request.command_line, started), request.with_dem);
+  geodb::RunRecord record = run_record(job, result, request.command_line, started);
+  if (sensor) record_sensor(record.job_json, *sensor);
+  const geodb::MapContents contents =
+      assemble_map(result, *options.types, std::move(record), request.with_dem);
   made.landmarks = geodb::write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
   made.written = true;
   callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));

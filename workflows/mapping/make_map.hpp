@@ -43,6 +43,7 @@ struct MapRequest {
   bool with_dem = false;                      ///< store the DEM in the map
   int threads = 0;                            ///< 0: one per processor
   std::string command_line = {};              ///< recorded in the map
+  std::string sensor = {};                    ///< profile recorded in the map; empty: none
   const TypeRegistry* types = nullptr;        ///< landmark types; null: the built-in types
 };
 

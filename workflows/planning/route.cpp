@@ -200,7 +200,7 @@ struct Planner {
 
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) {
   check(request);
-  const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor);
+  const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor, request.map);
   const SensorCoverage coverage = coverage_of(request, *sensor);
   OpenedMap opened = open_robot_map(request.map, sensor.get());
   const RobotMap& map = opened.map;

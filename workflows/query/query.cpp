@@ -61,7 +61,7 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
   query_.min_quality = check_fraction("--min-quality", request.min_quality);
   query_.min_confidence = check_fraction("--min-confidence", request.min_confidence);
   query_.largest_first = request.largest;
-  if (!request.sensor.empty()) sensor_ = find_sensor(request.sensor);
+  if (!request.sensor.empty()) sensor_ = find_sensor(request.sensor, map.path().string());
   query_.sensor = sensor_.get();
   for (const std::string& text : request.min_features) {
     const auto [feature, value] = parse_feature_value("--min", text);

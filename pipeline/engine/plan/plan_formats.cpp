@@ -31,7 +31,9 @@ std::string run_command(const PlanCommand& command) {
 }
 
 std::string map_command(const PlanCommand& command) {
-  return fmt::format("{} -o {}", run_command(command), quote_for_shell(command.map));
+  const std::string sensor =
+      command.sensor.empty() ? "" : fmt::format(" --sensor {}", quote_for_shell(command.sensor));
+  return fmt::format("{}{} -o {}", run_command(command), sensor, quote_for_shell(command.map));
 }
 
 /// Returns a Python string literal.

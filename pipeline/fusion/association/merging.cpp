@@ -177,6 +177,21 @@ FeatureSet merge_features(std::span<const Index> members, const ObservedObjects&
   return merged;
 }
 
+Landmark merge_members(std::span<const Index> members, const ObservedObjects& seen,
+                       std::span<const Observation> observations, const TypeRegistry& types,
+                       const MapPlane& plane, const MergeRules& rules) {
+  Landmark landmark;
+  landmark.type = seen.all[members[0]].type;
+  const LandmarkType& type = types[landmark.type];
+  merge_positions(landmark, members, seen, observations, plane, rules);
+  landmark.features = merge_features(members, seen, observations, type, rules);
+  landmark.attributes.resize(type.attributes.size());
+  landmark.quality.seen = static_cast<int>(members.size());
+  landmark.quality.feature_confidences.resize(type.features.size());
+  landmark.observations = static_cast<int>(members.size());
+  return landmark;
+}
+
 std::vector<Observation> sort_by_content(std::vector<Observation> observations) {
   if (std::is_sorted(observations.begin(), observations.end(), comes_before)) return observations;
   std::vector<Index> order(observations.size());
@@ -194,6 +209,26 @@ bool landmark_before(const Landmark& a, const Landmark& b) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> associate(std::span<const Observation> observations, const TypeRegistry& types,
+                                     const Crs& crs, const AssociationRules& rules) {
+  MergeRules merging;
+  merging.association = rules;
+  const ObservedObjects seen = observed_objects(observations, types, merging);
+  const std::vector<Index> first = cluster(seen.all, MapPlane(crs), rules);
+  std::vector<Index> of(observations.size());
+  std::iota(of.begin(), of.end(), Index{0});
+  for (std::size_t i = 0; i < first.size(); ++i) of[seen.observation[i]] = seen.observation[first[i]];
+  return of;
+}
+
+Landmark merge_as_one(std::span<const Observation> members, const TypeRegistry& types, const Crs& crs,
+                      const MergeRules& rules) {
+  const ObservedObjects seen = observed_objects(members, types, rules);
+  std::vector<Index> all(seen.all.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return merge_members(all, seen, members, types, MapPlane(crs), rules);
+}
 
 MergedObservations merge_observations(std::vector<Observation> observations, const TypeRegistry& types,
                                       const Crs& crs, const MergeRules& rules) {
@@ -216,15 +251,7 @@ MergedObservations merge_observations(std::vector<Observation> observations, con
   std::vector<Landmark> made(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     const auto own = std::span<const Index>(members).subspan(starts[i], starts[i + 1] - starts[i]);
-    Landmark& landmark = made[i];
-    landmark.type = seen.all[own[0]].type;
-    const LandmarkType& type = types[landmark.type];
-    merge_positions(landmark, own, seen, observations, plane, rules);
-    landmark.features = merge_features(own, seen, observations, type, rules);
-    landmark.attributes.resize(type.attributes.size());
-    landmark.quality.seen = static_cast<int>(own.size());
-    landmark.quality.feature_confidences.resize(type.features.size());
-    landmark.observations = static_cast<int>(own.size());
+    made[i] = merge_members(own, seen, observations, types, plane, rules);
   });
 
   std::vector<Index> order(count);

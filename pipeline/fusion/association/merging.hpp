@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <span>
 #include <vector>
 #include "core/landmark.hpp"
 #include "geo/crs.hpp"
@@ -42,6 +44,17 @@ struct MergedObservations {
 /// number of threads.
 MergedObservations merge_observations(std::vector<Observation> observations, const TypeRegistry& types,
                                       const Crs& crs, const MergeRules& rules = {});
+
+/// Returns for each observation the index of the first one of the same landmark, by the association of
+/// merge_observations(). Observations of one source are different landmarks. For equal costs the result
+/// depends on the order.
+std::vector<std::uint32_t> associate(std::span<const Observation> observations, const TypeRegistry& types,
+                                     const Crs& crs, const AssociationRules& rules = {});
+
+/// Merges observations of one landmark, at least one, as merge_observations() does: position, covariance and
+/// features.
+Landmark merge_as_one(std::span<const Observation> members, const TypeRegistry& types, const Crs& crs,
+                      const MergeRules& rules = {});
 
 /// Total order by content: type, source, position, then all other members. Equal only if all members are
 /// equal.

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "landmarks/uid_index.hpp"
 #include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/projection/footprint.hpp"
+#include "pipeline/fusion/valuation/common_errors.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -69,6 +71,14 @@ class EvidenceIndex {
 struct ImageCounts {
   int seen = 0, visible = 0;
 };
+
+// Metres; infinity where no image knows its ground sample distance.
+double finest_gsd(std::span<const ImageView> images, const std::set<std::size_t>& detected) {
+  double finest = std::numeric_limits<double>::infinity();
+  for (const std::size_t i : detected)
+    if (images[i].gsd < finest) finest = images[i].gsd;
+  return finest;
+}
 
 ImageCounts count_by_paper(const Images& images, const std::set<std::size_t>& detected,
                            const Eigen::Vector2d& at) {
@@ -164,6 +174,8 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
     for (std::size_t f = 0; f < type.features.size() && f < landmark.features.size(); ++f)
       landmark.quality.feature_confidences[f] = spread_confidence(
           landmark.features[f], type.features[f].scale, type.features[f].reference, rules.spread);
+    if (!detected.empty() && rules.spread == SpreadRule::sound)
+      add_common_errors(landmark, type, finest_gsd(images, detected));
     landmark.confidence = existence_probability(confidences, landmark.quality.visible - landmark.quality.seen,
                                                 rules.existence.value_or(type.existence));
   });

@@ -39,6 +39,8 @@ struct ValuationRules {
 ///   same region with the same or better resolution". An image that detected L covers it.
 /// - A source without an ImageView (a DEM, a table) is a survey that detected L and could have.
 /// - ImageView::common_covariance is added to the covariances.
+/// - With SpreadRule::sound, errors that all images share are added to the features of landmarks of images
+///   (common_errors.hpp) after q_f is computed.
 /// `terrain` may be null. Positions in units of a CRS of `metres_per_unit`. `evidence` names landmarks by
 /// uid.
 void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation> evidence,

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/command.hpp"
+#include "apps/console.hpp"
+#include "workflows/mapping/merge_maps.hpp"
+
+namespace waymark::apps {
+namespace {
+
+class Merge final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "merge",
+        .group = Group::make,
+        .summary = "Merge maps of one CRS into one",
+        .about =
+            "Landmarks of one type that lie within their covariances, with similar sizes, become one, as the "
+            "observations of several images do. Its position, features, counts and confidence are those of "
+            "both. All observations, images, layers and runs are kept, once. A landmark whose observations "
+            "are all in the other map does not count twice.\n\n"
+            "Types are merged with all of their features. The result does not depend on the order of the "
+            "maps. Images of one map do not count against landmarks of the other that they missed. Elevation "
+            "tiles are left out. The maps are read into memory.",
+        .arguments = {Argument{"", "MAP.gpkg...", &request_.maps, "Maps, two or more"}.needed().offering(
+                          Offer::file),
+                      Argument{"-o,--output", "MAP.gpkg", &request_.result, "Map to write"}.needed().offering(
+                          Offer::file)},
+        .examples = {{"waymark merge north.gpkg south.gpkg -o site.gpkg", "Two flights over one site"}}};
+  }
+
+  int run(const Session& session) override {
+    workflows::merge_maps(request_, console_callbacks(session));
+    return 0;
+  }
+
+ private:
+  workflows::MergeRequest request_;
+};
+
+}  // namespace
+
+void register_command_merge(CommandTable& commands);
+void register_command_merge(CommandTable& commands) {
+  commands.add<Merge>();
+}
+
+}  // namespace waymark::apps

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string_view>
+#include "core/landmark.hpp"
+#include "landmarks/landmark_type.hpp"
+namespace waymark::pipeline {
+
+/// Error of a feature that all images of one sun share: shading, penumbra and blur bias them alike. Its
+/// standard deviation is hypot(fraction x value, pixels x ground sample distance of the finest image).
+struct CommonError {
+  double fraction = 0, pixels = 0;
+};
+
+/// Returns the common error of a feature of rocks and craters; `std::nullopt` for features without a measured
+/// one. Figures: docs/evaluation/2026-11-23-feature-deviations.md.
+std::optional<CommonError> common_error(EvidenceModel evidence, std::string_view feature);
+
+/// Turns the spread of each feature into the variance of its value: spread / observations + common variance.
+/// Unknown values and variances stay unknown, and so do features without a common error. `finest_gsd` in
+/// metres; not finite: only the fraction counts.
+void add_common_errors(Landmark& landmark, const LandmarkType& type, double finest_gsd);
+
+/// A feature's variance in a map: spread of the observations, and what all images of a sun have in common.
+struct VarianceParts {
+  double spread = 0, common = 0;
+};
+
+/// Splits the variance of a mapped feature. Eq. 6 gives the spread from q_f, `confidence`; a variance that is
+/// the spread has no common part.
+VarianceParts split_variance(const FeatureValue& mapped, const FeatureSpec& spec,
+                             std::optional<double> confidence);
+
+}  // namespace waymark::pipeline

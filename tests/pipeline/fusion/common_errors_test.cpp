@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/fusion/valuation/common_errors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pipeline/fusion/valuation/landmark_valuation.hpp"
+#include "tests/pipeline/fusion/own_types.hpp"
+
+namespace waymark::test {
+using namespace pipeline;
+namespace {
+
+const LandmarkType& rock_type() {
+  return kTypes[kTypes.id("rock")];
+}
+
+Landmark rock_seen(int observations, double variance) {
+  Landmark l;
+  l.uid = "rock-1";
+  l.type = kTypes.id("rock");
+  l.features = {{2, variance, observations}, {}};
+  return l;
+}
+
+double radius_variance(int observations, double variance, double gsd) {
+  Landmark l = rock_seen(observations, variance);
+  add_common_errors(l, rock_type(), gsd);
+  EXPECT_FALSE(l.features[1].known());
+  return l.features[0].variance;
+}
+
+TEST(CommonErrors, DoNotShrinkWithObservations) {
+  const double common = 0.18 * 0.18 + 0.028 * 0.028;  // 0.09 x 2 m and 0.28 pixels of 0.1 m
+  EXPECT_NEAR(radius_variance(4, 0.04, 0.1), 0.01 + common, 1e-12);
+  EXPECT_NEAR(radius_variance(1000000, 0.04, 0.1), common, 1e-6);
+  EXPECT_NEAR(radius_variance(1, 0.04, 0.1), 0.04 + common, 1e-12) << "as the observation states it";
+  EXPECT_NEAR(radius_variance(4, 0.04, std::nan("")), 0.01 + 0.18 * 0.18, 1e-12);
+  EXPECT_EQ(radius_variance(1, 0, 0.1), 0) << "unknown stays unknown";
+}
+
+TEST(CommonErrors, OthersStayAsTheyAre) {
+  EXPECT_FALSE(common_error(EvidenceModel::canopy, "height"));
+  EXPECT_FALSE(common_error(EvidenceModel::bowl, "orientation"));
+  EXPECT_TRUE(common_error(EvidenceModel::bowl, "depth"));
+}
+
+TEST(CommonErrors, AreThoseOfTheFinestImageAndLeaveQualityAsItIs) {
+  std::vector<ImageView> images(2);
+  images[0].name = "coarse", images[0].gsd = 0.8;
+  images[1].name = "fine", images[1].gsd = 0.2;
+  std::vector<Observation> evidence(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    evidence[i].type = kTypes.id("rock");
+    evidence[i].source = images[i].name;
+    evidence[i].landmark_uid = "rock-1";
+  }
+  const auto valued = [&](const ValuationRules& rules) {
+    Landmark l = rock_seen(2, 0.04);
+    value_landmarks({&l, 1}, evidence, images, nullptr, kTypes, 1, rules);
+    return l;
+  };
+  const Landmark l = valued({});
+  EXPECT_NEAR(l.features[0].variance, 0.02 + 0.18 * 0.18 + 0.056 * 0.056, 1e-12);
+  EXPECT_NEAR(l.quality.feature_confidences[0].value(), 0.9, 1e-12) << "the spread, 0.2 of 2 m";
+  const Landmark literal = valued({.spread = SpreadRule::paper});
+  EXPECT_NEAR(literal.features[0].variance, 0.04, 1e-12) << "the paper's variance is that of eq. 6";
+  evidence[0].source = evidence[1].source = "a catalogue";
+  EXPECT_NEAR(valued({}).features[0].variance, 0.04, 1e-12) << "no image, no sun";
+}
+
+}  // namespace
+}  // namespace waymark::test
