@@ -47,6 +47,18 @@ Argument Argument::formerly(std::string name) const {
   return same;
 }
 
+Argument Argument::also(std::string name) const {
+  Argument same = *this;
+  same.alias = std::move(name);
+  return same;
+}
+
+Argument format_option(std::string* into) {
+  return Argument{"--format", "FORMAT", into, "Form of standard output"}
+      .one_of({"text", "json"})
+      .or_else("text");
+}
+
 Argument file_word(std::string placeholder, Target into, std::string help) {
   return Argument{"", std::move(placeholder), into, std::move(help)}.needed().offering(Offer::file);
 }

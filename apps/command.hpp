@@ -31,6 +31,7 @@ struct Argument {
   bool waives_required = false;  ///< a flag with which the required arguments are not needed
   std::string otherwise = {};    ///< effective value if not given; empty: none to show
   std::string former = {};       ///< earlier name, "--share", still accepted with a warning; empty: none
+  std::string alias = {};        ///< second name, "--as", accepted silently and not listed; empty: none
 
   bool positional() const { return names.empty(); }
   bool flag() const { return std::holds_alternative<bool*>(into); }
@@ -43,7 +44,11 @@ struct Argument {
   Argument offering(Offer paths) const;
   Argument or_else(std::string value_not_given) const;
   Argument formerly(std::string name) const;
+  Argument also(std::string name) const;
 };
+
+/// Returns the option --format of a command that prints text for people, or JSON for programs.
+Argument format_option(std::string* into);
 
 /// Returns a required positional word that names a file.
 Argument file_word(std::string placeholder, Target into, std::string help);

@@ -1,13 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/map_arguments.hpp"
 
+#include <iostream>
+#include <nlohmann/json.hpp>
+
 #include "apps/console.hpp"
+#include "core/json_text.hpp"
 #include "pipeline/engine/registry.hpp"
+#include "pipeline/engine/report.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::apps {
+namespace {
 
-std::vector<Argument> map_arguments(workflows::MapRequest& request) {
+/// Returns the map, its landmarks by type, the input files and the report of the stages.
+std::string result_as_json(const workflows::MapResult& result, const std::string& map) {
+  nlohmann::ordered_json json;
+  json["map"] = result.written ? nlohmann::ordered_json(map) : nullptr;
+  json["landmarks"] = result.landmarks;
+  json["inputs"] = nlohmann::ordered_json::array();
+  for (const auto& input : result.inputs)
+    json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
+  json["run"] =
+      nlohmann::ordered_json::parse(checked_json(pipeline::report_as_json(result.report), "report"));
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::vector<Argument> map_arguments(MapCommand& asked) {
+  workflows::MapRequest& request = asked.request;
   return {
       Argument{"-o,--output", "MAP.gpkg", &request.map,
                "Map to write. An older map of that name is replaced when the new one is complete; any other "
@@ -21,13 +43,17 @@ std::vector<Argument> map_arguments(workflows::MapRequest& request) {
           .offering(workflows::all_stages().names()),
       {"--with-dem", "", &request.with_dem, "Store the DEM in the map as a gridded coverage"},
       {"--check", "", &request.check, "Check options, wiring and files, then stop"},
+      format_option(&asked.format),
   };
 }
 
-int make_map_command(const pipeline::Job& job, workflows::MapRequest request, const Session& session) {
+int make_map_command(const pipeline::Job& job, const MapCommand& asked, const Session& session) {
+  workflows::MapRequest request = asked.request;
   request.threads = static_cast<int>(session.threads);
   request.command_line = session.command_line;
-  return workflows::make_map(job, request, console_callbacks(session)).exit_code();
+  const workflows::MapResult result = workflows::make_map(job, request, console_callbacks(session));
+  if (asked.format == "json") std::cout << result_as_json(result, request.map);
+  return result.exit_code();
 }
 
 }  // namespace waymark::apps

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <string>
 #include <vector>
 #include "apps/command.hpp"
 #include "apps/session.hpp"
 #include "workflows/mapping/make_map.hpp"
 namespace waymark::apps {
 
-/// Returns the arguments that `waymark run` and the shortcuts share. They point into `request`.
-std::vector<Argument> map_arguments(workflows::MapRequest& request);
+/// What `waymark run` and the shortcuts were asked for.
+struct MapCommand {
+  workflows::MapRequest request = {};
+  std::string format = "text";  ///< of standard output: "json" prints what was done
+};
+
+/// Returns the arguments that `waymark run` and the shortcuts share. They point into `asked`.
+std::vector<Argument> map_arguments(MapCommand& asked);
 
 /// Runs the job, writes the map and returns the exit code.
-int make_map_command(const pipeline::Job& job, workflows::MapRequest request, const Session& session);
+int make_map_command(const pipeline::Job& job, const MapCommand& asked, const Session& session);
 
 }  // namespace waymark::apps

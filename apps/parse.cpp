@@ -70,6 +70,7 @@ std::string name_for_cli11(const Argument& argument) {
   std::string all;
   for (const auto& name : names_of(argument))
     all += (all.empty() ? "" : ",") + (gdal_style(name) ? "-" + name : name);
+  if (!argument.alias.empty()) all += "," + argument.alias;
   return all;
 }
 

@@ -67,15 +67,16 @@ std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages)
 
 std::vector<Argument> reference_arguments(ReferenceRequest& what, std::vector<std::string> names) {
   return {Argument{"", "NAME", &what.name, "Only this one, in full"}.offering(std::move(names)),
-          Argument{"--as", "FORM", &what.as, "How to print it"}
+          Argument{"--format", "FORMAT", &what.format, "How to print it"}
               .one_of({"text", "json", "schema", "markdown"})
-              .or_else("text")};
+              .or_else("text")
+              .also("--as")};
 }
 
 void print_reference(std::span<const ReferenceEntry> all, const std::string& kind,
                      const ReferenceRequest& what) {
-  std::cout << with_end(what.name.empty() ? everything(all, what.as)
-                                          : form(find(all, kind, what.name), what.as));
+  std::cout << with_end(what.name.empty() ? everything(all, what.format)
+                                          : form(find(all, kind, what.name), what.format));
 }
 
 }  // namespace waymark::apps

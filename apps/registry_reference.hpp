@@ -24,7 +24,7 @@ std::vector<ReferenceEntry> vehicle_reference();
 /// Arguments of `waymark stages`, `types`, `sensors` and `vehicles`.
 struct ReferenceRequest {
   std::string name;  ///< empty: all
-  std::string as = "text";
+  std::string format = "text";
 };
 std::vector<Argument> reference_arguments(ReferenceRequest& what, std::vector<std::string> names);
 

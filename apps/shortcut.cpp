@@ -8,9 +8,9 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "apps/map_arguments.hpp"
 #include "core/error.hpp"
 #include "pipeline/engine/registry.hpp"
+#include "pipeline/engine/step.hpp"
 #include "pipeline/engine/step_options.hpp"
 #include "workflows/registries.hpp"
 
@@ -78,6 +78,12 @@ void StageOptions::apply(pipeline::Pipeline& pipeline) const {
   for (const Offered& option : offered_) {
     if (option.given.empty()) continue;
     const std::string place = option.stage + "." + option.row.name;
+    const auto is_its_stage = [&](const auto& step) { return step->spec().name == option.stage; };
+    if (std::ranges::none_of(pipeline.steps(), is_its_stage))
+      throw Error(ErrorCode::usage,
+                  fmt::format("{} is an option of {}, which this job does not have",
+                              flag_name(option.row.name), option.stage),
+                  "", "--print-job shows the stages");
     try {
       pipeline.set(place + "=" + option.given);
     } catch (const Error& error) {
@@ -88,7 +94,7 @@ void StageOptions::apply(pipeline::Pipeline& pipeline) const {
 
 CommandSpec Shortcut::describe() {
   CommandSpec spec = describe_own();
-  for (auto& argument : map_arguments(request_)) spec.arguments.push_back(std::move(argument));
+  for (auto& argument : map_arguments(asked_)) spec.arguments.push_back(std::move(argument));
   for (auto& argument : options_.arguments()) spec.arguments.push_back(std::move(argument));
   spec.arguments.push_back(
       {"--print-job", "", &print_job_, "Print the job instead of running it: the start of one of your own"});
@@ -100,7 +106,7 @@ int Shortcut::run(const Session& session) {
   add_stages(pipeline);
   options_.apply(pipeline);
   const pipeline::Job job{describe_own().name, std::move(pipeline)};
-  if (!print_job_) return make_map_command(job, request_, session);
+  if (!print_job_) return make_map_command(job, asked_, session);
   std::cout << pipeline::job_as_json(job.name, job.pipeline) << '\n';
   return 0;
 }

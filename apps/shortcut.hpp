@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 #include "apps/command.hpp"
+#include "apps/map_arguments.hpp"
 #include "core/options/option_table.hpp"
 #include "pipeline/engine/pipeline.hpp"
-#include "workflows/mapping/make_map.hpp"
 namespace waymark::apps {
 
 /// Options of stages on the command line of a shortcut: load_dem.tile_cells as --tile-cells. Unit, range,
@@ -49,7 +49,7 @@ class Shortcut : public Command {
   /// Appends the stages of the job. Throws Error{usage} where the given files make no job.
   virtual void add_stages(pipeline::Pipeline& pipeline) const = 0;
 
-  workflows::MapRequest request_;
+  MapCommand asked_;
   StageOptions options_;
   bool print_job_ = false;
 };

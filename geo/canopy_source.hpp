@@ -27,6 +27,8 @@ class CanopySource {
   virtual double ground_elevation(std::int64_t column, std::int64_t row) const = 0;
   /// Returns the ForestType of each cell; an empty grid if the survey has no raster of types.
   virtual Grid<std::uint8_t> forest_types(const Window& window) const = 0;
+  /// Returns whether a position in the map's CRS lies in the area of interest; without one, everywhere.
+  virtual bool in_area(double, double) const { return true; }
   /// Returns the name of the survey in observations: its first file without folders.
   virtual const std::string& name() const = 0;
 };

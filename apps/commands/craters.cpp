@@ -9,7 +9,7 @@ class Craters final : public Shortcut {
  public:
   Craters()
       : Shortcut({"craters_from_dem.min_diameter", "craters_from_dem.max_diameter",
-                  "craters_from_dem.min_confidence", "load_dem.crs", "load_dem.tile_cells",
+                  "craters_from_dem.min_confidence", "load_dem.aoi", "load_dem.crs", "load_dem.tile_cells",
                   "load_dem.memory"}) {}
 
  private:

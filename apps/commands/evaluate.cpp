@@ -85,9 +85,7 @@ class Evaluate final : public Command {
                  .or_else("3"),
              Argument{"--size-edges", "D...", &landmarks_.size_edges,
                       "Diameters between which results are reported separately"},
-             Argument{"--format", "FORMAT", &format_, "text or json"}
-                 .one_of({"text", "json"})
-                 .or_else("text")},
+             format_option(&format_)},
         .examples = {
             {"waymark evaluate landmarks mars.gpkg --truth mars/truth.csv --ignore mars/ignored.csv",
              "A landing map against its testbed"},

@@ -11,7 +11,8 @@ class Images final : public Shortcut {
       : Shortcut({"load_images.camera_format", "load_images.interior", "load_images.camera_crs",
                   "load_images.height_offset", "load_images.control_points", "load_images.position_sd",
                   "load_images.rotation_sd", "load_images.sun_azimuth", "load_images.sun_elevation",
-                  "load_images.image_sun_angle", "load_images.time_zone", "load_images.gsd"}) {}
+                  "load_images.image_sun_angle", "load_images.time_zone", "load_images.gsd",
+                  "load_dem.aoi"}) {}
 
  private:
   CommandSpec describe_own() override {

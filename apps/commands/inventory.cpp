@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "apps/log.hpp"
 #include "core/options/option_reader.hpp"
+#include "exporters/vector/shape_json.hpp"
 #include "workflows/forest/inventory.hpp"
+#include "workflows/forest/stand_figures.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -61,17 +65,21 @@ class Inventory final : public Command {
                  "5"),
              Argument{"--report", "FILE.html", &request_.report,
                       "Write a report to print, with a map and histograms"}
-                 .offering(Offer::file)},
+                 .offering(Offer::file),
+             format_option(&format_)},
         .examples = {
             {"waymark inventory trees.gpkg --stands stands.shp -o stands.csv", "A line per stand"},
             {"waymark inventory trees.gpkg --stands stands.geojson -o trees.gpkg --report stands.html",
              "Layers in the map, and a report"},
+            {"waymark inventory trees.gpkg --stands stands.shp -o stands.csv --format json",
+             "The same table as an array of objects on standard output"},
             {"waymark inventory trees.gpkg --grid 100 -o grid.gpkg", "Per cell of a hectare"}}};
   }
 
   int run(const Session& session) override {
     set_memory();
     const workflows::InventoryResult result = workflows::inventory(request_, console_callbacks(session));
+    if (format_ == "json") std::cout << exporters::layer_to_json(workflows::stand_layer(result.stands));
     log_summary(
         fmt::format("{}: {} stands, {} trees\n", request_.output, result.stands.size(), result.trees));
     for (const std::string& failure : result.failed) log_error(failure + ": left out");
@@ -91,6 +99,7 @@ class Inventory final : public Command {
   }
 
   workflows::InventoryRequest request_;
+  std::string format_ = "text";
   MemoryOption memory_;
   std::int64_t trees_at_once_ = kNotGiven;
 };

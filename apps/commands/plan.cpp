@@ -27,10 +27,11 @@ class PlanJob final : public Command {
             "--work folder need share nothing else.",
         .arguments =
             {file_word("JOB.json", &job_, "Job file"),
-             Argument{"--as", "FORM", &as_,
+             Argument{"--format", "FORMAT", &format_,
                       "JSON lines, a Snakefile, or a script of sbatch calls or of GNU parallel"}
                  .one_of({"jsonl", "snakemake", "slurm", "parallel"})
-                 .or_else("jsonl"),
+                 .or_else("jsonl")
+                 .also("--as"),
              Argument{"--work", "DIR", &work_, "Folder all units share"}
                  .offering(Offer::folder)
                  .or_else("work"),
@@ -39,11 +40,11 @@ class PlanJob final : public Command {
              Argument{"--shards", "N", &shards_, "Most calls per stage: arrays of a site are limited"}
                  .or_else("64"),
              {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
-        .examples = {{"waymark plan job.json --as jsonl", "One unit per line, done or not"},
-                     {"waymark plan job.json --as snakemake -o map.gpkg > Snakefile && snakemake -j 8",
+        .examples = {{"waymark plan job.json --format jsonl", "One unit per line, done or not"},
+                     {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
                       "Run by Snakemake"},
-                     {"waymark plan job.json --as slurm -o map.gpkg | sh", "Run on a Slurm cluster"},
-                     {"waymark plan job.json --as parallel -o map.gpkg | sh", "Run by GNU parallel"}}};
+                     {"waymark plan job.json --format slurm -o map.gpkg | sh", "Run on a Slurm cluster"},
+                     {"waymark plan job.json --format parallel -o map.gpkg | sh", "Run by GNU parallel"}}};
   }
 
   int run(const Session& session) override {
@@ -61,15 +62,15 @@ class PlanJob final : public Command {
                                      .settings = settings_,
                                      .map = map_,
                                      .max_shards = static_cast<std::size_t>(shards_)};
-    std::cout << (as_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
-                  : as_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
-                  : as_ == "parallel" ? pipeline::plan_as_parallel(units, call)
-                                      : pipeline::plan_as_jsonl(units));
+    std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
+                  : format_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
+                  : format_ == "parallel" ? pipeline::plan_as_parallel(units, call)
+                                          : pipeline::plan_as_jsonl(units));
     return 0;
   }
 
  private:
-  std::string job_, as_ = "jsonl", work_ = "work", map_;
+  std::string job_, format_ = "jsonl", work_ = "work", map_;
   long shards_ = 64;
   std::vector<std::string> settings_;
 };

@@ -22,14 +22,15 @@ class Run final : public Command {
   CommandSpec describe() override {
     std::vector<Argument> all{
         file_word("JOB.json", &job_, "Stages in order, each with its options; `waymark stages` lists them")};
-    for (auto& argument : map_arguments(request_)) all.push_back(argument);
+    for (auto& argument : map_arguments(asked_)) all.push_back(argument);
     all.push_back(
         {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
     all.push_back(
         {"--shard", "I/N", &shard_, "Run the I-th of N shards; all shards use the same --work folder"});
-    all.push_back({"--stage", "NAME", &request_.stage,
+    all.push_back({"--stage", "NAME", &asked_.request.stage,
                    "Run this stage only, or with --shard its units of the shard; other results are reused"});
-    all.push_back({"--unit", "ID", &request_.unit, "Run this unit of work only; `waymark plan` lists them"});
+    all.push_back(
+        {"--unit", "ID", &asked_.request.unit, "Run this unit of work only; `waymark plan` lists them"});
     return {
         .name = "run",
         .group = Group::make,
@@ -51,14 +52,14 @@ class Run final : public Command {
 
   int run(const Session& session) override {
     const pipeline::Job job = workflows::load_job(job_, settings_);
-    if (!shard_.empty()) request_.shard = parse_shard(shard_);
-    return make_map_command(job, request_, session);
+    if (!shard_.empty()) asked_.request.shard = parse_shard(shard_);
+    return make_map_command(job, asked_, session);
   }
 
  private:
   std::string job_, shard_;
   std::vector<std::string> settings_;
-  workflows::MapRequest request_;
+  MapCommand asked_;
 };
 
 }  // namespace

@@ -15,11 +15,11 @@ class Sensors final : public Command {
         .summary = "List the sensor profiles, or describe one with its weights",
         .about =
             "A sensor profile says how much each feature helps that sensor to distinguish landmarks. "
-            "`waymark query --sensor NAME` ranks landmarks by it. `--as json` prints a file to copy and "
+            "`waymark query --sensor NAME` ranks landmarks by it. `--format json` prints a file to copy and "
             "change; every --sensor also takes such a FILE.json, and `waymark sensors FILE.json` checks it.",
         .arguments = reference_arguments(what_, workflows::all_sensors().names()),
         .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"},
-                     {"waymark sensors horizontal_laser --as json > mine.json", "A file to change"}}};
+                     {"waymark sensors horizontal_laser --format json > mine.json", "A file to change"}}};
   }
 
   int run(const Session&) override {

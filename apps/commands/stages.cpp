@@ -9,13 +9,13 @@ namespace {
 class Stages final : public Command {
  public:
   CommandSpec describe() override {
-    return {
-        .name = "stages",
-        .group = Group::look_up,
-        .summary = "List the stages a job can name, or describe one with all its options",
-        .arguments = reference_arguments(what_, workflows::all_stages().names()),
-        .examples = {{"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
-                     {"waymark stages load_dem --as schema", "The JSON schema of this stage in a job file"}}};
+    return {.name = "stages",
+            .group = Group::look_up,
+            .summary = "List the stages a job can name, or describe one with all its options",
+            .arguments = reference_arguments(what_, workflows::all_stages().names()),
+            .examples = {
+                {"waymark stages find_mountain_tops", "Its options with units, ranges and defaults"},
+                {"waymark stages load_dem --format schema", "The JSON schema of this stage in a job file"}}};
   }
 
   int run(const Session&) override {

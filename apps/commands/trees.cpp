@@ -13,7 +13,7 @@ class Trees final : public Shortcut {
                   "trees_from_canopy.prominence", "trees_from_canopy.smoothing",
                   "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
                   "trees_from_canopy.species", "load_canopy.resolution", "load_canopy.forest_type",
-                  "load_canopy.crs", "load_canopy.tile_cells", "load_canopy.memory"}) {}
+                  "load_canopy.crs", "load_canopy.aoi", "load_canopy.tile_cells", "load_canopy.memory"}) {}
 
  private:
   CommandSpec describe_own() override {

@@ -13,7 +13,7 @@ class Types final : public Command {
             .summary = "List the landmark types, or describe one with its features",
             .arguments = reference_arguments(what_, workflows::all_types().names()),
             .examples = {{"waymark types mountain_top", "Its features with units and plausible ranges"},
-                         {"waymark types rock --as json", "The same for a script"}}};
+                         {"waymark types rock --format json", "The same for a script"}}};
   }
 
   int run(const Session&) override {

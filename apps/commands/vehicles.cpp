@@ -10,14 +10,15 @@ class Vehicles final : public Command {
   CommandSpec describe() override {
     std::vector<std::string> names;
     for (const planning::VehicleFile& file : planning::vehicle_files()) names.emplace_back(file.name);
-    return {.name = "vehicles",
-            .group = Group::look_up,
-            .summary = "List the vehicles, or describe one with its limits",
-            .about =
-                "A vehicle file gives the positions of wheels or feet and the relief that they allow. "
-                "`--as json` prints a file to copy and change; `waymark hazards --vehicle FILE` reads it.",
-            .arguments = reference_arguments(what_, names),
-            .examples = {{"waymark vehicles rover --as json > mine.json", "A file to change"}}};
+    return {
+        .name = "vehicles",
+        .group = Group::look_up,
+        .summary = "List the vehicles, or describe one with its limits",
+        .about =
+            "A vehicle file gives the positions of wheels or feet and the relief that they allow. "
+            "`--format json` prints a file to copy and change; `waymark hazards --vehicle FILE` reads it.",
+        .arguments = reference_arguments(what_, names),
+        .examples = {{"waymark vehicles rover --format json > mine.json", "A file to change"}}};
   }
 
   int run(const Session&) override {

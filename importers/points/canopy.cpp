@@ -101,6 +101,7 @@ class RasterCanopy final : public ImportedCanopy {
     if (import.inspect)
       for (std::string& warning : inspect_canopy(*this, heights ? "" : import.dtm[0], first, raw_reader()))
         warnings_.push_back(std::move(warning));
+    read_area();
   }
 
   const GridGeometry& geometry() const override { return top_.dem->geometry(); }
@@ -255,6 +256,11 @@ void check(const CanopyImport& import) {
 }
 
 }  // namespace
+
+void ImportedCanopy::read_area() {
+  if (const std::string& area = import().area; !area.empty())
+    area_ = read_area_of_interest(area, geometry().where.crs);
+}
 
 std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import) {
   if (!import.las.empty()) return import_points(import);

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include "core/options/memory_option.hpp"
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
+#include "importers/tables/area_of_interest.hpp"
 #include "pipeline/engine/codec.hpp"
 namespace waymark::importers {
 
@@ -12,6 +14,7 @@ struct CanopyImport {
   double resolution = 0;         ///< of a canopy from points, metres; 0: by their density
   std::string forest_type = {};  ///< raster of ForestType values on any grid; empty: none
   std::string crs = {};          ///< as in DemImport
+  std::string area = {};         ///< file of polygons: the area of interest; empty: all
   std::string name = {};         ///< CanopySource::name; empty: that of the first file, without folders
   std::int64_t memory_bytes = MemoryOption{}.bytes();
   bool inspect = true;  ///< check a sample of the heights; false: open the headers only
@@ -24,6 +27,14 @@ class ImportedCanopy : public CanopySource {
   virtual const CanopyImport& import() const = 0;
   /// Returns the terrain model; null if there is a canopy height model only.
   virtual DemHandle terrain() const = 0;
+  bool in_area(double x, double y) const final { return !area_ || area_->contains(x, y); }
+
+ protected:
+  /// Reads the area of interest of import(), if it has one, in the CRS of geometry().
+  void read_area();
+
+ private:
+  std::optional<Area> area_;
 };
 
 /// Opens the files as one canopy model. Heights are metres.

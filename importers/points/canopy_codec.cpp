@@ -22,6 +22,7 @@ std::string encode_canopies(const Canopies& canopies) {
                    {"resolution", import.resolution},
                    {"forest_type", import.forest_type},
                    {"crs", import.crs},
+                   {"area", import.area},
                    {"name", import.name},
                    {"memory_bytes", import.memory_bytes}});
   }
@@ -38,6 +39,7 @@ Canopies decode_canopies(std::string_view bytes) {
                                       .resolution = json.at("resolution"),
                                       .forest_type = json.at("forest_type"),
                                       .crs = json.at("crs"),
+                                      .area = json.at("area"),
                                       .name = json.at("name"),
                                       .memory_bytes = json.at("memory_bytes"),
                                       .inspect = false}));

@@ -64,6 +64,7 @@ class PointCanopy final : public ImportedCanopy {
     set_height_unit();
     lay_grid();
     if (catalogue_.ground_points() == 0) check_unclassified();
+    read_area();
   }
 
   const GridGeometry& geometry() const override { return grid_; }

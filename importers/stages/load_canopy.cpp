@@ -18,7 +18,7 @@ struct LoadCanopy {
     std::vector<std::string> chm, dsm, dtm, las;
     Meters resolution{0};
     bool flights = false;
-    std::string forest_type, crs;
+    std::string forest_type, crs, aoi;
     std::int64_t tile_cells = 1024;
     MemoryOption memory;
 
@@ -44,6 +44,11 @@ struct LoadCanopy {
                       "1 conifer, 2 broadleaf, 3 mixed"});
       option("crs", crs,
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
+      option(
+          "aoi", aoi,
+          {.help =
+               "Polygons of the area of interest: trees outside are left out, but those inside are found in "
+               "the whole canopy"});
       option("tile_cells", tile_cells,
              {.help = "Side of the tiles for processing; the trees do not depend on it",
               .min = 64,
@@ -59,7 +64,7 @@ struct LoadCanopy {
   static pipeline::StageSpec spec() {
     return {.name = "load_canopy",
             .summary = "Opens canopy height models, or surface and terrain models, and cuts them into tiles",
-            .version = 1,
+            .version = 2,
             .scope = pipeline::Scope::map,
             .lists = pipeline::Scope::tile,
             .outputs = {dem, canopies, tiles}};
@@ -70,6 +75,7 @@ struct LoadCanopy {
     for (const auto* files : {&o.chm, &o.dsm, &o.dtm, &o.las})
       all.insert(all.end(), files->begin(), files->end());
     if (!o.forest_type.empty()) all.push_back(o.forest_type);
+    if (!o.aoi.empty()) all.push_back(o.aoi);
     return all;
   }
 
@@ -85,6 +91,7 @@ struct LoadCanopy {
                      .resolution = options.resolution.value,
                      .forest_type = options.forest_type.empty() ? "" : unit.path(options.forest_type),
                      .crs = options.crs,
+                     .area = options.aoi.empty() ? "" : unit.path(options.aoi),
                      .memory_bytes = options.memory.bytes()};
     check(options);
     const std::vector<CanopyImport> surveys = options.flights ? open_each(all) : std::vector{all};

@@ -7,16 +7,20 @@
 namespace waymark::pipeline {
 
 std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSearch& search) {
-  const auto shapes = [&](double diameter) {
-    std::vector<Pixels> lights;
-    for (const BowlLight light : search.lights)
-      lights.push_back(bowl_template(diameter, search.sun_angle, light));
-    return lights;
+  const auto shapes_of = [&](const std::vector<BowlLight>& lights) {
+    return [&search, lights](double diameter) {
+      std::vector<Pixels> shapes;
+      for (const BowlLight light : lights) shapes.push_back(bowl_template(diameter, search.sun_angle, light));
+      return shapes;
+    };
   };
+  std::vector<BowlLight> large = search.lights;
+  large.insert(large.end(), search.filled.begin(), search.filled.end());
   return shape_candidates(image, {.min_diameter = search.min_diameter,
                                   .max_diameter = search.max_diameter,
                                   .min_correlation = search.min_correlation,
-                                  .shapes = shapes});
+                                  .shapes = shapes_of(search.lights),
+                                  .large_shapes = shapes_of(large)});
 }
 
 }  // namespace waymark::pipeline

@@ -13,6 +13,8 @@ struct BowlSearch {
   double min_correlation = 0.45;                ///< of a candidate, (0, 1)
   /// Deep shadows are left out: they made no difference on real images.
   std::vector<BowlLight> lights{BowlLight::slope, BowlLight::low_shadow};
+  /// Searched as well from 24 px on, where a level floor can be distinguished.
+  std::vector<BowlLight> filled{BowlLight::flat_floor, BowlLight::rim_only};
 };
 
 /// Finds where shaded bowls correlate with the image: local maxima over position at seven sizes per octave,

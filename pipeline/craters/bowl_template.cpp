@@ -11,6 +11,7 @@ namespace {
 constexpr double kReach = 1.3;        // side of the template / diameter
 constexpr int kSamples = 4;           // per pixel and axis
 constexpr double kOuterSlope = 0.45;  // slope outside the rim / slope of the wall at the rim
+constexpr double kRidge = 0.9;        // same, of a crater that is filled to the plain
 constexpr double kDepth = 0.2;        // / diameter, of a fresh simple crater (Pike 1977)
 constexpr double kRim = 0.25;         // height of the rim above the plain / depth below it
 
@@ -19,6 +20,13 @@ double slope_light(double u, double v) {
   const double r = std::hypot(u, v);
   if (r < 1) return -u;
   return kOuterSlope * u / (r * r * r * r * r);
+}
+
+// As slope_light, with a level floor out to `floor` radii inside a wall of equal slope.
+double filled_light(double u, double v, double floor, double outer_slope) {
+  const double r = std::hypot(u, v);
+  if (r < floor) return 0;
+  return r < 1 ? -u / r : outer_slope * u / (r * r * r * r * r);
 }
 
 // Height of a fresh crater in radii at r radii from its centre.
@@ -38,13 +46,23 @@ double fresh_light(double u, double v, double elevation) {
   return std::max(0.0, (std::sin(elevation) - gx * std::cos(elevation)) / std::sqrt(1 + gx * gx + gy * gy));
 }
 
-double brightness(double u, double v, BowlLight light) {
-  if (light == BowlLight::slope) return slope_light(u, v);
-  const double degrees = light == BowlLight::low_shadow ? 25 : 12;
-  return fresh_light(u, v, degrees * kRadiansPerDegree);
-}
-
 }  // namespace
+
+double bowl_brightness(double u, double v, BowlLight light) {
+  switch (light) {
+    case BowlLight::slope:
+      return slope_light(u, v);
+    case BowlLight::low_shadow:
+      return fresh_light(u, v, 25 * kRadiansPerDegree);
+    case BowlLight::deep_shadow:
+      return fresh_light(u, v, 12 * kRadiansPerDegree);
+    case BowlLight::flat_floor:
+      return filled_light(u, v, 0.65, kOuterSlope);
+    case BowlLight::rim_only:
+      return filled_light(u, v, 0.75, kRidge);
+  }
+  return 0;
+}
 
 Pixels bowl_template(double diameter, Radians sun_angle, BowlLight light) {
   const int half = static_cast<int>(std::ceil(diameter / 2 * kReach)), side = 2 * half + 1;
@@ -57,7 +75,7 @@ Pixels bowl_template(double diameter, Radians sun_angle, BowlLight light) {
         for (int i = 0; i < kSamples; ++i) {
           const double x = (column - half + (i + 0.5) / kSamples - 0.5) / (diameter / 2);
           const double y = (row - half + (j + 0.5) / kSamples - 0.5) / (diameter / 2);
-          sum += brightness(x * towards_x + y * towards_y, y * towards_x - x * towards_y, light);
+          sum += bowl_brightness(x * towards_x + y * towards_y, y * towards_x - x * towards_y, light);
         }
       bowl(row, column) = static_cast<float>(sum);
     }

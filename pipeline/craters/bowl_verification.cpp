@@ -53,6 +53,10 @@ constexpr double kModelSize = 0.35;           // weight of the model's diameter 
 constexpr double kNeutralUntrained = 0.645;   // same, where correlation alone decides
 constexpr double kPriorWeight = 0.45;         // step towards the image's own fraction of craters, [0, 1]
 
+// Factor on the final log odds, so that probabilities are those that labelled images show; the decision at
+// 0.5 does not depend on it (docs/evaluation/2026-11-23-overlapping-and-filled-craters.md).
+constexpr double kSharpness = 1.1;
+
 constexpr double kMinFirstProbability = 0.03;  // candidates below this first probability are discarded
 
 double logistic(double x) {
@@ -61,8 +65,9 @@ double logistic(double x) {
 
 // Output of the model for a candidate.
 struct ModelEstimate {
-  double log_odds = 0;  // at the corrected circle
-  double diameter = 0;  // of that circle; 0: none
+  double log_odds = 0;             // at the corrected circle
+  double diameter = 0;             // of that circle by the model; 0: none
+  CraterCandidate corrected = {};  // diameter 0: none
 };
 
 double log_odds(double p) {
@@ -88,24 +93,26 @@ ModelEstimate model_estimate(const CraterModel& model, const PatchSource& patche
     at = apply_correction(at, prediction, patches.sun_angle());
   }
   const double first = log_odds(predict_at(at).probability);
-  if (model.convolution_nets.empty()) return {first, at.diameter};
+  if (model.convolution_nets.empty()) return {first, at.diameter, at};
   const CraterPrediction second = predict(model, patches.features(at, candidate.score));
-  return {(first + log_odds(second.probability)) / 2, at.diameter * std::exp(second.log_size / 2)};
+  return {(first + log_odds(second.probability)) / 2, at.diameter * std::exp(second.log_size / 2), at};
 }
 
 // The steepest change of brightness lies inside the crest of a degraded rim; the model has learnt by how
 // much. Its size has a separate weight, since it was trained on synthetic craters only.
-VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun, double model_diameter) {
-  VerifiedBowl bowl{c,
-                    {.x = c.x, .y = c.y, .major = c.diameter, .minor = c.diameter, .angle = 0},
-                    0.08 * c.diameter,
-                    0.1 * c.diameter};
+VerifiedBowl with_rim(const Pixels& image, const CraterCandidate& c, Radians sun,
+                      const ModelEstimate& estimate) {
+  VerifiedBowl bowl{.circle = c,
+                    .corrected = estimate.corrected,
+                    .outline = {.x = c.x, .y = c.y, .major = c.diameter, .minor = c.diameter, .angle = 0},
+                    .centre_sd = 0.08 * c.diameter,
+                    .diameter_sd = 0.1 * c.diameter};
   if (const auto rim = refine_rim(image, c, sun)) {
     bowl.outline = rim->ellipse;
     bowl.centre_sd = std::hypot(rim->centre_sd, 0.03 * c.diameter);
     bowl.diameter_sd = std::hypot(rim->diameter_sd, 0.05 * c.diameter);
-    if (model_diameter > 0) {
-      const double ratio = std::clamp(model_diameter / rim->ellipse.diameter(), 0.7, 1.5);
+    if (estimate.diameter > 0) {
+      const double ratio = std::clamp(estimate.diameter / rim->ellipse.diameter(), 0.7, 1.5);
       const double grow = std::pow(ratio, kModelSize);
       bowl.outline.major *= grow, bowl.outline.minor *= grow;
     }
@@ -160,7 +167,7 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
   std::vector<ModelEstimate> estimates(candidates.size());
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t i) {
     const CraterCandidate& c = candidates[i];
-    const double correlation = (patches.slope_correlation(c) + c.score) / 2;
+    const double correlation = (patches.bowl_correlation(c) + c.score) / 2;
     // Candidates with a correlation this low never pass, whatever the model returns.
     const bool min_first_probability = correlation < kNeutralCorrelation - 0.09;
     if (model)
@@ -171,16 +178,16 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
   });
   const double odds = model ? kPriorWeight * prior_shift(evidence, 0.5) : 0;
   std::vector<CraterCandidate> likely;
-  std::vector<double> sizes;
+  std::vector<std::size_t> index;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (const double p = logistic(evidence[i] + odds); p >= min_probability) {
+    if (const double p = logistic(kSharpness * (evidence[i] + odds)); p >= min_probability) {
       likely.push_back(candidates[i]);
-      sizes.push_back(estimates[i].diameter);
+      index.push_back(i);
       likely.back().score = p;
     }
   std::vector<VerifiedBowl> bowls(likely.size());
   tbb::parallel_for(std::size_t{0}, likely.size(), [&](std::size_t i) {
-    bowls[i] = with_rim(image.pixels, likely[i], sun_angle, sizes[i]);
+    bowls[i] = with_rim(image.pixels, likely[i], sun_angle, estimates[index[i]]);
   });
   return bowls;
 }

@@ -29,6 +29,8 @@ std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candid
 /// Candidate with a measured rim.
 struct VerifiedBowl {
   CraterCandidate circle;  ///< rim; score: probability that it is a crater
+  /// Circle at which the model evaluated the candidate after its corrections; diameter 0: there is no model.
+  CraterCandidate corrected = {};
   PixelEllipse outline;
   double centre_sd = 0, diameter_sd = 0;  ///< pixels
 };

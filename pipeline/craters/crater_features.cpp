@@ -6,6 +6,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/craters/bowl_template.hpp"
 #include "pipeline/craters/pixel_noise.hpp"
 #include "pipeline/craters/sample.hpp"
 
@@ -63,21 +64,36 @@ void gradients(const Patch& patch, float* out) {
 
 struct BowlSample {
   std::size_t index;  // in the patch
-  double bowl;        // brightness of a bowl lit by slope
+  double bowl;        // brightness of the template
 };
 
-std::vector<BowlSample> slope_bowl() {
+std::vector<BowlSample> sampled_bowl(BowlLight light) {
   constexpr double step = 2 * kPatchReach / kPatchSide;  // radii between samples
   std::vector<BowlSample> samples;
   for (int j = 0; j < kPatchSide; ++j)
     for (int i = 0; i < kPatchSide; ++i) {
       const double u = (i - (kPatchSide - 1) / 2.0) * step, v = (j - (kPatchSide - 1) / 2.0) * step;
       if (std::max(std::abs(u), std::abs(v)) > 1.35) continue;
-      const double r = std::hypot(u, v);
-      samples.push_back(
-          {static_cast<std::size_t>(j * kPatchSide + i), r < 1 ? -u : 0.45 * u / std::pow(r, 5)});
+      samples.push_back({static_cast<std::size_t>(j * kPatchSide + i), bowl_brightness(u, v, light)});
     }
   return samples;
+}
+
+double correlation(const std::array<float, kPatchSide * kPatchSide>& seen,
+                   const std::vector<BowlSample>& bowl) {
+  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (const BowlSample& at : bowl) {
+    const double value = seen[at.index];
+    a += value, b += at.bowl, aa += value * value, bb += at.bowl * at.bowl, ab += value * at.bowl;
+  }
+  const auto n = double(bowl.size());
+  const double spread = (aa - a * a / n) * (bb - b * b / n);
+  return spread > 0 ? (ab - a * b / n) / std::sqrt(spread) : 0;
+}
+
+const std::vector<BowlSample>& sampled_slope() {
+  static const std::vector<BowlSample> bowl = sampled_bowl(BowlLight::slope);
+  return bowl;
 }
 
 }  // namespace
@@ -175,16 +191,17 @@ WidePatch PatchSource::wide_patch(const CraterCandidate& c, double correlation) 
 }
 
 double PatchSource::slope_correlation(const CraterCandidate& c) const {
-  const Patch seen = patch(c);
-  static const std::vector<BowlSample> bowl = slope_bowl();
-  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
-  for (const BowlSample& at : bowl) {
-    const double value = seen[at.index];
-    a += value, b += at.bowl, aa += value * value, bb += at.bowl * at.bowl, ab += value * at.bowl;
-  }
-  const auto n = double(bowl.size());
-  const double spread = (aa - a * a / n) * (bb - b * b / n);
-  return spread > 0 ? (ab - a * b / n) / std::sqrt(spread) : 0;
+  return correlation(patch(c), sampled_slope());
+}
+
+double PatchSource::bowl_correlation(const CraterCandidate& c) const {
+  constexpr double kMinFilled = 20;  // pixels
+  static const std::array filled{sampled_bowl(BowlLight::flat_floor), sampled_bowl(BowlLight::rim_only)};
+  const auto seen = patch(c);
+  double best = correlation(seen, sampled_slope());
+  if (c.diameter >= kMinFilled)
+    for (const auto& bowl : filled) best = std::max(best, correlation(seen, bowl));
+  return best;
 }
 
 }  // namespace waymark::pipeline

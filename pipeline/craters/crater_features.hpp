@@ -52,6 +52,9 @@ class PatchSource {
   WidePatch wide_patch(const CraterCandidate& candidate, double correlation) const;
   /// Returns the correlation of the patch with a bowl lit by slope (BowlLight::slope), [-1, 1].
   double slope_correlation(const CraterCandidate& candidate) const;
+  /// Returns the best correlation of the patch with a bowl lit by slope and, from 20 px on, with the filled
+  /// ones (BowlLight::flat_floor, rim_only), [-1, 1].
+  double bowl_correlation(const CraterCandidate& candidate) const;
   Radians sun_angle() const { return sun_angle_; }
 
  private:

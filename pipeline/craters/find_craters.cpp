@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "pipeline/craters/bowl_candidates.hpp"
+#include "pipeline/craters/bowl_suppression.hpp"
 #include "pipeline/craters/bowl_verification.hpp"
 #include "pipeline/craters/edge_pairs.hpp"
 
@@ -15,7 +16,7 @@ namespace waymark::pipeline {
 namespace {
 
 constexpr double kMinCorrelation = 0.5;
-constexpr double kMaxOverlap = 0.225;  // intersection over union of two rims
+constexpr double kNeverSure = 2;       // scores without a model are no probabilities
 constexpr double kMinKnown = 2.0 / 3;  // minimum fraction of data in a crater's square
 
 void check(const CraterSearch& search) {
@@ -78,25 +79,20 @@ std::vector<Detection> find_craters(const Pixels& image, const CraterSearch& sea
   const Sizes sizes{search.min_diameter, search.max_diameter > 0 ? search.max_diameter : 0.6 * side};
   if (sizes.largest < sizes.smallest) return {};
 
-  const auto bowls = search.method == CraterMethod::edges
-                         ? find_craters_by_edges(whole, *sun, sizes.smallest, sizes.largest)
-                         : bowls_in(whole, *sun, search, sizes);
-  std::vector<CraterCandidate> circles;
-  for (const VerifiedBowl& bowl : bowls) {
-    CraterCandidate c = bowl.circle;
-    if (c.score < search.min_confidence || c.diameter < 0.9 * sizes.smallest || c.diameter > sizes.largest ||
-        whole.known_fraction(c.x, c.y, c.diameter) < kMinKnown)
-      continue;
-    circles.push_back(c);
-  }
+  const bool by_edges = search.method == CraterMethod::edges;
+  auto bowls = by_edges ? find_craters_by_edges(whole, *sun, sizes.smallest, sizes.largest)
+                        : bowls_in(whole, *sun, search, sizes);
+  std::erase_if(bowls, [&](const VerifiedBowl& bowl) {
+    const CraterCandidate& c = bowl.circle;
+    return c.score < search.min_confidence || c.diameter < 0.9 * sizes.smallest ||
+           c.diameter > sizes.largest || whole.known_fraction(c.x, c.y, c.diameter) < kMinKnown;
+  });
+  RepetitionRules rules;
+  if (by_edges || !search.verify) rules.sure = kNeverSure;
   std::vector<Detection> found;
-  // Removed last: smaller candidates take part in the suppression of overlaps.
-  for (const CraterCandidate& c : suppress_overlaps(circles, kMaxOverlap)) {
-    if (c.diameter < sizes.smallest) continue;
-    const auto bowl =
-        std::find_if(bowls.begin(), bowls.end(), [&](const VerifiedBowl& b) { return b.circle == c; });
-    found.push_back(detection_of(*bowl, search.type));
-  }
+  // Removed last: smaller candidates take part in the suppression.
+  for (const VerifiedBowl& bowl : suppress_repetitions(std::move(bowls), rules))
+    if (bowl.circle.diameter >= sizes.smallest) found.push_back(detection_of(bowl, search.type));
   return found;
 }
 

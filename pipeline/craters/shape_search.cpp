@@ -101,17 +101,18 @@ void collect(const std::vector<float>& squares, const cv::Rect& core, double min
   }
 }
 
-// `made`: cache by size for all levels.
+// `made`: cache by size for all levels that have the same templates.
 std::vector<const Bowl*> bowls_of_level(int level, const ShapeSearch& search, std::map<int, Bowl>& made) {
   std::vector<const Bowl*> bowls;
   const double shrink = std::exp2(level);
+  const auto& shapes = level > 0 && search.large_shapes ? search.large_shapes : search.shapes;
   // The finest level also holds diameters below the first octave.
   for (int i = level == 0 ? -kSizesPerOctave : 0; i < kSizesPerOctave; ++i) {
     const double diameter = kMaxBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
     if (diameter * shrink < search.min_diameter * 0.95 || diameter * shrink > search.max_diameter * 1.05)
       continue;
     auto known = made.find(i);
-    if (known == made.end()) known = made.emplace(i, make_bowl(diameter, search.shapes(diameter))).first;
+    if (known == made.end()) known = made.emplace(i, make_bowl(diameter, shapes(diameter))).first;
     bowls.push_back(&known->second);
   }
   return bowls;
@@ -158,12 +159,12 @@ void search_level(const cv::Mat1f& image, double shrink_x, double shrink_y,
 
 std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSearch& search) {
   std::vector<CraterCandidate> candidates;
-  std::map<int, Bowl> made;
+  std::map<int, Bowl> made, made_large;
   cv::Mat1f at_level = as_matrix(image);
   for (int level = 0;; ++level) {
     if (std::min(at_level.cols, at_level.rows) < 8 || kMaxBowl / 2 * std::exp2(level) > search.max_diameter)
       break;
-    const auto bowls = bowls_of_level(level, search, made);
+    const auto bowls = bowls_of_level(level, search, level > 0 ? made_large : made);
     cv::Mat1f searched = at_level, mean;
     if (search.level_mean > 0) {
       cv::GaussianBlur(at_level, mean, {}, search.level_mean, 0, cv::BORDER_REFLECT_101);

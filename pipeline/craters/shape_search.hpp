@@ -12,6 +12,8 @@ struct ShapeSearch {
   double min_correlation = 0.45;                ///< of a candidate, (0, 1)
   /// Returns the templates for a diameter of 8 to 16 px: odd squares of equal size, zero mean, unit norm.
   std::function<std::vector<Pixels>(double diameter)> shapes;
+  /// Templates for diameters of 24 px and more, as `shapes`; empty: the same.
+  std::function<std::vector<Pixels>(double diameter)> large_shapes = {};
   /// A Gaussian mean of this standard deviation, pixels of each pyramid level, is subtracted first; 0:
   /// none.
   double level_mean = 0;

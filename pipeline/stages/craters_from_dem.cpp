@@ -30,7 +30,7 @@ struct CratersFromDem {
   static StageSpec spec() {
     return {.name = "craters_from_dem",
             .summary = "Finds craters in a DEM: dishes with rims, their depth and rim height",
-            .version = 2,
+            .version = 3,
             .scope = Scope::tile,
             .halo = kDemCore + kDemMargin,
             .inputs = {dem},
@@ -44,6 +44,7 @@ struct CratersFromDem {
                                  .min_diameter = options.min_diameter,
                                  .max_diameter = options.max_diameter,
                                  .min_confidence = options.min_confidence});
+    for (Observation& o : found) o.pixel.reset();  // only images of the map have pixels
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.write(observations, std::move(found));
   }

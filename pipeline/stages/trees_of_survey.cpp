@@ -4,6 +4,7 @@
 #include "pipeline/forest/crown_names.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/association/merging.hpp"
+#include "pipeline/fusion/valuation/area_filter.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {
@@ -46,6 +47,11 @@ struct TreesOfSurvey {
     MergedObservations made =
         merge_observations(unit.take(observations), types, surveys[0]->geometry().where.crs, apart);
     value_landmarks(made.landmarks, made.evidence, {}, nullptr, types, 1);
+    unit.count_in(static_cast<std::int64_t>(made.landmarks.size()));
+    unit.reject(kOutsideArea, remove_outside(made.landmarks, made.evidence,
+                                             [&](double x, double y) { return surveys[0]->in_area(x, y); }));
+    std::erase_if(made.evidence,
+                  [](const Observation& o) { return !o.rejected.empty(); });  // as in other tiles
     unit.write(crowns, name_crowns({&unit.read(seen_crowns), 1}, made.evidence, made.landmarks));
     unit.count_out(static_cast<std::int64_t>(made.landmarks.size()));
     unit.write(landmarks, std::move(made.landmarks));

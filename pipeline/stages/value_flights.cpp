@@ -5,6 +5,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/valuation/area_filter.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {
@@ -46,6 +47,9 @@ struct ValueFlights {
         landmark.confidence *= std::pow(kMissedFactor, missed);
       }
     }
+    unit.count_in(static_cast<std::int64_t>(all.size()));
+    unit.reject(kOutsideArea,
+                remove_outside(all, seen, [&](double x, double y) { return surveys[0]->in_area(x, y); }));
     unit.write(crowns, name_crowns(unit.take_all(seen_crowns), seen, all));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));

@@ -5,6 +5,7 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
+#include "pipeline/fusion/valuation/area_filter.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {
@@ -46,7 +47,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: multiplicity, spread of features, probability of existence",
-            .version = 4,
+            .version = 5,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, merged, merged_evidence},
             .outputs = {landmarks, evidence, image_views}};
@@ -67,6 +68,8 @@ struct ValueLandmarks {
                     rules);
     unit.count_in(static_cast<std::int64_t>(all.size()));
     if (!options.keep_improbable) unit.reject("landmark improbable", remove_improbable(all, seen, types));
+    unit.reject(kOutsideArea,
+                remove_outside(all, seen, [&](double x, double y) { return ground->in_area(x, y); }));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
     unit.write(evidence, std::move(seen));

@@ -2,6 +2,7 @@
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/valuation/area_filter.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
 namespace waymark::pipeline {
@@ -21,7 +22,7 @@ struct ValueSurveys {
   static StageSpec spec() {
     return {.name = "value_surveys",
             .summary = "Values landmarks without images; a DEM or a table is one survey",
-            .version = 1,
+            .version = 2,
             .scope = Scope::map,
             .inputs = {dem, merged, merged_evidence},
             .outputs = {landmarks, evidence}};
@@ -32,6 +33,10 @@ struct ValueSurveys {
     std::vector<Landmark> all = unit.take(merged);
     std::vector<Observation> seen = unit.take(merged_evidence);
     value_landmarks(all, seen, {}, nullptr, types, 1);
+    unit.count_in(static_cast<std::int64_t>(all.size()));
+    const DemHandle& ground = unit.read(dem);
+    unit.reject(kOutsideArea,
+                remove_outside(all, seen, [&](double x, double y) { return ground->in_area(x, y); }));
     unit.count_out(static_cast<std::int64_t>(all.size()));
     unit.write(landmarks, std::move(all));
     unit.write(evidence, std::move(seen));

@@ -63,7 +63,7 @@ def join_mountain_tops(*, base: str = ...) -> dict[str, Any]:
     base: Reference of the highest summit of each land mass: elevation 0 (sea), the lowest cell, or none; auto: sea if the highest cell lies above 0 (one of auto, sea, lowest, none)"""
     ...
 
-def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = ..., las: list[str] = ..., resolution: float = ..., flights: bool = ..., forest_type: str = ..., crs: str = ..., tile_cells: int = ..., memory: int = ...) -> dict[str, Any]:
+def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = ..., las: list[str] = ..., resolution: float = ..., flights: bool = ..., forest_type: str = ..., crs: str = ..., aoi: str = ..., tile_cells: int = ..., memory: int = ...) -> dict[str, Any]:
     """Opens canopy height models, or surface and terrain models, and cuts them into tiles.
 
     chm: Canopy height models: heights above ground
@@ -74,6 +74,7 @@ def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = 
     flights: Each file of chm (of dsm, of las) is a separate survey: trees found in several are merged. Otherwise the files make one canopy; where they overlap the first one has priority
     forest_type: Raster of forest types, which select the preset for finding treetops: 1 conifer, 2 broadleaf, 3 mixed
     crs: Coordinate reference system instead of the files' own; local: metres on no body
+    aoi: Polygons of the area of interest: trees outside are left out, but those inside are found in the whole canopy
     tile_cells: Side of the tiles for processing; the trees do not depend on it (at least 64, at most 16384)
     memory: Memory for decoded rasters, points or trees, megabytes (at least 16, at most 1e+07)"""
     ...

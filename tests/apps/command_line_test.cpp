@@ -8,6 +8,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 TEST(CommandLine, NoCommandIsWrongUsageAndShowsTheCommands) {
@@ -137,6 +138,15 @@ TEST(Describe, EverythingHasItsFourForms) {
       EXPECT_EQ(said.code, 0) << kind << " " << form << ": " << said.err;
       EXPECT_FALSE(said.out.empty());
     }
+}
+
+TEST(Describe, FormatHasASecondNameThatHelpDoesNotList) {
+  EXPECT_EQ(waymark({"types", "rock", "--as", "json"}).out,
+            waymark({"types", "rock", "--format", "json"}).out);
+  EXPECT_EQ(waymark({"types", "rock", "--as", "json"}).err, "");
+  const std::string help = waymark({"types", "--help"}).out;
+  EXPECT_THAT(help, HasSubstr("--format FORMAT"));
+  EXPECT_THAT(help, Not(HasSubstr("--as")));
 }
 
 TEST(Describe, OneByNameOrTheNearest) {

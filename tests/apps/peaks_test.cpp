@@ -314,6 +314,29 @@ TEST_F(Peaks, ValidateNamesTheFaultsAndFails) {
   const Outcome said = waymark({"validate", map});
   EXPECT_EQ(said.code, 1);
   EXPECT_THAT(said.out, testing::StartsWith("rtree.row\tmountain_top\t1\t"));
+  const Outcome as_json = waymark({"validate", map, "--format", "json"});
+  EXPECT_EQ(as_json.code, 1);
+  const json fault = json::parse(as_json.out).at(0);
+  EXPECT_EQ(fault["code"], "rtree.row");
+  EXPECT_EQ(fault["table"], "mountain_top");
+  EXPECT_EQ(fault["row"], 1);
+  EXPECT_FALSE(fault["text"].get<std::string>().empty());
+}
+
+TEST_F(Peaks, ResultsOfARunAreJsonOnRequest) {
+  const std::string dem = twins(), map = folder_ / "map.gpkg";
+  const Outcome said = waymark({"peaks", dem, "-o", map, "--format", "json"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json done = json::parse(said.out);
+  EXPECT_EQ(done["map"], map);
+  EXPECT_EQ(done["landmarks"], json({{"mountain_top", 2}}));
+  ASSERT_EQ(done["inputs"].size(), 1);
+  EXPECT_EQ(done["inputs"][0]["path"], dem);
+  EXPECT_EQ(done["inputs"][0]["sha256"].get<std::string>().size(), 64);
+  EXPECT_EQ(done["run"]["stages"][0]["stage"], "load_dem");
+  const json checked = json::parse(waymark({"peaks", dem, "--check", "--format", "json"}).out);
+  EXPECT_EQ(checked["map"], nullptr);
+  EXPECT_EQ(waymark({"validate", map, "--format", "json"}).out, "[]\n");
 }
 
 }  // namespace

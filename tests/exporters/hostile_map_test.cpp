@@ -7,6 +7,7 @@
 #include "exporters/report/report_html.hpp"
 #include "exporters/vector/export_map.hpp"
 #include "exporters/vector/shape_csv.hpp"
+#include "exporters/vector/shape_json.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "small_map.hpp"
@@ -136,6 +137,7 @@ TEST(HostileMap, FormulasInTablesAreText) {
   layer.columns = {{"stand", "", AttributeSpec::Kind::text, ""}};
   layer.rows = {{{}, {std::string("=HYPERLINK(\"http://x\")")}}};
   EXPECT_EQ(layer_to_csv(layer), "stand\n\"'=HYPERLINK(\"\"http://x\"\")\"\n");
+  EXPECT_EQ(layer_to_json(layer), "[\n  {\n    \"stand\": \"=HYPERLINK(\\\"http://x\\\")\"\n  }\n]\n");
 
   const test::TemporaryFolder folder;
   const auto map = map_with_all_tables(folder);

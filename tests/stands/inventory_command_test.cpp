@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <type_traits>
 #include <variant>
@@ -98,6 +99,23 @@ TEST_F(InventoryCommand, WritesALinePerStand) {
   EXPECT_NEAR(std::stod(cell("out.csv", 0, "stems_per_ha_d030")), 10, 1e-9);
   EXPECT_EQ(cell("out.csv", 1, "trees"), "1");
   EXPECT_NEAR(std::stod(cell("out.csv", 1, "dominant_height_m")), 25, 1e-9);
+}
+
+TEST_F(InventoryCommand, PrintsTheTableAsJson) {
+  const Outcome printed =
+      waymark("inventory trees.gpkg --stands stands.geojson -o out.csv --format json --quiet");
+  ASSERT_EQ(printed.code, 0) << printed.text;
+  const auto stands = nlohmann::json::parse(printed.text);
+  ASSERT_EQ(stands.size(), 2);
+  for (std::size_t row = 0; row < 2; ++row)
+    for (const auto& [column, value] : stands[row].items()) {
+      const std::string text = cell("out.csv", row, column);
+      if (value.is_number()) {
+        EXPECT_NEAR(value.get<double>(), std::stod(text), 1e-9 * std::stod(text)) << column;
+      } else {
+        EXPECT_EQ(value.is_null() ? "" : value.get<std::string>(), text) << column;
+      }
+    }
 }
 
 TEST_F(InventoryCommand, AddsLayersToACopyOrToTheMapItself) {
