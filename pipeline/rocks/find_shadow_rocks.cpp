@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/rocks/position_bias.hpp"
 #include "pipeline/rocks/rock_network.hpp"
 #include "pipeline/rocks/spot_context.hpp"
 #include "pipeline/vision/class_prior.hpp"
@@ -97,8 +98,16 @@ Detection detection_of(const ScoredRock& judged, const RockSearch& search, const
   found.type = search.type;
   const double diameter = 2 * scale * judged.radius();
   const Eigen::Vector2d foot = judged.position();
-  found.outline = {.x = place(foot.x() + unit * say.along * light.ux),
-                   .y = place(foot.y() + unit * say.along * light.uy),
+  double along = unit * say.along;
+  if (search.sun_elevation) {
+    const double tan_elevation = std::tan(search.sun_elevation->value);
+    along -= position_bias({.radius = judged.radius(),
+                            .height = rock.size.reach * std::exp(say.log_reach) * tan_elevation,
+                            .tan_elevation = tan_elevation,
+                            .displacement = judged.displacement_along});
+  }
+  found.outline = {.x = place(foot.x() + along * light.ux),
+                   .y = place(foot.y() + along * light.uy),
                    .major = diameter,
                    .minor = diameter,
                    .angle = 0};
@@ -194,6 +203,7 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
     if (displacement) {
       const Eigen::Vector2d top_shift = displacement->at(rock.x, rock.y);
       const double tan_elevation = std::exp(table.log_tan_elevation());
+      one.displacement_along = light.along(top_shift.x(), top_shift.y());
       one.rock.visible = visible_shadow(top_shift, light, tan_elevation);
       const double height = std::min(rock.size.reach * tan_elevation, 2 * rock.size.radius);
       const double across = kLateralShift * std::min(1.0, tan_elevation * tan_elevation) * height *

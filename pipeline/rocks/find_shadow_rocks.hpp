@@ -16,6 +16,7 @@ struct ScoredRock {
   double confidence = 0;          ///< adapted to the image's fraction of rocks
   double noise = 0, texture = 0;  ///< standard deviations in alpha at its position
   double scale = 1;               ///< pixel size of its map, image pixels
+  double displacement_along = 0;  ///< relief displacement away from the sun, per unit of height
   BrightSide bright;              ///< of its surroundings; only known for candidates above 0.1
 
   double radius() const;  ///< after correction by the network, pixels of its scale
