@@ -76,6 +76,15 @@ TEST(RealCraters, HrscTile) {
   EXPECT_LE(std::abs(score.bias), 0.025);
 }
 
+TEST(RealCraters, ProbabilitiesAreThoseOfMarkedCraters) {
+  SKIP_WITHOUT_CRATER_DATA();
+  const Pixels image = pixels_of(crater_data() / "hrsc/tile1_24.pgm");
+  const double error =
+      calibration_error(circles(find_craters(image, {.min_confidence = 0.02})), hrsc_truth(), 16);
+  std::cout << "HRSC 1_24, expected calibration error: " << error << '\n';
+  EXPECT_LE(error, 0.055);
+}
+
 TEST(RealCraters, HrscTileWithoutModelAndByEdges) {
   SKIP_WITHOUT_CRATER_DATA();
   const Pixels image = pixels_of(crater_data() / "hrsc/tile1_24.pgm");

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -74,6 +75,28 @@ CircleScore score_circles(std::vector<CraterCandidate> found, const std::vector<
   score.f1 = 2 * score.hits / std::max(1.0, double(2 * score.hits + score.false_alarms + score.misses));
   score.centre = median(centres), score.size = median(sizes), score.bias = median(biases);
   return score;
+}
+
+double calibration_error(std::vector<CraterCandidate> found, const std::vector<CraterCandidate>& truth,
+                         double smallest) {
+  sort_by_score(found);
+  std::vector<bool> taken(truth.size());
+  std::array<double, 10> excess{};  // sum of the scores - number of true ones, by tenth
+  int count = 0;
+  for (const CraterCandidate& c : found) {
+    double best = 0.5;
+    std::size_t at = truth.size();
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      if (const double o = overlap(c, truth[i]); !taken[i] && o >= best) best = o, at = i;
+    const bool real = at < truth.size();
+    if (real) taken[at] = true;
+    if ((real ? truth[at].diameter : c.diameter) < smallest) continue;
+    excess[static_cast<std::size_t>(std::min(9.0, 10 * c.score))] += c.score - real;
+    ++count;
+  }
+  double sum = 0;
+  for (const double e : excess) sum += std::abs(e);
+  return count > 0 ? sum / count : 0;
 }
 
 }  // namespace waymark::test

@@ -28,4 +28,9 @@ struct CircleScore {
 CircleScore score_circles(std::vector<CraterCandidate> found, const std::vector<CraterCandidate>& truth,
                           double smallest, double largest = 1e9, Match match = Match::overlap);
 
+/// Returns the expected calibration error of circles of `smallest` pixels and more: the mean over tenths of
+/// probability of |mean score - fraction of true ones|, weighted by their number. Matches as score_circles().
+double calibration_error(std::vector<CraterCandidate> found, const std::vector<CraterCandidate>& truth,
+                         double smallest);
+
 }  // namespace waymark::test
