@@ -27,6 +27,7 @@ class EkfSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -99,6 +100,7 @@ class GlobalSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -171,6 +173,7 @@ class GraphSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -259,6 +262,7 @@ class OdometrySettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -319,6 +323,7 @@ class PfSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -391,6 +396,7 @@ class SlamSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching
@@ -475,6 +481,7 @@ class UkfSettings(TypedDict, total=False):
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
+    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
     lost_after: float  # Consecutive sets of sightings without a match before the filter searches
     search_growth: float  # Growth of the standard deviations per set while searching

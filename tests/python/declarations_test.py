@@ -15,7 +15,6 @@ import waymark
 # What Python spells otherwise than the command; None: it has no use for it.
 SPELLED = {
     "detect": {},
-    "merge": {},
     "run": {"set": "settings", "shard": None, "format": None},
     "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs"},
     "route": {"from": "start", "to": "goal"},
@@ -49,11 +48,16 @@ def test_defaults_are_those_of_the_library():
     assert "options" not in parameters and "set" not in parameters
 
 
+def test_the_option_of_merge_is_a_keyword():
+    assert "--output" in program("merge", "--help")
+    assert "output" in inspect.signature(waymark.merge).parameters
+
+
 @pytest.mark.parametrize("command", SPELLED)
 def test_options_of_the_command_are_keywords(command):
     words = program(command, "--help").split("\nOptions:\n")[1].split("Options of every command:")[0]
     options = set(re.findall(r"^  (?:-\w, )?--([a-z0-9-]+)", words, re.M))
-    assert len(options) > (0 if command == "merge" else 3)
+    assert len(options) > 3
     keywords = set(inspect.signature(getattr(waymark, command)).parameters)
     if command == "evaluate":  # of landmarks and of tracks
         keywords |= set(inspect.signature(waymark.evaluate_track).parameters)
