@@ -11,6 +11,7 @@ namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kJointSightings = 3;  // sightings associated jointly; further ones follow in turn
+constexpr double kNewEvidence = 15;         // metres driven until an object seen again is new evidence
 
 }  // namespace
 
@@ -37,7 +38,7 @@ MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, Landmark
     : matcher_(std::move(matcher)), options_(options) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
-  components_.push_back({start, 1, {}});
+  components_.push_back({start, 1, {}, {}});
 }
 
 void MultiHypothesisFilter::predict(const BodyMotion& motion) {
@@ -45,6 +46,7 @@ void MultiHypothesisFilter::predict(const BodyMotion& motion) {
     component.at =
         options_.unscented ? ukf_predict(component.at, motion) : predict_pose(component.at, motion);
   driven_ += motion.step.at().norm();
+  follower_.predict(motion);
 }
 
 void MultiHypothesisFilter::expect_landmarks(const WeightOptions& view, LineOfSight visible) {
@@ -102,7 +104,55 @@ PoseEstimate MultiHypothesisFilter::update_component(const Component& component,
   return at;
 }
 
-void MultiHypothesisFilter::update_jointly(const SightingSet& some, const LandmarkGrid& map) {
+namespace {
+
+/// Returns the decisions of a joint hypothesis as landmarks.
+std::vector<std::optional<LandmarkKey>> decisions(const JointChoice& choice,
+                                                  const std::vector<Candidates>& sets,
+                                                  const LandmarkGrid& map) {
+  std::vector<std::optional<LandmarkKey>> keys(choice.size());
+  for (std::size_t i = 0; i < choice.size(); ++i)
+    if (choice[i] >= 0) keys[i] = map[sets[i].pairings[static_cast<std::size_t>(choice[i])].landmark].key;
+  return keys;
+}
+
+/// Weighs the joint hypotheses of objects that are followed. What was decided about them before is no new
+/// evidence. It counts by the fraction that the metres driven since make new; a robot that
+/// stands hardly revises it.
+class FollowedDecision {
+ public:
+  FollowedDecision(const std::map<int, std::optional<LandmarkKey>>& of_object,
+                   std::span<const SightingFollower::Seen> objects, const std::vector<JointHypothesis>& found,
+                   const std::vector<Candidates>& sets, const LandmarkGrid& map) {
+    for (const SightingFollower::Seen& object : objects) {
+      const auto known = of_object.find(object.object);
+      if (object.metres < 0 || known == of_object.end()) return;
+      earlier_.push_back(known->second);
+      fresh_ = std::min(fresh_, 1 - std::exp(-object.metres / kNewEvidence));
+    }
+    for (const JointHypothesis& h : found)
+      if (decisions(h.choice, sets, map) == earlier_) agreeing_ = h.log_weight;
+  }
+
+  double log_weight(const JointHypothesis& h, const std::vector<std::optional<LandmarkKey>>& keys) const {
+    if (!agreeing_) return h.log_weight;
+    const double gain = h.log_weight - *agreeing_;
+    const bool revised = keys != earlier_ && fresh_ < kStanding;
+    return fresh_ * *agreeing_ + (gain > 0 ? fresh_ * gain : gain) + (revised ? std::log(1e-4) : 0);
+  }
+
+ private:
+  static constexpr double kStanding = 1e-3 / kNewEvidence;  // a millimetre: the robot stands
+  std::vector<std::optional<LandmarkKey>> earlier_;
+  double fresh_ = 1;
+  std::optional<double> agreeing_;  // log weight of the earlier decision
+};
+
+}  // namespace
+
+void MultiHypothesisFilter::update_jointly(const SightingSet& some,
+                                           std::span<const SightingFollower::Seen> objects,
+                                           const LandmarkGrid& map) {
   std::vector<Component> next;
   std::vector<double> logs;
   for (const Component& component : components_) {
@@ -115,15 +165,18 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some, const Landma
     }
     const auto found = joint_hypotheses(sets, some, map, component.at.covariance, matcher_.options());
     if (!found) continue;
+    const FollowedDecision earlier(component.of_object, objects, *found, sets, map);
     for (const JointHypothesis& h : *found) {
       Component& after = next.emplace_back(component);
+      const auto keys = decisions(h.choice, sets, map);
+      for (std::size_t i = 0; i < keys.size(); ++i) after.of_object[objects[i].object] = keys[i];
       after.at = update_component(component, some, sets, h, map);
       for (std::size_t i = 0; i < sets.size(); ++i)
         after.choice.push_back(
             h.choice[i] < 0
                 ? -1
                 : static_cast<int>(sets[i].pairings[static_cast<std::size_t>(h.choice[i])].landmark));
-      logs.push_back(std::log(component.weight) + h.log_weight);
+      logs.push_back(std::log(component.weight) + earlier.log_weight(h, keys));
     }
   }
   if (next.empty()) {
@@ -146,14 +199,27 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
   std::vector<Match> matches(seen.sightings.size());
   SightingSet some{seen.robot_from_sensor, {}};
   std::vector<std::size_t> places;  // indices of the sightings in `some`, and of those before
+  const std::vector<SightingFollower::Seen> objects = follower_.follow(seen);
+  std::vector<SightingFollower::Seen> some_objects;
   split();
-  for (Component& component : components_) component.choice.clear();
+  for (Component& component : components_) {
+    component.choice.clear();
+    std::erase_if(component.of_object, [&](const auto& of) {
+      return std::ranges::none_of(objects, [&](const auto& o) { return o.object == of.first; });
+    });
+  }
   const auto flush = [&] {
-    if (!some.sightings.empty()) update_jointly(some, map);
-    some.sightings.clear();
+    if (!some.sightings.empty()) update_jointly(some, some_objects, map);
+    some.sightings.clear(), some_objects.clear();
   };
-  for (std::size_t i = 0; i < matches.size(); ++i) {
+  // Objects that are followed come first, in sets of their own.
+  std::vector<std::size_t> order;
+  for (const bool followed : {true, false})
+    for (std::size_t i = 0; i < matches.size(); ++i)
+      if ((objects[i].metres >= 0) == followed) order.push_back(i);
+  for (const std::size_t i : order) {
     const SeenLandmark& s = seen.sightings[i];
+    if (!some.sightings.empty() && (objects[i].metres >= 0) != (some_objects.back().metres >= 0)) flush();
     const bool named = identification.use_identities && s.identity;
     matches[i].verdict = !s.is_valid()                                                ? Verdict::unsound
                          : s.type == kNoSuchType || (named && !map.find(*s.identity)) ? Verdict::unknown_type
@@ -161,6 +227,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     if (matches[i].verdict != Verdict::matched) continue;
     places.push_back(i);
     some.sightings.push_back(s);
+    some_objects.push_back(objects[i]);
     if (some.sightings.size() == kJointSightings) flush();
   }
   flush();

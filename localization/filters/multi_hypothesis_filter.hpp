@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
 #include <unordered_map>
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "localization/identification/joint_search.hpp"
 #include "localization/identification/landmark_matcher.hpp"
+#include "localization/identification/sighting_follower.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 namespace waymark::localization {
@@ -58,13 +60,15 @@ class MultiHypothesisFilter final : public Localizer {
     PoseEstimate at;
     double weight = 1;        // they sum to 1
     std::vector<int> choice;  // landmark of each sighting of the current set, or -1
+    std::map<int, std::optional<LandmarkKey>> of_object;  // decisions on objects that are followed
   };
   template <class Fix>
   bool apply_fix(const Fix& measured, int rows);
   void widen(double factor);
   void split();
   void prune();
-  void update_jointly(const SightingSet& some, const LandmarkGrid& map);
+  void update_jointly(const SightingSet& some, std::span<const SightingFollower::Seen> objects,
+                      const LandmarkGrid& map);
   /// Number of recent sightings of a landmark, discounted by the distance driven since.
   double recent_sightings(LandmarkKey key) const;
   void weigh_unseen(const SightingSet& seen, const LandmarkGrid& map);
@@ -80,6 +84,7 @@ class MultiHypothesisFilter final : public Localizer {
   };
   std::unordered_map<LandmarkKey, LandmarkUse> uses_;
   double driven_ = 0;
+  SightingFollower follower_;
   std::int64_t missed_ = 0;
   FixGate gnss_, heading_;
   std::optional<WeightOptions> view_;
