@@ -46,10 +46,13 @@ std::string text_of(const pipeline::HeightRegistration& found) {
   return fmt::format(
       "scale {:.5g} ({:.2g}), yaw {:.3f} ({:.2g}) degrees, middle at {:.1f}, {:.1f}, {:.1f} ({:.2g}, {:.2g}, "
       "{:.2g}) m; standard deviations in parentheses\n  {} cells differ by {:.3g} m in height (root mean "
-      "square) at a relief of {:.3g} m; at the next best place by {:.3g} m\n",
+      "square) at a relief of {:.3g} m; {}\n",
       std::exp(s.log_scale), std::exp(s.log_scale) * sd(3), to_degrees(Radians{s.yaw}).value,
       to_degrees(Radians{sd(2)}).value, found.pivot.x(), found.pivot.y(), found.pivot.z(), sd(0), sd(1),
-      sd(4), found.cells, found.residual, found.relief, found.next_best_residual);
+      sd(4), found.cells, found.residual, found.relief,
+      std::isfinite(found.next_best_residual)
+          ? fmt::format("at the next best place by {:.3g} m", found.next_best_residual)
+          : std::string("no other place is similar"));
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ class LevelFit {
   /// `kUncorrelated`. The first is 1.
   std::vector<double> correlations() const {
     const std::int64_t columns = map_.grid.columns, rows = map_.grid.rows;
-    const double limit = 3 * residual_;  // gross differences tell nothing about their neighbours
+    const double limit = 3 * residual_;  // gross differences are not part of the noise
     std::vector<double> out{1};
     for (std::int64_t lag = 1; lag < std::max(columns, rows) / 3; ++lag) {
       double products = 0, squares = 0;
