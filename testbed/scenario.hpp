@@ -57,8 +57,9 @@ struct Scenario {
   std::vector<Flight> flights = {Flight{}};
   PoseErrors pose_errors;
   DemModel dem;
-  DriveSettings drive;  ///< `on` if the file has the section
-  ForestModel forest;   ///< `on` if the file has the section
+  DemModel orbital_dem{.cell = 0, .height_sd = 0.2, .correlation = 50};  ///< cell 0: none
+  DriveSettings drive;                                                   ///< `on` if the file has the section
+  ForestModel forest;                                                    ///< `on` if the file has the section
 };
 
 /// Reads a scenario (docs/reference/scenario.md). `source` names the file in messages. Throws Error{usage}

@@ -153,11 +153,20 @@ void describe_poses(Scenario& s, OptionVisitor& field) {
         {.help = "Attitude error about each camera axis", .min = 0, .max = 45});
 }
 
+void describe_heights(DemModel& dem, OptionVisitor& field) {
+  field("height_sd", dem.height_sd, {.help = "Error of a height, metres", .min = 0, .max = 1e3});
+  field("correlation", dem.correlation,
+        {.help = "Correlation length of the errors, metres", .min = 0, .max = 1e5});
+}
+
 void describe_dem(Scenario& s, OptionVisitor& field) {
   field("cell", s.dem.cell, {.help = "Cell size, metres", .min = 0.01, .max = 1e4});
-  field("height_sd", s.dem.height_sd, {.help = "Error of a height, metres", .min = 0, .max = 1e3});
-  field("correlation", s.dem.correlation,
-        {.help = "Correlation length of the errors, metres", .min = 0, .max = 1e5});
+  describe_heights(s.dem, field);
+}
+
+void describe_orbital_dem(Scenario& s, OptionVisitor& field) {
+  field("cell", s.orbital_dem.cell, {.help = "Cell size, metres; 0: no such DEM", .min = 0, .max = 1e4});
+  describe_heights(s.orbital_dem, field);
 }
 
 }  // namespace
@@ -178,6 +187,7 @@ const std::vector<ScenarioSection>& scenario_sections() {
       {"pose_errors", "Errors of the poses in the camera file", describe_poses},
       {"forest", "A forest instead of a landing site", describe_forest},
       {"dem", "DEM supplied with the images", describe_dem},
+      {"orbital_dem", "Coarse DEM known before the landing", describe_orbital_dem},
   };
   return sections;
 }

@@ -46,9 +46,9 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
   return file.dump(1) + "\n";
 }
 
-SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
+SimulatedDem simulate_dem(const DemModel& model, const Scene& scene, std::string_view errors) {
   const Terrain& ground = scene.terrain;
-  const double cell = scenario.dem.cell;
+  const double cell = model.cell;
   const auto count = [&](std::int64_t nodes) {
     return static_cast<std::int64_t>(std::floor(double(nodes - 1) * ground.step_x() / cell)) + 1;
   };
@@ -57,8 +57,8 @@ SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
   // Centred, so that the remainder is split between both sides.
   dem.x0 = scene.ground.east - double(dem.heights.columns() - 1) * cell / 2;
   dem.y0 = scene.ground.north + double(dem.heights.rows() - 1) * cell / 2;
-  const double length = std::max(scenario.dem.correlation, 2 * cell);
-  const auto seed = static_cast<std::uint32_t>(named_seed(scene.seed, "dem errors"));
+  const double length = std::max(model.correlation, 2 * cell);
+  const auto seed = static_cast<std::uint32_t>(named_seed(scene.seed, errors));
   // A cell is the mean of the terrain within it, as in stereo matching.
   const int samples = std::max(1, static_cast<int>(std::lround(cell / ground.step_x())));
   for (std::int64_t j = 0; j < dem.heights.rows(); ++j)
@@ -72,7 +72,7 @@ SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene) {
                                            y + ((b + 0.5) / samples - 0.5) * cell))
             sum += *h, ++seen;
       const double error =
-          scenario.dem.height_sd *
+          model.height_sd *
           gradient_noise((x - scene.ground.east) / length, (y - scene.ground.north) / length, seed).value;
       dem.heights(i, j) = seen > 0 ? static_cast<float>(sum / seen + error) : std::nanf("");
     }

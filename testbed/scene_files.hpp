@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 #include "testbed/landing/flight.hpp"
 namespace waymark::testbed {
@@ -20,11 +21,12 @@ struct TruthTables {
 };
 TruthTables truth_tables(const Scenario& scenario, const Scene& scene, const std::vector<Shot>& shots);
 
-/// DEM supplied with the images: the terrain at its cells, with correlated errors.
+/// DEM of the site: the mean terrain of its cells, with correlated errors.
 struct SimulatedDem {
   Grid<float> heights;
   double x0 = 0, y0 = 0, cell = 1;  ///< GridFrame of the centre of the first cell, metres
 };
-SimulatedDem simulate_dem(const Scenario& scenario, const Scene& scene);
+/// Draws the errors from the stream `errors` of the scene's seed.
+SimulatedDem simulate_dem(const DemModel& model, const Scene& scene, std::string_view errors = "dem errors");
 
 }  // namespace waymark::testbed

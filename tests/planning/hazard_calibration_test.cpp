@@ -111,7 +111,7 @@ Outcome drive_over_sites(const Vehicle& vehicle, int sites) {
   Outcome outcome;
   for (int seed = 1; seed <= sites; ++seed) {
     const Site site(static_cast<std::uint64_t>(seed), vehicle);
-    const testbed::SimulatedDem given = testbed::simulate_dem(site.scenario, site.scene);
+    const testbed::SimulatedDem given = testbed::simulate_dem(site.scenario.dem, site.scene);
     const MemoryDem dem = dem_of(given.heights, given.x0, given.y0, given.cell);
     UndetectedRocks undetected{
         .known = true, .cover = {0.1, 0}, .min_height = vehicle.obstacle_height(), .detected_diameter = 0.6};

@@ -185,7 +185,7 @@ TEST(SceneFiles, TheDemIsTheGroundWithItsError) {
   scenario.dem = {.cell = 2, .height_sd = 0.3, .correlation = 6};
   scenario.ground.width = scenario.ground.height = 301;
   const Scene scene = make_scene(scenario.ground, 1);
-  const SimulatedDem dem = simulate_dem(scenario, scene);
+  const SimulatedDem dem = simulate_dem(scenario.dem, scene);
   double squares = 0;
   std::int64_t count = 0;
   for (std::int64_t j = 2; j < dem.heights.rows() - 2; ++j)

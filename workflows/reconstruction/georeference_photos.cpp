@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "pipeline/reconstruction/adjustment/georeference.hpp"
 #include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
+#include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
 #include "workflows/reconstruction/photo_priors.hpp"
 
@@ -103,15 +104,22 @@ FreeRelief free_relief(const pipeline::Reconstruction& scene, const pipeline::Ob
   return out;
 }
 
-// Tie points within one cell of the DEM share its error: each then counts for its part only.
+// Tie points within one cell of the DEM share its error, and neighbouring cells do as far as the residuals
+// correlate: each then counts for its part only.
 double deviation_of_surface(const std::vector<Eigen::Vector3d>& points, const Similarity& map_from_frame,
                             const pipeline::CoarseHeights& dem, double residual) {
-  std::set<std::pair<std::int64_t, std::int64_t>> cells;
+  Grid<float> above(dem.grid.columns, dem.grid.rows, std::numeric_limits<float>::quiet_NaN());
+  double cells = 0;
   for (const Eigen::Vector3d& point : points) {
     const Eigen::Vector3d at = map_from_frame * point;
-    cells.emplace(std::llround(dem.grid.column(at.x())), std::llround(dem.grid.row(at.y())));
+    const std::int64_t column = std::llround(dem.grid.column(at.x())),
+                       row = std::llround(dem.grid.row(at.y()));
+    if (!above.contains(column, row)) continue;
+    cells += std::isnan(above(column, row));
+    above(column, row) = static_cast<float>(at.z() - dem.at(at.x(), at.y()));
   }
-  return std::max(dem.sd, residual) * std::sqrt(double(points.size()) / double(cells.size()));
+  const double shared = pipeline::correlation_of(above, 3 * std::max(dem.sd, residual)).shared_cells(above);
+  return std::max(dem.sd, residual) * std::sqrt(double(points.size()) / std::max(1.0, cells) * shared);
 }
 
 // Places images without another reference in the coarse DEM, and adjusts them with it.
@@ -136,14 +144,17 @@ void georeference_on_dem(PosedPhotos& posed, pipeline::Observations seen, const 
       break;
     }
   moved.frame = pipeline::ReconstructionFrame::metric;
+  const double deviation =
+      deviation_of_surface(relief.points, placed.found->map_from_frame, heights, placed.found->residual);
   seen.surface =
       pipeline::ObservedSurface{.height =
                                     [&heights](double x, double y) {
                                       const double h = heights.at(x, y);
                                       return std::isfinite(h) ? std::optional(h) : std::nullopt;
                                     },
-                                .sd = deviation_of_surface(relief.points, placed.found->map_from_frame,
-                                                           heights, placed.found->residual),
+                                // Covariances are scaled by the sigma0 of all observations, which is that of
+                                // the many marks: those of the surface are stated in its unit.
+                                .sd = deviation / (moved.sigma0 > 0 ? moved.sigma0 : 1),
                                 .step = heights.grid.cell / 2};
   const pipeline::Georeferenced result =
       pipeline::georeference(moved, seen, {.free_lens_parameters = admitted_parameters(posed)});

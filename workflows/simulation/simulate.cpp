@@ -83,10 +83,14 @@ std::string landing_job(const testbed::Scenario& scenario) {
 void write_site(const fs::path& folder, const testbed::Scenario& scenario, const testbed::Scene& scene,
                 const std::vector<testbed::Shot>& shots, const Crs& crs) {
   for (const char* part : {"images", "truth"}) make_folder(folder / part);
-  const testbed::SimulatedDem dem = testbed::simulate_dem(scenario, scene);
   const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
-  exporters::write_raster(folder / "dem.tif", dem.heights,
-                          {crs, dem.x0 / unit, dem.y0 / unit, dem.cell / unit, -dem.cell / unit});
+  const auto write_dem = [&](const char* name, const testbed::SimulatedDem& dem) {
+    exporters::write_raster(folder / name, dem.heights,
+                            {crs, dem.x0 / unit, dem.y0 / unit, dem.cell / unit, -dem.cell / unit});
+  };
+  write_dem("dem.tif", testbed::simulate_dem(scenario.dem, scene));
+  if (scenario.orbital_dem.cell > 0)
+    write_dem("orbital_dem.tif", testbed::simulate_dem(scenario.orbital_dem, scene, "orbital dem errors"));
   const testbed::LitTerrain ground(scene, scenario.exposure.sun);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   for (const testbed::Shot& shot : shots) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
+#include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -19,7 +20,6 @@ using Matrix5 = Eigen::Matrix<double, 5, 5>;
 constexpr double kCellsOfSearch = 32;      // of both DEMs, across the map
 constexpr double kMinReferenceCells = 10;  // of the reference, across the map
 constexpr double kMaxCellsAcross = 400;
-constexpr double kUncorrelated = 0.05;  // correlation of residuals that are far enough apart
 constexpr double kMinCompared = 0.7;    // of the cells of the map, on the reference
 constexpr std::size_t kMinCells = 200;  // compared: fewer show no spread of five parameters
 
@@ -130,35 +130,12 @@ class LevelFit {
     return true;
   }
 
-  /// Correlation of residuals by their distance along rows and columns, in cells, up to the first below
-  /// `kUncorrelated`. The first is 1.
-  std::vector<double> correlations() const {
-    const std::int64_t columns = map_.grid.columns, rows = map_.grid.rows;
-    const double limit = 3 * residual_;  // gross differences are not part of the noise
-    std::vector<double> out{1};
-    for (std::int64_t lag = 1; lag < std::max(columns, rows) / 3; ++lag) {
-      double products = 0, squares = 0;
-      for (std::int64_t r = 0; r < rows; ++r)
-        for (std::int64_t c = 0; c < columns; ++c) {
-          const double a = above_(c, r);
-          if (!(std::abs(a) < limit)) continue;
-          for (const auto& [x, y] : {std::pair(c + lag, r), std::pair(c, r + lag)}) {
-            if (x >= columns || y >= rows || !(std::abs(double(above_(x, y))) < limit)) continue;
-            products += a * above_(x, y);
-            squares += (a * a + double(above_(x, y)) * above_(x, y)) / 2;
-          }
-        }
-      if (!(products > kUncorrelated * squares)) break;
-      out.push_back(products / squares);
-    }
-    return out;
-  }
-
   /// Covariance of the sum of weighted gradients times errors of the correlation of the residuals. Cells are
   /// joined to blocks that are small against the correlation length.
   Matrix5 spread() const {
-    const std::vector<double> rho = correlations();
-    const std::int64_t reach = std::int64_t(rho.size()), block = std::max<std::int64_t>(1, reach / 6);
+    const ResidualCorrelation correlation = correlation_of(above_, 3 * residual_);
+    const auto reach = static_cast<std::int64_t>(correlation.by_lag.size());
+    const std::int64_t block = std::max<std::int64_t>(1, reach / 6);
     const std::int64_t columns = map_.grid.columns / block + 1, rows = map_.grid.rows / block + 1;
     std::vector<Vector5> sums(std::size_t(columns * rows), Vector5::Zero());
     for (const Row& row : rows_)
@@ -168,15 +145,12 @@ class LevelFit {
     double parts = 0;  // cells that share one error
     for (std::int64_t dy = -far; dy <= far; ++dy)
       for (std::int64_t dx = -far; dx <= far; ++dx) {
-        const double lag = double(block) * std::hypot(double(dx), double(dy));
-        const auto low = std::size_t(lag);
-        if (low + 1 > rho.size()) continue;
-        const double next = low + 1 < rho.size() ? rho[low + 1] : 0;
-        const double correlation = rho[low] + (lag - double(low)) * (next - rho[low]);
-        parts += correlation * double(block * block);
+        const double here = correlation.at(double(block) * std::hypot(double(dx), double(dy)));
+        if (here == 0) continue;
+        parts += here * double(block * block);
         for (std::int64_t r = std::max<std::int64_t>(0, -dy); r < std::min(rows, rows - dy); ++r)
           for (std::int64_t c = std::max<std::int64_t>(0, -dx); c < std::min(columns, columns - dx); ++c)
-            out += correlation * sums[std::size_t(r * columns + c)] *
+            out += here * sums[std::size_t(r * columns + c)] *
                    sums[std::size_t((r + dy) * columns + c + dx)].transpose();
       }
     const double independent = std::max(double(used_) / parts, 6.0);

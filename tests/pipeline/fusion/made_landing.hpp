@@ -38,7 +38,7 @@ struct MadeLanding {
 };
 
 inline Terrain given_terrain(const testbed::Scenario& scenario, const testbed::Scene& scene) {
-  testbed::SimulatedDem dem = testbed::simulate_dem(scenario, scene);
+  testbed::SimulatedDem dem = testbed::simulate_dem(scenario.dem, scene);
   return {std::move(dem.heights), dem.x0, dem.y0, dem.cell, dem.cell, scenario.dem.height_sd};
 }
 
