@@ -3,12 +3,12 @@
 
 #include <bit>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <stdexcept>
 
 #include "core/error.hpp"
 #include "importers/logs/bag_file.hpp"
+#include "importers/vsi_file.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -107,27 +107,29 @@ class McapReader {
 }  // namespace
 
 std::vector<std::string> visit_mcap(const std::filesystem::path& file, const BagVisitor& visit) {
-  std::ifstream in(file, std::ios::binary);
-  const std::uint64_t size = std::filesystem::file_size(file);
+  VsiFile in(file.string());
+  const std::uint64_t size = in.size();
+  const auto read = [&](std::uint64_t offset, std::string& into) {
+    return in.read(offset, into.data(), into.size()) == into.size();
+  };
   std::string content(kMagic.size(), '\0');
-  if (!in.read(content.data(), static_cast<std::streamsize>(content.size())) || content != kMagic)
+  if (!read(0, content) || content != kMagic)
     throw Error(ErrorCode::input, "the file does not begin like an MCAP file", file.string(),
                 "check the path; MCAP of format version 0 is read");
   McapReader reader(visit);
+  std::string head(kRecordHead, '\0');
   std::uint64_t at = kMagic.size();
-  while (size - at >= kRecordHead) {
-    unsigned char opcode = 0;
-    std::uint64_t length = 0;
-    in.read(reinterpret_cast<char*>(&opcode), 1);
-    in.read(reinterpret_cast<char*>(&length), sizeof length);
-    if (!in || length > size - at - kRecordHead) break;
+  while (size - at >= kRecordHead && read(at, head)) {
+    McapFields fields(head);
+    const auto opcode = fields.number<unsigned char>();
+    const auto length = fields.number<std::uint64_t>();
     if (opcode == kDataEnd) return {};
+    if (length > size - at - kRecordHead) break;
     content.resize(static_cast<std::size_t>(length));
-    if (!in.read(content.data(), static_cast<std::streamsize>(length))) break;
+    if (!read(at + kRecordHead, content)) break;
     try {
       reader.record(opcode, content, false);
     } catch (const std::runtime_error& problem) {
-      if (dynamic_cast<const Error*>(&problem)) throw;
       throw Error(ErrorCode::input,
                   fmt::format("the MCAP record at byte {} cannot be read: {}", at, problem.what()),
                   file.string(),

@@ -3,13 +3,13 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
 #include "tests/localization/made_bag.hpp"
@@ -223,8 +223,7 @@ TEST_F(Bag, CutOffMcapIsReadUpToThere) {
 TEST_F(Bag, MutatedFilesAreReadOrRefused) {
   const MadeBag bag = made_drive(true).bag;
   write_rosbag2(file("whole.db3"), bag);
-  std::ifstream in(file("whole.db3"), std::ios::binary);
-  const std::string database{std::istreambuf_iterator<char>(in), {}};
+  const std::string database = read_text(file("whole.db3"), "the bag");
   int refused = 0, read = 0;
   for (unsigned seed = 0; seed < 600; ++seed) {
     std::mt19937 random(seed);
