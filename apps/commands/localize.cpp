@@ -100,7 +100,7 @@ class Localize final : public Command {
              "t=stamp,v=speed/3.6,omega=rad(rate),bearing=b,range=r "
              "-o track.tum",
              "A CSV log in km/h and degrees; a track for other tools"},
-            {"waymark localize site.gpkg recording.mcap --ids unknown -o track.csv", "A recording of ROS 2"},
+            {"waymark localize site.gpkg recording.mcap --start 0,0,0 -o track.csv", "A recording of ROS 2"},
             {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1", "How well that went"}}};
   }
 
