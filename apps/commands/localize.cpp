@@ -53,7 +53,8 @@ class Localize final : public Command {
                  .or_else("0"),
              Argument{"--seed", "N", &request_.seed, "Seed of all random numbers"}.or_else("1"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
-                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "isam", "g2o", "toro"})
+                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam",
+                          "g2o", "toro"})
                  .or_else("recognised by the files"),
              Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
                       "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
@@ -99,6 +100,7 @@ class Localize final : public Command {
              "t=stamp,v=speed/3.6,omega=rad(rate),bearing=b,range=r "
              "-o track.tum",
              "A CSV log in km/h and degrees; a track for other tools"},
+            {"waymark localize site.gpkg recording.mcap --start 0,0,0 -o track.csv", "A recording of ROS 2"},
             {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1", "How well that went"}}};
   }
 

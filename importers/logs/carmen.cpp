@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
+#include "importers/logs/odometry_steps.hpp"
 #include "localization/robot_log.hpp"
 
 namespace waymark::importers {
@@ -106,7 +107,7 @@ class CarmenReader {
     if (beam_counts_.size() > 1)
       log_.remarks.push_back(fmt::format("scans have from {} to {} beams; each is read with its own",
                                          beam_counts_.begin()->first, beam_counts_.rbegin()->first));
-    add_steps();
+    add_odometry_steps(log_, std::move(poses_));  // messages come late and out of order
     localization::clean_log(log_);
     return std::move(log_);
   }
@@ -207,18 +208,6 @@ class CarmenReader {
   }
 
   void step_to(const localization::Pose2& pose, double t) { poses_.push_back({t, pose}); }
-
-  // Messages come late and out of order: steps lead from pose to pose in the order of their times.
-  void add_steps() {
-    std::ranges::stable_sort(poses_, {}, &localization::StampedPose::t);
-    std::vector<localization::LogEvent> events;
-    for (std::size_t i = 1; i < poses_.size(); ++i)
-      events.push_back(
-          {poses_[i].t, localization::StepReading{inverse(poses_[i - 1].pose) * poses_[i].pose}});
-    std::ranges::move(log_.events, std::back_inserter(events));  // scans after the steps that lead to them
-    log_.events = std::move(events);
-    std::ranges::stable_sort(log_.events, {}, &localization::LogEvent::t);
-  }
 
   const std::filesystem::path& file_;
   localization::RobotLog log_;

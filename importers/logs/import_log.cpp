@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/error.hpp"
+#include "importers/logs/bag_file.hpp"
 #include "importers/logs/graph_file.hpp"
 #include "localization/robot_log.hpp"
 
@@ -16,12 +17,16 @@ std::string recognised(const fs::path& path) {
   if (fs::is_directory(path)) {
     if (fs::exists(path / "Barcodes.dat")) return "mrclam";
     if (fs::exists(path / "LASER.txt") && fs::exists(path / "DRS.txt")) return "victoria-park";
+    if (!bag_files(path).empty()) return "rosbag2";
     throw Error(ErrorCode::input, "the folder holds no log of a known format", path.string(),
-                "known are MRCLAM (Barcodes.dat) and Victoria Park (LASER.txt, DRS.txt)");
+                "known are MRCLAM (Barcodes.dat), Victoria Park (LASER.txt, DRS.txt) and bags of ROS 2 "
+                "(.db3, .mcap)");
   }
   if (!fs::exists(path))
     throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
   if (path.extension() == ".csv" || path.extension() == ".tsv") return "csv";
+  if (path.extension() == ".db3") return "rosbag2";
+  if (path.extension() == ".mcap") return "mcap";
   if (path.extension() == ".dat") return "mrclam";
   const std::string name = path.filename().string();
   if (path.extension() == ".clf" || name.ends_with(".clf.gz") || name.ends_with(".clf.bz2")) return "carmen";
@@ -61,9 +66,10 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "carmen") return import_carmen_log(path);
+  if (format == "rosbag2" || format == "mcap") return import_bag_log(path);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
-              "known are waymark, csv, mrclam, victoria-park, carmen, isam, g2o and toro");
+              "known are waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o and toro");
 }
 
 }  // namespace

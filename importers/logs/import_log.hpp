@@ -15,8 +15,8 @@ namespace waymark::importers {
 
 /// Options for reading a log.
 struct LogImport {
-  std::string format = {};   ///< waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty:
-                             ///< recognised by what is there
+  std::string format = {};  ///< waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro;
+                            ///< empty: recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
   /// waymark, csv: its standard deviations are those of sightings for which the log gives none.
@@ -63,5 +63,10 @@ localization::RobotLog import_victoria_park(const std::filesystem::path& folder)
 /// Reads a CARMEN log (Montemerlo et al. 2003): odometry as steps, and the scans of FLASER, RLASER and
 /// ROBOTLASER1. Times are those of the sender. Lines that cannot be read are skipped and counted.
 localization::RobotLog import_carmen_log(const std::filesystem::path& file);
+
+/// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Odometry becomes
+/// steps, scans get their place on the robot from tf and tf_static. Of several topics of a type, the one with
+/// the most messages is read. Messages that cannot be read are skipped and counted. Throws Error{input}.
+localization::RobotLog import_bag_log(const std::filesystem::path& path);
 
 }  // namespace waymark::importers

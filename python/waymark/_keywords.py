@@ -31,8 +31,8 @@ DESCRIPTIONS = {'detect': {'kind': '"craters", "rocks" or "trees"',
  'evaluate_track': {'track': '',
                     'truth': '',
                     'align': '"none", "se2" or "sim2"',
-                    'log_format': 'waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty: recognised '
-                                  'by what is there',
+                    'log_format': 'waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro; '
+                                  'empty: recognised by what is there',
                     'columns': 'csv: target=expression, separated by commas (import_csv_log)',
                     'robot': 'MRCLAM: which of the five; 0: the robot of the named file',
                     'max_gap': 's between two true poses that may be interpolated',
@@ -46,8 +46,8 @@ DESCRIPTIONS = {'detect': {'kind': '"craters", "rocks" or "trees"',
               'sensor': 'profile of eq. 8, for `quality=paper` and maps without confidence; empty: equal weights',
               'min_confidence': 'landmarks less probable than this are not used',
               'seed': 'of all random numbers',
-              'log_format': 'waymark, csv, mrclam, victoria-park, carmen, isam, g2o, toro; empty: recognised by what '
-                            'is there',
+              'log_format': 'waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro; empty: '
+                            'recognised by what is there',
               'columns': 'csv: target=expression, separated by commas (import_csv_log)',
               'robot': 'MRCLAM: which of the five; 0: the robot of the named file',
               'use_identities': 'identities in the log are used for data association',

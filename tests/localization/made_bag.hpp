@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace waymark::test {
+
+/// Writes messages in CDR, in either byte order.
+class MadeCdr {
+ public:
+  explicit MadeCdr(bool big) : big_(big), bytes_(big ? "\0\0\0\0" : "\0\1\0\0", 4) {}
+
+  template <class T>
+  MadeCdr& add(T value) {
+    while ((bytes_.size() - 4) % sizeof(T)) bytes_ += '\0';
+    char raw[sizeof(T)];
+    std::memcpy(raw, &value, sizeof(T));
+    if (big_) std::reverse(raw, raw + sizeof(T));
+    bytes_.append(raw, sizeof(T));
+    return *this;
+  }
+  MadeCdr& text(const std::string& value) {
+    add(static_cast<std::uint32_t>(value.size() + 1));
+    bytes_ += value + '\0';
+    return *this;
+  }
+  MadeCdr& header(double t, const std::string& frame) {
+    const double seconds = std::floor(t);
+    return add(static_cast<std::int32_t>(seconds))
+        .add(static_cast<std::uint32_t>(std::lround((t - seconds) * 1e9)))
+        .text(frame);
+  }
+  /// Turn about z by `yaw`, after a half turn about x if `over`.
+  MadeCdr& pose(double x, double y, double z, double yaw, bool over = false) {
+    add(x).add(y).add(z);
+    const double c = std::cos(yaw / 2), s = std::sin(yaw / 2);
+    return over ? add(c).add(s).add(0.0).add(0.0) : add(0.0).add(0.0).add(s).add(c);
+  }
+  std::string bytes() const { return bytes_; }
+
+ private:
+  bool big_;
+  std::string bytes_;
+};
+
+struct MadeMessage {
+  std::string topic, type, bytes;
+  std::int64_t received = 0;
+};
+using MadeBag = std::vector<MadeMessage>;
+
+inline MadeMessage made_odometry(bool big, double t, double x, double y, double yaw,
+                                 const std::string& topic = "/odom") {
+  MadeCdr cdr(big);
+  cdr.header(t, "odom").text("base_link").pose(x, y, 0, yaw);
+  for (int i = 0; i < 36 + 6 + 36; ++i) cdr.add(0.0);
+  return {topic, "nav_msgs/msg/Odometry", cdr.bytes()};
+}
+
+inline MadeMessage made_scan(bool big, double t, double first, double step, const std::vector<float>& ranges,
+                             const std::string& topic = "/scan") {
+  MadeCdr cdr(big);
+  cdr.header(t, "laser").add(float(first)).add(float(first + step * double(ranges.size() - 1)));
+  cdr.add(float(step)).add(0.f).add(0.f).add(0.1f).add(30.f).add(static_cast<std::uint32_t>(ranges.size()));
+  for (const float r : ranges) cdr.add(r);
+  cdr.add(std::uint32_t{0});
+  return {topic, "sensor_msgs/msg/LaserScan", cdr.bytes()};
+}
+
+inline MadeMessage made_frame(bool big, const std::string& parent, const std::string& child, double x,
+                              double y, double yaw, bool over = false) {
+  MadeCdr cdr(big);
+  cdr.add(std::uint32_t{1}).header(0, parent).text(child).pose(x, y, 0.3, yaw, over);
+  return {"/tf_static", "tf2_msgs/msg/TFMessage", cdr.bytes()};
+}
+
+inline void write_rosbag2(const std::filesystem::path& file, const MadeBag& bag) {
+  std::filesystem::remove(file);
+  sqlite3* db = nullptr;
+  sqlite3_open(file.c_str(), &db);
+  sqlite3_exec(
+      db,
+      "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,"
+      " serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL);"
+      "CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER NOT "
+      "NULL, data BLOB NOT NULL); BEGIN",
+      nullptr, nullptr, nullptr);
+  std::map<std::string, int> topics;
+  for (const MadeMessage& m : bag) {
+    sqlite3_stmt* statement = nullptr;
+    if (topics.try_emplace(m.topic, int(topics.size()) + 1).second) {
+      sqlite3_prepare_v2(db, "INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')", -1, &statement, nullptr);
+      sqlite3_bind_int(statement, 1, topics[m.topic]);
+      sqlite3_bind_text(statement, 2, m.topic.c_str(), -1, SQLITE_TRANSIENT);
+      sqlite3_bind_text(statement, 3, m.type.c_str(), -1, SQLITE_TRANSIENT);
+      sqlite3_step(statement);
+      sqlite3_finalize(statement);
+    }
+    sqlite3_prepare_v2(db, "INSERT INTO messages(topic_id, timestamp, data) VALUES (?, ?, ?)", -1, &statement,
+                       nullptr);
+    sqlite3_bind_int(statement, 1, topics[m.topic]);
+    sqlite3_bind_int64(statement, 2, m.received);
+    sqlite3_bind_blob(statement, 3, m.bytes.data(), int(m.bytes.size()), SQLITE_TRANSIENT);
+    sqlite3_step(statement);
+    sqlite3_finalize(statement);
+  }
+  sqlite3_exec(db, "COMMIT", nullptr, nullptr, nullptr);
+  sqlite3_close(db);
+}
+
+/// Bytes of an MCAP file; with `chunk_size` > 0, so many messages share a chunk with their channels.
+inline std::string made_mcap(const MadeBag& bag, std::size_t chunk_size,
+                             const std::string& compression = "") {
+  const auto number = []<class T>(T value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  const auto text = [&](const std::string& s) { return number(std::uint32_t(s.size())) + s; };
+  const auto record = [&](int opcode, const std::string& content) {
+    return char(opcode) + number(std::uint64_t(content.size())) + content;
+  };
+  std::string out = "\x89MCAP0\r\n" + record(1, text("ros2") + text("made")), chunk;
+  std::map<std::string, std::uint16_t> channels;
+  std::size_t in_chunk = 0;
+  const auto close = [&] {
+    if (chunk_size && !chunk.empty())
+      out += record(6, number(std::uint64_t{0}) + number(std::uint64_t{0}) +
+                           number(std::uint64_t(chunk.size())) + number(std::uint32_t{0}) +
+                           text(compression) + number(std::uint64_t(chunk.size())) + chunk);
+    else
+      out += chunk;
+    chunk.clear(), in_chunk = 0;
+  };
+  for (const MadeMessage& m : bag) {
+    if (channels.try_emplace(m.topic, std::uint16_t(channels.size() + 1)).second) {
+      const auto id = number(channels[m.topic]);
+      chunk += record(3, id + text(m.type) + text("ros2msg") + text("float64 x"));
+      chunk += record(4, id + id + text(m.topic) + text("cdr") + number(std::uint32_t{0}));
+    }
+    chunk += record(5, number(channels[m.topic]) + number(std::uint32_t{0}) + number(m.received) +
+                           number(m.received) + m.bytes);
+    if (++in_chunk == chunk_size) close();
+  }
+  close();
+  return out + record(15, number(std::uint32_t{0})) +
+         record(2, number(std::uint64_t{0}) + number(std::uint64_t{0}) + number(std::uint32_t{0})) +
+         "\x89MCAP0\r\n";
+}
+
+}  // namespace waymark::test
