@@ -19,7 +19,7 @@ std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
   for (std::int64_t y = 0; y < rows; ++y)
     for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
   const auto seen = estimate_crater_sun_angle(middle);
-  if (!seen) return std::nullopt;
+  if (!seen || !seen->sure) return std::nullopt;
   const double of_mean = seen->sd.value / std::sqrt(std::max(1, seen->craters));
   return SunAngle{seen->angle, {std::hypot(of_mean, kSystematic)}, seen->craters};
 }

@@ -9,7 +9,8 @@
 namespace waymark::pipeline {
 
 /// Returns the direction towards the sun that the craters of the central 1024 x 1024 pixels show;
-/// `std::nullopt` if there are hardly any. The standard deviation is that of their mean.
+/// `std::nullopt` if there are hardly any, or if they may be rocks. The standard deviation is that of their
+/// mean.
 std::optional<SunAngle> crater_sun_angle(const Pixels& image);
 
 /// Returns the warning about ground on which the detector of rocks cannot be trusted.

@@ -46,6 +46,9 @@ int band_of_heights(GDALDataset& dataset, const std::string& path, int wanted) {
                   "`gdalinfo` lists the bands; pass --band with one of them");
   const bool height_and_alpha =
       bands == 2 && dataset.GetRasterBand(2)->GetColorInterpretation() == GCI_AlphaBand;
+  if (wanted == 0)  // as in elevation models of `waymark reconstruct`
+    for (int b = 1; b <= bands; ++b)
+      if (std::string_view(dataset.GetRasterBand(b)->GetDescription()) == "height") return b;
   if (wanted == 0 && bands > 1 && !height_and_alpha)
     refuse_raster(
         fmt::format("a DEM has one band of heights, this file has {}", bands), path,

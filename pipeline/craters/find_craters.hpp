@@ -40,10 +40,12 @@ struct CraterSunAngle {
   Radians angle;  ///< in the image, from x towards y, (-pi, pi]
   Radians sd;     ///< spread of the directions of the strongest craters
   int craters;    ///< number that agree
+  bool sure;  ///< these are of many sizes, as craters are; rocks resemble small ones under the opposite sun
 };
 
 /// `std::nullopt` if fewer than three clear bowls are visible. Relief in one image is ambiguous by half a
-/// turn (domes under the opposite sun look the same): craters are assumed to outnumber domes.
+/// turn (domes and rocks under the opposite sun look the same): craters are assumed to outnumber domes among
+/// the large ones.
 std::optional<CraterSunAngle> estimate_crater_sun_angle(const Pixels& image);
 
 /// Parameters of the crater search in a window of a DEM.

@@ -5,6 +5,8 @@
 #include "pipeline/craters/find_craters.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/light_in_image.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 namespace waymark::pipeline {
@@ -40,14 +42,30 @@ struct CratersInImage {
             .outputs = {detections}};
   }
 
+  // Of an unknown sun: craters of many sizes show it, else the shadows of rocks.
+  static std::optional<Radians> sun_angle(const ImageInfo& image, const Pixels& pixels) {
+    if (const auto given = sun_angle_in_image(image)) return given;
+    const auto craters = crater_sun_angle(pixels);
+    if (const auto seen = estimate_rock_sun_angle(pixels, craters)) return seen->angle;
+    return craters ? std::optional(craters->angle) : std::nullopt;
+  }
+
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
     const TypeRegistry& types = unit.types();
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
+    const std::optional<Radians> sun = sun_angle(image.info(), pixels);
+    if (!sun) {
+      if (pixels.columns() > 0)
+        unit.warn(image.info().name +
+                  ": the sun is unknown, and the image does not show where its light comes from: no craters");
+      unit.write(detections, std::vector<Detection>{});
+      return;
+    }
     auto found = find_craters(pixels, {.method = kMethod,
                                        .type = types.id("crater"),
-                                       .sun_angle = sun_angle_in_image(image.info()),
+                                       .sun_angle = sun,
                                        .min_diameter = options.min_diameter,
                                        .max_diameter = options.max_diameter,
                                        .min_confidence = options.min_confidence});

@@ -193,6 +193,16 @@ TEST_F(ReconstructPhotos, ACoarseDemGivesTheFrame) {
           << i << " " << axis;
 }
 
+TEST_F(ReconstructPhotos, PicturesWithoutASunGiveAMap) {
+  write_good(6);
+  const Outcome mapped =
+      waymark({"reconstruct", folder_ / "images", "-o", folder_ / "out", "--lens",
+               (grid_flight() / "truth/cameras.json").string(), "--dem", (grid_flight() / "dem.tif").string(),
+               "--crs", "local", "--map-landmarks", folder_ / "map.gpkg"});
+  ASSERT_EQ(mapped.code, 0) << mapped.err;
+  EXPECT_EQ(waymark({"validate", folder_ / "map.gpkg"}).code, 0);
+}
+
 TEST_F(ReconstructPhotos, AFlatDemGivesNoFrame) {
   write_good(6);
   std::string dem = "ncols 60\nnrows 60\nxllcorner -120\nyllcorner -120\ncellsize 4\n";

@@ -51,10 +51,8 @@ std::vector<std::string> image_stages(const ImageFinds& find, bool known_sun) {
   add(detections && known_sun, {"check_sun"});
   add(find.rocks, {"rocks_from_shadows"});
   add(find.craters, {"craters_from_bowls"});
-  add(detections, {"project_to_ground", "reject_implausible"});
-  add(find.rocks && known_sun, {"reject_terrain_shadows"});
-  add(detections, {"reject_rim_shadows"});
-  add(detections, {"align_images", "merge_observations", "value_landmarks"});
+  add(detections, {"project_to_ground", "reject_implausible", "reject_terrain_shadows", "reject_rim_shadows",
+                   "align_images", "merge_observations", "value_landmarks"});
   add(find.mountain_tops,
       {"find_mountain_tops", "join_mountain_tops", "measure_isolation", "map_mountain_tops"});
   return stages;

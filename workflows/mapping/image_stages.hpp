@@ -15,7 +15,7 @@ struct ImageFinds {
 ImageFinds parse_image_finds(std::string_view list);
 
 /// Returns the stages from the detections to valued landmarks, in order, after the DEM and the images are
-/// loaded. Without `known_sun` those are left out that compare shadows with it.
+/// loaded. Without `known_sun` it is not compared with shadows.
 std::vector<std::string> image_stages(const ImageFinds& find, bool known_sun = true);
 
 /// Images and what places them on the ground.

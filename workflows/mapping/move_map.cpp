@@ -22,22 +22,25 @@ class MapMover {
       : move_(move), from_(unit_from), to_(unit_to), scale_(std::exp(move.plane.log_scale)) {}
 
   Eigen::Vector2d plan(const Eigen::Vector2d& p) const { return (move_.plane * (p * from_)) / to_; }
-  double height(double z) const { return move_.height + scale_ * (z - move_.height); }
+  double height(double z) const { return scale_ * z + move_.lift; }
 
   void position(Eigen::Vector3d& xyz, Eigen::Matrix3d& covariance) const {
     xyz.head<2>() = plan(xyz.head<2>());
     xyz.z() = height(xyz.z());
-    const Eigen::Vector2d arm = xyz.head<2>() * to_ - move_.pivot;
-    const Eigen::Matrix2d linear = move_.plane.linear();
-    Eigen::Matrix<double, 2, 4> rows;
-    rows << Eigen::Matrix2d::Identity(), Eigen::Vector2d(-arm.y(), arm.x()), arm;
-    const Eigen::Matrix2d flat = covariance.topLeftCorner<2, 2>();
+    const Eigen::Vector3d arm = Eigen::Vector3d(xyz.x() * to_, xyz.y() * to_, xyz.z()) - move_.pivot;
+    Eigen::Matrix<double, 3, 5> rows;
+    rows << 1, 0, -arm.y(), arm.x(), 0,  //
+        0, 1, arm.x(), arm.y(), 0,       //
+        0, 0, 0, arm.z(), 1;
+    const Eigen::Matrix3d common = rows * move_.covariance * rows.transpose();
+    const Eigen::Matrix2d linear = move_.plane.linear(), flat = covariance.topLeftCorner<2, 2>();
     const Eigen::Vector2d mixed = covariance.topRightCorner<2, 1>();
-    covariance.topLeftCorner<2, 2>() =
-        linear * flat * linear.transpose() + rows * move_.covariance * rows.transpose();
+    const double vertical = covariance(2, 2);  // by blocks: an unknown one is NaN
+    covariance.topLeftCorner<2, 2>() = linear * flat * linear.transpose();
     covariance.topRightCorner<2, 1>() = scale_ * (linear * mixed);
     covariance.bottomLeftCorner<1, 2>() = covariance.topRightCorner<2, 1>().transpose();
-    covariance(2, 2) *= scale_ * scale_;
+    covariance(2, 2) = scale_ * scale_ * vertical;
+    covariance += common;
   }
 
   void features(FeatureSet& features, const LandmarkType& type) const {
@@ -49,8 +52,9 @@ class MapMover {
         continue;
       }
       const double factor = factor_of(spec.unit);
-      f.value = spec.scale == Scale::interval && spec.unit == "m" ? height(f.value) : f.value * factor;
-      f.variance *= factor * factor;
+      const bool elevation = spec.scale == Scale::interval && spec.unit == "m";
+      f.value = elevation ? height(f.value) : f.value * factor;
+      f.variance = f.variance * factor * factor + (elevation ? move_.covariance(4, 4) : 0);
     }
   }
 

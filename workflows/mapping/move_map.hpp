@@ -5,12 +5,13 @@
 #include "localization/registration/circle_evidence.hpp"
 namespace waymark::workflows {
 
-/// Similarity that moves a map: x and y by `plane`, in metres; heights scale about `height`.
+/// Similarity that moves a map: x and y by `plane`, in metres; heights by its scale and `lift`.
 struct MapMove {
   localization::PlaneSimilarity plane = {};
-  Eigen::Vector2d pivot = Eigen::Vector2d::Zero();       ///< of the covariance, in the new frame
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();  ///< shift of the pivot, yaw, ln of the scale
-  double height = 0;                                     ///< that stays, metres
+  double lift = 0;                                  ///< new height of height 0, metres
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< of the covariance, in the new frame
+  /// Of x and y of the pivot, the yaw, ln of the scale, and the height of the pivot.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
 
 /// Returns the metres per unit of a projected CRS; 1 for others.
@@ -22,7 +23,7 @@ double metres_of(const Crs& crs);
 /// - Features and attributes in metres (m2, m3) are scaled, elevations moved, axes turned; attribute pairs
 ///   `<stem>_x`, `<stem>_y` are positions.
 /// - Landmarks are moved when they are read: `contents` keeps its source.
-/// - Elevation tiles are not moved; the caller leaves them out.
+/// - Elevation tiles are not moved: `moved_dem` does.
 void move_map(geodb::MapContents& contents, const MapMove& move, const Crs& crs);
 
 }  // namespace waymark::workflows

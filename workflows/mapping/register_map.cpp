@@ -3,99 +3,25 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <vector>
 
 #include "core/error.hpp"
 #include "exporters/vector/map_subset.hpp"
 #include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
-#include "importers/tables/table.hpp"
-#include "importers/tables/table_landmarks.hpp"
+#include "importers/rasters/dem.hpp"
+#include "importers/rasters/is_raster.hpp"
 #include "workflows/mapping/move_map.hpp"
+#include "workflows/mapping/moved_dem.hpp"
+#include "workflows/mapping/register_by_craters.hpp"
+#include "workflows/mapping/register_by_heights.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
-#include "workflows/registries.hpp"
 
 namespace waymark::workflows {
 namespace {
-
-using localization::Circle;
-
-constexpr double kUnstatedSd = 0.05, kMinSd = 0.02;  // of the diameter: not stated; a rim's centre at best
-constexpr double kDiameterSd = 0.1;                  // of the logarithm, in map and catalogue alike
-constexpr std::size_t kMaxCraters = 200;             // craters of a map that are compared, the largest
-
-const std::string& crater_type() {
-  static const std::string name = all_types()[find_type(all_types(), EvidenceModel::bowl).value()].name;
-  return name;
-}
-
-std::optional<Circle> circle_of(const Landmark& l, const LandmarkType& type, double unit) {
-  const FeatureValue& body = l.features.at(feature_index(type, type.body.feature));
-  const double diameter = 2 * type.body.radius_per_value * body.value;
-  if (!body.known() || !(diameter > 0)) return std::nullopt;
-  const double stated = std::sqrt((l.covariance(0, 0) + l.covariance(1, 1)) / 2);
-  const double sd = stated > 0 ? stated : kUnstatedSd * diameter;
-  return Circle{.at = l.position.xyz.head<2>() * unit,
-                .diameter = diameter,
-                .position_sd = std::max(sd, kMinSd * diameter),
-                .log_diameter_sd = kDiameterSd};
-}
-
-struct MapCraters {
-  std::vector<Circle> circles = {};
-  double height = 0;  ///< mean, metres
-};
-
-MapCraters craters_of(const geodb::MapStore& map) {
-  MapCraters out;
-  const LandmarkType* type = map.types().find(crater_type());
-  if (type == nullptr)
-    throw Error(ErrorCode::input, "the map has no craters, which register by a catalogue",
-                map.path().string(), "find them first: `waymark craters --help`");
-  map.visit(type->name, [&](Landmark&& l) {
-    const auto circle = circle_of(l, *type, metres_of(map.crs()));
-    if (!circle) return;
-    out.circles.push_back(*circle);
-    out.height += l.position.xyz.z();
-  });
-  out.height /= std::max(1.0, double(out.circles.size()));
-  std::ranges::stable_sort(out.circles, std::ranges::greater{}, &Circle::diameter);
-  if (out.circles.size() > kMaxCraters) out.circles.resize(kMaxCraters);
-  return out;
-}
-
-struct Catalogue {
-  std::vector<Circle> circles = {};
-  Crs crs = Crs::local();
-};
-
-Catalogue read_catalogue(const RegisterRequest& request, const Crs& map) {
-  const std::string crs = !request.crs.empty()               ? request.crs
-                          : map.kind() == CrsKind::projected ? map.wkt2()
-                                                             : std::string();
-  const auto table =
-      importers::open_table(request.catalogue, importers::TableFormat::by_name, "", crater_type());
-  std::vector<Landmark> landmarks;
-  importers::TableImport how;
-  how.type = crater_type();
-  how.columns = request.columns;
-  how.map_crs = crs;
-  const auto read = importers::import_table(*table, all_types(), how,
-                                            [&](Landmark&& l) { landmarks.push_back(std::move(l)); });
-  if (read.crs.kind() == CrsKind::geographic)
-    throw Error(ErrorCode::usage, "the catalogue is in degrees, but a registration needs metres",
-                request.catalogue, "pass a projected CRS of the body by --crs");
-  Catalogue out{.crs = read.crs};
-  const LandmarkType& type = *all_types().find(crater_type());
-  for (const Landmark& l : landmarks)
-    if (const auto circle = circle_of(l, type, metres_of(out.crs))) out.circles.push_back(*circle);
-  return out;
-}
 
 void check_register(const RegisterRequest& request) {
   check_map_output(request.result);
@@ -110,22 +36,9 @@ void check_register(const RegisterRequest& request) {
                 fmt::format("--within {:g} is not a distance above 0", request.rules.max_shift));
 }
 
-std::string text_of(const localization::CircleRegistration& placed, std::size_t craters) {
-  const localization::CircleFit& fit = *placed.fit;
-  const auto sd = [&](int k) { return std::sqrt(fit.covariance(k, k)); };
-  return fmt::format(
-      "scale {:.5g} ({:.2g}), yaw {:.3f} ({:.2g}) degrees, middle at {:.1f}, {:.1f} ({:.2g}, {:.2g}) m; "
-      "standard deviations in parentheses\n  {} of {} craters match within {:.3g} m; wrong with a "
-      "probability of "
-      "{:.2g}\n",
-      std::exp(fit.catalogue_from_map.log_scale), std::exp(fit.catalogue_from_map.log_scale) * sd(3),
-      to_degrees(Radians{fit.catalogue_from_map.yaw}).value, to_degrees(Radians{sd(2)}).value, fit.pivot.x(),
-      fit.pivot.y(), sd(0), sd(1), fit.matched, craters, fit.residual, placed.wrong);
-}
-
 }  // namespace
 
-localization::CircleRegistration register_map(const RegisterRequest& request, const Callbacks& callbacks) {
+MapPlace register_map(const RegisterRequest& request, const Callbacks& callbacks) {
   check_register(request);
   const auto started = std::chrono::system_clock::now();
   geodb::check_before_copy(request.map);
@@ -133,42 +46,31 @@ localization::CircleRegistration register_map(const RegisterRequest& request, co
   if (map.crs().kind() == CrsKind::geographic)
     throw Error(ErrorCode::usage, "the map is in degrees, but a registration needs metres", request.map,
                 "make it in a projected CRS");
-  const MapCraters craters = craters_of(map);
-  const Catalogue catalogue = read_catalogue(request, map.crs());
-  const localization::CircleRegistration placed =
-      localization::register_circles(craters.circles, catalogue.circles, request.rules);
-  if (!placed.fit)
-    throw Error(
-        ErrorCode::input, "the map is not registered: " + placed.message, request.map,
-        "pass a smaller --max-scale, or --within, if they are known; or a catalogue with more craters of "
-        "that size");
-
+  const MapPlace place = importers::is_raster(request.catalogue) ? register_by_heights(request, map)
+                                                                 : register_by_craters(request, map);
   exporters::MapSubset whole = exporters::map_subset(map, map.types().names(), map.crs());
   geodb::MapContents& contents = whole.contents;
   for (const std::string& name : geodb::shape_layers(request.map))
     contents.layers.push_back(geodb::read_shape_layer(request.map, name));
-  move_map(contents,
-           {.plane = placed.fit->catalogue_from_map,
-            .pivot = placed.fit->pivot,
-            .covariance = placed.fit->covariance,
-            .height = craters.height},
-           catalogue.crs);
+  move_map(contents, place.move, place.crs);
   pipeline::StageReport stage;
   stage.stage = "register";
   stage.units = stage.made = 1;
-  stage.counts.in = std::int64_t(craters.circles.size());
-  stage.counts.out = std::int64_t(placed.fit->matched);
-  stage.counts.rejected["not in the catalogue"] = stage.counts.in - stage.counts.out;
-  const std::string text = text_of(placed, craters.circles.size());
+  stage.counts.in = place.compared;
+  stage.counts.out = place.agreed;
+  if (place.compared > place.agreed) stage.counts.rejected[place.disagreed] = place.compared - place.agreed;
   if (map.has_dem_coverage())
-    stage.warnings.push_back("the elevation tiles of the map are left out: make them of the registered DEM");
-  for (const std::string& warning : stage.warnings) callbacks.warning(warning);
+    contents.dem_coverage =
+        moved_dem(importers::import_dem({.files = {"GPKG:" + request.map + ":dem"},
+                                         .nodata = NodataPolicy::unknown,
+                                         .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                         .inspect = false}),
+                  place.move, place.crs);
   contents.run = make_single_step_record(std::move(stage), request.catalogue, request.command_line, started);
   contents.earlier_runs = map.runs();
   geodb::write_map(request.result, contents, {.empty_tables = map.types().names()});
-  callbacks.summary(
-      fmt::format("{}: {}  heights keep their zero at {:.1f} m\n", request.result, text, craters.height));
-  return placed;
+  callbacks.summary(fmt::format("{}: {}", request.result, place.text));
+  return place;
 }
 
 }  // namespace waymark::workflows

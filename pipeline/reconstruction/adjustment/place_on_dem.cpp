@@ -191,8 +191,9 @@ DemPlacementResult place_on_dem(const ReliefToPlace& relief, const CoarseHeights
                                    level.nodes.size(), kReliefBins * kReliefBins)};
   if (!(level.relief > 1e-9)) return {.message = "the terrain is flat: no relief can be found in the DEM"};
   const double side = std::max(double(dem.grid.columns), double(dem.grid.rows)) * dem.grid.cell;
-  const ReliefSearch search{.smallest = std::max(side / rules.max_extents, kMinCellsAcross * dem.grid.cell),
-                            .largest = side};
+  const ReliefSearch search{
+      .smallest = std::max({side / rules.max_extents, kMinCellsAcross * dem.grid.cell, rules.smallest}),
+      .largest = std::min(side, rules.largest)};
   const auto found = refined_trials(level, search_relief(level.nodes, dem, search, kTrialsRefined), dem,
                                     std::log(search.largest / search.smallest));
   if (found.empty()) return {.message = "the relief of the tie points occurs nowhere in the DEM"};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,8 @@ struct DemPlacementRules {
   double min_distinction = 1.5;  ///< residual of the next best placement, by that of the best
   double max_chance = 0.01;      ///< places expected to fit as well by chance
   double max_extents = 16;       ///< longer side of the DEM, by that of the points
+  double smallest = 0;           ///< extent of the points in the DEM, metres
+  double largest = std::numeric_limits<double>::infinity();
 };
 
 /// Finds seven parameters that bring a relief onto a DEM, without a start: shift, rotation, scale.

@@ -52,29 +52,6 @@ Template template_of(const std::vector<Eigen::Vector3d>& nodes, double yaw, doub
   return out;
 }
 
-CoarseHeights with_cells(const CoarseHeights& dem, double cell) {
-  CoarseHeights out = dem;
-  while (out.grid.cell * 2 <= cell) {  // means first, so that no detail is aliased
-    CoarseHeights half = out;
-    half.grid = {.west = out.grid.west,
-                 .north = out.grid.north,
-                 .cell = 2 * out.grid.cell,
-                 .columns = out.grid.columns / 2,
-                 .rows = out.grid.rows / 2};
-    half.heights = Grid<float>(half.grid.columns, half.grid.rows);
-    for (std::int64_t r = 0; r < half.grid.rows; ++r)
-      for (std::int64_t c = 0; c < half.grid.columns; ++c)
-        half.heights(c, r) = (out.heights(2 * c, 2 * r) + out.heights(2 * c + 1, 2 * r) +
-                              out.heights(2 * c, 2 * r + 1) + out.heights(2 * c + 1, 2 * r + 1)) /
-                             4;
-    out = std::move(half);
-  }
-  const SurfaceGrid to = out.grid.with_cell(cell);
-  out.heights = resample(out.heights, out.grid, to);
-  out.grid = to;
-  return out;
-}
-
 bool better(const ReliefTrial& a, const ReliefTrial& b) {
   return std::tuple(-a.agreement, a.scale, a.yaw, a.y, a.x) <
          std::tuple(-b.agreement, b.scale, b.yaw, b.y, b.x);
@@ -112,7 +89,7 @@ std::vector<ReliefTrial> search_relief(const std::vector<Eigen::Vector3d>& nodes
   std::vector<ReliefTrial> all;
   for (double scale = search.largest; scale >= search.smallest && scale > 0; scale /= kScaleStep) {
     const double cell = scale / kCellsAcross;
-    const CoarseHeights reduced = with_cells(dem, cell);
+    const CoarseHeights reduced = with_cell(dem, cell);
     std::vector<std::vector<ReliefTrial>> of_yaws(kYaws);
     tbb::parallel_for(0, kYaws, [&](int k) {
       const double yaw = 2 * std::numbers::pi * k / kYaws;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace waymark::pipeline {
 
@@ -17,6 +18,29 @@ double CoarseHeights::at(double x, double y) const {
   const double a = c - double(i), b = r - double(j);
   return (1 - b) * ((1 - a) * double(heights(i, j)) + a * double(heights(i + 1, j))) +
          b * ((1 - a) * double(heights(i, j + 1)) + a * double(heights(i + 1, j + 1)));
+}
+
+CoarseHeights with_cell(const CoarseHeights& dem, double cell) {
+  CoarseHeights out = dem;
+  while (out.grid.cell * 2 <= cell) {  // means first, so that no detail is aliased
+    CoarseHeights half = out;
+    half.grid = {.west = out.grid.west,
+                 .north = out.grid.north,
+                 .cell = 2 * out.grid.cell,
+                 .columns = out.grid.columns / 2,
+                 .rows = out.grid.rows / 2};
+    half.heights = Grid<float>(half.grid.columns, half.grid.rows);
+    for (std::int64_t r = 0; r < half.grid.rows; ++r)
+      for (std::int64_t c = 0; c < half.grid.columns; ++c)
+        half.heights(c, r) = (out.heights(2 * c, 2 * r) + out.heights(2 * c + 1, 2 * r) +
+                              out.heights(2 * c, 2 * r + 1) + out.heights(2 * c + 1, 2 * r + 1)) /
+                             4;
+    out = std::move(half);
+  }
+  const SurfaceGrid to = out.grid.with_cell(cell);
+  out.heights = resample(out.heights, out.grid, to);
+  out.grid = to;
+  return out;
 }
 
 }  // namespace waymark::pipeline

@@ -13,4 +13,8 @@ struct CoarseHeights {
   double at(double x, double y) const;
 };
 
+/// Returns the heights with other cells: means of 2 x 2 while the cells are half as large or smaller, so that
+/// no detail is aliased, then bilinear. A mean with an unknown cell is unknown.
+CoarseHeights with_cell(const CoarseHeights& dem, double cell);
+
 }  // namespace waymark::pipeline
