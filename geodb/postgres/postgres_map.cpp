@@ -241,7 +241,7 @@ void import_from_postgres(const std::string& text, const std::filesystem::path& 
   AtomicFile file(path);
   try {
     const std::filesystem::path loose = file.path().string() + ".loose";
-    sqlite::Database map(loose, sqlite::OpenMode::create);
+    const sqlite::Database map = sqlite::scratch_database(loose);
     rebuild(server, map);
     sqlite::Statement compact = map.prepare("VACUUM INTO ?");
     const std::string target = file.path().string();
