@@ -4,6 +4,7 @@ find_package(GeographicLib REQUIRED)
 find_package(PROJ REQUIRED)
 find_package(GDAL REQUIRED)
 find_package(SQLite3 REQUIRED)
+find_package(PostgreSQL REQUIRED)  # libpq, which GDAL loads anyway
 find_package(TBB REQUIRED)
 find_package(Ceres REQUIRED)
 find_package(nlohmann_json REQUIRED)

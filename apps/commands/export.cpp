@@ -5,6 +5,8 @@
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "exporters/vector/export_map.hpp"
+#include "geodb/postgres/connection.hpp"
+#include "geodb/postgres/postgres_map.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::apps {
@@ -21,9 +23,13 @@ class Export final : public Command {
             "Any vector format GDAL writes. Formats that hold one layer get one file per landmark type.\n\n"
             "Crater counts for craterstats: .scc has the craters with their positions and the outline of "
             "the counting area, .diam their diameters. The area is that of the images' footprints, or of "
-            "the DEM.",
+            "the DEM.\n\n"
+            "pg:CONNECTION stores the whole map, with evidence and runs, in a schema of a PostgreSQL "
+            "database "
+            "(schema=NAME, default waymark). A schema that holds a map is updated by uid.",
         .arguments = {file_word("MAP.gpkg", &map_, "Map to read"),
-                      file_word("OUT", &out_, "File to write; its extension selects the format"),
+                      file_word("OUT", &out_,
+                                "File to write; its extension selects the format. Or pg:CONNECTION"),
                       Argument{"-of,--format", "OGR_DRIVER", &options_.driver,
                                "Format by GDAL's name, if the extension is ambiguous"}
                           .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
@@ -38,10 +44,12 @@ class Export final : public Command {
                      {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
                       "A table in UTM metres"},
                      {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
-                     {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"}}};
+                     {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
+                     {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}}};
   }
 
   int run(const Session&) override {
+    if (geodb::postgres::is_address(out_)) return export_to_server();
     const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
     for (const exporters::ExportedLayer& layer : done.layers)
@@ -51,6 +59,19 @@ class Export final : public Command {
   }
 
  private:
+  int export_to_server() {
+    if (!options_.types.empty() || !options_.crs.empty() || !options_.driver.empty())
+      throw Error(ErrorCode::usage,
+                  "a database stores the whole map: --type, --crs and --format do not apply", out_,
+                  "leave them out");
+    const geodb::PostgresSummary done = geodb::export_to_postgres(map_, out_);
+    log_summary(
+        fmt::format("{} landmarks {}\n", done.landmarks, done.created ? "stored" : "added or updated"));
+    if (!done.has_postgis)
+      log_warning("the database has no PostGIS: geometries are stored as bytes (CREATE EXTENSION postgis)");
+    return 0;
+  }
+
   std::string map_, out_;
   exporters::ExportOptions options_;
 };

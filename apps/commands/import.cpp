@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "geodb/postgres/connection.hpp"
+#include "geodb/postgres/postgres_map.hpp"
 #include "workflows/mapping/import_landmarks.hpp"
 #include "workflows/registries.hpp"
 
@@ -26,8 +28,10 @@ class Import final : public Command {
             "of geometries, numbers, + - * / ^, parentheses, pi, sqrt, abs, exp, log, log10, sin, cos, "
             "tan, deg, rad, min and max. \"depth=\" leaves a target out.\n\n"
             "Rows without a position and rows outside the plausible range of a feature (`waymark types`) "
-            "are rejected and counted.",
-        .arguments = {file_word("TABLE", &request_.table, "Table to read; /vsi paths too"),
+            "are rejected and counted.\n\n"
+            "pg:CONNECTION reads a map that `waymark export` stored in PostgreSQL (schema=NAME, default "
+            "waymark).",
+        .arguments = {file_word("TABLE", &request_.table, "Table to read; /vsi paths too. Or pg:CONNECTION"),
                       Argument{"-o,--output", "MAP.gpkg", &request_.map,
                                "Map to write; an older map of that name is replaced"}
                           .needed()
@@ -60,10 +64,15 @@ class Import final : public Command {
              "'diameter=dbh_cm/100,position_sd=0.3'",
              "A survey with its accuracy"},
             {"waymark import truth.csv -o truth.gpkg --map-crs EPSG:32611",
-             "All types of a table with a column `type`"}}};
+             "All types of a table with a column `type`"},
+            {"waymark import 'pg:dbname=maps schema=alps' -o alps.gpkg", "A map from PostGIS"}}};
   }
 
   int run(const Session& session) override {
+    if (geodb::postgres::is_address(request_.table)) {
+      geodb::import_from_postgres(request_.table, request_.map);
+      return 0;
+    }
     request_.command_line = session.command_line;
     workflows::import_landmarks(request_, console_callbacks(session));
     return 0;

@@ -227,6 +227,10 @@ bool Database::has_table(std::string_view name) const {
   return statement.step();
 }
 
+Database scratch_database(const std::filesystem::path& path) {
+  return {path, OpenMode::create};
+}
+
 Transaction::Transaction(const Database& database) : database_(&database) {
   database.execute("BEGIN IMMEDIATE");
 }

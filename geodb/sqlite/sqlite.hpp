@@ -97,6 +97,10 @@ class Database {
   std::unique_ptr<sqlite3, Close> handle_;
 };
 
+/// Returns a new database that is no map and that the caller removes; `VACUUM INTO` writes its content
+/// elsewhere.
+Database scratch_database(const std::filesystem::path& path);
+
 /// Transaction; the destructor rolls it back unless commit() was called.
 class Transaction {
  public:

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+#include "geodb/sqlite/sqlite.hpp"
+namespace waymark::geodb::postgres {
+
+/// SRIDs of PostgreSQL by srs_id of the map file.
+using SridMap = std::map<std::int64_t, std::int64_t>;
+
+/// How the values of a column are stored in PostgreSQL.
+enum class ValueKind { integer, real, text, bytes, geometry };
+
+struct Column {
+  std::string name;  ///< in the map file; lower case in PostgreSQL
+  ValueKind kind;
+  std::string sql_type;  ///< in PostgreSQL
+};
+
+/// One table of a map in both databases.
+struct TableLayout {
+  std::string name;
+  std::vector<Column> columns;
+  /// Column that orders the rows: the integer key, or `row_number`, which only PostgreSQL has.
+  std::string key;
+  bool has_row_number = false;
+};
+
+/// Object of sqlite_master.
+struct Definition {
+  std::string kind, name, sql;  ///< kind: table, index, view, trigger; index_part: made with a spatial index
+};
+
+/// Returns the layouts of the tables in the order of their definitions, without those of spatial indexes.
+/// Columns of registered layers are geometries if `srids` has the SRID of their srs_id; it is empty without
+/// PostGIS.
+std::vector<TableLayout> table_layouts(const sqlite::Database& map, const SridMap& srids);
+std::vector<Definition> definitions(const sqlite::Database& map);
+
+std::string create_table(const TableLayout& table);
+/// Returns the columns in PostgreSQL, quoted and separated by commas.
+std::string column_list(const TableLayout& table);
+/// Returns a name of PostgreSQL: lower case and quoted.
+std::string quoted(const std::string& name);
+
+}  // namespace waymark::geodb::postgres
