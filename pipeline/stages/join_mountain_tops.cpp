@@ -64,7 +64,7 @@ struct JoinMountainTops {
           fmt::format("{} cells without height ({:.2g} %) were interpolated; {} ({:.2g} %) are too far from "
                       "data and stay unknown (fill_distance)",
                       all.faults.filled, percent(all.faults.filled), all.empty, percent(all.empty)));
-    if (all.rim == 0) return;
+    if (all.rim == 0 || found.empty()) return;
     const auto bounded =
         std::ranges::count_if(found, [](const Summit& s) { return s.prominence_low < s.prominence; });
     std::string text = fmt::format(

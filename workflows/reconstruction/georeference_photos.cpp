@@ -166,10 +166,12 @@ void georeference_on_dem(PosedPhotos& posed, pipeline::Observations seen, const 
   posed.crs = text_of_crs(dem.map());
   const double scale_sd = std::sqrt(placed.found->covariance(6, 6));
   posed.messages.push_back(fmt::format(
-      "placed in the coarse DEM by its relief of {:.3g} m: residuals {:.3g} m, the next best place {:.3g} m; "
-      "scale "
-      "+- {:.2g} %",
-      placed.found->relief, placed.found->residual, placed.found->next_best_residual, 100 * scale_sd));
+      "placed in the coarse DEM by its relief of {:.3g} m: residuals {:.3g} m, {}; scale +- {:.2g} %",
+      placed.found->relief, placed.found->residual,
+      std::isfinite(placed.found->next_best_residual)
+          ? fmt::format("the next best place {:.3g} m", placed.found->next_best_residual)
+          : std::string("no other place is similar"),
+      100 * scale_sd));
 }
 
 }  // namespace
