@@ -6,10 +6,11 @@
 #include "apps/command.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
 #include "pipeline/engine/registry.hpp"
 namespace waymark::apps {
 
-/// A stage, landmark type, sensor profile or vehicle in the four forms of `--as`.
+/// A stage, landmark type, sensor profile, detector or vehicle in the four forms of `--format`.
 struct ReferenceEntry {
   std::string name, summary;
   std::string text, json, schema, markdown;
@@ -18,10 +19,11 @@ struct ReferenceEntry {
 std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages);
 std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types);
 std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types);
+std::vector<ReferenceEntry> registry_reference(const localization::DetectorTable& detectors);
 /// Returns the built-in vehicles.
 std::vector<ReferenceEntry> vehicle_reference();
 
-/// Arguments of `waymark stages`, `types`, `sensors` and `vehicles`.
+/// Arguments of `waymark stages`, `types`, `sensors`, `detectors` and `vehicles`.
 struct ReferenceRequest {
   std::string name;  ///< empty: all
   std::string format = "text";

@@ -4,6 +4,7 @@
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
+#include "core/error.hpp"
 #include "exporters/vector/export_map.hpp"
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/postgres_map.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "program.hpp"
 
 namespace waymark::test {
@@ -132,12 +134,24 @@ TEST(CommandLine, AFullStandardOutputIsAnError) {
 }
 
 TEST(Describe, EverythingHasItsFourForms) {
-  for (const std::string kind : {"stages", "types", "sensors"})
+  for (const std::string kind : {"stages", "types", "sensors", "detectors"})
     for (const std::string form : {"text", "json", "schema", "markdown"}) {
       const Outcome said = waymark({kind, "--as", form});
       EXPECT_EQ(said.code, 0) << kind << " " << form << ": " << said.err;
       EXPECT_FALSE(said.out.empty());
     }
+}
+
+TEST(Describe, ADetectorSaysWhatItReadsAndMakes) {
+  const auto walls = nlohmann::json::parse(waymark({"detectors", "walls", "--format", "json"}).out);
+  EXPECT_EQ(walls["record"], "laser");
+  EXPECT_THAT(walls["types"], testing::Contains("wall_corner"));
+  EXPECT_THAT(waymark({"detectors", "rocks"}).out, HasSubstr("scans=rocks"));
+  const auto schema = nlohmann::json::parse(waymark({"detectors", "rocks", "--format", "schema"}).out);
+  EXPECT_EQ(schema["properties"]["scans"]["default"], "rocks");
+  const Outcome unknown = waymark({"detectors", "rock"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'rocks'?"));
 }
 
 TEST(Describe, FormatHasASecondNameThatHelpDoesNotList) {
