@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/random.hpp"
+#include "planning/observability.hpp"
 #include "planning/route_search.hpp"
 
 namespace waymark::bench {
@@ -55,6 +56,19 @@ void information_field(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(square_kilometre(map));
 }
 BENCHMARK(information_field)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void observability(benchmark::State& state) {
+  const auto map = clustered_landmarks();
+  ObservabilityRules rules;
+  rules.sensing.coverage.range = 25;
+  rules.sensing.coverage.view = static_cast<double>(state.range(0));
+  double x = 0;
+  for (auto _ : state) {
+    x = std::fmod(x + 7.3, 1000);
+    benchmark::DoNotOptimize(observability_at(x, 1000 - x, map, rules));
+  }
+}
+BENCHMARK(observability)->Arg(360)->Arg(270)->Unit(benchmark::kMicrosecond);
 
 void route(benchmark::State& state) {
   const auto map = clustered_landmarks();

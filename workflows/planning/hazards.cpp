@@ -2,12 +2,11 @@
 #include "workflows/planning/hazards.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "core/atomic_file.hpp"
@@ -18,7 +17,8 @@
 #include "geo/metric_crs.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/rasters/dem.hpp"
-#include "workflows/planning/hazard_style.hpp"
+#include "workflows/planning/raster_style.hpp"
+#include "workflows/planning/raster_tiles.hpp"
 #include "workflows/provenance.hpp"
 
 namespace waymark::workflows {
@@ -112,32 +112,13 @@ planning::UndetectedRocks undetected_rocks(const HazardMapRequest& request, cons
   return rocks;
 }
 
-std::vector<Window> tiles_of(const GridGeometry& grid, std::int64_t size) {
-  std::vector<Window> tiles;
-  for (std::int64_t row = 0; row < grid.rows; row += size)
-    for (std::int64_t column = 0; column < grid.columns; column += size)
-      tiles.push_back({column, row, std::min(size, grid.columns - column), std::min(size, grid.rows - row)});
-  return tiles;
-}
-
-planning::ClassCounts write_tiles(const planning::HazardMap& map, const GridGeometry& grid,
-                                  const HazardMapRequest& request, exporters::CogStream& file) {
-  const std::vector<Window> tiles = tiles_of(grid, request.tile_cells);
-  tbb::task_arena arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic);
-  const auto batch = static_cast<std::size_t>(std::max(1, 2 * arena.max_concurrency()));
-  planning::ClassCounts counts{};
-  for (std::size_t first = 0; first < tiles.size(); first += batch) {
-    std::vector<planning::HazardTile> made(std::min(batch, tiles.size() - first));
-    arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, made.size(),
-                        [&](std::size_t i) { made[i] = map.compute(tiles[first + i]); });
-    });
-    for (std::size_t i = 0; i < made.size(); ++i) {
-      for (const float c : made[i].back().cells()) ++counts.at(static_cast<std::size_t>(c));
-      file.write(tiles[first + i], made[i]);
-    }
-  }
-  return counts;
+std::string hazard_style() {
+  return raster_style({.band = static_cast<int>(planning::HazardBand::probability) + 1,
+                       .colours = {{0, "#1a9641", "0"},
+                                   {0.05, "#a6d96a", "0.05"},
+                                   {0.2, "#ffffbf", "0.2"},
+                                   {0.5, "#fdae61", "0.5"},
+                                   {1, "#d7191c", "1"}}});
 }
 
 void check(const HazardMapRequest& request) {
@@ -206,7 +187,17 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   std::vector<exporters::CogStream::Band> bands;
   for (const auto& [name, unit] : planning::hazard_band_names()) bands.push_back({name, unit});
   exporters::CogStream file(request.output, bands, grid);
-  result.cells = write_tiles(hazards, grid, request, file);
+  write_tiles(
+      grid, {request.tile_cells, request.threads, "hazards"},
+      [&](const Window& window) {
+        planning::HazardTile tile = hazards.compute(window);
+        return std::vector<Grid<float>>(std::make_move_iterator(tile.begin()),
+                                        std::make_move_iterator(tile.end()));
+      },
+      [&](const std::vector<Grid<float>>& tile) {
+        for (const float c : tile.back().cells()) ++result.cells.at(static_cast<std::size_t>(c));
+      },
+      file, callbacks);
   file.commit(
       {{"WAYMARK_VERSION", program_version()},
        {"VEHICLE", vehicle.name},

@@ -17,22 +17,13 @@
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "workflows/localization/robot_map.hpp"
+#include "workflows/planning/planning_sensor.hpp"
 #include "workflows/planning/route_cells.hpp"
 #include "workflows/planning/route_layers.hpp"
 #include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
 namespace {
-
-SensorCoverage coverage_of(const RouteRequest& request, const SensorProfile& sensor) {
-  SensorCoverage coverage = sensor.coverage;
-  if (request.range > 0) coverage.range = request.range;
-  if (request.view > 0) coverage.view = request.view;
-  if (!(coverage.range > 0))
-    throw Error(ErrorCode::usage, fmt::format("the sensor '{}' has no range", request.sensor), "",
-                "pass --range METRES, or another sensor");
-  return coverage;
-}
 
 void check(const RouteRequest& request) {
   const int objectives = (request.limit_sigma > 0) + (request.keep_landmarks > 0) + (request.weight > 0);
@@ -201,7 +192,7 @@ struct Planner {
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) {
   check(request);
   const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor, request.map);
-  const SensorCoverage coverage = coverage_of(request, *sensor);
+  const SensorCoverage coverage = planning_coverage(*sensor, request.sensor, request.range, request.view);
   OpenedMap opened = open_robot_map(request.map, sensor.get());
   const RobotMap& map = opened.map;
   std::vector<Waypoint> points{parse_waypoint("--from", request.from, map)};

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/observability.hpp"
+#include "apps/command.hpp"
+#include "apps/console.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::apps {
+namespace {
+
+class ObservabilityCommand final : public Command {
+ public:
+  CommandSpec describe() override {
+    return {
+        .name = "observability",
+        .group = Group::use,
+        .summary = "Map how well a sensor can be localized by the landmarks in sight",
+        .about =
+            "INFO.tif is a cloud-optimized GeoTIFF over all terrain from which a landmark can be seen: "
+            "position_sd and yaw_sd are what remains after a straight drive of --drive metres from a known "
+            "pose, if all the time the landmarks of that cell are in sight, for the least favourable of "
+            "eight headings; then the landmarks in sight, the sum of their qualities, and the information "
+            "per metre driven, means over the headings. A QGIS style is written beside it.\n\n"
+            "Noise of the odometry and correlated errors of the map are those of `waymark route`. "
+            "Identities are taken as known, and no terrain hides a landmark.",
+        .arguments =
+            {file_word("MAP.gpkg", &request_.map, "Map of landmarks, in metres"),
+             Argument{"-o,--output", "INFO.tif", &request_.output, "Raster"}.needed().offering(Offer::file),
+             Argument{"--sensor", "NAME|FILE", &request_.sensor,
+                      "Sensor with its coverage; `waymark sensors` lists them, FILE.json is one of "
+                      "your own, map: the profile that the map records"}
+                 .needed()
+                 .offering(workflows::all_sensors().names()),
+             Argument{"--range", "METRES", &request_.range, "Range of the sensor"}.or_else(
+                 "that of the profile"),
+             Argument{"--view", "DEGREES", &request_.view, "Horizontal field of view"}.or_else(
+                 "that of the profile"),
+             Argument{"--cell", "METRES", &request_.cell, "Cells of the raster"}.or_else("2"),
+             Argument{"--drive", "METRES", &request_.drive, "Length of the drive"}.or_else("100"),
+             Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("256")},
+        .examples = {{"waymark observability site.gpkg -o info.tif --sensor horizontal_laser",
+                      "Where a rover can be localized"},
+                     {"waymark observability stand.gpkg -o info.tif --sensor map --cell 5 --drive 500",
+                      "For the sensor that the map records, over longer drives"}}};
+  }
+
+  int run(const Session& session) override {
+    request_.threads = static_cast<int>(session.threads);
+    workflows::make_observability(request_, console_callbacks(session));
+    return 0;
+  }
+
+ private:
+  workflows::ObservabilityRequest request_;
+};
+
+}  // namespace
+
+void register_command_observability(CommandTable& commands);
+void register_command_observability(CommandTable& commands) {
+  commands.add<ObservabilityCommand>();
+}
+
+}  // namespace waymark::apps

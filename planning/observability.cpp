@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "planning/observability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/units.hpp"
+
+namespace waymark::planning {
+namespace {
+
+constexpr int kDoublings = 7;  // 128 sightings per drive
+
+void add(Information& sum, const Information& more, double factor) {
+  Symmetric3& j = sum.rate;
+  const Symmetric3& one = more.rate;
+  j.xx += factor * one.xx, j.xy += factor * one.xy, j.yy += factor * one.yy;
+  j.xt += factor * one.xt, j.yt += factor * one.yt, j.tt += factor * one.tt;
+  sum.quality += factor * more.quality;
+}
+
+Symmetric3 scaled(const Symmetric3& j, double factor) {
+  return {factor * j.xx, factor * j.xy, factor * j.yy, factor * j.xt, factor * j.yt, factor * j.tt};
+}
+
+}  // namespace
+
+Observability observability_at(double x, double y, const localization::LandmarkGrid& map,
+                               const ObservabilityRules& rules) {
+  const bool all_round = !(rules.sensing.coverage.view < 360);
+  const double step = rules.drive / (1 << kDoublings);
+  Observability out;
+  Information seen;
+  for (int heading = 0; heading < kHeadings; ++heading) {
+    const localization::Pose2 pose = heading_pose(x, y, heading);
+    if (heading == 0 || !all_round) seen = information_at(pose, map, rules.sensing);
+    add(out.mean, seen, 1.0 / kHeadings);
+    out.landmarks += static_cast<double>(seen.landmarks) / kHeadings;
+    const Symmetric3 after = covariance_after(drive_segment({step, std::cos(pose.yaw), std::sin(pose.yaw), 0},
+                                                            scaled(seen.rate, step), rules.noise),
+                                              kDoublings);
+    out.position_sd = std::max(out.position_sd, position_sd(after));
+    out.yaw_sd = std::max(out.yaw_sd, std::sqrt(std::max(0.0, after.tt)));
+  }
+  out.mean.landmarks = static_cast<int>(std::lround(out.landmarks));
+  return out;
+}
+
+std::array<double, std::size(kObservabilityBands)> observability_bands(const Observability& at) {
+  const Symmetric3& j = at.mean.rate;
+  return {at.position_sd, to_degrees(Radians{at.yaw_sd}).value,
+          at.landmarks,   at.mean.quality,
+          j.xx,           j.yy,
+          j.xy,           j.tt};
+}
+
+}  // namespace waymark::planning

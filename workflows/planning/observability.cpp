@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/planning/observability.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "core/atomic_file.hpp"
+#include "core/error.hpp"
+#include "planning/observability.hpp"
+#include "workflows/localization/robot_map.hpp"
+#include "workflows/planning/planning_sensor.hpp"
+#include "workflows/planning/raster_style.hpp"
+#include "workflows/planning/raster_tiles.hpp"
+#include "workflows/provenance.hpp"
+#include "workflows/sensor_file.hpp"
+
+namespace waymark::workflows {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxRasterCells = 1e9;
+
+void check(const ObservabilityRequest& request) {
+  const auto refuse = [](std::string problem, std::string hint) {
+    throw Error(ErrorCode::usage, std::move(problem), "", std::move(hint));
+  };
+  if (fs::path(request.output).extension() != ".tif")
+    refuse(fmt::format("the raster '{}' does not end in .tif", request.output), "it is a GeoTIFF");
+  if (!(request.cell >= 0.1 && request.cell <= 1000))
+    refuse(fmt::format("--cell {:g} is outside [0.1, 1000] m", request.cell), "");
+  if (!(request.drive > 0 && request.drive <= 1e5))
+    refuse(fmt::format("--drive {:g} is outside (0, 100000] m", request.drive), "");
+  if (request.tile_cells < 16 || request.tile_cells > 8192)
+    refuse(fmt::format("--tile-cells {} is outside [16, 8192]", request.tile_cells), "");
+}
+
+/// Cells of the map's CRS about all landmarks and the range around them, aligned to multiples of a cell.
+GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& landmarks, double range,
+                     const ObservabilityRequest& request) {
+  const double metres = map.crs().metres_per_unit(), cell = request.cell / metres;
+  Eigen::AlignedBox2d box;
+  for (const localization::MapLandmark& landmark : landmarks.landmarks())
+    box.extend(map.frame.crs_from_map_frame({{landmark.at.x(), landmark.at.y(), 0}}).xyz.head<2>().eval());
+  const double west = std::floor((box.min().x() - range / metres) / cell),
+               east = std::ceil((box.max().x() + range / metres) / cell),
+               south = std::floor((box.min().y() - range / metres) / cell),
+               north = std::ceil((box.max().y() + range / metres) / cell);
+  const double columns = east - west, rows = north - south;
+  if (columns * rows > kMaxRasterCells)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--cell {:g} makes {:.0f} million cells of {:.1f} x {:.1f} km", request.cell,
+                    columns * rows / 1e6, columns * request.cell / 1e3, rows * request.cell / 1e3),
+        "",
+        fmt::format("pass a cell of {:.2g} m or more", request.cell * std::sqrt(columns * rows / kMaxRasterCells)));
+  GridGeometry grid;
+  grid.columns = static_cast<std::int64_t>(columns), grid.rows = static_cast<std::int64_t>(rows);
+  grid.where = {map.crs(), (west + 0.5) * cell, (north - 0.5) * cell, cell, -cell};
+  return grid;
+}
+
+std::vector<Grid<float>> compute_tile(const Window& window, const GridGeometry& grid, const RobotMap& map,
+                                      const localization::LandmarkGrid& landmarks,
+                                      const planning::ObservabilityRules& rules) {
+  constexpr std::size_t bands = std::size(planning::kObservabilityBands);
+  std::vector<Grid<float>> out(bands, Grid<float>(window.columns, window.rows, 0));
+  for (std::int64_t r = 0; r < window.rows; ++r)
+    for (std::int64_t c = 0; c < window.columns; ++c) {
+      const Point<MapFrame> at =
+          map.frame.map_frame_from_crs({{grid.where.x(static_cast<double>(window.column + c)),
+                                         grid.where.y(static_cast<double>(window.row + r)), 0}});
+      const auto values =
+          observability_bands(planning::observability_at(at.xyz.x(), at.xyz.y(), landmarks, rules));
+      for (std::size_t b = 0; b < bands; ++b) out[b](c, r) = static_cast<float>(values[b]);
+    }
+  return out;
+}
+
+/// Counts of standard deviations by classes of 5 %, for a median without the values.
+class SdCounts {
+ public:
+  void add(const std::vector<Grid<float>>& tile) {
+    const auto sd = tile[0].cells(), landmarks = tile[2].cells();
+    for (std::size_t i = 0; i < sd.size(); ++i) {
+      ++cells_;
+      if (!(landmarks[i] > 0)) continue;
+      ++seen_;
+      ++count_[static_cast<int>(std::lround(std::log(std::max(1e-6F, sd[i])) / kStep))];
+    }
+  }
+  double seen() const { return cells_ ? static_cast<double>(seen_) / static_cast<double>(cells_) : 0; }
+  double median() const {
+    std::int64_t below = 0;
+    for (const auto& [at, n] : count_)
+      if (2 * (below += n) >= seen_) return std::exp(at * kStep);
+    return 0;
+  }
+
+ private:
+  static constexpr double kStep = 0.05;
+  std::map<int, std::int64_t> count_;
+  std::int64_t cells_ = 0, seen_ = 0;
+};
+
+}  // namespace
+
+ObservabilityResult make_observability(const ObservabilityRequest& request, const Callbacks& callbacks) {
+  check(request);
+  const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor, request.map);
+  planning::ObservabilityRules rules;
+  rules.sensing.coverage = planning_coverage(*sensor, request.sensor, request.range, request.view);
+  rules.drive = request.drive;
+  const OpenedMap opened = open_robot_map(request.map, sensor.get());
+  const RobotMap& map = opened.map;
+  if (map.crs().kind() == CrsKind::geographic)
+    throw Error(ErrorCode::input, "the map is in degrees: cells need metres", request.map,
+                "export it into a projected CRS, e.g. its UTM zone");
+  const localization::LandmarkGrid landmarks(all_landmarks(map, sensor.get()));
+  const GridGeometry grid = grid_of(map, landmarks, rules.sensing.coverage.range, request);
+  std::vector<exporters::CogStream::Band> bands;
+  for (const auto& [name, unit] : planning::kObservabilityBands)
+    bands.push_back({std::string(name), std::string(unit)});
+  exporters::CogStream file(request.output, bands, grid);
+  SdCounts counts;
+  write_tiles(
+      grid, {request.tile_cells, request.threads, "observability"},
+      [&](const Window& window) { return compute_tile(window, grid, map, landmarks, rules); },
+      [&](const std::vector<Grid<float>>& tile) { counts.add(tile); }, file, callbacks);
+  file.commit({{"WAYMARK_VERSION", program_version()},
+               {"SENSOR", sensor->name},
+               {"RANGE", fmt::format("{:g}", rules.sensing.coverage.range)},
+               {"VIEW", fmt::format("{:g}", rules.sensing.coverage.view)},
+               {"DRIVE", fmt::format("{:g}", request.drive)}});
+  write_file(fs::path(request.output).replace_extension(".qml"),
+             raster_style({.band = 1,
+                           .colours = {{0, "#1a9641", "0"},
+                                       {0.1, "#a6d96a", "0.1 m"},
+                                       {0.3, "#ffffbf", "0.3 m"},
+                                       {1, "#fdae61", "1 m"},
+                                       {3, "#d7191c", "3 m and more"}}}));
+  const ObservabilityResult result{grid.columns, grid.rows, counts.seen(), counts.median()};
+  callbacks.summary(fmt::format(
+      "{}: {} x {} cells of {:g} m for {}\n  {:.1f} % with a landmark in sight; there the sd of the position "
+      "is {:.2g} m in the median after {:g} m\n",
+      request.output, grid.columns, grid.rows, request.cell, sensor->name, 100 * result.seen,
+      result.median_sd, request.drive));
+  return result;
+}
+
+}  // namespace waymark::workflows

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <string>
+#include "workflows/callbacks.hpp"
+namespace waymark::workflows {
+
+/// Request of a raster of what the landmarks of a map give a localizer.
+struct ObservabilityRequest {
+  std::string map;
+  std::string output;          ///< .tif; a style .qml is written beside it
+  std::string sensor;          ///< name or file (.json) of a sensor profile
+  double range = 0, view = 0;  ///< metres, degrees; 0: those of the sensor
+  double cell = 2;             ///< metres
+  double drive = 100;          ///< metres driven at each place
+  std::int64_t tile_cells = 256;
+  int threads = 0;
+};
+
+struct ObservabilityResult {
+  std::int64_t columns = 0, rows = 0;
+  double seen = 0;       ///< fraction of the cells with a landmark in sight
+  double median_sd = 0;  ///< of these cells, metres, to 5 %
+};
+
+/// Writes the raster of all terrain from which a landmark can be seen, by tiles. The bytes do not depend on
+/// tiles and threads. Throws Error{usage} for a sensor without range and too many cells, Error{input} for a
+/// map in degrees or without landmarks.
+ObservabilityResult make_observability(const ObservabilityRequest& request, const Callbacks& callbacks = {});
+
+}  // namespace waymark::workflows
