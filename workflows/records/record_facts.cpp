@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <gdal_priv.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "exporters/records/map_extent.hpp"
 #include "geodb/map_store.hpp"
 #include "workflows/records/make_stac.hpp"
 
@@ -27,23 +27,6 @@ constexpr double kAlike = 1;  // degrees within which the sun of all images is o
 [[noreturn]] void refuse(const std::string& file) {
   throw Error(ErrorCode::input, "this is neither a map nor a raster that GDAL reads", file,
               "`waymark stac` takes .gpkg of Waymark, GeoTIFF and other rasters");
-}
-
-std::optional<MapBox> extent_of(const std::string& map) {
-  GDALAllRegister();
-  const GDALDatasetUniquePtr file(GDALDataset::Open(map.c_str(), GDAL_OF_VECTOR));
-  if (!file) return std::nullopt;
-  OGRLayer* found = file->ExecuteSQL(
-      "SELECT min(min_x), min(min_y), max(max_x), max(max_y) FROM gpkg_contents WHERE min_x IS NOT NULL",
-      nullptr, nullptr);
-  if (!found) return std::nullopt;
-  std::optional<MapBox> box;
-  for (const auto& row : *found)
-    if (row->IsFieldSetAndNotNull(0))
-      box = MapBox{row->GetFieldAsDouble(0), row->GetFieldAsDouble(1), row->GetFieldAsDouble(2),
-                   row->GetFieldAsDouble(3)};
-  file->ReleaseResultSet(found);
-  return box;
 }
 
 /// Returns the direction of map north at the middle of a box, degrees clockwise from true north.
@@ -128,7 +111,7 @@ std::string media_type(GDALDataset& raster) {
 
 RecordFacts facts_of_map(const std::string& map) {
   const geodb::MapStore store = geodb::MapStore::open(map);
-  RecordFacts facts{.id = fs::path(map).stem(), .crs = store.crs(), .box = extent_of(map)};
+  RecordFacts facts{.id = fs::path(map).stem(), .crs = store.crs(), .box = exporters::map_extent(map)};
   for (const std::string& type : store.types().names()) facts.landmarks.emplace_back(type, store.count(type));
   add_images(facts, store.images());
   const std::vector<geodb::RunRecord> runs = store.runs();
