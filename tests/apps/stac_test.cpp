@@ -131,6 +131,45 @@ TEST_F(Stac, CollectionOfAMapAndARaster) {
   EXPECT_THAT(raster["assets"]["raster"]["type"].get<std::string>(), HasSubstr("image/tiff"));
 }
 
+TEST_F(Stac, Pds4LabelsAreFilledAndReadBack) {
+  const std::string map = rocks("IAU_2015:49900"), label = folder_ / "rocks.xml";
+  const Outcome bare = waymark({"export", map, folder_ / "bare.xml", "-of", "PDS4"});
+  ASSERT_EQ(bare.code, 0) << bare.err;
+  EXPECT_THAT(bare.err, HasSubstr("LOGICAL_IDENTIFIER"));
+  const Outcome made =
+      waymark({"export", map, label, "-of", "PDS4", "--label", "LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:rocks",
+               "--label", "INVESTIGATION_AREA_NAME=Made <mission>", "--label",
+               "INVESTIGATION_AREA_LID_REFERENCE=urn:nasa:pds:context:investigation:made", "--label",
+               "OBSERVING_SYSTEM_NAME=Made rover"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::string text = text_of(label);
+  EXPECT_THAT(text, testing::Not(HasSubstr("${")));
+  EXPECT_THAT(text, HasSubstr("<logical_identifier>urn:nasa:pds:b:c:rocks</logical_identifier>"));
+  EXPECT_THAT(text, HasSubstr("<title>Landmarks of rocks: rock</title>"));
+  EXPECT_THAT(text, HasSubstr("<name>Made &lt;mission&gt;</name>"));
+  EXPECT_THAT(text, HasSubstr("<name>Mars</name>"));
+  EXPECT_THAT(text, HasSubstr("<type>Planet</type>"));
+  EXPECT_THAT(text, HasSubstr("context:target:planet.mars"));
+  EXPECT_THAT(text, HasSubstr("<records>2</records>"));
+
+  const std::string back = folder_ / "back.gpkg";
+  const Outcome read = waymark({"import", label, "--from", "ogr", "-o", back, "--type", "rock", "--map-crs",
+                                "IAU_2015:49900", "--columns", "height="});
+  ASSERT_EQ(read.code, 0) << read.err;
+  const auto columns = [](const std::string& of) {  // type, uid and position
+    return bash("$WAYMARK query " + of + " --format csv | cut -d, -f1-5").out;
+  };
+  EXPECT_THAT(columns(map), HasSubstr("21.5"));
+  EXPECT_EQ(columns(back), columns(map));
+  EXPECT_EQ(waymark({"export", map, label, "--overwrite", "-of", "PDS4", "--label", "COLOUR=red"}).code, 2);
+  const Outcome urn =
+      waymark({"export", map, label, "--overwrite", "-of", "PDS4", "--label", "LOGICAL_IDENTIFIER=rocks"});
+  EXPECT_EQ(urn.code, 2);
+  EXPECT_THAT(urn.err, HasSubstr("'rocks' is no logical identifier"));
+  EXPECT_THAT(waymark({"export", map, folder_ / "a.geojson", "--label", "TITLE=x"}).err,
+              HasSubstr("GeoJSON has no label"));
+}
+
 TEST_F(Stac, BadRequestsAreRefused) {
   const std::string map = rocks("EPSG:4326");
   const auto expect_refusal = [](const std::vector<std::string>& words, int code, const std::string& text) {
