@@ -6,6 +6,7 @@
 #include <cassert>
 #include <vector>
 
+#include "core/median.hpp"
 #include "localization/chi_square.hpp"
 #include "localization/robot_log.hpp"
 
@@ -57,13 +58,6 @@ double root_mean_square(const std::vector<double>& errors) {
   double sum = 0;
   for (const double e : errors) sum += e * e;
   return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 struct Pair {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/checked_alignment.hpp"
@@ -39,45 +40,78 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Corrects the poses of images by the landmarks they share",
-            .version = 6,
+            .version = 7,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};
   }
 
+  static std::string counted(const Repetition& seen) {
+    return fmt::format(
+        "{:.0f} % of {} views of an object are found again where another image shows the place "
+        "({:.0f} % would be by chance)",
+        100 * seen.raw, seen.expected, 100 * seen.chance);
+  }
+
+  // What the user can correct, with the fraction found again then.
+  static std::string describe(const CommonGeometryError& cause) {
+    const double percent = 100 * cause.found.raw;
+    switch (cause.kind) {
+      case CommonGeometryError::Kind::focal_length:
+        return fmt::format("{:.0f} % are with focal lengths about {:.2f} times the given ones", percent,
+                           1 / cause.amount);
+      case CommonGeometryError::Kind::ground_height:
+        return fmt::format("{:.0f} % are with a DEM about {:.2g} m {} or poses as much {}", percent,
+                           std::abs(cause.amount), cause.amount > 0 ? "lower" : "higher",
+                           cause.amount > 0 ? "higher" : "lower");
+      case CommonGeometryError::Kind::transposed_rotations:
+        break;
+    }
+    return fmt::format("{:.0f} % are with the rotations transposed", percent);
+  }
+
+  // What to check: the errors that would explain the images, or all that could.
+  static std::string advice(const std::vector<CommonGeometryError>& causes) {
+    if (causes.empty())
+      return "check poses, focal length, rotation convention, and the heights and the position of the DEM";
+    std::string text;
+    for (const CommonGeometryError& cause : causes) text += (text.empty() ? "" : ", or ") + describe(cause);
+    return text + ": correct the camera file or the DEM";
+  }
+
   // Reports what the comparison of the images says about their geometry.
   static void report(const CheckedAlignment& checked, const Options& options, StageContext& unit) {
     using Verdict = CheckedAlignment::Verdict;
-    const auto counted = [](const Repetition& seen) {
-      return fmt::format(
-          "{:.0f} % of {} views of an object are found again where another image shows the place "
-          "({:.0f} % would be by chance)",
-          100 * seen.raw, seen.expected, 100 * seen.chance);
-    };
-    constexpr std::string_view kCauses =
-        "check poses, focal length, rotation convention, and the heights and the position of the DEM";
     switch (checked.verdict) {
       case Verdict::unknown:
       case Verdict::sound:
+        if (!checked.causes.empty())
+          unit.warn(fmt::format("the images fit each other badly: {}; {}", counted(checked.stated),
+                                advice(checked.causes)));
         return;
       case Verdict::widened:
         unit.warn(
             fmt::format("the poses are less certain than stated: {}; with {:.2g} m and {:.2g} deg added to "
-                        "their standard deviations {:.0f} % are",
+                        "their standard deviations {:.0f} % are{}",
                         counted(checked.stated), checked.added_position_sd,
-                        to_degrees(Radians{checked.added_rotation_sd}).value, 100 * checked.aligned.raw));
+                        to_degrees(Radians{checked.added_rotation_sd}).value, 100 * checked.aligned.raw,
+                        checked.causes.empty() ? "" : "; without that " + advice(checked.causes)));
         return;
       case Verdict::doubtful:
-        unit.warn(fmt::format("the images hardly fit each other: {}; {}", counted(checked.aligned), kCauses));
+        unit.warn(fmt::format("the images hardly fit each other: {}; {}", counted(checked.aligned),
+                              advice(checked.causes)));
         return;
       case Verdict::wrong:
         break;
     }
-    const std::string problem = fmt::format("the images do not fit each other: {}", counted(checked.aligned));
+    const std::string problem =
+        fmt::format("the images do not fit each other: {}",
+                    counted(checked.causes.empty() ? checked.aligned : checked.stated));
     if (options.wrong_geometry == "refuse")
-      throw Error(ErrorCode::input, problem, "images",
-                  fmt::format("{}; wrong_geometry = warn makes a map of it all the same", kCauses));
-    unit.warn(fmt::format("{}; {}", problem, kCauses));
+      throw Error(
+          ErrorCode::input, problem, "images",
+          fmt::format("{}; wrong_geometry = warn makes a map of it all the same", advice(checked.causes)));
+    unit.warn(fmt::format("{}; {}", problem, advice(checked.causes)));
   }
 
   // Warns where the relief in the images lies beside that of the DEM. Positions become uncertain by as much,

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/median.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -16,13 +18,6 @@ constexpr double kExactGsds = 0.25;  // corrections below this are the noise of 
 struct ViewScale {
   double gsd = 0, distance = 0;
 };
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 ViewScale view_scale(const std::vector<ImageView>& images) {
   std::vector<double> gsds, distances;
@@ -102,8 +97,17 @@ CheckedAlignment align_and_check(const std::vector<Observation>& observations,
     }
     if (best && best->found.found() > made.aligned.found() + rules.min_gain) keep(std::move(*best));
   }
+  if (made.stated.found() < rules.certain) {
+    const double needed =
+        std::max(made.stated.found() + rules.min_gain, made.aligned.found() - rules.cause_loss);
+    made.causes = find_common_errors(observations, images, terrain, types, crs,
+                                     {.alignment = rules.alignment, .repetition = rules.repetition});
+    std::erase_if(made.causes,
+                  [&](const CommonGeometryError& cause) { return cause.found.found() < needed; });
+  }
   const double found = made.aligned.found();
   if (found < rules.sound) made.verdict = found < rules.wrong ? Verdict::wrong : Verdict::doubtful;
+  if (!made.causes.empty() && made.stated.found() < rules.sound) made.verdict = Verdict::wrong;
   return made;
 }
 

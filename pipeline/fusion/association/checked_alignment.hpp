@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <vector>
 #include "pipeline/fusion/association/alignment.hpp"
+#include "pipeline/fusion/association/common_geometry_error.hpp"
 #include "pipeline/fusion/association/repetition.hpp"
 namespace waymark::pipeline {
 
@@ -14,6 +16,9 @@ struct CheckedAlignmentRules {
   int widenings = 6;               ///< attempts, each with twice the standard deviation of the one before
   double step_gain = 0.02;         ///< of the fraction found again, to prefer a wider attempt
   double min_gain = 0.1;           ///< of the best attempt over the poses as stated, to be kept
+  /// Fewer may be found again with one error common to all images corrected than with each pose free, since
+  /// it has one unknown.
+  double cause_loss = 0.05;
 };
 
 /// Alignment with a verdict on the geometry of the images.
@@ -23,20 +28,22 @@ struct CheckedAlignment {
     sound,     ///< objects are found again as the poses state
     widened,   ///< they are, with poses less certain than stated: `added_position_sd`
     doubtful,  ///< fewer than `sound`, more than `wrong`
-    wrong,     ///< next to none: poses, lens or heights are wrong
+    wrong,     ///< next to none, or only with one of `causes`: poses, lens or heights are wrong
   };
   Alignment alignment;
   Repetition stated;   ///< after alignment within the stated uncertainty
   Repetition aligned;  ///< of `alignment`
   Verdict verdict = Verdict::unknown;
-  double added_position_sd = 0;  ///< metres
-  double added_rotation_sd = 0;  ///< radians
+  double added_position_sd = 0;             ///< metres
+  double added_rotation_sd = 0;             ///< radians
+  std::vector<CommonGeometryError> causes;  ///< errors that explain what is not found again, the best first
 };
 
 /// Aligns images and tests the result by how many objects are found again in other images.
 /// Where too few are, the poses are taken to be less certain than stated: their standard deviations grow from
 /// one ground sample distance upwards, and the attempt with the most objects found again is kept.
-/// Deterministic.
+/// Where one error common to all images explains as much, it is named; where fewer than `sound` are found
+/// again without it, no correction of poses is trusted. Deterministic.
 CheckedAlignment align_and_check(const std::vector<Observation>& observations,
                                  const std::vector<ImageView>& images, const Terrain& terrain,
                                  const TypeRegistry& types, const Crs& crs,

@@ -133,5 +133,64 @@ TEST(CheckedAlignment, NoPoseMakesScatteredObjectsFit) {
             CheckedAlignment::Verdict::wrong);
 }
 
+/// What a run sees whose camera file or DEM has the error: the scene itself is sound.
+MadeLanding landing_with(CommonGeometryError::Kind kind, double amount, std::int64_t seed) {
+  MadeLanding made = landing_with_poses(seed, 0.15, 0.15);
+  const double inverse = kind == CommonGeometryError::Kind::focal_length ? 1 / amount : -amount;
+  CorrectedGeometry spoilt =
+      correct_geometry(made.observations, made.images, made.dem, Crs::local(), kind, inverse);
+  made.images = std::move(spoilt.images);
+  made.observations = std::move(spoilt.observations);
+  return made;
+}
+
+CheckedAlignment checked(const MadeLanding& made) {
+  return align_and_check(made.observations, made.images, made.dem, made.types, Crs::local());
+}
+
+TEST(CommonGeometryError, AFocalLengthIsNamedWithItsFactor) {
+  for (const double factor : {0.87, 1.1}) {
+    const CheckedAlignment made = checked(landing_with(CommonGeometryError::Kind::focal_length, factor, 41));
+    EXPECT_EQ(made.verdict, CheckedAlignment::Verdict::wrong);
+    ASSERT_FALSE(made.causes.empty()) << made.stated.found() << " " << made.aligned.found();
+    EXPECT_EQ(made.causes.front().kind, CommonGeometryError::Kind::focal_length);
+    EXPECT_NEAR(made.causes.front().amount, factor, 0.03);
+  }
+}
+
+TEST(CommonGeometryError, AHeightIsNamedWithItsMetres) {
+  for (const double metres : {-12.0, 20.0}) {
+    const CheckedAlignment made = checked(landing_with(CommonGeometryError::Kind::ground_height, metres, 42));
+    EXPECT_EQ(made.verdict, CheckedAlignment::Verdict::wrong);
+    ASSERT_FALSE(made.causes.empty()) << made.stated.found() << " " << made.aligned.found();
+    EXPECT_EQ(made.causes.front().kind, CommonGeometryError::Kind::ground_height);
+    EXPECT_NEAR(made.causes.front().amount, metres, 2.5);
+  }
+}
+
+TEST(CommonGeometryError, TransposedRotationsAreNamed) {
+  const CheckedAlignment made = checked(landing_with(CommonGeometryError::Kind::transposed_rotations, 0, 43));
+  EXPECT_EQ(made.verdict, CheckedAlignment::Verdict::wrong);
+  ASSERT_FALSE(made.causes.empty()) << made.stated.found() << " " << made.aligned.found();
+  EXPECT_EQ(made.causes.front().kind, CommonGeometryError::Kind::transposed_rotations);
+}
+
+TEST(CommonGeometryError, IsNotBlamedForErrorsOfSinglePoses) {
+  for (const std::int64_t seed : {35, 36})
+    EXPECT_TRUE(checked(landing_with_poses(seed, 3, 0.05)).causes.empty());
+}
+
+TEST(CommonGeometryError, CorrectingNothingChangesNothing) {
+  const MadeLanding made = landing_with_poses(44, 0.15, 0.15);
+  const CorrectedGeometry same = correct_geometry(made.observations, made.images, made.dem, Crs::local(),
+                                                  CommonGeometryError::Kind::ground_height, 0);
+  ASSERT_EQ(same.observations.size(), made.observations.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < same.observations.size(); ++i)
+    largest =
+        std::max(largest, (same.observations[i].position.xyz - made.observations[i].position.xyz).norm());
+  EXPECT_LT(largest, 1e-3);
+}
+
 }  // namespace
 }  // namespace waymark::test
