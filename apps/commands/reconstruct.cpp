@@ -62,7 +62,10 @@ class Reconstruct final : public Command {
                  .or_else("ortho"),
              Argument{"--map-landmarks", "MAP.gpkg", &request_.map,
                       "Run job.json as well and write the map of rocks, craters and mountain tops"}
-                 .offering(Offer::file)},
+                 .offering(Offer::file),
+             Argument{"--work", "DIR", &request_.work,
+                      "Keep finished steps here, so that a killed or changed run does only what is missing"}
+                 .offering(Offer::folder)},
         .examples = {
             {"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
             {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",

@@ -22,6 +22,7 @@ const Keywords<workflows::ReconstructRequest>& reconstruct_keywords() {
                               .add("cell", &R::cell)
                               .add("until", &R::until)
                               .add("map", &R::map)
+                              .add("work", &R::work)
                               .add("threads", &R::threads);
   return all;
 }

@@ -874,7 +874,7 @@ def read_map(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
 
-def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., control: _Path = ..., marks: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., threads: int = ...) -> dict[str, int]:
+def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., control: _Path = ..., marks: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 
     until: "poses", "dem" or "ortho". options: cameras, lens, control, marks, dem, crs, cell, map, threads.
@@ -889,6 +889,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         crs: of the map; empty: that of the camera file
         cell: of the DEM, metres; 0: twice the median ground sample distance
         map: GeoPackage of landmarks; empty: none
+        work: folder that keeps finished steps for later runs; empty: none
         threads: 0: one per processor"""
     ...
 

@@ -142,4 +142,5 @@ DESCRIPTIONS = {'detect': {'kind': '"craters", "rocks" or "trees"',
                  'cell': 'of the DEM, metres; 0: twice the median ground sample distance',
                  'until': '',
                  'map': 'GeoPackage of landmarks; empty: none',
+                 'work': 'folder that keeps finished steps for later runs; empty: none',
                  'threads': '0: one per processor'}}

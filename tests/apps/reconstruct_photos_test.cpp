@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "made_flight.hpp"
 #include "photo_files.hpp"
+#include "photo_flight.hpp"
 #include "program.hpp"
 
 namespace waymark::test {
@@ -19,38 +19,8 @@ using testing::HasSubstr;
 using testing::Not;
 namespace fs = std::filesystem;
 
-/// Six images of 300 x 300 pixels from 300 m in two lines.
-const fs::path& grid_flight() {
-  static const TempFolder folder;
-  static const fs::path site = simulate_flight(
-      folder.path(),
-      {.ground_cell = 1, .half_length = 90, .north = 50, .line_spacing = 100, .altitude = 300});
-  return site;
-}
-
-constexpr double kLon = 9, kLat = 48;  // of (0, 0)
-
-class ReconstructPhotos : public testing::Test {
+class ReconstructPhotos : public PhotoFlight {
  protected:
-  ReconstructPhotos() {
-    const json cameras = json::parse(text_of(grid_flight() / "truth/cameras.json"));
-    for (const json& image : cameras["images"]) {
-      const std::string name = image["name"];
-      names_.push_back(fs::path(name).stem().string() + ".jpg");
-      pictures_.push_back(read_picture(grid_flight() / "images" / name));
-      const double metres = 111'320;  // per degree
-      positions_.push_back(
-          {.lon = kLon + double(image["centre"][0]) / metres / std::cos(kLat * std::numbers::pi / 180),
-           .lat = kLat + double(image["centre"][1]) / metres,
-           .altitude = 500 + double(image["centre"][2])});
-    }
-    fs::create_directories(folder_ / "images");
-  }
-  fs::path image(const std::string& name) const { return fs::path(folder_ / "images") / name; }
-  void write_good(std::size_t count, bool with_gps = false) {
-    for (std::size_t i = 0; i < count; ++i)
-      write_photo(image(names_[i]), pictures_[i], with_gps ? positions_[i] : PhotoExif{});
-  }
   Outcome run(std::vector<std::string> more = {}) {
     std::vector<std::string> words{"reconstruct", folder_ / "images", "--until", "poses",
                                    "-o",          folder_ / "out"};
@@ -58,11 +28,6 @@ class ReconstructPhotos : public testing::Test {
     return waymark(words);
   }
   Outcome run_with_lens() { return run({"--lens", (grid_flight() / "truth/cameras.json").string()}); }
-
-  TempFolder folder_;
-  std::vector<std::string> names_;
-  std::vector<GreyPicture> pictures_;
-  std::vector<PhotoExif> positions_;
 };
 
 TEST_F(ReconstructPhotos, OneImageIsTooFew) {

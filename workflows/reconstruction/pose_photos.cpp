@@ -12,10 +12,12 @@
 #include "core/error.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/reconstruction/poses/solve_poses.hpp"
+#include "pipeline/reconstruction/reconstruction_codec.hpp"
 #include "workflows/reconstruction/georeference_photos.hpp"
 #include "workflows/reconstruction/photo_control.hpp"
 #include "workflows/reconstruction/photo_features.hpp"
 #include "workflows/reconstruction/pose_products.hpp"
+#include "workflows/reconstruction/pose_steps.hpp"
 #include "workflows/reconstruction/pose_summary.hpp"
 
 namespace waymark::workflows {
@@ -112,22 +114,10 @@ std::vector<UnusedPhoto> failures_of(const Photos& photos, const PhotoFeatures& 
   return failures;
 }
 
-}  // namespace
-
-PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callbacks) {
-  std::optional<tbb::global_control> limit;
-  if (request.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
-  const Photos photos = read_photos({.images = request.images, .lens = request.lens}, callbacks);
-  const PhotoControl control =
-      request.control.empty()
-          ? PhotoControl{}
-          : photo_control({.points = request.control, .marks = request.marks, .crs = request.crs}, photos);
-  const PhotoFeatures found = find_photo_features(photos, request.max_pixels, callbacks);
-  const std::vector<pipeline::ImageToMatch> images = images_to_match(photos);
-  const pipeline::ImageMatches matches = match_photos(images, found, photos, callbacks);
-  pipeline::SolvedPoses solved = solve_photo_poses(images, found, matches, callbacks);
-  if (solved.components.empty()) refuse_without_poses(photos, found, matches);
+// Self-calibration and georeference of the largest component.
+PosedPhotos place_poses(const PosePhotosRequest& request, const Photos& photos, const PhotoControl& control,
+                        const PhotoFeatures& found, const pipeline::ImageMatches& matches,
+                        pipeline::SolvedPoses solved, const Callbacks& callbacks) {
   PosedPhotos out;
   for (const pipeline::SolvedComponent& component : solved.components)
     out.components.push_back(component.posed);
@@ -147,6 +137,43 @@ PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callb
   meter.add(1);
   meter.finish();
   out.failures = failures_of(photos, found, solved, out.scene);
+  return out;
+}
+
+}  // namespace
+
+PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callbacks) {
+  std::optional<tbb::global_control> limit;
+  if (request.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
+  const Photos photos = read_photos({.images = request.images, .lens = request.lens}, callbacks);
+  const PhotoControl control =
+      request.control.empty()
+          ? PhotoControl{}
+          : photo_control({.points = request.control, .marks = request.marks, .crs = request.crs}, photos);
+  const pipeline::KeptResults kept(request.work);
+  const PhotoFeatures found = find_photo_features(photos, request.max_pixels, kept, callbacks);
+  const std::vector<pipeline::ImageToMatch> images = images_to_match(photos);
+  const PoseSteps steps = pose_steps(request, photos, found, images, kept);
+  std::vector<std::string> warnings;
+  PosedPhotos out = kept.get<PosedPhotos>(
+      steps.poses,
+      [&](std::vector<std::string>& said) {
+        const Callbacks recording{.progress = callbacks.progress, .message = [&](const Message& message) {
+                                    if (message.kind == MessageKind::warning)
+                                      said.push_back(message.text);
+                                    else
+                                      callbacks.send(message.kind, message.text);
+                                  }};
+        const auto matches = kept.get<pipeline::ImageMatches>(
+            steps.matches, [&] { return match_photos(images, found, photos, recording); });
+        auto solved = kept.get<pipeline::SolvedPoses>(
+            steps.solved, [&] { return solve_photo_poses(images, found, matches, recording); });
+        if (solved.components.empty()) refuse_without_poses(photos, found, matches);
+        return place_poses(request, photos, control, found, matches, std::move(solved), recording);
+      },
+      warnings);
+  for (const std::string& warning : warnings) callbacks.warning(warning);
   const std::vector<exporters::SparsePoint> points = sparse_points(out.scene);
   write_pose_products(out, photos, points, request.folder);
   callbacks.summary(pose_summary(out, points));

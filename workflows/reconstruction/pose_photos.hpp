@@ -17,6 +17,7 @@ struct PosePhotosRequest {
   std::string dem = {};                  ///< coarse DEM, the reference if there is no other; empty: none
   std::string crs = {};     ///< of the poses; empty: that of the references, or the UTM zone of the first
   double max_pixels = 8e6;  ///< larger images are reduced to find features
+  std::string work = {};    ///< folder that keeps the results of steps for later runs; empty: none
   int threads = 0;          ///< 0: one per processor
 };
 

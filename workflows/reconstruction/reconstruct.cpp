@@ -22,6 +22,7 @@
 #include "workflows/reconstruction/posed_images.hpp"
 #include "workflows/reconstruction/report_reconstruction.hpp"
 #include "workflows/reconstruction/surface_products.hpp"
+#include "workflows/reconstruction/sweep_steps.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -169,6 +170,7 @@ PosedPhotos solve_poses_of(const ReconstructRequest& request, const Callbacks& c
                                   .marks = request.marks,
                                   .dem = request.dem,
                                   .crs = request.crs,
+                                  .work = request.work,
                                   .threads = request.threads},
                                  callbacks);
   write_report_page(request.folder, report_of_poses(made));
@@ -217,6 +219,8 @@ pipeline::SurfaceHeights measure_heights(const ReconstructRequest& request, cons
   pipeline::ProgressMeter meter(callbacks.progress, "sweep_heights", 100);
   double reported = 0;
   plan.progress = [&](double done) { meter.add(100 * (done - std::exchange(reported, done))); };
+  const pipeline::KeptResults kept(request.work);
+  keep_chunks(plan, views, kept);
   pipeline::SurfaceHeights dem = pipeline::sweep_heights(views, plan);
   meter.finish();
   const std::int64_t cells = dem.grid.columns * dem.grid.rows;
@@ -274,9 +278,12 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   write_report_page(folder, poses.report);
   write_file(folder / "job.json", job_text(poses.images, dem, folder));
   if (request.map.empty()) return result;
-  result.map = make_map(
-      load_job(folder / "job.json"),
-      {.map = request.map, .threads = request.threads, .command_line = request.command_line}, callbacks);
+  result.map = make_map(load_job(folder / "job.json"),
+                        {.map = request.map,
+                         .work = request.work,
+                         .threads = request.threads,
+                         .command_line = request.command_line},
+                        callbacks);
   return result;
 }
 

@@ -29,6 +29,7 @@ struct ReconstructRequest {
   double cell = 0;                       ///< of the DEM, metres; 0: twice the median ground sample distance
   ReconstructUntil until = ReconstructUntil::ortho;
   std::string map = {};           ///< GeoPackage of landmarks; empty: none
+  std::string work = {};          ///< folder that keeps finished steps for later runs; empty: none
   int threads = 0;                ///< 0: one per processor
   std::string command_line = {};  ///< recorded in the map
 };

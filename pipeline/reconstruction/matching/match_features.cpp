@@ -9,7 +9,7 @@ namespace {
 
 using DescriptorMatrix = Eigen::Matrix<float, 128, Eigen::Dynamic>;
 constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
-constexpr Eigen::Index kBlock = 128;  // descriptors of the second image per product
+constexpr Eigen::Index kDescriptorBlock = 128;  // descriptors of the second image per product
 
 // Squared distances below 2^24 are exact.
 struct Nearest {
@@ -48,8 +48,8 @@ std::vector<Match> match_features(const ImageFeatures& first, const ImageFeature
   const Eigen::VectorXf a2 = a.colwise().squaredNorm(), b2 = b.colwise().squaredNorm();
   std::vector<Nearest> of_a(static_cast<std::size_t>(a.cols())), of_b(static_cast<std::size_t>(b.cols()));
   Eigen::MatrixXf products;
-  for (Eigen::Index from = 0; from < b.cols(); from += kBlock) {
-    const Eigen::Index count = std::min(kBlock, b.cols() - from);
+  for (Eigen::Index from = 0; from < b.cols(); from += kDescriptorBlock) {
+    const Eigen::Index count = std::min(kDescriptorBlock, b.cols() - from);
     products.noalias() = a.transpose() * b.middleCols(from, count);
     for (Eigen::Index j = 0; j < count; ++j) {
       Nearest& nearest_b = of_b[static_cast<std::size_t>(from + j)];

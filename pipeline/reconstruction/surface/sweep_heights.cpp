@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/reconstruction/surface/sweep_heights.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -42,7 +43,7 @@ class HeightSweep {
 
     std::optional<Terrain> relief;
     for (int l = levels; l > 0; --l) {
-      const Grid<float> found = coarse_pass(grid, base, half_range, relief);
+      const Grid<float> found = coarse_pass(l, grid, base, half_range, relief);
       if (std::ranges::any_of(found.cells(), [](float h) { return !std::isnan(h); })) base = smoothed(found);
       relief = grid.columns > 1 && grid.rows > 1 ? std::optional(terrain_of(base, grid)) : std::nullopt;
       const SurfaceGrid finer = level_grid(l - 1);
@@ -127,11 +128,13 @@ class HeightSweep {
 
   // Calls `use` for every chunk; each writes its own cells.
   template <class Use>
-  void for_chunks(const SweepPass& pass, const Use& use) {
+  void for_chunks(int level, const SweepPass& pass, const Use& use) {
     const std::int64_t across = (pass.grid.columns + kChunk - 1) / kChunk,
                        down = (pass.grid.rows + kChunk - 1) / kChunk;
     tbb::parallel_for(std::int64_t{0}, across * down, [&](std::int64_t n) {
-      const ChunkHeights chunk = sweep_chunk(pass, n % across * kChunk, n / across * kChunk);
+      const auto sweep = [&] { return sweep_chunk(pass, n % across * kChunk, n / across * kChunk); };
+      const ChunkHeights chunk =
+          plan_.keep ? plan_.keep(fmt::format("pass_{}_chunk_{:06}", level, n), sweep) : sweep();
       use(chunk);
       const std::lock_guard lock(mutex_);
       done_ += static_cast<double>(chunk.window.cells());
@@ -140,10 +143,10 @@ class HeightSweep {
   }
 
   // Heights of one pass for the next; NaN where they say too little.
-  Grid<float> coarse_pass(const SurfaceGrid& grid, const Grid<float>& base, double half_range,
+  Grid<float> coarse_pass(int level, const SurfaceGrid& grid, const Grid<float>& base, double half_range,
                           const std::optional<Terrain>& relief) {
     Grid<float> heights(grid.columns, grid.rows, kNoValue);
-    for_chunks(pass_of(grid, base, half_range, relief), [&](const ChunkHeights& chunk) {
+    for_chunks(level, pass_of(grid, base, half_range, relief), [&](const ChunkHeights& chunk) {
       for (std::size_t i = 0; i < chunk.height.size(); ++i) {
         const NoHeight reason = chunk.reason[i];
         if (reason != NoHeight::none && reason != NoHeight::accuracy && reason != NoHeight::disagreement)
@@ -171,7 +174,7 @@ class HeightSweep {
             .reason = zero};
     const std::int64_t blocks = blocks_across();
     used_.assign(static_cast<std::size_t>(blocks * ((grid.rows + kBlock - 1) / kBlock)), {});
-    for_chunks(pass_of(grid, base, half_range, relief),
+    for_chunks(0, pass_of(grid, base, half_range, relief),
                [&](const ChunkHeights& chunk) { join_nodes(chunk, base); });
     drop_hidden();
     drop_where(cells_off_plane(out_.height, out_.sd, kJumpLimit), NoHeight::jump);

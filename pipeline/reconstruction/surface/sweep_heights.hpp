@@ -18,6 +18,10 @@ struct SweepPlan {
 
   std::size_t image_bytes = std::size_t{1} << 30;  ///< memory for images; changes the time only
   std::function<void(double done)> progress = {};  ///< from one thread at a time, 0 to 1
+  /// Returns the kept result of a chunk, or that of `compute`; called from several threads. Empty: nothing is
+  /// kept. `item` names pass and chunk; the results depend on views and plan alone.
+  std::function<ChunkHeights(const std::string& item, const std::function<ChunkHeights()>& compute)> keep =
+      {};
 };
 
 /// DEM from images: bands of dem.tif.
