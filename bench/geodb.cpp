@@ -8,6 +8,7 @@
 
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
+#include "random_rocks.hpp"
 
 namespace waymark::bench {
 namespace {
@@ -15,34 +16,8 @@ namespace {
 constexpr double kSide = 100'000;  // m
 const std::filesystem::path kMap = std::filesystem::temp_directory_path() / "waymark_geodb_benchmark.gpkg";
 
-geodb::MapContents million(std::int64_t count) {
-  geodb::MapContents map;
-  map.crs = Crs::from_text("EPSG:32632");
-  LandmarkType type;
-  type.name = "rock";
-  for (int i = 0; i < 10; ++i) {
-    type.features.emplace_back();
-    type.features.back().name = "feature_" + std::to_string(i);
-  }
-  map.types.add(type);
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<double> place(0, kSide), value(1, 100);
-  map.landmarks.resize(static_cast<std::size_t>(count));
-  for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
-    Landmark& landmark = map.landmarks[i];
-    landmark.uid = "rock-" + std::to_string(random());
-    landmark.position.xyz = {400'000 + place(random), 5'000'000 + place(random), value(random)};
-    landmark.features.resize(10);
-    for (FeatureValue& feature : landmark.features) feature = {value(random), 0.25, 3};
-    landmark.quality = {
-        .seen = 3, .visible = 4, .feature_confidences = std::vector<std::optional<double>>(10, 0.9)};
-    landmark.observations = 3;
-  }
-  return map;
-}
-
 const geodb::MapContents& million_map() {
-  static const geodb::MapContents map = million(1'000'000);
+  static const geodb::MapContents map = random_rocks(1'000'000, kSide);
   return map;
 }
 

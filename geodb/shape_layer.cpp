@@ -5,17 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "core/error.hpp"
-#include "core/reorder.hpp"
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/geopackage/provenance.hpp"
 #include "geodb/geopackage/shape_blob.hpp"
 #include "geodb/layers/shape_table.hpp"
 #include "geodb/open_map.hpp"
-#include "geodb/rtree/hilbert.hpp"
+#include "geodb/rtree/box_order.hpp"
 #include "geodb/rtree/packed_rtree.hpp"
 #include "geodb/sqlite/attribute_column.hpp"
 #include "geodb/sqlite/sql_text.hpp"
@@ -108,24 +106,6 @@ void create_table(const sqlite::Database& database, const ShapeLayer& layer) {
                                quote_identifier(layer.name), geometry_name(layer.kind), columns));
 }
 
-// Sorts boxes in Hilbert order, so that near boxes share a node of the index.
-void sort_boxes(std::vector<IndexedBox>& boxes, const Envelope& extent) {
-  const double width = std::max({extent.max_x - extent.min_x, extent.max_y - extent.min_y, 1e-9});
-  const auto cell = [&](double value, double low) {
-    return static_cast<std::uint16_t>(std::clamp((value - low) / width, 0.0, 1.0) * 65535);
-  };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> curve_order;
-  curve_order.reserve(boxes.size());
-  for (std::uint32_t i = 0; i < boxes.size(); ++i)
-    curve_order.emplace_back(hilbert_index(cell((boxes[i].min_x + boxes[i].max_x) / 2, extent.min_x),
-                                           cell((boxes[i].min_y + boxes[i].max_y) / 2, extent.min_y)),
-                             i);
-  std::ranges::sort(curve_order);
-  std::vector<std::uint32_t> order(boxes.size());
-  std::ranges::transform(curve_order, order.begin(), [](const auto& entry) { return entry.second; });
-  reorder(boxes, std::move(order));
-}
-
 Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, std::int32_t srs_id) {
   std::string placeholders = "?, ?";
   for (std::size_t i = 0; i < layer.columns.size(); ++i) placeholders += ", ?";
@@ -151,11 +131,12 @@ Envelope insert_rows(const sqlite::Database& database, const ShapeLayer& layer, 
   std::ranges::for_each(layer.rows, add);
   if (layer.generator) layer.generator(add);
   create_spatial_index(database, layer.name);
-  sort_boxes(boxes, extent);
-  if (layer.generator)
+  if (layer.generator) {
     fill_rtree(database, layer.name);
-  else
+  } else {
+    sort_along_curve(boxes);
     fill_rtree(database, layer.name, boxes);
+  }
   return extent;
 }
 

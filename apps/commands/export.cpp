@@ -40,13 +40,18 @@ class Export final : public Command {
                       Argument{"--area", "KM2", &options_.area_km2,
                                "Counting area of a crater count (.scc, .diam)"}
                           .or_else("the map's footprints, or its DEM"),
+                      {"--label", "NAME=VALUE", &options_.label,
+                       "Value of a PDS4 label, LOGICAL_IDENTIFIER for example; may be repeated"},
                       {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
-        .examples = {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
-                     {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
-                      "A table in UTM metres"},
-                     {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
-                     {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
-                     {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}}};
+        .examples = {
+            {"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
+            {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
+             "A table in UTM metres"},
+            {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+            {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
+             "A table with a label for the Planetary Data System"},
+            {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
+            {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}}};
   }
 
   int run(const Session&) override {

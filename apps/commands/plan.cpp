@@ -8,6 +8,7 @@
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "core/error.hpp"
+#include "workflows/call_resources.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/registries.hpp"
@@ -44,11 +45,18 @@ class PlanJob final : public Command {
                  .offering(workflows::all_sensors().names()),
              Argument{"--shards", "N", &shards_, "Most calls per stage: arrays of a site are limited"}
                  .or_else("64"),
+             {"--resources", "[STAGE:]cpus=N,memory=G,time=MIN", &resources_,
+              "Processors, memory and time that each call asks for; with STAGE or `map` those of one stage; "
+              "may be "
+              "repeated"},
              {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
         .examples = {{"waymark plan job.json --format jsonl", "One unit per line, done or not"},
                      {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
                       "Run by Snakemake"},
-                     {"waymark plan job.json --format slurm -o map.gpkg | sh", "Run on a Slurm cluster"},
+                     {"waymark plan job.json --format slurm -o map.gpkg --resources cpus=1,memory=2G,time=60 "
+                      "--resources "
+                      "map:memory=8G | sh",
+                      "Run on a Slurm cluster"},
                      {"waymark plan job.json --format parallel -o map.gpkg | sh", "Run by GNU parallel"}}};
   }
 
@@ -71,7 +79,8 @@ class PlanJob final : public Command {
                                      .settings = settings_,
                                      .map = map_,
                                      .sensor = sensor_,
-                                     .max_shards = static_cast<std::size_t>(shards_)};
+                                     .max_shards = static_cast<std::size_t>(shards_),
+                                     .resources = workflows::parse_resources(resources_, stages_of(units))};
     std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
                   : format_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
                   : format_ == "parallel" ? pipeline::plan_as_parallel(units, call)
@@ -80,9 +89,16 @@ class PlanJob final : public Command {
   }
 
  private:
+  static std::vector<std::string> stages_of(const pipeline::Plan& plan) {
+    std::vector<std::string> names;
+    for (std::size_t stage = 0; stage < plan.stage_count(); ++stage)
+      if (plan.begins[stage] < plan.begins[stage + 1]) names.push_back(plan.units[plan.begins[stage]].stage);
+    return names;
+  }
+
   std::string job_, format_ = "jsonl", work_ = "work", map_, sensor_;
   long shards_ = 64;
-  std::vector<std::string> settings_;
+  std::vector<std::string> settings_, resources_;
 };
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "core/error.hpp"
 #include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
-#include "geodb/replace_map.hpp"
+#include "geodb/write_map.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -29,6 +29,24 @@ GDALDatasetUniquePtr open_band(const fs::path& raster, int band, const fs::path&
   if (!set || set->GetRasterCount() < band)
     fail_output(output, messages.cause("the raster that it is made from cannot be read"));
   return set;
+}
+
+std::vector<Eigen::Vector2d> corners_of(const OGRLinearRing& ring) {
+  std::vector<Eigen::Vector2d> corners;
+  for (const OGRPoint& corner : ring) corners.emplace_back(corner.getX(), corner.getY());
+  return corners;
+}
+
+geodb::Shape shape_of(const OGRFeature& feature, std::span<const char* const> names) {
+  const OGRPolygon& polygon = *feature.GetGeometryRef()->toPolygon();
+  geodb::ShapePart part{.outer = corners_of(*polygon.getExteriorRing())};
+  for (int i = 0; i < polygon.getNumInteriorRings(); ++i)
+    part.holes.push_back(corners_of(*polygon.getInteriorRing(i)));
+  const auto code = static_cast<std::size_t>(feature.GetFieldAsInteger(0));
+  return {.parts = {std::move(part)},
+          .values = {static_cast<std::int64_t>(code),
+                     code < names.size() ? AttributeValue(std::string(names[code])) : AttributeValue(),
+                     polygon.get_Area()}};
 }
 
 }  // namespace
@@ -62,38 +80,41 @@ void write_occupancy_map(const fs::path& yaml, const fs::path& raster, int band)
                          image.filename().string(), t[1], t[0], t[3] + rows * t[5]));
 }
 
-void write_class_polygons(const fs::path& geopackage, const std::string& layer_name, const fs::path& raster,
-                          int band, std::span<const char* const> names) {
+void write_class_polygons(const fs::path& map, const std::string& layer_name, const fs::path& raster,
+                          int band, std::span<const char* const> names, const Crs& crs) {
   const GdalMessages messages;
-  const GDALDatasetUniquePtr set = open_band(raster, band, geopackage, messages);
-  AtomicFile aside(geopackage);
+  const GDALDatasetUniquePtr set = open_band(raster, band, map, messages);
+  // GDAL makes all polygons at once: they go to a scratch file, from which they are read one by one.
+  const AtomicFile scratch(map);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  std::unique_ptr<GDALDataset> file(driver->Create(aside.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
-  if (!file) fail_output(geopackage, messages.cause("GDAL has no GeoPackage driver"));
-  const OGRSpatialReference* srs = set->GetSpatialRef();
-  OGRLayer* layer =
-      file->CreateLayer(layer_name.c_str(), const_cast<OGRSpatialReference*>(srs), wkbPolygon, nullptr);
-  if (!layer) fail_output(geopackage, messages.cause("no layer"));
-  for (auto [name, type] :
-       {std::pair("code", OFTInteger), std::pair("class", OFTString), std::pair("area", OFTReal)}) {
-    OGRFieldDefn field(name, type);
-    if (layer->CreateField(&field) != OGRERR_NONE) fail_output(geopackage, messages.cause("no column"));
-  }
+  const std::unique_ptr<GDALDataset> file(
+      driver->Create(scratch.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+  if (!file) fail_output(map, messages.cause("GDAL has no GeoPackage driver"));
+  const char* no_index[] = {"SPATIAL_INDEX=NO", nullptr};
+  OGRLayer* polygons = file->CreateLayer("polygons", nullptr, wkbPolygon,
+                                         const_cast<char**>(static_cast<const char**>(no_index)));
+  OGRFieldDefn code("code", OFTInteger);
+  if (!polygons || polygons->CreateField(&code) != OGRERR_NONE) fail_output(map, messages.cause("no layer"));
   GDALRasterBand* cells = set->GetRasterBand(band);
   file->StartTransaction();
   // The band is its own mask: class 0 makes no polygons.
-  bool made =
-      GDALPolygonize(cells, cells, OGRLayer::ToHandle(layer), 0, nullptr, nullptr, nullptr) == CE_None;
-  made = made && file->CommitTransaction() == OGRERR_NONE;
-  std::string cases;
-  for (std::size_t i = 1; i < names.size(); ++i) cases += fmt::format(" WHEN {} THEN '{}'", i, names[i]);
-  const std::string fill =
-      fmt::format("UPDATE \"{}\" SET class = CASE code{} END, area = ST_Area(geom)", layer_name, cases);
-  if (made) file->ReleaseResultSet(file->ExecuteSQL(fill.c_str(), nullptr, "SQLITE"));
-  file.reset();
-  if (!made || !messages.failures().empty())
-    fail_output(geopackage, messages.cause("not all of it was written"));
-  geodb::replace_map(aside);
+  if (GDALPolygonize(cells, cells, OGRLayer::ToHandle(polygons), 0, nullptr, nullptr, nullptr) != CE_None ||
+      file->CommitTransaction() != OGRERR_NONE || !messages.failures().empty())
+    fail_output(map, messages.cause("not all of it was written"));
+
+  using Kind = AttributeSpec::Kind;
+  geodb::MapContents contents;
+  contents.crs = crs;
+  contents.layers.push_back({.name = layer_name,
+                             .summary = "Areas of the classes of " + raster.filename().string(),
+                             .columns = {{"code", "", Kind::integer, "Number of the class"},
+                                         {"class", "", Kind::text, "Class"},
+                                         {"area", "", Kind::real, "In the square of the unit of the CRS"}},
+                             .style = {.colour = "#c62828", .fill = "#c62828"},
+                             .generator = [&](const std::function<void(const geodb::Shape&)>& take) {
+                               for (const auto& feature : *polygons) take(shape_of(*feature, names));
+                             }});
+  geodb::write_map(map, contents);
 }
 
 }  // namespace waymark::exporters

@@ -15,6 +15,7 @@
 #include "exporters/vector/export_check.hpp"
 #include "exporters/vector/map_subset.hpp"
 #include "exporters/vector/ogr_output.hpp"
+#include "exporters/vector/pds4_label.hpp"
 #include "exporters/vector/reproject.hpp"
 #include "exporters/vector/vector_format.hpp"
 #include "geodb/map_store.hpp"
@@ -29,7 +30,7 @@ namespace fs = std::filesystem;
 /// State shared by the steps of one export.
 struct Export {
   const geodb::MapStore& map;
-  const VectorFormat format;
+  VectorFormat format;
   const Crs crs;
   ExportSummary summary;
 
@@ -156,11 +157,19 @@ void write_map_file(Export& job, const std::vector<std::string>& types, const fs
   job.warn(std::move(subset.warnings));
 }
 
+constexpr std::string_view kPds4 = "PDS4";
+
+std::string label_title(const std::vector<std::string>& types, const fs::path& map) {
+  return fmt::format("Landmarks of {}: {}", map.stem().string(), fmt::join(types, ", "));
+}
+
 }  // namespace
 
 ExportSummary export_map(const fs::path& map_path, const std::string& out, const ExportOptions& options) {
   if (options.driver.empty() && is_crater_count(out)) return export_crater_count(map_path, out, options);
   const VectorFormat format = vector_format(out, options.driver);
+  if (!options.label.empty() && format.driver != kPds4)
+    throw Error(ErrorCode::usage, format.driver + " has no label", "--label", "PDS4 has one: -of PDS4");
   const geodb::MapStore map = geodb::MapStore::open(map_path);
   const auto types = chosen_types(map, options.types);
   Export job{map, format, output_crs(format, map.crs(), options.crs, map_path.string()), {}};
@@ -171,6 +180,9 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
   if (format.is_file)
     for (const OutputFile& file : files) refuse_existing(file.path, options.overwrite);
   for (const OutputFile& file : files) {
+    if (format.driver == kPds4)
+      job.format.creation_options = pds4_label(options.label, label_title(file.types, map_path), job.crs,
+                                               files.size() > 1 ? "_" + file.types.front() : "");
     if (format.driver == "GPKG")
       write_map_file(job, file.types, file.path);
     else if (!format.is_file || file.path.starts_with("/vsi"))

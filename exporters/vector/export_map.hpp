@@ -12,8 +12,9 @@ struct ExportOptions {
   std::vector<std::string> types = {};  ///< landmark types; empty: all the map has
   std::string crs =
       {};  ///< any text Crs understands; empty: the map's, or EPSG:4326 if the format requires it
-  bool overwrite = false;  ///< false: an existing output is an error
-  double area_km2 = 0;     ///< counting area of a crater count (.scc, .diam); 0: that of the map
+  bool overwrite = false;               ///< false: an existing output is an error
+  std::vector<std::string> label = {};  ///< values of a PDS4 label, "NAME=VALUE"
+  double area_km2 = 0;                  ///< counting area of a crater count (.scc, .diam); 0: that of the map
 };
 
 /// Landmarks written of one type.

@@ -87,6 +87,7 @@ CPLStringList file_options(const VectorFormat& format) {
   CPLStringList options;
   if (format.driver == "GPX") options.SetNameValue("GPX_USE_EXTENSIONS", "YES");
   if (format.driver == "GeoRSS") options.SetNameValue("USE_EXTENSIONS", "YES");
+  for (const std::string& option : format.creation_options) options.AddString(option.c_str());
   return options;
 }
 

@@ -15,8 +15,9 @@ struct VectorFormat {
   bool earth_only = false;      ///< means longitude and latitude on WGS 84 by its definition
   bool only_wgs84 = false;      ///< and cannot hold another CRS
   std::string name_field = {};  ///< field for the name of a placemark; empty: none
-  std::string description_field = {};  ///< field for its description
-  std::size_t max_name_length = 0;     ///< letters of a column name; 0: no limit
+  std::string description_field = {};              ///< field for its description
+  std::size_t max_name_length = 0;                 ///< letters of a column name; 0: no limit
+  std::vector<std::string> creation_options = {};  ///< of GDAL, "NAME=VALUE", besides the usual ones
 };
 
 /// Returns the format named `driver` (any case), or that of `out`'s extension if `driver` is empty. Throws

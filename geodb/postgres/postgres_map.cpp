@@ -12,7 +12,7 @@
 #include "geodb/postgres/row_copy.hpp"
 #include "geodb/postgres/update_rows.hpp"
 #include "geodb/replace_map.hpp"
-#include "geodb/rtree/packed_rtree.hpp"
+#include "geodb/rtree/box_order.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark::geodb {
@@ -130,15 +130,22 @@ void define(const sqlite::Database& map, const std::string& sql) {
               sql.substr(0, 60), "export the map again");
 }
 
-void fill_indexes(const sqlite::Database& map) {
-  std::vector<std::string> layers;
-  sqlite::Statement row = map.prepare(
-      "SELECT table_name FROM gpkg_geometry_columns g WHERE EXISTS (SELECT 1 FROM sqlite_master m WHERE "
-      "m.name = "
-      "'rtree_' || g.table_name || '_geom')");
-  while (row.step()) layers.emplace_back(row.text(0));
-  for (const std::string& layer : layers)
-    if (layer != "image") fill_rtree(map, layer);  // that one is filled by its triggers, as in a new map
+bool is_rtree(std::string_view kind) {
+  return kind == "row_rtree" || kind == "curve_rtree";
+}
+
+void fill_indexes(const sqlite::Database& map, const Connection::Rows& definitions) {
+  for (const auto& row : definitions) {
+    const std::string &kind = *row[0], layer = layer_of_index(*row[1]);
+    if (!is_rtree(kind) || layer == "image") continue;  // that one is filled by its triggers, as in a new map
+    if (kind == "row_rtree") {
+      fill_rtree(map, layer);
+    } else {
+      std::vector<IndexedBox> boxes = boxes_of(map, layer);
+      sort_along_curve(boxes);
+      fill_rtree(map, layer, boxes);
+    }
+  }
 }
 
 /// Gives the definitions the order of the original file, which VACUUM retains.
@@ -163,7 +170,8 @@ void rebuild(const Connection& server, const sqlite::Database& map) {
   const Connection::Rows definitions =
       server.rows("SELECT kind, name, sql FROM waymark_definition ORDER BY position");
   const auto is_early = [](const auto& row) {
-    return row[0] == "table" || (row[0] == "trigger" && row[1]->starts_with("rtree_image_"));
+    return row[0] == "table" || is_rtree(*row[0]) ||
+           (row[0] == "trigger" && row[1]->starts_with("rtree_image_"));
   };
   for (const auto& row : definitions)
     if (is_early(row)) define(map, *row[2]);
@@ -185,9 +193,9 @@ void rebuild(const Connection& server, const sqlite::Database& map) {
       map.execute("DELETE FROM sqlite_sequence");
       fetch_rows(server, table, map, srs_id);
     }
-  fill_indexes(map);
+  fill_indexes(map, definitions);
   for (const auto& row : definitions)
-    if (!is_early(row) && row[0] != "index_part") define(map, *row[2]);
+    if (!is_early(row) && row[0] != "rtree_part") define(map, *row[2]);
   restore_order(map, definitions);
   all.commit();
   map.execute(fmt::format("PRAGMA schema_version = {}", std::stoll(*settings[0][2]) - 1));  // VACUUM adds one

@@ -24,8 +24,9 @@ struct PostgresSummary {
 PostgresSummary export_to_postgres(const std::filesystem::path& map, const std::string& address);
 
 /// Writes the map of a schema as a file, atomically. The file equals `VACUUM INTO` of the exported one byte
-/// by byte, but for spatial indexes of layers and for geometries that other programs wrote. Throws
-/// Error{environment} without server, Error{input} if the schema holds no map or one of another version.
+/// by byte, but for spatial indexes of layers that were edited and for geometries that other programs wrote.
+/// Throws Error{environment} without server, Error{input} if the schema holds no map or one of another
+/// version.
 void import_from_postgres(const std::string& address, const std::filesystem::path& map);
 
 }  // namespace waymark::geodb

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "geodb/rtree/packed_rtree.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark::geodb::postgres {
@@ -63,7 +64,21 @@ bool is_of_spatial_index(std::string_view name) {
   return name.starts_with("rtree_");
 }
 
+std::string kind_of(const sqlite::Database& map, const std::string& kind, const std::string& name,
+                    const std::string& sql) {
+  if (kind != "table" || !is_of_spatial_index(name)) return kind;
+  if (!sql.starts_with("CREATE VIRTUAL")) return "rtree_part";
+  return has_row_order(map, layer_of_index(name)) ? "row_rtree" : "curve_rtree";
+}
+
 }  // namespace
+
+std::string layer_of_index(std::string_view index) {
+  constexpr std::string_view begin = "rtree_", end = "_geom";
+  if (index.starts_with(begin)) index.remove_prefix(begin.size());
+  if (index.ends_with(end)) index.remove_suffix(end.size());
+  return std::string(index);
+}
 
 std::vector<TableLayout> table_layouts(const sqlite::Database& map, const SridMap& srids) {
   std::vector<TableLayout> tables;
@@ -79,12 +94,8 @@ std::vector<Definition> definitions(const sqlite::Database& map) {
   sqlite::Statement row =
       map.prepare("SELECT type, name, sql FROM sqlite_master WHERE sql NOT NULL ORDER BY rowid");
   while (row.step()) {
-    const std::string_view name = row.text(1), sql = row.text(2);
-    const bool made_by_index =
-        row.text(0) == "table" && is_of_spatial_index(name) && !sql.starts_with("CREATE VIRTUAL");
-    if (!name.starts_with("sqlite_"))
-      all.push_back(
-          {made_by_index ? "index_part" : std::string(row.text(0)), std::string(name), std::string(sql)});
+    const std::string kind(row.text(0)), name(row.text(1)), sql(row.text(2));
+    if (!name.starts_with("sqlite_")) all.push_back({kind_of(map, kind, name, sql), name, sql});
   }
   return all;
 }

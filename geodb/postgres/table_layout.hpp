@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 #include "geodb/sqlite/sqlite.hpp"
 namespace waymark::geodb::postgres {
@@ -30,13 +31,18 @@ struct TableLayout {
 
 /// Object of sqlite_master.
 struct Definition {
-  std::string kind, name, sql;  ///< kind: table, index, view, trigger; index_part: made with a spatial index
+  /// table, index, view, trigger; of spatial indexes: row_rtree and curve_rtree, filled in the order of the
+  /// rows or along a Hilbert curve, and rtree_part, made with it.
+  std::string kind;
+  std::string name, sql;
 };
 
 /// Returns the layouts of the tables in the order of their definitions, without those of spatial indexes.
 /// Columns of registered layers are geometries if `srids` has the SRID of their srs_id; it is empty without
 /// PostGIS.
 std::vector<TableLayout> table_layouts(const sqlite::Database& map, const SridMap& srids);
+/// Returns the table that the RTree "rtree_<table>_geom" indexes.
+std::string layer_of_index(std::string_view index);
 std::vector<Definition> definitions(const sqlite::Database& map);
 
 std::string create_table(const TableLayout& table);

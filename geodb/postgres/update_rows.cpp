@@ -48,7 +48,8 @@ class Update {
     add_rows("observation", {"uid", "source"});
     for (const std::string& type : types) link_evidence(type);
     add_rows("run", {"started"});
-    std::set<std::string> copied{"dem", "gpkg_2d_gridded_tile_ancillary"};
+    std::set<std::string> copied{"dem", "gpkg_tile_matrix", "gpkg_tile_matrix_set",
+                                 "gpkg_2d_gridded_coverage_ancillary", "gpkg_2d_gridded_tile_ancillary"};
     if (map_->has_table("waymark_layer"))
       for (const std::string& name : names(*map_, "SELECT name FROM waymark_layer")) copied.insert(name);
     for (const std::string& name : copied) copy_again(name);

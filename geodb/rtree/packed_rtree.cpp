@@ -19,7 +19,7 @@ namespace {
 // Node: depth of the tree (only in the root, node 1), count of cells, then per cell the rowid (leaf) or child
 // node and min x, max x, min y, max y; all big-endian, padded with zeros.
 constexpr std::size_t kCellBytes = 8 + 4 * 4;
-constexpr std::size_t kHeaderBytes = 4;
+constexpr std::size_t kNodeHeaderBytes = 4;
 constexpr std::int64_t kRoot = 1;
 
 struct Cell {
@@ -63,7 +63,7 @@ class Packer {
 
   /// Writes one level of the tree with `count` cells from `next`. Returns the cells of the level above.
   std::vector<Cell> pack(std::size_t count, const std::function<Cell()>& next, int depth) {
-    const std::size_t capacity = (bytes_.size() - kHeaderBytes) / kCellBytes;
+    const std::size_t capacity = (bytes_.size() - kNodeHeaderBytes) / kCellBytes;
     const std::size_t nodes = std::max<std::size_t>(1, (count + capacity - 1) / capacity);
     std::vector<Cell> above, part;
     above.reserve(nodes);
@@ -135,6 +135,39 @@ void fill_rtree(const sqlite::Database& database, std::string_view table) {
     const Envelope box = envelope(row.blob(1)).value();
     return cell_of(row.integer(0), box.min_x, box.max_x, box.min_y, box.max_y);
   });
+}
+
+std::vector<IndexedBox> boxes_of(const sqlite::Database& database, std::string_view table) {
+  std::vector<IndexedBox> boxes;
+  sqlite::Statement row = database.prepare("SELECT id, geom FROM " + quote_identifier(table) +
+                                           " WHERE geom IS NOT NULL ORDER BY id");
+  while (row.step())
+    if (const auto box = envelope(row.blob(1)))
+      boxes.push_back({row.integer(0), box->min_x, box->max_x, box->min_y, box->max_y});
+  return boxes;
+}
+
+bool has_row_order(const sqlite::Database& database, std::string_view table) {
+  const std::string index = "rtree_" + std::string(table) + "_geom";
+  sqlite::Statement leaf = database.prepare("SELECT data FROM " + quote_identifier(index + "_node") +
+                                            " WHERE nodeno IN (SELECT nodeno FROM " +
+                                            quote_identifier(index + "_rowid") + ") ORDER BY nodeno");
+  std::int64_t last = std::numeric_limits<std::int64_t>::min();
+  while (leaf.step()) {
+    const auto bytes = leaf.blob(0);
+    const auto big_endian = [&](std::size_t at, std::size_t count) {
+      std::uint64_t value = 0;
+      for (std::size_t i = at; i < at + count && i < bytes.size(); ++i)
+        value = value << 8 | std::to_integer<std::uint64_t>(bytes[i]);
+      return value;
+    };
+    for (std::size_t cell = 0; cell < big_endian(2, 2); ++cell) {
+      const auto id = static_cast<std::int64_t>(big_endian(kNodeHeaderBytes + cell * kCellBytes, 8));
+      if (id <= last) return false;
+      last = id;
+    }
+  }
+  return true;
 }
 
 }  // namespace waymark::geodb

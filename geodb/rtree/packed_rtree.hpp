@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 #include "geodb/sqlite/sqlite.hpp"
 namespace waymark::geodb {
 
@@ -21,5 +22,11 @@ void fill_rtree(const sqlite::Database& database, std::string_view table, std::s
 /// Bulk-loads the RTree with the geometries of the table in the order of its rows. They are read one by one;
 /// memory is half a byte per row.
 void fill_rtree(const sqlite::Database& database, std::string_view table);
+
+/// Returns the boxes of the geometries of a table in the order of its rows.
+std::vector<IndexedBox> boxes_of(const sqlite::Database& database, std::string_view table);
+/// Returns true if the leaves of the RTree list the rows in their order, as fill_rtree() by the rows makes
+/// them.
+bool has_row_order(const sqlite::Database& database, std::string_view table);
 
 }  // namespace waymark::geodb

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,6 +47,13 @@ struct Plan {
   std::size_t stage_count() const { return begins.size() - 1; }
 };
 
+/// What a call asks a scheduler for; 0: nothing, the site decides.
+struct CallResources {
+  int processors = 0;          ///< also the threads of the call
+  std::int64_t megabytes = 0;  ///< memory, 1e6 bytes
+  std::int64_t minutes = 0;    ///< after which the scheduler ends the call
+};
+
 /// Command line by which a scheduler runs one unit.
 struct PlanCommand {
   std::string job;   ///< job file
@@ -55,6 +63,8 @@ struct PlanCommand {
   std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
   std::string sensor = {};      ///< name or file of the profile that the map records; empty: none
   std::size_t max_shards = 64;  ///< calls per stage over tiles or images
+  /// By stage, "map" for the call that writes the map, "" for all others.
+  std::map<std::string, CallResources> resources = {};
 };
 
 /// Returns one JSON object per line: unit, stage, item, fingerprint, done, after (ids).

@@ -99,6 +99,34 @@ TEST(Memory, OfPeaksHoldsSummitsInPieces) {
   EXPECT_LT(peak("5"), peak("100") + 200) << "MB";
 }
 
+// Each call of a plan is a process of its own. The one that joins all tiles may hold their borders and
+// summits, not their cells: 84 M cells more are 336 MB.
+TEST(Memory, OfTheCallThatJoinsTilesIsNotThatOfTheirCells) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peaks = [&](int times) {
+    const std::string name = std::to_string(times), job = folder / (name + ".json"),
+                      work = folder / ("work" + name);
+    write_text(job, waymark({"peaks", mosaic(folder, times), "--tile-cells", "1000", "--memory", "32",
+                             "--print-job"})
+                        .out);
+    std::map<std::string, double> peak;
+    for (const char* stage : {"load_dem", "find_mountain_tops", "join_mountain_tops", "measure_isolation",
+                              "mountain_tops_of_tile"})
+      peak[stage] = peak_of({"-q", "--threads", "1", "run", job, "--work", work, "--stage", stage});
+    peak["map"] =
+        peak_of({"-q", "--threads", "1", "run", job, "--work", work, "-o", folder / (name + ".gpkg")});
+    return peak;
+  };
+  std::map<std::string, double> small = peaks(2), large = peaks(5);
+  for (const auto& [call, megabytes] : large) {
+    RecordProperty(call, std::to_string(small[call]) + " " + std::to_string(megabytes));
+    EXPECT_GT(small[call], 20) << "MB, " << call;
+    EXPECT_LT(megabytes, small[call] + 60)
+        << "MB, " << call << "; " << small[call] << " for a sixth of the cells";
+  }
+}
+
 /// A table of rocks, 100 to a row.
 std::string rock_table(const TempFolder& folder, int count) {
   std::string text = "x,y,radius,height\n";

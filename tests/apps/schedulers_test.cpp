@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <sstream>
 
 #include "made_dem.hpp"
 #include "program.hpp"
@@ -50,16 +51,18 @@ exec "$WAYMARK" "$@"
     EXPECT_EQ(in_folder(kWholeJob + " -o one_machine.gpkg && cmp one_machine.gpkg expected").code, 0);
   }
 
+  static inline const std::string kResources =
+      " --resources cpus=1,memory=300M,time=30 --resources map:memory=1G";
   static inline const std::string kWholeJob = "$WAYMARK run job.json --work work";
   TempFolder folder_;
 };
 
 TEST_F(Schedulers, GnuParallelIsResumedUntilTheMapIsMade) {
   if (bash("parallel --version | grep GNU").code != 0) GTEST_SKIP() << "needs GNU parallel";
-  ASSERT_EQ(
-      in_folder("waymark --version; $WAYMARK plan job.json --as parallel --shards 8 -o map.gpkg > run.sh")
-          .code,
-      0);
+  ASSERT_EQ(in_folder("waymark --version; $WAYMARK plan job.json --as parallel --shards 8" + kResources +
+                      " -o map.gpkg > run.sh")
+                .code,
+            0);
   for (int round = 0; round < 40 && !std::filesystem::exists(folder_ / "map.gpkg"); ++round)
     in_folder("sh run.sh");
   expect_map_of_one_machine();
@@ -67,7 +70,10 @@ TEST_F(Schedulers, GnuParallelIsResumedUntilTheMapIsMade) {
 
 TEST_F(Schedulers, SnakemakeTriesKilledTasksAgain) {
   if (bash("snakemake --version").code != 0) GTEST_SKIP() << "needs snakemake";
-  ASSERT_EQ(in_folder("$WAYMARK plan job.json --as snakemake --shards 8 -o map.gpkg > Snakefile").code, 0);
+  ASSERT_EQ(
+      in_folder("$WAYMARK plan job.json --as snakemake --shards 8" + kResources + " -o map.gpkg > Snakefile")
+          .code,
+      0);
   const Outcome ran = in_folder("snakemake -j 2 --retries 12 --latency-wait 5");
   EXPECT_EQ(ran.code, 0) << ran.err;
   expect_map_of_one_machine();
@@ -78,12 +84,78 @@ TEST_F(Schedulers, SlurmMakesTheMapAfterJobsAreSubmittedAgain) {
   const std::string site = WAYMARK_SOURCE_DIR "/tests/apps/slurm_site ";
   if (bash(site + "--available").code != 0)
     GTEST_SKIP() << "needs root, slurmctld, slurmd, slurm-client and munge";
-  ASSERT_EQ(in_folder("$WAYMARK plan job.json --as slurm --shards 8 -o map.gpkg > submit.sh").code, 0);
+  ASSERT_EQ(
+      in_folder("$WAYMARK plan job.json --as slurm --shards 8" + kResources + " -o map.gpkg > submit.sh")
+          .code,
+      0);
   const Outcome ran = in_folder(site +
                                 "'for i in $(seq 40); do [ -e map.gpkg ] || { sh submit.sh && "
                                 "while [ -n \"$(squeue --noheader)\" ]; do sleep 0.5; done; }; done'");
   EXPECT_EQ(ran.code, 0) << ran.err;
   expect_map_of_one_machine();
+}
+
+/// The lines of docs/tutorials/many_tiles_on_a_cluster.md, to the letter.
+class ClusterTutorial : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::istringstream page(text_of(WAYMARK_SOURCE_DIR "/docs/tutorials/many_tiles_on_a_cluster.md"));
+    bool is_code = false;
+    for (std::string line; std::getline(page, line);) {
+      if (line.starts_with("```")) {
+        is_code = line == "```sh";
+        if (is_code) blocks_.emplace_back();
+      } else if (is_code) {
+        blocks_.back() += line + "\n";
+      }
+    }
+    ASSERT_EQ(blocks_.size(), 6U);
+    if (bash("command -v gdal_translate").code != 0) GTEST_SKIP() << "needs gdal-bin";
+    bash("mkdir '" + (folder_ / "bin") + "' && ln -s \"$WAYMARK\" '" + (folder_ / "bin/waymark") +
+         "' && cp -r '" + WAYMARK_SOURCE_DIR + "/sample_data' '" + folder_.path().string() + "'");
+    const Outcome made = follow(blocks_[0] + blocks_[1]);
+    ASSERT_EQ(made.code, 0) << made.err;
+    // Two stages on each of about 500 tiles, and a few on the map.
+    EXPECT_GT(std::stoi(made.out), 500);
+  }
+  Outcome follow(const std::string& lines) {
+    const bool is_begun = std::filesystem::exists(folder_ / "cluster");
+    return bash("set -e; cd '" + folder_.path().string() + (is_begun ? "/cluster" : "") + "'; export PATH='" +
+                (folder_ / "bin") + "':$PATH\n" + lines);
+  }
+  void expect_same_landmarks() {
+    const Outcome same = follow(blocks_[5]);
+    EXPECT_EQ(same.code, 0) << same.err;
+    EXPECT_THAT(same.out, HasSubstr("the same landmarks"));
+  }
+
+  TempFolder folder_;
+  std::vector<std::string> blocks_;
+};
+
+TEST_F(ClusterTutorial, WithSlurm) {
+  const std::string site = WAYMARK_SOURCE_DIR "/tests/apps/slurm_site ";
+  if (bash(site + "--available").code != 0)
+    GTEST_SKIP() << "needs root, slurmctld, slurmd, slurm-client and munge";
+  write_text(folder_ / "cluster/lines",
+             blocks_[2] + "while [ -n \"$(squeue --noheader)\" ]; do sleep 0.2; done\n");
+  const Outcome ran = follow(site + "'sh lines'");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  expect_same_landmarks();
+}
+
+TEST_F(ClusterTutorial, WithSnakemake) {
+  if (bash("snakemake --version").code != 0) GTEST_SKIP() << "needs snakemake";
+  const Outcome ran = follow(blocks_[3]);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  expect_same_landmarks();
+}
+
+TEST_F(ClusterTutorial, WithGnuParallel) {
+  if (bash("parallel --version | grep GNU").code != 0) GTEST_SKIP() << "needs GNU parallel";
+  const Outcome ran = follow(blocks_[4]);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  expect_same_landmarks();
 }
 
 }  // namespace

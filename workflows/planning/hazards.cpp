@@ -212,7 +212,8 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   write_file(fs::path(request.output).replace_extension(".qml"), hazard_style());
   const int bands_count = static_cast<int>(planning::kHazardBands);
   if (!request.polygons.empty())
-    exporters::write_class_polygons(request.polygons, "hazard", request.output, bands_count, kClassNames);
+    exporters::write_class_polygons(request.polygons, "hazard", request.output, bands_count, kClassNames,
+                                    grid.where.crs);
   if (!request.nav2.empty()) exporters::write_occupancy_map(request.nav2, request.output, bands_count - 1);
   const auto total = static_cast<double>(grid.cells());
   std::string text = fmt::format("{}: {} x {} cells for {}, {} objects\n", request.output, grid.columns,

@@ -23,17 +23,56 @@ std::string quote_for_shell(const std::string& text) {
   return quoted + "'";
 }
 
-std::string run_command(const PlanCommand& command) {
+constexpr const char* kMapCall = "map";
+
+CallResources resources_of(const PlanCommand& command, const std::string& stage) {
+  for (const std::string& name : {stage, std::string()})
+    if (const auto found = command.resources.find(name); found != command.resources.end())
+      return found->second;
+  return {};
+}
+
+std::string run_command(const PlanCommand& command, const std::string& stage) {
   std::string call = fmt::format("{} run {} --work {}", quote_for_shell(command.program),
                                  quote_for_shell(command.job), quote_for_shell(command.work));
   for (const std::string& setting : command.settings) call += " --set " + quote_for_shell(setting);
+  if (const int threads = resources_of(command, stage).processors; threads > 0)
+    call += fmt::format(" --threads {}", threads);
   return call;
+}
+
+/// Returns the options of sbatch.
+std::string sbatch_options(const CallResources& asked) {
+  std::string options;
+  if (asked.processors > 0) options += fmt::format(" --cpus-per-task={}", asked.processors);
+  if (asked.megabytes > 0) options += fmt::format(" --mem={}M", asked.megabytes);
+  if (asked.minutes > 0) options += fmt::format(" --time={}", asked.minutes);
+  return options;
+}
+
+/// Returns the lines of a Snakemake rule.
+std::string snakemake_resources(const CallResources& asked) {
+  std::string lines, resources;
+  if (asked.processors > 0) lines += fmt::format("    threads: {}\n", asked.processors);
+  if (asked.megabytes > 0) resources += fmt::format("mem_mb={}", asked.megabytes);
+  if (asked.minutes > 0)
+    resources += fmt::format("{}runtime={}", resources.empty() ? "" : ", ", asked.minutes);
+  return resources.empty() ? lines : lines + "    resources: " + resources + "\n";
+}
+
+/// Returns the options of GNU parallel, which counts processors by jobs and starts none without free memory.
+std::string parallel_options(const CallResources& asked) {
+  std::string options;
+  if (asked.processors > 1) options += fmt::format(" --jobs {}%", std::max(1, 100 / asked.processors));
+  if (asked.megabytes > 0) options += fmt::format(" --memfree {}M", asked.megabytes);
+  if (asked.minutes > 0) options += fmt::format(" --timeout {}", 60 * asked.minutes);
+  return options;
 }
 
 std::string map_command(const PlanCommand& command) {
   const std::string sensor =
       command.sensor.empty() ? "" : fmt::format(" --sensor {}", quote_for_shell(command.sensor));
-  return fmt::format("{}{} -o {}", run_command(command), sensor, quote_for_shell(command.map));
+  return fmt::format("{}{} -o {}", run_command(command, kMapCall), sensor, quote_for_shell(command.map));
 }
 
 /// Returns a Python string literal.
@@ -75,7 +114,7 @@ std::vector<StageJobs> stage_jobs(const Plan& plan, const PlanCommand& command) 
 
 /// Returns the call of a job; `shard` stands for the number of the shard.
 std::string job_command(const StageJobs& jobs, const PlanCommand& command, const std::string& shard) {
-  const std::string call = fmt::format("{} --stage {}", run_command(command), jobs.name);
+  const std::string call = fmt::format("{} --stage {}", run_command(command, jobs.name), jobs.name);
   return jobs.shards == 0 ? call : fmt::format("{} --shard {}/{}", call, shard, jobs.shards);
 }
 
@@ -124,8 +163,9 @@ std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command) {
   std::string text = "# One rule per stage; a stage over tiles or images is divided into shards.\n";
   text += command.map.empty()
               ? fmt::format("rule all:\n    input: {}\n", all)
-              : fmt::format("rule map:\n    input: {}\n    output: {}\n    shell: {}\n", all,
-                            python_string(command.map), snakemake_shell(map_command(command)));
+              : fmt::format("rule map:\n    input: {}\n    output: {}\n{}    shell: {}\n", all,
+                            python_string(command.map), snakemake_resources(resources_of(command, kMapCall)),
+                            snakemake_shell(map_command(command)));
   for (const StageJobs& jobs : stages) {
     text += fmt::format("\nrule {}:\n", jobs.name);
     if (!jobs.after.empty())
@@ -135,8 +175,9 @@ std::string plan_as_snakemake(const Plan& plan, const PlanCommand& command) {
     std::string call = snakemake_shell(job_command(jobs, command, "$shard"));
     if (const std::size_t at = call.find("$shard"); at != std::string::npos)
       call.replace(at, std::string_view("$shard").size(), "{wildcards.shard}");
-    text += fmt::format("    output: touch({})\n    shell: {}\n",
-                        python_string(shard_mark(plan, jobs, command)), call);
+    text += fmt::format("    output: touch({})\n{}    shell: {}\n",
+                        python_string(shard_mark(plan, jobs, command)),
+                        snakemake_resources(resources_of(command, jobs.name)), call);
   }
   return text;
 }
@@ -156,12 +197,16 @@ std::string plan_as_slurm(const Plan& plan, const PlanCommand& command) {
       options += fmt::format("{}$stage_{}", options.empty() ? " --dependency=afterok:" : ":", earlier);
     if (!jobs.after.empty()) options += " --kill-on-invalid-dep=yes";
     if (jobs.shards > 0) options += fmt::format(" --array=1-{}", jobs.shards);
+    options += sbatch_options(resources_of(command, jobs.name));
     submit(fmt::format("stage_{}", jobs.stage), jobs.name, options,
            job_command(jobs, command, "$SLURM_ARRAY_TASK_ID"));
     all += fmt::format(":$stage_{}", jobs.stage);
   }
   if (!command.map.empty())
-    submit("map", "map", " --dependency=afterok" + all + " --kill-on-invalid-dep=yes", map_command(command));
+    submit("map", "map",
+           " --dependency=afterok" + all + " --kill-on-invalid-dep=yes" +
+               sbatch_options(resources_of(command, kMapCall)),
+           map_command(command));
   return script;
 }
 
@@ -170,7 +215,8 @@ std::string plan_as_parallel(const Plan& plan, const PlanCommand& command) {
       "#!/bin/sh\n# The shards of each stage run side by side, the stages in order.\nset -eu\n";
   for (const StageJobs& jobs : stage_jobs(plan, command))
     script += jobs.shards == 0 ? job_command(jobs, command, "") + "\n"
-                               : fmt::format("seq {} | parallel --halt now,fail=1 {}\n", jobs.shards,
+                               : fmt::format("seq {} | parallel --halt now,fail=1{} {}\n", jobs.shards,
+                                             parallel_options(resources_of(command, jobs.name)),
                                              quote_for_shell(job_command(jobs, command, "{}")));
   if (!command.map.empty()) script += map_command(command) + "\n";
   return script;

@@ -113,6 +113,31 @@ TEST_F(PlanTest, SlurmSubmitsStagesInOrder) {
             "waymark run 'my job.json' --work work --stage sum_squares\n");
 }
 
+TEST_F(PlanTest, CallsAskForResources) {
+  const PlanCommand call{.job = "j.json",
+                         .work = "w",
+                         .map = "m.gpkg",
+                         .resources = {{"", {.processors = 2, .megabytes = 2000, .minutes = 60}},
+                                       {"sum_squares", {.megabytes = 16000}},
+                                       {"map", {.minutes = 5}}}};
+  const std::string slurm = plan_as_slurm(the_plan(), call);
+  EXPECT_THAT(slurm,
+              HasSubstr("--array=1-2 --cpus-per-task=2 --mem=2000M --time=60 --wrap 'waymark run j.json "
+                        "--work w --threads 2 --stage square_number --shard"));
+  EXPECT_THAT(slurm, HasSubstr("--mem=16000M --wrap 'waymark run j.json --work w --stage sum_squares'"));
+  EXPECT_THAT(slurm,
+              HasSubstr("--kill-on-invalid-dep=yes --time=5 --wrap 'waymark run j.json --work w -o m"));
+  const std::string snakefile = plan_as_snakemake(the_plan(), call);
+  EXPECT_THAT(snakefile,
+              HasSubstr("    threads: 2\n    resources: mem_mb=2000, runtime=60\n    shell: \"waymark "
+                        "run j.json --work w --threads 2 --stage square_number"));
+  EXPECT_THAT(snakefile, HasSubstr("    resources: mem_mb=16000\n"));
+  EXPECT_THAT(snakefile, HasSubstr("    output: \"m.gpkg\"\n    resources: runtime=5\n    shell"));
+  EXPECT_THAT(
+      plan_as_parallel(the_plan(), call),
+      HasSubstr("seq 2 | parallel --halt now,fail=1 --jobs 50% --memfree 2000M --timeout 3600 'waymark"));
+}
+
 TEST_F(PlanTest, EndsInTheMapWithTheSettings) {
   const PlanCommand call{.job = "j.json", .work = "w", .settings = {"a.b=c d"}, .map = "{m}.gpkg"};
   const std::string run = "waymark run j.json --work w --set 'a.b=c d'";

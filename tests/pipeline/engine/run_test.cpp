@@ -228,6 +228,32 @@ TEST_F(RunTest, ReportsProgressUpToTheEndOfEachStage) {
   }
 }
 
+TEST_F(RunTest, StagesThatCannotRunAreRefused) {
+  EXPECT_EQ(message_of([&] { run(pipeline, {.stage = "square_number"}); }),
+            "--shard, --stage, --unit and --rerun-from need the results of other runs\n  add --work DIR, the "
+            "same for all of them");
+  EXPECT_EQ(message_of([&] { run(pipeline, {.work = work, .stage = "square_numbers"}); }),
+            "the job has no stage 'square_numbers' to run; did you mean 'square_number'?\n"
+            "  its stages: list_numbers, square_number, sum_squares");
+  EXPECT_EQ(
+      message_of([&] { run(pipeline, {.work = work, .unit = "sum_squares/map", .stage = "sum_squares"}); }),
+      "--unit is given together with --shard or --stage\n"
+      "  a unit is the smallest part of a job: give --unit alone");
+  ran();
+  const std::string early = message_of([&] { run(pipeline, {.work = work, .stage = "sum_squares"}); });
+  EXPECT_THAT(early,
+              testing::StartsWith("cannot do sum_squares/map: it reads square_number/tile_000000, which "
+                                  "is not done\n"));
+  EXPECT_THAT(early, testing::EndsWith("\n  first do --stage square_number"));
+  EXPECT_THAT(ran(), ElementsAre(1, 0, 0)) << "nothing but the list";
+  // One shard of two is not enough; both are.
+  run(pipeline, {.work = work, .shard = Shard{1, 2}, .stage = "square_number"});
+  EXPECT_THAT(message_of([&] { run(pipeline, {.work = work, .stage = "sum_squares"}); }),
+              testing::HasSubstr("square_number/tile_000001, which is not done"));
+  run(pipeline, {.work = work, .shard = Shard{2, 2}, .stage = "square_number"});
+  EXPECT_EQ(sum_of(run(pipeline, {.work = work, .stage = "sum_squares"})), sum_of(run(pipeline)));
+}
+
 TEST_F(RunTest, RefusesOptionsThatContradict) {
   EXPECT_EQ(message_of([&] { run(pipeline, {.threads = -1}); }),
             "cannot run with -1 threads\n  0 uses all threads of the machine");

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exporters/records/map_extent.hpp"
+
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+namespace waymark::exporters {
+
+std::optional<MapBox> map_extent(const std::string& map) {
+  GDALAllRegister();
+  const GDALDatasetUniquePtr file(GDALDataset::Open(map.c_str(), GDAL_OF_VECTOR));
+  if (!file) return std::nullopt;
+  OGRLayer* found = file->ExecuteSQL(
+      "SELECT min(min_x), min(min_y), max(max_x), max(max_y) FROM gpkg_contents WHERE min_x IS NOT NULL",
+      nullptr, nullptr);
+  if (!found) return std::nullopt;
+  std::optional<MapBox> box;
+  for (const auto& row : *found)
+    if (row->IsFieldSetAndNotNull(0))
+      box = MapBox{row->GetFieldAsDouble(0), row->GetFieldAsDouble(1), row->GetFieldAsDouble(2),
+                   row->GetFieldAsDouble(3)};
+  file->ReleaseResultSet(found);
+  return box;
+}
+
+}  // namespace waymark::exporters
