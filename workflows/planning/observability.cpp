@@ -51,12 +51,12 @@ GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& land
                north = std::ceil((box.max().y() + range / metres) / cell);
   const double columns = east - west, rows = north - south;
   if (columns * rows > kMaxRasterCells)
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("--cell {:g} makes {:.0f} million cells of {:.1f} x {:.1f} km", request.cell,
-                    columns * rows / 1e6, columns * request.cell / 1e3, rows * request.cell / 1e3),
-        "",
-        fmt::format("pass a cell of {:.2g} m or more", request.cell * std::sqrt(columns * rows / kMaxRasterCells)));
+    throw Error(ErrorCode::usage,
+                fmt::format("--cell {:g} makes {:.0f} million cells of {:.1f} x {:.1f} km", request.cell,
+                            columns * rows / 1e6, columns * request.cell / 1e3, rows * request.cell / 1e3),
+                "",
+                fmt::format("pass a cell of {:.2g} m or more",
+                            request.cell * std::sqrt(columns * rows / kMaxRasterCells)));
   GridGeometry grid;
   grid.columns = static_cast<std::int64_t>(columns), grid.rows = static_cast<std::int64_t>(rows);
   grid.where = {map.crs(), (west + 0.5) * cell, (north - 0.5) * cell, cell, -cell};
