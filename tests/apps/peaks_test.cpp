@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "made_dem.hpp"
 #include "program.hpp"
@@ -14,6 +16,22 @@ namespace {
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
+
+/// Returns the rows of a query, their columns joined by blanks.
+std::vector<std::string> sqlite_rows(const std::string& map, const std::string& sql) {
+  sqlite3* file = nullptr;
+  std::vector<std::string> rows;
+  EXPECT_EQ(sqlite3_open(map.c_str(), &file), SQLITE_OK);
+  const auto add = [](void* to, int columns, char** values, char**) {
+    std::string row;
+    for (int i = 0; i < columns; ++i) row += (i ? " " : "") + std::string(values[i] ? values[i] : "NULL");
+    static_cast<std::vector<std::string>*>(to)->push_back(row);
+    return 0;
+  };
+  EXPECT_EQ(sqlite3_exec(file, sql.c_str(), add, &rows, nullptr), SQLITE_OK) << sqlite3_errmsg(file);
+  sqlite3_close(file);
+  return rows;
+}
 
 class Peaks : public testing::Test {
  protected:
@@ -51,6 +69,42 @@ TEST_F(Peaks, TwinPeaksEndToEnd) {
   EXPECT_EQ(tops[1]["saddle_elevation"], 400);
   EXPECT_EQ(tops[1]["saddle_x"], 503500);
   EXPECT_EQ(tops[1]["parent_uid"], tops[0]["uid"]);
+}
+
+TEST_F(Peaks, SaddlesAndParentLinesAreLayersThatDoNotDependOnTiles) {
+  table({rolling(), "--min-prominence", "1", "--tile-cells", "64"});
+  const std::string map = folder_ / "map.gpkg";
+  const std::string saddles = "SELECT uid, elevation, hex(geom) FROM saddle ORDER BY id";
+  const std::string parents = "SELECT uid, parent_uid, hex(geom) FROM parent_line ORDER BY id";
+  const auto known = sqlite_rows(
+      map, "SELECT uid, saddle_elevation FROM mountain_top WHERE saddle_x IS NOT NULL ORDER BY id");
+  ASSERT_GT(known.size(), 20);
+  EXPECT_EQ(sqlite_rows(map, "SELECT uid, elevation FROM saddle ORDER BY id"), known);
+  const auto lines = sqlite_rows(
+      map,
+      "SELECT a.uid, b.uid FROM mountain_top a JOIN mountain_top b ON b.uid = a.parent_uid ORDER BY a.id");
+  ASSERT_GT(lines.size(), 20);
+  EXPECT_EQ(sqlite_rows(map, "SELECT uid, parent_uid FROM parent_line ORDER BY id"), lines);
+  // Both ends of a line are where the two summits are: a header with an envelope of 40 bytes, 9 of the
+  // line's.
+  const std::string ends =
+      "SELECT count(*) FROM parent_line l JOIN mountain_top a ON a.uid = l.uid JOIN mountain_top b ON b.uid "
+      "= "
+      "l.parent_uid WHERE instr(hex(l.geom), substr(hex(a.geom), -48, 32)) > 0 AND "
+      "instr(hex(l.geom), substr(hex(b.geom), -48, 32)) > 0";
+  EXPECT_EQ(sqlite_rows(map, ends), (std::vector<std::string>{std::to_string(lines.size())}));
+  table({rolling(), "--min-prominence", "1", "--tile-cells", "1000"}, "whole.gpkg");
+  EXPECT_EQ(sqlite_rows(map, saddles), sqlite_rows(folder_ / "whole.gpkg", saddles));
+  EXPECT_EQ(sqlite_rows(map, parents), sqlite_rows(folder_ / "whole.gpkg", parents));
+  EXPECT_EQ(waymark({"validate", map}).code, 0);
+}
+
+TEST_F(Peaks, SummitsWithoutAKeySaddleMakeNoLayer) {
+  table({twins(), "--min-prominence", "400"});
+  const auto layers =
+      sqlite_rows(folder_ / "map.gpkg",
+                  "SELECT table_name FROM gpkg_contents WHERE table_name IN ('saddle', 'parent_line')");
+  EXPECT_TRUE(layers.empty());
 }
 
 TEST_F(Peaks, SummaryTellsStagesCountsSpeedAndTheMap) {

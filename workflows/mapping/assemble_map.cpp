@@ -13,11 +13,11 @@
 
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
-#include "landmarks/uid_index.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/survey_outline.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
+#include "workflows/mapping/summit_layers.hpp"
 #include "workflows/mapping/summit_names.hpp"
 
 namespace waymark::workflows {
@@ -83,75 +83,6 @@ geodb::ShapeLayer survey_layer(const Canopies& canopies) {
   return layer;
 }
 
-std::optional<std::size_t> find_attribute(const LandmarkType& type, std::string_view name) {
-  const auto found = std::ranges::find(type.attributes, name, &AttributeSpec::name);
-  if (found == type.attributes.end()) return {};
-  return static_cast<std::size_t>(found - type.attributes.begin());
-}
-
-template <class T>
-const T* attribute_of(const Landmark& landmark, std::optional<std::size_t> i) {
-  return i && *i < landmark.attributes.size() ? std::get_if<T>(&landmark.attributes[*i]) : nullptr;
-}
-
-/// Visits summits with a known key saddle: `visit(summit, saddle)`.
-void visit_saddles(const TypeRegistry& types, std::span<const Landmark> landmarks, const auto& visit) {
-  for (const Landmark& l : landmarks) {
-    const LandmarkType& type = types[l.type];
-    const double* x = attribute_of<double>(l, find_attribute(type, "saddle_x"));
-    const double* y = attribute_of<double>(l, find_attribute(type, "saddle_y"));
-    if (x && y) visit(l, Eigen::Vector2d(*x, *y));
-  }
-}
-
-/// Visits summits with a parent that is in the map: `visit(summit, parent)`.
-void visit_parents(const TypeRegistry& types, std::span<const Landmark> landmarks, const auto& visit) {
-  const UidIndex by_uid(landmarks);
-  for (const Landmark& l : landmarks) {
-    const auto* uid = attribute_of<std::string>(l, find_attribute(types[l.type], "parent_uid"));
-    const auto parent = uid ? by_uid.find(*uid) : std::nullopt;
-    if (parent) visit(l, landmarks[*parent]);
-  }
-}
-
-/// Returns the layers `saddle` and `parent_line` of summits; those without a row are left out. They read
-/// `landmarks` when they are written.
-std::vector<geodb::ShapeLayer> summit_layers(const TypeRegistry& types, std::span<const Landmark> landmarks) {
-  std::vector<geodb::ShapeLayer> layers;
-  std::int64_t saddles = 0, parents = 0;
-  visit_saddles(types, landmarks, [&](const Landmark&, const Eigen::Vector2d&) { ++saddles; });
-  if (saddles > 0) visit_parents(types, landmarks, [&](const Landmark&, const Landmark&) { ++parents; });
-  if (saddles > 0)
-    layers.push_back(
-        {.name = "saddle",
-         .summary = "Key saddles: the lowest point on the highest path from a summit to higher terrain",
-         .kind = geodb::ShapeKind::point,
-         .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
-                     {"elevation", "m", AttributeSpec::Kind::real, "Elevation of the saddle"}},
-         .style = {.colour = "#8d6e63"},
-         .generator = [&types, landmarks](const auto& take) {
-           visit_saddles(types, landmarks, [&](const Landmark& summit, const Eigen::Vector2d& saddle) {
-             const double* height =
-                 attribute_of<double>(summit, find_attribute(types[summit.type], "saddle_elevation"));
-             take({{{.outer = {saddle}}}, {summit.uid, height ? AttributeValue(*height) : AttributeValue()}});
-           });
-         }});
-  if (parents > 0)
-    layers.push_back({.name = "parent_line",
-                      .summary = "Lines from summits to their parents, the summits beyond their key saddles",
-                      .kind = geodb::ShapeKind::line,
-                      .columns = {{"uid", "", AttributeSpec::Kind::text, "The summit, in layer mountain_top"},
-                                  {"parent_uid", "", AttributeSpec::Kind::text, "Its parent"}},
-                      .style = {.colour = "#a1887f", .width = 0.15},
-                      .generator = [&types, landmarks](const auto& take) {
-                        visit_parents(types, landmarks, [&](const Landmark& summit, const Landmark& parent) {
-                          take({{{.outer = {summit.position.xyz.head<2>(), parent.position.xyz.head<2>()}}},
-                                {summit.uid, parent.uid}});
-                        });
-                      }});
-  return layers;
-}
-
 /// Concatenates the results of several stages.
 template <class T>
 std::vector<T> concatenate(std::vector<std::vector<T>> parts) {
@@ -215,8 +146,7 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry&
     for (const auto& canopy : *surveys) contents.images.push_back(image_record(canopy_view(*canopy)));
   }
   if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
-  for (geodb::ShapeLayer& layer : summit_layers(types, contents.landmarks))
-    contents.layers.push_back(std::move(layer));
+  for (geodb::ShapeLayer& layer : summit_layers(contents)) contents.layers.push_back(std::move(layer));
   for (const auto& made : result.artifacts<std::vector<pipeline::ImageView>>("image_views"))
     for (const pipeline::ImageView& image : *made) contents.images.push_back(image_record(image));
   return contents;
