@@ -48,6 +48,7 @@ class Export final : public Command {
             {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
              "A table in UTM metres"},
             {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+            {"waymark export alps.gpkg alps.sqlite", "SQLite, with geometries and indexes of SpatiaLite"},
             {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
              "A table with a label for the Planetary Data System"},
             {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
