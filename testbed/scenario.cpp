@@ -166,6 +166,11 @@ Scenario read_scenario(std::string_view json, const std::string& source, const O
     throw Error(ErrorCode::usage, fmt::format("picture.bits must be 8 or 16, is {}", scenario.bits), source);
   if (file.contains("drive")) read_drive(scenario.drive, file["drive"].dump(), source, warn);
   scenario.forest.on = file.contains("forest");
+  scenario.street.on = file.contains("street");
+  scenario.hall.on = file.contains("hall");
+  if (scenario.forest.on + scenario.street.on + scenario.hall.on > 1)
+    throw Error(ErrorCode::usage, "the scenario has several of the sections forest, street and hall", source,
+                "a scenario is one place: make a file for each");
   read_flights(scenario, file, source, warn);
   return scenario;
 }
@@ -174,7 +179,9 @@ std::string scenario_json(const Scenario& scenario) {
   Scenario copy = scenario;
   Json file{{"waymark_scenario", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
-    if (section.name == "forest" && !scenario.forest.on) continue;
+    if ((section.name == "forest" && !scenario.forest.on) ||
+        (section.name == "street" && !scenario.street.on) || (section.name == "hall" && !scenario.hall.on))
+      continue;
     const Json fields =
         Json::parse(options_as_json(option_table([&](OptionVisitor& v) { section.describe(copy, v); })));
     if (section.name.empty())

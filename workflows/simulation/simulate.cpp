@@ -21,6 +21,7 @@
 #include "testbed/landing/lit_terrain.hpp"
 #include "testbed/scenario.hpp"
 #include "testbed/scene_files.hpp"
+#include "testbed/town/town_drive.hpp"
 #include "workflows/mapping/image_stages.hpp"
 #include "workflows/simulation/write_forest.hpp"
 
@@ -35,7 +36,8 @@ testbed::Scenario load_scenario(const SimulateRequest& request, const Callbacks&
                              [&](const std::string& warning) { callbacks.warning(warning); });
   scenario.seed = request.seed.value_or(scenario.seed);
   scenario.drive.seed = request.drive_seed.value_or(scenario.drive.seed);
-  if ((request.drive_only || request.drive_seed) && !scenario.drive.on)
+  const bool town = scenario.street.on || scenario.hall.on;
+  if ((request.drive_only || request.drive_seed) && !scenario.drive.on && !town)
     throw Error(ErrorCode::usage, "the scenario has no section drive", request.scenario,
                 "docs/reference/scenario.md describes it; {} stands for a drive with all defaults");
   return scenario;
@@ -167,11 +169,39 @@ SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Sc
   return {.trees = forest.trees.size()};
 }
 
+/// Writes a street or a floor: the log and the truth. Without a section drive the robot is that of
+/// town_settings().
+SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scenario& scenario,
+                             const Callbacks& callbacks) {
+  if (scenario.crs != "local")
+    throw Error(ErrorCode::usage,
+                fmt::format("crs is {}: a street or a hall is made in metres", scenario.crs),
+                request.scenario, "remove crs, or write \"local\"");
+  const auto seed = static_cast<std::uint64_t>(scenario.seed);
+  const std::uint64_t drive_seed =
+      scenario.drive.seed >= 0 ? static_cast<std::uint64_t>(scenario.drive.seed) : seed;
+  const testbed::Town town = scenario.street.on ? testbed::plan_street(scenario.street, seed, drive_seed)
+                                                : testbed::plan_hall(scenario.hall, seed, drive_seed);
+  const testbed::TownDrive drive =
+      testbed::drive_through(town, scenario.drive.on ? scenario.drive : testbed::town_settings(), drive_seed);
+  write_scene(request.folder, [&](const fs::path& folder) {
+    make_folder(folder / "truth");
+    write_file(folder / "log.jsonl", drive.log);
+    write_file(folder / "truth/track.csv", drive.track);
+    write_file(folder / "truth/landmarks.csv", testbed::town_table(town));
+    write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+  });
+  callbacks.summary(fmt::format("{}: {} landmarks, a drive of {:.0f} m in {:.0f} s\n", request.folder,
+                                town.landmarks.size(), drive.distance, drive.seconds));
+  return {.landmarks = town.landmarks.size()};
+}
+
 }  // namespace
 
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks) {
   testbed::Scenario scenario = load_scenario(request, callbacks);
   const Crs crs = scenario_crs(scenario, request.scenario);
+  if (scenario.street.on || scenario.hall.on) return simulate_town(request, scenario, callbacks);
   if (scenario.forest.on) return simulate_forest(request, scenario, crs, callbacks);
   const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
   scenario.ground = testbed::size_site(scenario, shots);
