@@ -51,6 +51,10 @@ HazardObject hazard_seen(const localization::SeenLandmark& seen, const localizat
   return object;
 }
 
+void ObstacleMemory::confirm_all() {
+  for (SeenObstacle& o : obstacles_) o.log_odds = std::max(o.log_odds, SeenObstacle::kConfirmed);
+}
+
 void ObstacleMemory::add(std::span<const HazardObject> seen, const localization::Pose2& odometry_from_robot) {
   std::vector<char> again(obstacles_.size(), 0);
   for (const HazardObject& object : seen) {

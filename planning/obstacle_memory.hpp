@@ -18,7 +18,8 @@ struct SeenObstacle {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   double radius = 0;    ///< metres, with two standard deviations
   double log_odds = 0;  ///< of its existence
-  bool confirmed() const { return log_odds >= 1.5; }
+  bool confirmed() const { return log_odds >= kConfirmed; }
+  static constexpr double kConfirmed = 1.5;
 };
 
 /// Obstacles that the vehicle's own sensors saw. They are kept in the frame of dead reckoning, in which what
@@ -29,6 +30,9 @@ class ObstacleMemory {
   /// 0.1). An obstacle right ahead that is not seen again loses probability, and is forgotten; so are those
   /// that lie over 30 m away.
   void add(std::span<const HazardObject> seen, const localization::Pose2& odometry_from_robot);
+
+  /// Takes all obstacles as confirmed: those that looking again did not rule out.
+  void confirm_all();
 
   const std::vector<SeenObstacle>& obstacles() const { return obstacles_; }
 

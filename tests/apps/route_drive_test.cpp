@@ -31,7 +31,7 @@ class RouteDriveCommand : public testing::Test {
                   {"ground", {{"width", 90}, {"height", 90}, {"cell", 0.5}}},
                   {"relief", {{"rms", 0.3}, {"max_wavelength", 100}, {"roughness", 0.3}}},
                   {"craters", {{"density", 0}}},
-                  {"rocks", {{"k", 0.06}, {"min_diameter", 0.8}, {"max_diameter", 2}}},
+                  {"rocks", {{"k", 0.08}, {"min_diameter", 0.8}, {"max_diameter", 2}}},
                   {"dunes", {{"cover", 0}}},
                   {"flights", json::array()},
                   {"drive",

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <numbers>
+
 #include "landmarks/landmark_type.hpp"
 namespace waymark::test {
 using namespace planning;
@@ -52,6 +54,14 @@ TEST(ObstacleMemory, OneObstacleStaysOneFromAnyPose) {
   memory.add(second, Pose2{2, -4, std::numbers::pi / 2});
   ASSERT_EQ(memory.obstacles().size(), 1u);
   EXPECT_NEAR((memory.obstacles()[0].at - Eigen::Vector2d(6, 0)).norm(), 0, 1e-12);
+}
+
+TEST(ObstacleMemory, WhatCannotBeRuledOutIsConfirmed) {
+  ObstacleMemory memory;
+  const HazardObject seen[] = {rock_at(6, 0)};
+  memory.add(seen, {});
+  memory.confirm_all();
+  EXPECT_TRUE(memory.obstacles()[0].confirmed());
 }
 
 TEST(ObstacleMemory, LowObjectsAreNone) {

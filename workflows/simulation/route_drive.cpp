@@ -150,6 +150,10 @@ class Navigator {
       }
     }
     if (blocked) return detour(pose, "an obstacle on the path");
+    if (doubtful && looks_ == 0 && was_doubtful_) {
+      memory_.confirm_all();
+      return detour(pose, "an obstacle that could not be ruled out");
+    }
     if (doubtful && looks_ == 0) {
       looks_ = kLooks, ++report_.stops, was_doubtful_ = true;
       note("stopped", "an obstacle ahead was seen once");
