@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
@@ -59,6 +62,14 @@ void read_drive(DriveSettings& into, std::string_view json, const std::string& s
     into.waypoints = waypoints_of(file["waypoints"], source);
     if (!file.contains("route")) into.route = "waypoints";
   }
+  constexpr std::array<std::string_view, 4> kRoutes{"waypoints", "loop", "lanes", "wander"};
+  if (!into.planned() && std::ranges::find(kRoutes, into.route) == kRoutes.end())
+    throw Error(ErrorCode::usage, fmt::format("drive.route must not be '{}'", into.route), source,
+                "choose waypoints, loop, lanes, wander, or a file: .csv, .gpkg or .geojson");
+  if (into.planned() && into.navigation.map.empty())
+    throw Error(ErrorCode::usage,
+                fmt::format("drive.route is the file {}, but drive.navigation.map is missing", into.route),
+                source, "name the map by which the vehicle localizes");
   if (into.route == "waypoints" && into.waypoints.empty())
     throw Error(ErrorCode::usage, "drive.route is waypoints, but drive.waypoints is missing", source,
                 "give a list of [east, north], metres from the middle of the site");
