@@ -25,6 +25,11 @@ std::string cell_of(const std::optional<double>& value) {
   return value ? fmt::format("{:.4f}", *value) : "";
 }
 
+/// Angles are cut to four decimals, which rounding would lift over the end of their range.
+std::string angle_cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4f}", std::trunc(*value * 1e4) / 1e4) : "";
+}
+
 }  // namespace
 
 Eigen::Vector2d TownPost::at_time(double t) const {
@@ -87,8 +92,8 @@ std::string town_table(const Town& town) {
   std::map<std::string, int> count;
   for (const TownLandmark& l : town.landmarks)
     text += fmt::format("{},{}{},{},{:.4f},{:.4f},0,{},{},{},{},{},{},{},{},{}\n", l.type, l.type,
-                        ++count[l.type], l.kind, l.at.x(), l.at.y(), cell_of(l.direction),
-                        cell_of(l.opening_angle), cell_of(l.side), cell_of(l.orientation), cell_of(l.facing),
+                        ++count[l.type], l.kind, l.at.x(), l.at.y(), angle_cell(l.direction),
+                        cell_of(l.opening_angle), cell_of(l.side), angle_cell(l.orientation), angle_cell(l.facing),
                         cell_of(l.diameter), cell_of(l.height), cell_of(l.width), cell_of(l.length));
   return text;
 }

@@ -55,7 +55,7 @@ DriveSettings town_settings() {
   settings.speed = 1;
   settings.laser.every = 0.5;
   settings.laser.field = Degrees{270};
-  settings.laser.step = Degrees{0.5};
+  settings.laser.step = Degrees{0.25};
   settings.laser.max_range = 30;
   settings.odometry.slip = 0.005;
   settings.odometry.slip_sd = 0.005;
