@@ -60,13 +60,18 @@ TEST(VectorTile, APointIsThatOfTheSpecification) {
   std::string properties;
   append_property(properties, 0, std::string("v"));
   layer.points.push_back({.id = 5, .x = 25, .y = 17, .properties = {properties}});
-  // Section 4.3.5.1: a point at (25, 17) is [9 50 34].
-  EXPECT_EQ(
-      encode_vector_tile({&layer, 1}),
-      std::string("\x1a\x23\x78\x02\x0a\x01l\x12\x0d\x08\x05\x12\x02\x00\x00\x18\x01\x22\x03\x09\x32\x22"
-                  "\x1a\x01"
-                  "a\x22\x03\x0a\x01v\x28\x80\x20",
-                  37));
+  // Section 4.3.5.1: a point at (25, 17) is [9 50 34]. Layer of 2 + 3 + 15 + 3 + 5 + 3 = 31 bytes: version 2,
+  // name, feature (id 5, tags [0 0], POINT, geometry), key, value, extent 4096.
+  EXPECT_EQ(encode_vector_tile({&layer, 1}),
+            std::string("\x1a\x1f"
+                        "\x78\x02"
+                        "\x0a\x01l"
+                        "\x12\x0d\x08\x05\x12\x02\x00\x00\x18\x01\x22\x03\x09\x32\x22"
+                        "\x1a\x01"
+                        "a"
+                        "\x22\x03\x0a\x01v"
+                        "\x28\x80\x20",
+                        33));
 }
 
 TEST(VectorTile, ValuesOfAllKindsAreRead) {
