@@ -12,6 +12,7 @@
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
+#include "workflows/file_access.hpp"
 #include "workflows/provenance.hpp"
 
 namespace waymark::apps {
@@ -42,6 +43,7 @@ int run_command(const CommandTable& commands, Session& session, const std::vecto
 int run_program(const std::vector<std::string>& words) {
   Session session;
   session.command_line = quoted(words);
+  session.names_network = workflows::names_network(words);
   CommandTable commands;
   register_commands(commands);
   const std::vector<Argument> globals = global_arguments(session);
