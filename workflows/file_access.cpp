@@ -5,10 +5,12 @@
 #include <cpl_error.h>
 #include <cpl_http.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
@@ -23,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// File systems and drivers of GDAL 3.6 that open connections.
+/// File systems and drivers of GDAL 3.6 that open connections. Most file systems have a twin for streams.
 constexpr std::array<std::string_view, 10> kFileSystems{"/vsicurl",    "/vsis3",    "/vsigs",    "/vsiaz",
                                                         "/vsiadls",    "/vsioss",   "/vsiswift", "/vsihdfs",
                                                         "/vsiwebhdfs", "/vsiplugin"};
@@ -34,10 +36,18 @@ constexpr std::array<std::string_view, 13> kPrefixes{
 constexpr const char* kDatabases =
     "PostgreSQL PostGISRaster MySQL MSSQLSpatial ODBC OCI MongoDBv3 HANA GeoRaster";
 
+constexpr const char* kNotAllowed = "%s is on the network, which --allow-network permits";
+
+/// Opens nothing, in place of a file system of the network.
+void* refuse_file(void*, const char* file, const char*) {
+  CPLError(CE_Failure, CPLE_OpenFailed, kNotAllowed, file);
+  return nullptr;
+}
+
 /// Answers each request of GDAL with an error.
 CPLHTTPResult* refuse_request(const char* address, CSLConstList, GDALProgressFunc, void*,
                               CPLHTTPFetchWriteFunc, void*, void*) {
-  CPLError(CE_Failure, CPLE_OpenFailed, "%s is on the network, which is not allowed", address);
+  CPLError(CE_Failure, CPLE_OpenFailed, kNotAllowed, address);
   auto* result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
   result->nStatus = 1;
   result->pszErrBuf = CPLStrdup("the network is not allowed");
@@ -93,8 +103,12 @@ bool names_network(std::span<const std::string> words) {
 
 void refuse_network() {
   CPLHTTPSetFetchCallback(refuse_request, nullptr);
-  // The one file that GDAL's file systems of the network may open.
-  CPLSetConfigOption("CPL_VSIL_CURL_ALLOWED_FILENAME", "none: waymark --allow-network");
+  const std::unique_ptr<VSIFilesystemPluginCallbacksStruct, decltype(&VSIFreeFilesystemPluginCallbacksStruct)>
+      callbacks(VSIAllocFilesystemPluginCallbacksStruct(), VSIFreeFilesystemPluginCallbacksStruct);
+  callbacks->open = refuse_file;
+  for (const std::string_view name : kFileSystems)
+    for (const char* end : {"/", "?", "_streaming/"})
+      VSIInstallPluginHandler((std::string(name) + end).c_str(), callbacks.get());
   for (const char* skip : {"GDAL_SKIP", "OGR_SKIP"}) CPLSetConfigOption(skip, kDatabases);
 }
 
