@@ -9,6 +9,10 @@
 namespace waymark::localization {
 namespace {
 
+OdometryDrift drift_of(const RobotLog& log, const ReplayOptions& options) {
+  return options.drift == OdometryDrift{} ? log.drift : options.drift;
+}
+
 class Replay {
  public:
   Replay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options, const ScanDetector& detect,
@@ -17,6 +21,8 @@ class Replay {
         localizer_(localizer),
         options_(options),
         odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
+        drift_(drift_of(log, options)),
+        estimates_drift_(drift_of(log, options).any()),
         detect_(detect),
         clock_(clock),
         ground_(ground),
@@ -50,14 +56,15 @@ class Replay {
     const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.max_hold);
     now_ = std::max(now_, t);
     if (const auto* twist = std::get_if<TwistReading>(&current_reading_))
-      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_));
+      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_), driven);
     else if (const auto* car = std::get_if<CarReading>(&current_reading_))
-      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, odometry_));
+      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, odometry_), driven);
     if (seconds > driven) predict(step_motion({}, seconds - driven, odometry_));
   }
 
-  void drive(BodyMotion motion) {
+  void drive(BodyMotion motion, double seconds) {
     motion.step = project_to_map(motion.step, terrain_pose_);
+    if (estimates_drift_) motion = drift_.correct(localizer_.estimate(), motion, seconds);
     predict(motion);
   }
 
@@ -75,7 +82,8 @@ class Replay {
   bool take(const TwistReading& reading, TrackRow&) { return current_reading_ = reading, false; }
   bool take(const CarReading& reading, TrackRow&) { return current_reading_ = reading, false; }
   bool take(const StepReading& reading, TrackRow&) {
-    drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), odometry_));
+    const double seconds = std::max(0.0, now_ - last_step_);
+    drive(step_motion(reading.step, seconds, odometry_), seconds);
     last_step_ = now_;
     return false;
   }
@@ -87,8 +95,18 @@ class Replay {
   bool take_fix(const Fix& fix) {
     if (!options_.use_fixes) return false;
     ++track_.fixes;
+    const PoseEstimate prior = localizer_.estimate();
     track_.fixes_rejected += !localizer_.fix(fix);
+    learn_drift(prior);
     return false;
+  }
+
+  void learn_drift(const PoseEstimate& prior) {
+    if (!estimates_drift_) return;
+    if (localizer_.status() == LocalizationStatus::tracking)
+      drift_.learn(prior, localizer_.estimate());
+    else
+      drift_.restart();
   }
 
   bool take(SightingSet seen, TrackRow& row) {
@@ -97,10 +115,11 @@ class Replay {
       s.range_sd *= options_.sensor_noise;
     }
     repeated_.widen(seen, now_);
-    const Eigen::Matrix3d prior = localizer_.estimate().covariance;
+    const PoseEstimate prior = localizer_.estimate();
     const double before = clock_ ? clock_() : 0;
     const std::vector<Match> matches = localizer_.update(seen);
     if (clock_) track_.seconds += row.seconds = clock_() - before;
+    learn_drift(prior);
     ++track_.updates;
     JointEvidence evidence;
     for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -116,7 +135,8 @@ class Replay {
       row.wrong += *seen.sightings[i].identity != matches[i].key;
     }
     track_.wrong += row.wrong;
-    if (evidence.rows) row.nis = joint_distance(evidence, prior).squares, row.nis_rows = evidence.rows;
+    if (evidence.rows)
+      row.nis = joint_distance(evidence, prior.covariance).squares, row.nis_rows = evidence.rows;
     return true;
   }
 
@@ -124,6 +144,8 @@ class Replay {
   Localizer& localizer_;
   const ReplayOptions& options_;
   const OdometryNoise odometry_;
+  DriftEstimator drift_;
+  const bool estimates_drift_;
   const ScanDetector& detect_;
   const TimeSource& clock_;
   const TerrainHeight& ground_;
@@ -138,6 +160,7 @@ class Replay {
 
 void ReplayOptions::describe(OptionVisitor& option) {
   odometry.describe(option);
+  drift.describe(option);
   option("max_hold", max_hold,
          {.help = "Seconds a speed holds without a new reading; then the robot stands",
           .min = 0,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include "localization/odometry_drift.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/terrain_pose.hpp"
 #include "localization/track.hpp"
@@ -8,7 +9,8 @@ namespace waymark::localization {
 
 /// Options of the replay of a log.
 struct ReplayOptions {
-  OdometryNoise odometry;                 ///< unchanged: that of the log's reader, if it gives one
+  OdometryNoise odometry;                 ///< unchanged: that of the log, if it states one
+  OdometryDrift drift;                    ///< unchanged: that of the log
   double max_hold = 1;                    ///< s: how long a speed holds without a new reading
   double sensor_noise = 1;                ///< factor on the standard deviations the log states
   double error_memory = 1;                ///< factor on the correlation times of the log's sensor errors
