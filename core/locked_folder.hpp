@@ -12,10 +12,6 @@ inline constexpr std::string_view kAsidePrefix = ".waymark-";
 void remove_dead_folders(const std::filesystem::path& parent,
                          const std::function<void(const std::filesystem::path& dead)>& before_removal = {});
 
-/// Removes the locked folders of this process that are not abandoned: for the end by a signal, which calls no
-/// destructors.
-void remove_own_folders() noexcept;
-
 /// A folder .waymark-<process>-<host>-XXXXXX, removed with its content by the destructor. It is locked while
 /// the process lives; the constructor removes those of dead processes in the same folder.
 class LockedFolder {
@@ -30,15 +26,12 @@ class LockedFolder {
 
   const std::filesystem::path& path() const { return path_; }
   /// Leaves the folder to the next process that makes one in the same parent.
-  void abandon();
-  /// Lets the destructor remove the folder again.
-  void reclaim();
+  void abandon() { abandoned_ = true; }
 
  private:
-  bool is_abandoned() const;
-
   std::filesystem::path path_;
   int lock_ = -1;
+  bool abandoned_ = false;
 };
 
 }  // namespace waymark::inline core

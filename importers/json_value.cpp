@@ -31,11 +31,7 @@ struct JsonValue::Document {
 };
 
 JsonValue JsonValue::from_file(const std::string& path, const std::vector<std::string>& skipped) {
-  return from_text(read_vsi_text(path), path, skipped);
-}
-
-JsonValue JsonValue::from_text(const std::string& content, const std::string& path,
-                               const std::vector<std::string>& skipped) {
+  const std::string content = read_vsi_text(path);
   checked_json(content, path);
   auto document = std::make_shared<Document>();
   document->path = path;

@@ -49,8 +49,7 @@ class PlanJob final : public Command {
               "Processors, memory and time that each call asks for; with STAGE or `map` those of one stage; "
               "may be "
               "repeated"},
-             {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"},
-             {"--allow-outside", "", &allow_outside_, "Let the job name files outside its folder"}},
+             {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
         .examples = {{"waymark plan job.json --format jsonl", "One unit per line, done or not"},
                      {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
                       "Run by Snakemake"},
@@ -70,7 +69,7 @@ class PlanJob final : public Command {
       throw Error(ErrorCode::usage, "--sensor is recorded in a map, but the plan writes none",
                   "--sensor " + sensor_, "pass -o MAP.gpkg");
     if (!map_.empty()) workflows::check_map_output(map_);
-    const pipeline::Job job = workflows::load_job(job_, settings_, allow_outside_);
+    const pipeline::Job job = workflows::load_job(job_, settings_);
     const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
     const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
@@ -80,7 +79,6 @@ class PlanJob final : public Command {
                                      .settings = settings_,
                                      .map = map_,
                                      .sensor = sensor_,
-                                     .allow_outside = allow_outside_,
                                      .max_shards = static_cast<std::size_t>(shards_),
                                      .resources = workflows::parse_resources(resources_, stages_of(units))};
     std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
@@ -101,7 +99,6 @@ class PlanJob final : public Command {
   std::string job_, format_ = "jsonl", work_ = "work", map_, sensor_;
   long shards_ = 64;
   std::vector<std::string> settings_, resources_;
-  bool allow_outside_ = false;
 };
 
 }  // namespace

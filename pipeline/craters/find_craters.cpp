@@ -59,9 +59,8 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                                        .max_diameter = sizes.largest,
                                                        .min_correlation = kMinCorrelation}),
                         0.5);
-  BowlJudges judges;
-  if (search.verify) judges = {&built_in_crater_model(), &built_in_relief_verifier()};
-  return verify_bowls(image, sun, candidates, judges, search.min_confidence);
+  return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr,
+                      search.min_confidence);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "importers/hash.hpp"
 #include "importers/points/find_las.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
-#include "workflows/file_access.hpp"
 #include "workflows/mapping/assemble_map.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
@@ -140,10 +139,8 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   return options;
 }
 
-pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                       bool allow_outside) {
+pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings) {
   pipeline::Job job = pipeline::read_job(file, all_stages());
-  if (!allow_outside) require_files_inside(job.pipeline, file);
   require_metric_dem(job.pipeline);
   for (const std::string& setting : settings) job.pipeline.set(setting);
   return job;

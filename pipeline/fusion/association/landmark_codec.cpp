@@ -162,19 +162,6 @@ std::vector<Observation> Codec<std::vector<Observation>>::decode(std::string_vie
   return observations;
 }
 
-std::string encode_observation(const Observation& observation) {
-  ByteWriter out;
-  write(out, observation);
-  return out.take();
-}
-
-std::vector<Observation> decode_observations(std::string_view bytes) {
-  ByteReader in(bytes);
-  std::vector<Observation> observations;
-  while (!in.at_end()) observations.push_back(read_observation(in));
-  return observations;
-}
-
 std::string Codec<std::vector<Landmark>>::encode(const std::vector<Landmark>& landmarks) {
   ByteWriter out;
   out(static_cast<std::uint64_t>(landmarks.size()));

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/observation_order.hpp"
-
-#include <Eigen/Core>
-#include <bit>
-#include <cstdint>
 #include <tuple>
 
-namespace waymark::inline core {
+#include "pipeline/fusion/association/merging.hpp"
+
+namespace waymark::pipeline {
 namespace {
 
 // Maps doubles to integers of the same total order, NaN included.
@@ -54,4 +51,4 @@ bool comes_before(const Observation& a, const Observation& b) {
   return std::tie(a.rejected, a.landmark_uid) < std::tie(b.rejected, b.landmark_uid);
 }
 
-}  // namespace waymark::inline core
+}  // namespace waymark::pipeline
