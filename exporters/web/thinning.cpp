@@ -72,7 +72,7 @@ std::vector<ShownLandmark> all_of(std::span<const WebLandmark> landmarks) {
 int top_zoom(std::span<const WebLandmark> landmarks, double world_width) {
   const WebBounds bounds = bounds_of({landmarks.begin(), landmarks.end()});
   const double extent = std::max(bounds.east - bounds.west, bounds.south - bounds.north);
-  const double max_step = std::max(1e-3 / world_width, 1e-6 * extent);
+  const double max_step = std::max(1e-3 / world_width, 1e-5 * extent);
   for (int zoom = 0; zoom < kMaxWebZoom; ++zoom)
     if (std::ldexp(1.0 / VectorLayer::kExtent, -zoom) <= max_step &&
         fullest_tile(landmarks, zoom) <= kMaxPerTile)

@@ -25,7 +25,7 @@ std::vector<ShownLandmark> thin_out(std::span<const WebLandmark> landmarks, int 
 std::vector<ShownLandmark> all_of(std::span<const WebLandmark> landmarks);
 
 /// Returns the coarsest zoom at which tiles have at most kMaxPerTile landmarks, and a step in a tile is at
-/// most a millimetre or a millionth of the width of the map; kMaxWebZoom if none is. `world_width`: metres.
+/// most a millimetre or 1e-5 of the width of the map; kMaxWebZoom if none is. `world_width`: metres.
 int top_zoom(std::span<const WebLandmark> landmarks, double world_width);
 
 /// Tile, and the landmarks in it as a range of a list of shown ones.

@@ -41,7 +41,7 @@ std::string index_html(const std::string& title) {
       "<meta http-equiv='Content-Security-Policy' content=\"default-src 'self'; worker-src blob:; "
       "img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
       "<meta name='viewport' content='width=device-width, initial-scale=1'>\n"
-      "<meta name='generator' content='Waymark'>\n<title>{0}</title>\n{1}"
+      "<meta name='generator' content='Waymark'>\n<link rel='icon' href='data:,'>\n<title>{0}</title>\n{1}"
       "<link rel='stylesheet' href='site.css'>\n</head>\n<body>\n<h1>{0}</h1>\n<div id='map'></div>\n"
       "<aside id='panel'></aside>\n<output id='position'></output>\n<div id='scale'></div>\n"
       "<noscript><p class='problem'>The map is drawn by a script, which this browser does not run. "

@@ -101,7 +101,7 @@ TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
       "eval:(() => { const d = 180 / Math.PI / 6371008.8, p = x => waymark.map.project([x * d, 50 * d]).x;"
       " const bar = document.querySelector(\"#scale span\").getBoundingClientRect().width;"
       " return [document.getElementById(\"scale\").innerText.trim(), bar / (p(100) - p(0)) * 100]; })()",
-      // 3 mm of heights: a pixel of the terrain tiles is read back through the style's decoding.
+      // A height of the terrain tiles is read back through the style's decoding.
       "eval:(waymark.map.setTerrain({source: \"terrain_mesh\"}), 1)",
       "eval:waymark.map.queryTerrainElevation([50.5 / 6371008.8 * 180 / Math.PI, 50.5 / 6371008.8 * 180 / "
       "Math.PI])",
@@ -113,10 +113,10 @@ TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
   EXPECT_EQ(values[0], "local");
   EXPECT_EQ(values[1], 201);
   EXPECT_THAT(values[3].get<std::string>(), HasSubstr("middle"));
-  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("2.500\u00a0m"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("2.50\u00a0m"));
   EXPECT_THAT(values[3].get<std::string>(), HasSubstr("not assessed"));
-  EXPECT_EQ(values[4][0], "20 m");
-  EXPECT_NEAR(values[4][1].get<double>(), 20, 0.2);
+  EXPECT_EQ(values[4][0], "10 m");
+  EXPECT_NEAR(values[4][1].get<double>(), 10, 0.1);
   // Cell (60, 59) of the DEM, the middle of the map.
   EXPECT_NEAR(values[6].get<double>(), 3 * std::sin(0.2 * 60) * std::cos(0.15 * 59), 0.25);
   EXPECT_EQ(values[8], 0);

@@ -116,14 +116,15 @@ TEST(Thinning, TheTopZoomIsFineAndHasNoFullTiles) {
     return all;
   };
   constexpr double earth = 4e7;
-  // A millionth of the world is 1 / (4096 * 2^8).
-  EXPECT_EQ(top_zoom(spread_over(kWorld / 2, 100), earth), 9);
-  // 60,000 in an area of a 2^-10: a tile has 1,000 from zoom 13 on; the millionth of 2^-10 comes at zoom 18.
-  EXPECT_EQ(top_zoom(spread_over(kWorld >> 10, 60000), earth), 18);
+  // Half the world / 100,000 is 1 / (4096 * 2^5.6).
+  EXPECT_EQ(top_zoom(spread_over(kWorld / 2, 100), earth), 6);
+  // A 1024th of the world is ten zooms finer; its tiles have at most 1,000 of 60,000 from zoom 13 or 14 on.
+  EXPECT_EQ(top_zoom(spread_over(kWorld >> 10, 60000), earth), 15);
   // A millimetre of the Earth is below the steps of the finest zoom.
   EXPECT_EQ(top_zoom(spread_over(1000, 10), earth), kMaxWebZoom);
-  // Tiles may have at most 1,000: 40,000 on a 32nd of a tile of zoom 9 need five zooms and more.
-  EXPECT_GT(top_zoom(spread_over(kWorld >> 14, 40000), earth * 1e-4), 15);
+  // 40,000 in one tile of zoom 14: 2,500 in a tile of zoom 16, 625 of zoom 17. A step is 1 mm from zoom 10
+  // on.
+  EXPECT_EQ(top_zoom(spread_over(kWorld >> 14, 40000), earth * 1e-4), 17);
 }
 
 TEST(WebBounds, AreNarrowAcrossTheEdgeOfTheWorld) {

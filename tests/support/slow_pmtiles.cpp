@@ -136,6 +136,8 @@ SlowArchive read_archive(const std::string& file) {
     archive.header[name] = head.plain<std::uint64_t>();
   for (const char* name : {"clustered", "internal", "compression", "type", "min_zoom", "max_zoom"})
     archive.header[name] = head.plain<std::uint8_t>();
+  for (double* degrees : {&archive.west, &archive.south, &archive.east, &archive.north})
+    *degrees = 1e-7 * head.plain<std::int32_t>();
   auto& h = archive.header;
   EXPECT_LE(h["root_offset"] + h["root_length"], 16384u);
   EXPECT_EQ(h["internal"], 2u);

@@ -16,8 +16,9 @@ using TileKey = std::tuple<int, std::uint32_t, std::uint32_t>;
 struct SlowArchive {
   std::map<TileKey, std::string> tiles;  ///< content as stored
   std::string metadata;
-  std::map<std::string, std::uint64_t> header;  ///< numbers by the names of the specification
-  std::size_t leaves = 0;                       ///< leaf directories
+  std::map<std::string, std::uint64_t> header;      ///< numbers by the names of the specification
+  double west = 0, south = 0, east = 0, north = 0;  ///< bounds, degrees
+  std::size_t leaves = 0;                           ///< leaf directories
 };
 SlowArchive read_archive(const std::string& file_content);
 

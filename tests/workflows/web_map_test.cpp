@@ -112,6 +112,7 @@ void expect_whole(const SlowArchive& archive, const std::string& file, int top) 
   const geodb::MapStore map = geodb::MapStore::open(file);
   std::map<std::string, Landmark> by_uid;
   for (Landmark& one : map.query({})) by_uid[one.uid] = one;
+  const double half_turn = std::numbers::pi;
   std::map<int, std::map<std::string, int>> shown;  // by zoom and uid
   std::map<int, std::int64_t> total;
   std::map<std::string, std::vector<exporters::ExportColumn>> columns_of;
@@ -132,6 +133,9 @@ void expect_whole(const SlowArchive& archive, const std::string& file, int top) 
 
         const double steps = std::ldexp(4096, zoom);
         const auto [u, v] = world_of(map.crs(), one.position.xyz.x(), one.position.xyz.y());
+        EXPECT_TRUE(360 * u - 180 > archive.west && 360 * u - 180 < archive.east) << uid;
+        const double latitude = std::atan(std::sinh(half_turn * (1 - 2 * v))) * 180 / half_turn;
+        EXPECT_TRUE(latitude > archive.south && latitude < archive.north) << uid;
         ASSERT_NEAR(column * 4096.0 + double(feature.x) + 0.5, u * steps, 0.5 + 1e-5 * steps / 4096) << uid;
         ASSERT_NEAR(row * 4096.0 + double(feature.y) + 0.5, v * steps, 0.5 + 1e-5 * steps / 4096) << uid;
         ASSERT_TRUE(feature.x >= 0 && feature.x < 4096 && feature.y >= 0 && feature.y < 4096);

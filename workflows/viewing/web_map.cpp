@@ -92,9 +92,12 @@ struct TileMaker {
 exporters::PmtilesHeader header_of(const exporters::WebBounds& bounds, int max_zoom) {
   exporters::PmtilesHeader header{.max_zoom = max_zoom};
   const bool crosses_edge = bounds.east > 1;
-  header.bounds = {
-      crosses_edge ? -180 : exporters::web_longitude(bounds.west), exporters::web_latitude(bounds.south),
-      crosses_edge ? 180 : exporters::web_longitude(bounds.east), exporters::web_latitude(bounds.north)};
+  // Readers skip tiles that the bounds only touch, so landmarks on the edge of a tile need a margin.
+  constexpr double margin = 1e-6;
+  header.bounds = {crosses_edge ? -180 : exporters::web_longitude(bounds.west) - margin,
+                   exporters::web_latitude(bounds.south) - margin,
+                   crosses_edge ? 180 : exporters::web_longitude(bounds.east) + margin,
+                   exporters::web_latitude(bounds.north) + margin};
   const double middle = (bounds.west + bounds.east) / 2;
   header.centre = {exporters::web_longitude(middle - std::floor(middle)),
                    exporters::web_latitude((bounds.north + bounds.south) / 2)};
