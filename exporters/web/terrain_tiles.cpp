@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <set>
 
 namespace waymark::exporters {
@@ -73,21 +74,38 @@ Colour terrarium(double height) {
 }
 
 TerrainTiles::TerrainTiles(const Crs& crs, WebPlane plane, const Relief& relief)
-    : crs_(crs), extent_(relief.extent), pyramid_(relief.heights), west_(1e9), north_(1), east_(-1e9) {
+    : crs_(crs), extent_(relief.extent), pyramid_(relief.heights) {
   const WebProjection projection(crs, plane);
-  double previous = 0.5, middle_y = 0.5;
+  double previous = 0.5;
+  const auto place = [&](double u, double v) -> std::optional<Eigen::Vector2d> {
+    double y = std::lerp(extent_.south, extent_.north, v);
+    if (crs.kind() == CrsKind::geographic) y = std::clamp(y, -kMaxWebLatitude, kMaxWebLatitude);
+    auto at = projection.to_world(std::lerp(extent_.west, extent_.east, u), y);
+    if (!at) return std::nullopt;
+    if (plane == WebPlane::mercator) at->x() += std::round(previous - at->x());
+    previous = at->x();
+    bounds_.west = std::min(bounds_.west, at->x()), bounds_.east = std::max(bounds_.east, at->x());
+    bounds_.north = std::min(bounds_.north, at->y()), bounds_.south = std::max(bounds_.south, at->y());
+    return at;
+  };
+  constexpr double part = 1.0 / kEdgeParts;
   for (int j = 0; j <= kEdgeParts; ++j)
     for (int i = 0; i <= kEdgeParts; ++i) {
-      double y = extent_.south + extent_.height() * j / kEdgeParts;
-      if (crs.kind() == CrsKind::geographic) y = std::clamp(y, -kMaxWebLatitude, kMaxWebLatitude);
-      const auto at = projection.to_world(extent_.west + extent_.width() * i / kEdgeParts, y);
-      if (!at) continue;
-      const double x = at->x() + (plane == WebPlane::mercator ? std::round(previous - at->x()) : 0);
-      previous = x;
-      west_ = std::min(west_, x), east_ = std::max(east_, x);
-      north_ = std::min(north_, at->y()), south_ = std::max(south_, at->y());
-      if (i == kEdgeParts / 2 && j == kEdgeParts / 2) middle_y = at->y();
+      // Rows alternate, so that neighbours follow each other and longitudes continue.
+      place(j % 2 == 0 ? i * part : 1 - i * part, j * part);
     }
+  constexpr std::array<std::array<double, 2>, 5> corners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}};
+  previous = (bounds_.west + bounds_.east) / 2;
+  place(0.5, 0.5);
+  place(0, 0.5);
+  place(0, 0);
+  for (std::size_t side = 0; side < 4; ++side)
+    for (int i = 0; i < kEdgeParts; ++i)
+      if (const auto at = place(std::lerp(corners[side][0], corners[side + 1][0], i * part),
+                                std::lerp(corners[side][1], corners[side + 1][1], i * part)))
+        outline_.push_back(*at);
+  const auto middle = place(0.5, 0.5);
+  const double middle_y = middle ? middle->y() : 0.5;
   const double cells = projection.world_width(middle_y) / std::min(relief.cell_x, relief.cell_y);
   max_zoom_ = std::clamp(static_cast<int>(std::ceil(std::log2(cells / kPixels) - 0.5)), 0, 22);
 }
@@ -100,9 +118,9 @@ std::vector<TileId> TerrainTiles::tiles() const {
       return static_cast<std::int64_t>(std::floor(std::ldexp(world, zoom)));
     };
     std::set<std::pair<std::uint64_t, std::int64_t>> found;  // by position on the curve
-    const std::int64_t first = index(west_), last = std::min(index(east_), first + side - 1);
-    for (std::int64_t row = std::max<std::int64_t>(0, index(north_));
-         row <= std::min(side - 1, index(south_)); ++row)
+    const std::int64_t first = index(bounds_.west), last = std::min(index(bounds_.east), first + side - 1);
+    for (std::int64_t row = std::max<std::int64_t>(0, index(bounds_.north));
+         row <= std::min(side - 1, index(bounds_.south)); ++row)
       for (std::int64_t column = first; column <= last; ++column) {
         const auto wrapped = static_cast<std::uint32_t>((column % side + side) % side);
         found.insert({hilbert_of({zoom, wrapped, static_cast<std::uint32_t>(row)}), row * side + wrapped});

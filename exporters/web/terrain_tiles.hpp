@@ -20,6 +20,10 @@ class TerrainTiles {
 
   /// Zoom at which a pixel is about a cell of the relief.
   int max_zoom() const { return max_zoom_; }
+  /// Returns the rectangle of the relief; west may be below 0, east above 1.
+  const WebBounds& bounds() const { return bounds_; }
+  /// Returns the outline of the relief on the world, against the clock as seen from above, not closed.
+  const std::vector<Eigen::Vector2d>& outline() const { return outline_; }
   /// Lists the tiles of all zooms that the relief touches, ascending by pmtiles_id.
   std::vector<TileId> tiles() const;
   /// Returns a tile as a PNG file. `projection`: one of the same CRS and plane, used by this thread only.
@@ -31,7 +35,8 @@ class TerrainTiles {
   Crs crs_;
   Extent extent_;
   HeightPyramid pyramid_;
-  double west_ = 0, north_ = 0, east_ = 0, south_ = 0;  ///< of the world; west may be below 0, east above 1
+  WebBounds bounds_{1e9, 1, -1e9, 0};
+  std::vector<Eigen::Vector2d> outline_;
   int max_zoom_ = 0;
 };
 

@@ -60,10 +60,7 @@ inline constexpr const char* kHiddenKey = "hidden";
 WebLandmarks read_web_landmarks(const geodb::MapStore& map, const WebProjection& projection,
                                 const std::vector<std::string>& types, double min_confidence);
 
-/// Rectangle of the world that contains all landmarks; east > 1 if it crosses the edge of the world.
-struct WebBounds {
-  double west = 0, north = 0, east = 1, south = 1;
-};
+/// Returns the rectangle that contains all landmarks; east > 1 if it crosses the edge of the world.
 WebBounds bounds_of(const std::vector<WebLandmark>& landmarks);
 
 }  // namespace waymark::exporters

@@ -40,6 +40,11 @@ class WebProjection {
   CrsTransform to_lonlat_, from_lonlat_;
 };
 
+/// Rectangle of the world.
+struct WebBounds {
+  double west = 0, north = 0, east = 1, south = 1;
+};
+
 /// Returns the longitude or latitude that web maps give a position on the world, degrees.
 double web_longitude(double world_x);
 double web_latitude(double world_y);

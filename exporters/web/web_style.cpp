@@ -17,6 +17,7 @@ using StyleJson = nlohmann::ordered_json;
 constexpr double kTilePixels = 512;  // of a tile of a vector source at its own zoom
 constexpr int kMaxViewZoom = 24;
 constexpr int kTintStops = 13;
+constexpr const char* kBackground = "#e9e7e2";
 
 std::string hex(const Colour& c) {
   return fmt::format("#{:02x}{:02x}{:02x}", c.red, c.green, c.blue);
@@ -129,6 +130,27 @@ StyleJson tint_layer(const WebStyle& about) {
           {"paint", {{"color-relief-color", ramp}}}};
 }
 
+/// Everything but the terrain: tiles continue its edges, which would look like terrain.
+StyleJson beyond_terrain(const WebStyle& about) {
+  const auto position = [](double x, double y) { return StyleJson{web_longitude(x), web_latitude(y)}; };
+  // One turn about the terrain's middle: MapLibre lays what is beyond the edges of the world over it.
+  const auto [west, east] =
+      std::ranges::minmax(about.terrain_outline, {}, [](const auto& at) { return at.x(); });
+  const double middle = (west.x() + east.x()) / 2;
+  StyleJson world = StyleJson::array();
+  for (const auto& [x, y] : {std::pair(-0.5, 1.0), {0.5, 1.0}, {0.5, 0.0}, {-0.5, 0.0}, {-0.5, 1.0}})
+    world.push_back(position(middle + x, y));
+  StyleJson hole = StyleJson::array();
+  for (auto at = about.terrain_outline.rbegin(); at != about.terrain_outline.rend(); ++at)
+    hole.push_back(position(at->x(), at->y()));
+  hole.push_back(hole.front());
+  return {{"type", "geojson"},
+          {"data",
+           {{"type", "Feature"},
+            {"properties", StyleJson::object()},
+            {"geometry", {{"type", "Polygon"}, {"coordinates", {world, hole}}}}}}};
+}
+
 StyleJson layer_json(const WebLayer& layer) {
   StyleJson features = StyleJson::array();
   for (const WebLayer::Feature& feature : layer.features)
@@ -183,7 +205,7 @@ std::string web_style(const WebLandmarks& landmarks, const WebStyle& about) {
       {"landmarks", {{"type", "vector"}, {"url", fmt::format("pmtiles://{}", kLandmarkTiles)}}}};
   StyleJson layers = StyleJson::array();
   layers.push_back(
-      {{"id", "background"}, {"type", "background"}, {"paint", {{"background-color", "#e9e7e2"}}}});
+      {{"id", "background"}, {"type", "background"}, {"paint", {{"background-color", kBackground}}}});
   if (!about.terrain_caption.empty()) {
     style["sources"]["terrain"] = terrain_source(about);
     if (about.tint) layers.push_back(tint_layer(about));
@@ -191,6 +213,11 @@ std::string web_style(const WebLandmarks& landmarks, const WebStyle& about) {
                       {"type", "hillshade"},
                       {"source", "terrain"},
                       {"paint", {{"hillshade-exaggeration", 0.5}}}});
+    style["sources"]["beyond_terrain"] = beyond_terrain(about);
+    layers.push_back({{"id", "beyond_terrain"},
+                      {"type", "fill"},
+                      {"source", "beyond_terrain"},
+                      {"paint", {{"fill-color", kBackground}}}});
   }
   for (const WebLayer& layer : landmarks.layers) layers.push_back(circles(layer));
   for (const WebLayer& layer : landmarks.layers)

@@ -13,9 +13,10 @@ struct WebStyle {
   Crs crs = Crs::local();
   WebPlane plane = WebPlane::mercator;
   WebBounds bounds = {};
-  std::string terrain_caption = {};          ///< empty: no terrain
-  std::optional<HypsometricTint> tint = {};  ///< of the terrain
-  std::string version = {};                  ///< of Waymark
+  std::string terrain_caption = {};                   ///< empty: no terrain
+  std::vector<Eigen::Vector2d> terrain_outline = {};  ///< on the world, not closed
+  std::optional<HypsometricTint> tint = {};           ///< of the terrain
+  std::string version = {};                           ///< of Waymark
 };
 
 /// Names of the archives, relative to the style.

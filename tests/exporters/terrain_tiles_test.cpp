@@ -102,6 +102,37 @@ TEST(TerrainTiles, ZoomsAscendAndCoverTheRelief) {
   EXPECT_EQ(std::ranges::count(tiles, last), 1);
 }
 
+TEST(TerrainTiles, TheOutlineIsThatOfTheRelief) {
+  const Crs crs = Crs::from_text("EPSG:32632");
+  const Relief relief = slope(300, 200, 10);
+  const TerrainTiles terrain(crs, WebPlane::mercator, relief);
+  const WebProjection projection(crs, WebPlane::mercator);
+  double area = 0;
+  const auto& outline = terrain.outline();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d at = projection.from_world(outline[i]);
+    const double to_edge =
+        std::min({std::abs(at.x() - relief.extent.west), std::abs(at.x() - relief.extent.east),
+                  std::abs(at.y() - relief.extent.south), std::abs(at.y() - relief.extent.north)});
+    EXPECT_LT(to_edge, 0.01);
+    const Eigen::Vector2d next = projection.from_world(outline[(i + 1) % outline.size()]);
+    area += (at.x() * next.y() - next.x() * at.y()) / 2;
+    EXPECT_TRUE(outline[i].x() >= terrain.bounds().west && outline[i].x() <= terrain.bounds().east);
+    EXPECT_TRUE(outline[i].y() >= terrain.bounds().north && outline[i].y() <= terrain.bounds().south);
+  }
+  EXPECT_NEAR(area, 3000 * 2000, 1);  // positive: against the clock
+}
+
+TEST(TerrainTiles, AnOutlineAcrossTheAntimeridianIsWhole) {
+  const Crs mars = Crs::from_text("IAU_2015:49900");
+  Relief relief{{177, -20, 183, -16}, Grid<float>(60, 40, 1.0F), 6000, 6000};
+  const TerrainTiles terrain(mars, WebPlane::mercator, relief);
+  EXPECT_NEAR(terrain.bounds().east - terrain.bounds().west, 6 / 360.0, 1e-9);
+  for (std::size_t i = 1; i < terrain.outline().size(); ++i)
+    EXPECT_LT((terrain.outline()[i] - terrain.outline()[i - 1]).norm(), 0.001);
+  EXPECT_GT(terrain.tiles().size(), std::size_t(terrain.max_zoom()));
+}
+
 TEST(TerrainTiles, AGlobalModelHasNoSeamAtTheAntimeridian) {
   Relief relief{{-180, -90, 180, 90}, Grid<float>(720, 360), 30000, 30000};
   for (std::int64_t r = 0; r < 360; ++r)

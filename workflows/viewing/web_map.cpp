@@ -91,7 +91,7 @@ struct TileMaker {
 
 exporters::PmtilesHeader header_of(const exporters::WebBounds& bounds, int max_zoom) {
   exporters::PmtilesHeader header{.max_zoom = max_zoom};
-  const bool crosses_edge = bounds.east > 1;
+  const bool crosses_edge = bounds.west < 0 || bounds.east > 1;
   // Readers skip tiles that the bounds only touch, so landmarks on the edge of a tile need a margin.
   constexpr double margin = 1e-6;
   header.bounds = {crosses_edge ? -180 : exporters::web_longitude(bounds.west) - margin,
@@ -133,7 +133,7 @@ std::int64_t write_terrain(TileMaker& make, PmtilesFile& file, const exporters::
   make(
       file, "terrain", tiles.size(), [&](std::size_t i) { return exporters::pmtiles_id(tiles[i]); },
       [&](std::size_t i) { return terrain.tile(tiles[i], *projections.local()); });
-  exporters::PmtilesHeader header = header_of({}, terrain.max_zoom());
+  exporters::PmtilesHeader header = header_of(terrain.bounds(), terrain.max_zoom());
   header.tiles = exporters::PmtilesHeader::Tiles::png;
   header.gzipped = false;
   header.metadata = R"({"name":"terrain","encoding":"terrarium"})";
@@ -206,7 +206,10 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   result.max_zoom =
       request.max_zoom >= 0 ? request.max_zoom : exporters::top_zoom(all.landmarks, world_width);
   const auto relief = read_terrain(request, map, extent ? (extent->min_x + extent->max_x) / 2 : 0);
+  std::optional<exporters::TerrainTiles> terrain;
   if (relief) {
+    terrain.emplace(crs, plane, *relief);
+    style.terrain_outline = terrain->outline();
     style.terrain_caption =
         fmt::format("Terrain, {:.3g} m per pixel", std::min(relief->cell_x, relief->cell_y));
     style.tint = exporters::hypsometric_tint(*relief, crs.body());
@@ -221,8 +224,7 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   result.landmark_tiles = write_landmarks(make, landmarks, all, style, result.max_zoom);
   if (relief) {
     PmtilesFile tiles(files.path() / exporters::kTerrainTiles, output / exporters::kTerrainTiles);
-    result.terrain_tiles =
-        write_terrain(make, tiles, exporters::TerrainTiles(crs, plane, *relief), crs, plane);
+    result.terrain_tiles = write_terrain(make, tiles, *terrain, crs, plane);
   }
   write_texts(files.path(), exporters::web_page_files(style.title), output);
   write_texts(files.path(), {{"style.json", exporters::web_style(all, style)}}, output);

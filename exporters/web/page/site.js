@@ -24,6 +24,8 @@ class ArchiveSource {
   }
 }
 
+const NO_TILE = 'beyond the terrain';
+
 const element = (name, attributes = {}, ...children) => {
   const made = Object.assign(document.createElement(name), attributes);
   made.append(...children);
@@ -38,6 +40,9 @@ const numberText = (value, decimals) => value.toLocaleString('en', {minimumFract
 /// Formats a number of a list of features {unit, factor, decimals}.
 const featureText = (value, feature) =>
   numberText(value * feature.factor, feature.decimals) + (feature.unit ? '\u00a0' + feature.unit : '');
+
+/// Metres to a decimetre; other numbers, such as degrees, as they are to five decimals.
+const attributeText = (value, unit) => unit === 'm' ? numberText(value, 1) : String(Number(value.toFixed(5))).replace('-', '\u2212');
 
 const lengthText = metres => metres >= 1000 ? `${metres / 1000} km` : metres >= 1 ? `${metres} m` :
   metres >= 0.01 ? `${Math.round(metres * 100)} cm` : `${Math.round(metres * 1000)} mm`;
@@ -86,7 +91,7 @@ const details = (about, type, p) => {
   }
   for (const attribute of type.attributes)
     if (p[attribute.name] !== undefined && attribute.name !== 'name')
-      row(attribute.title, (typeof p[attribute.name] === 'number' ? numberText(p[attribute.name], 1) : p[attribute.name]) +
+      row(attribute.title, (typeof p[attribute.name] === 'number' ? attributeText(p[attribute.name], attribute.unit) : p[attribute.name]) +
         (attribute.unit ? '\u00a0' + attribute.unit : ''));
   row('Quality', qualityText(p), 'how reliably images or surveys see it, 0 to 1');
   row('Confidence', numberText(p.confidence, 2), 'probability that it exists');
@@ -190,12 +195,20 @@ async function start() {
   const about = style.metadata.waymark;
   const protocol = new pmtiles.Protocol();
   for (const file of ['landmarks.pmtiles', 'terrain.pmtiles']) protocol.add(new pmtiles.PMTiles(new ArchiveSource(file)));
-  maplibregl.addProtocol('pmtiles', protocol.tile);
+  maplibregl.addProtocol('pmtiles', async (request, abort) => {
+    const answer = await protocol.tile(request, abort);
+    // A tile of heights without data would count as loading for ever.
+    if (answer.data === null) throw new Error(NO_TILE);
+    return answer;
+  });
   if (about.terrain) style.sources.terrain_mesh = {...style.sources.terrain};
-  const map = new maplibregl.Map({container: 'map', style, bounds: about.bounds, fitBoundsOptions: {padding: 70, maxZoom: 21},
+  const map = new maplibregl.Map({container: 'map', style, bounds: about.bounds, fitBoundsOptions: {
+      padding: {top: 60, bottom: 60, right: 60, left: Math.min(310, innerWidth / 3)}, maxZoom: 21},
     maxZoom: 24, maxPitch: 80, hash: true, attributionControl: false, renderWorldCopies: !about.plane});
   map.addControl(new maplibregl.NavigationControl({visualizePitch: true}));
-  map.on('error', event => console.error(event.error ? event.error.message : event));
+  map.on('error', event => {
+    if (event.error?.message !== NO_TILE) console.error(event.error ? event.error.message : event);
+  });
   const state = {map, about, isDrawn: false, ready: () => state.isDrawn && map.loaded()};
   map.on('idle', () => { state.isDrawn = true; });
   map.on('movestart', () => { state.isDrawn = false; });
