@@ -943,3 +943,18 @@ def simulate(scenario: Any, folder: Any, *, progress: Any = ..., seed: int | Non
         drive_seed: in place of that of the section drive
         drive_only: write the drive and its truth, no DEM and no images"""
     ...
+
+def web(map: Any, output: Any, *, progress: Any = ..., types: Sequence[Any] | _Path = ..., min_confidence: float = ..., dem: Sequence[Any] | _Path = ..., terrain_pixels: int = ..., max_zoom: int = ..., assets: _Path = ..., title: _Path = ..., threads: int = ...) -> dict[str, int]:
+    """Writes a folder that shows a map in web browsers, as `waymark web`; returns counts: landmarks, outside,
+    max_zoom, landmark_tiles, terrain_tiles.
+
+    Keywords:
+        types: landmark types shown; empty: all
+        min_confidence: landmarks of less are left out
+        dem: elevation models; empty: stored in the map, or read by its runs
+        terrain_pixels: of the longer side of the terrain, at most; 0: no terrain
+        max_zoom: zoom that shows all landmarks; -1: chosen by their density
+        assets: folder of the map library; empty: fetched later
+        title: empty: the map's name
+        threads"""
+    ...
