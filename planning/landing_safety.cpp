@@ -11,7 +11,7 @@
 namespace waymark::planning {
 namespace {
 
-constexpr double kReach = 4;               // standard deviations
+constexpr double kBlurReach = 4;               // standard deviations
 constexpr double kMinConditional = 3;      // cells: narrower blurs along rows are summed directly
 constexpr double kInterpolation = 1. / 6;  // cells^2, mean variance that linear interpolation adds
 
@@ -21,7 +21,7 @@ double value_at(const Grid<float>& safe, std::int64_t column, std::int64_t row) 
 }
 
 std::int64_t reach_of_sd(double variance) {
-  return static_cast<std::int64_t>(std::ceil(kReach * std::sqrt(variance)));
+  return static_cast<std::int64_t>(std::ceil(kBlurReach * std::sqrt(variance)));
 }
 
 std::vector<double> gaussian(std::int64_t half, double variance) {
@@ -63,7 +63,7 @@ Grid<float> landing_safety_directly(const Grid<float>& safe, const Window& inner
     for (std::int64_t dx = -margin.columns; dx <= margin.columns; ++dx) {
       const Eigen::Vector2d d(static_cast<double>(dx), static_cast<double>(dy));
       const double squares = d.dot(information * d);
-      if (squares > kReach * kReach) continue;
+      if (squares > kBlurReach * kBlurReach) continue;
       taps.push_back({dx, dy, std::exp(-0.5 * squares)});
       sum += taps.back().weight;
     }
