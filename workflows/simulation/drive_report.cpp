@@ -19,12 +19,12 @@ constexpr double kEllipse95 = 2.448;  // sd that hold 95 % of two dimensions
 constexpr double kWindow = 20;        // s
 
 template <class T>
-Json optional(const std::optional<T>& value) {
+Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
 /// Rounded to what a reader can use: six significant digits would differ between machines.
-double rounded(double value) {
+double four_digits(double value) {
   return std::round(value * 1e4) / 1e4;
 }
 
@@ -93,29 +93,29 @@ std::string drive_report_json(const DriveReport& r) {
   Json json{{"waymark_drive", 1},
             {"reached", r.reached},
             {"ended", r.ended},
-            {"seconds", rounded(r.seconds)},
-            {"driven", rounded(r.driven)},
-            {"goal_distance", rounded(r.goal_distance)},
-            {"planned_length", rounded(r.planned_length)},
-            {"planned_worst_sd", rounded(r.planned_sd)},
-            {"worst_sd", rounded(r.worst_sd)},
-            {"rms_error", rounded(r.rms_error)},
-            {"worst_error", rounded(r.worst_error)},
-            {"worst_rms_20s", rounded(r.worst_rms)},
-            {"lost", rounded(r.lost)},
-            {"wrong_and_sure", rounded(r.wrong_and_sure)},
+            {"seconds", four_digits(r.seconds)},
+            {"driven", four_digits(r.driven)},
+            {"goal_distance", four_digits(r.goal_distance)},
+            {"planned_length", four_digits(r.planned_length)},
+            {"planned_worst_sd", four_digits(r.planned_sd)},
+            {"worst_sd", four_digits(r.worst_sd)},
+            {"rms_error", four_digits(r.rms_error)},
+            {"worst_error", four_digits(r.worst_error)},
+            {"worst_rms_20s", four_digits(r.worst_rms)},
+            {"lost", four_digits(r.lost)},
+            {"wrong_and_sure", four_digits(r.wrong_and_sure)},
             {"limit_sigma", r.limit_sigma > 0 ? Json(r.limit_sigma) : Json(nullptr)},
-            {"limit_kept", optional(r.limit_kept)},
-            {"within_95_of_limit", optional(r.inside_95)},
-            {"keep_out_metres", optional(r.keep_out)},
-            {"contact", optional(r.contact)},
+            {"limit_kept", or_null(r.limit_kept)},
+            {"within_95_of_limit", or_null(r.inside_95)},
+            {"keep_out_metres", or_null(r.keep_out)},
+            {"contact", or_null(r.contact)},
             {"replans", r.replans},
             {"stops", r.stops}};
   Json& events = json["events"] = Json::array();
   for (const DriveEvent& e : r.events)
-    events.push_back({{"t", rounded(e.t)},
-                      {"x", rounded(e.at.x())},
-                      {"y", rounded(e.at.y())},
+    events.push_back({{"t", four_digits(e.t)},
+                      {"x", four_digits(e.at.x())},
+                      {"y", four_digits(e.at.y())},
                       {"kind", e.kind},
                       {"reason", e.reason}});
   return json.dump(1) + "\n";

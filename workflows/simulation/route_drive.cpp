@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using localization::Pose2;
 
-constexpr double kSpacing = 0.5;      // m between points of a path
+constexpr double kPathSpacing = 0.5;  // m between points of a path
 constexpr double kLookAhead = 12;     // m of the path that must be free of obstacles
 constexpr double kStopBefore = 4;     // m to an obstacle that was seen once
 constexpr int kLooks = 3;             // sets of sightings that rule an obstacle out
@@ -41,7 +41,7 @@ struct Path {
 Path path_of(const std::vector<RoutePoint>& stations) {
   std::vector<Eigen::Vector2d> corners;
   for (const RoutePoint& s : stations) corners.push_back(s.at);
-  Path path{testbed::smooth_path(corners, kSpacing), {}};
+  Path path{testbed::smooth_path(corners, kPathSpacing), {}};
   std::size_t nearest = 0;
   for (const Eigen::Vector2d& at : path.points) {
     // Stations are passed in their order, so that the path may cross itself.
@@ -167,7 +167,7 @@ class Navigator {
   /// Returns the first point of the path beyond the obstacles ahead that is clear of them.
   std::size_t rejoin_at(const std::vector<planning::SeenObstacle>& all) const {
     const auto& points = path_.points;
-    const std::size_t first = pursuit_->target() + static_cast<std::size_t>(kLookAhead / kSpacing);
+    const std::size_t first = pursuit_->target() + static_cast<std::size_t>(kLookAhead / kPathSpacing);
     const double clear = planner_.settings().clearance + planner_.settings().cell;
     for (std::size_t i = first; i < points.size(); ++i)
       if (std::ranges::none_of(all,
@@ -218,16 +218,19 @@ class Navigator {
     const double sd = planning::position_sd(planning::symmetric(pose.covariance));
     const double planned = path_.sd[std::min(pursuit_->target(), path_.sd.size() - 1)];
     const auto gone = watch_.gone();
+    const std::span rest(path_.points.begin() + static_cast<std::ptrdiff_t>(pursuit_->target()),
+                         path_.points.end());
+    const double limit = model_.limit_sigma;
     if (planned > 0 && sd > model_.sd_factor * planned + kOverSd) {
-      planned_at_ = driven, gone_ = gone;
+      // A plan that keeps the limit from here, too, stays.
+      if (limit > 0 && planner_.expected_sd(pose, rest, gone) <= limit) return;
+      planned_at_ = driven + (sd > limit ? kBetweenPlans : 0), gone_ = gone;
       replan(pose, fmt::format("the sd of {:.2f} m exceeds the planned {:.2f} m", sd, planned));
     } else if (gone.size() > gone_.size()) {
       planned_at_ = driven;
-      const std::span rest(path_.points.begin() + static_cast<std::ptrdiff_t>(pursuit_->target()),
-                           path_.points.end());
       const double with = planner_.expected_sd(pose, rest, gone_);
       const double without = planner_.expected_sd(pose, rest, gone);
-      const bool matters = without > std::max(model_.limit_sigma, model_.sd_factor * with);
+      const bool matters = without > std::max(limit, model_.sd_factor * with);
       const std::size_t more = gone.size() - gone_.size();
       gone_ = gone;
       if (matters)
