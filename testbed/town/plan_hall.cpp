@@ -9,8 +9,10 @@
 namespace waymark::testbed {
 namespace {
 
-constexpr double kJamb = 0.15;  // m: thickness of the walls towards the corridor
-constexpr double kTurn = std::numbers::pi;
+constexpr double kClearOfDoor = 0.5;  // m between a jamb and the middle of a pillar
+constexpr int kDraws = 100;           // of a place for a pillar
+constexpr double kJamb = 0.15;        // m: thickness of the walls towards the corridor
+constexpr double kHallHalfTurn = std::numbers::pi;
 
 struct Door {
   double from, to;  // along its wall
@@ -71,7 +73,7 @@ class RoomRow {
     town_.landmarks.push_back({.type = "door",
                                .kind = {},
                                .at = at((door.from + door.to) / 2, 0),
-                               .orientation = std::remainder(std::atan2(u_.x(), u_.y()), kTurn),
+                               .orientation = std::remainder(std::atan2(u_.x(), u_.y()), kHallHalfTurn),
                                .width = door.to - door.from});
     // Ends of the wall at both jambs: who looks at the face has the wall on the side away from the door.
     for (const bool second : {false, true})
@@ -109,7 +111,8 @@ void add_turned_half(Town& town) {
   for (std::size_t i = 0; i < landmarks; ++i) {
     TownLandmark landmark = town.landmarks[i];
     landmark.at = -landmark.at;
-    if (landmark.direction) landmark.direction = std::remainder(*landmark.direction + kTurn, 2 * kTurn);
+    if (landmark.direction)
+      landmark.direction = std::remainder(*landmark.direction + kHallHalfTurn, 2 * kHallHalfTurn);
     town.landmarks.push_back(landmark);
   }
 }
@@ -127,8 +130,13 @@ Town plan_hall(const HallModel& model, std::uint64_t seed, std::uint64_t drive_s
     RoomRow(model, outer[i], outer[(i + 1) % 4], plan, doors, town).plan();
   const std::int64_t pillars = model.symmetric ? model.pillars / 2 : model.pillars;
   for (std::int64_t i = 0; i < pillars; ++i) {
-    const double u = plan.uniform(-ix + 1, ix - 1),
-                 v = (i % 2 == 0 && !model.symmetric) ? oy - 0.25 : -oy + 0.25;
+    const double v = (i % 2 == 0 && !model.symmetric) ? oy - 0.25 : -oy + 0.25;
+    double u = plan.uniform(-ix + 1, ix - 1);
+    const auto blocks_door = [&](const TownLandmark& l) {
+      return l.type == "door" && (l.at - Eigen::Vector2d(u, v)).norm() < model.door_width / 2 + kClearOfDoor;
+    };
+    for (int draw = 0; draw < kDraws && std::ranges::any_of(town.landmarks, blocks_door); ++draw)
+      u = plan.uniform(-ix + 1, ix - 1);
     const double diameter = plan.uniform(0.32, 0.45);
     town.posts.push_back({.at = {u, v}, .radius = diameter / 2});
     town.landmarks.push_back({.type = "pillar", .kind = {}, .at = {u, v}, .diameter = diameter, .height = 3});
@@ -141,7 +149,7 @@ Town plan_hall(const HallModel& model, std::uint64_t seed, std::uint64_t drive_s
                               .kind = {},
                               .at = outer[i],
                               .direction = std::atan2(open.x(), open.y()),
-                              .opening_angle = kTurn / 2});
+                              .opening_angle = kHallHalfTurn / 2});
   }
   for (std::int64_t i = 0; i < model.people; ++i) {
     const double v = (i % 2 == 0 ? 1 : -1) * (y + people.uniform(-0.5, 0.5) * half);

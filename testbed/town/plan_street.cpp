@@ -12,7 +12,7 @@ namespace {
 constexpr double kHouseDepth = 9, kAlley = 3;                      // m
 constexpr double kKerb = 3.5;                                      // m from the facade to the kerb
 constexpr double kCarLength = 4.4, kCarWidth = 1.8, kSpace = 5.5;  // m
-constexpr double kTurn = std::numbers::pi;
+constexpr double kStreetHalfTurn = std::numbers::pi;
 
 /// Puts what stands along one side of the street; `side` is 1 north, -1 south.
 class StreetSide {
@@ -31,12 +31,13 @@ class StreetSide {
     });
     row(model_.sign_spacing, 0.8, [&](const Eigen::Vector2d& at) {
       post(at, 0.08, "pole", "sign", 2.5);
-      town_.landmarks.push_back(
-          {.type = "traffic_sign",
-           .kind = {},
-           .at = at,
-           .facing = side_ > 0 ? kTurn / 2 : -kTurn / 2,  // towards who drives on this side
-           .height = 2.2});
+      town_.landmarks.push_back({.type = "traffic_sign",
+                                 .kind = {},
+                                 .at = at,
+                                 .facing = side_ > 0
+                                               ? kStreetHalfTurn / 2
+                                               : -kStreetHalfTurn / 2,  // towards who drives on this side
+                                 .height = 2.2});
     });
     row(model_.tree_spacing, 1.2, [&](const Eigen::Vector2d& at) {
       post(at, random_.uniform(0.35, 0.7), "tree", "", random_.uniform(6, 15));
@@ -60,7 +61,7 @@ class StreetSide {
       town_.landmarks.push_back({.type = "wall",
                                  .kind = {},
                                  .at = {x + length / 2, side_ * front},
-                                 .direction = side_ > 0 ? kTurn : 0,
+                                 .direction = side_ > 0 ? kStreetHalfTurn : 0,
                                  .height = 8,
                                  .length = length});
       x += length + (random_.bernoulli(0.5) ? kAlley : 1);

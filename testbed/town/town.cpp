@@ -93,8 +93,9 @@ std::string town_table(const Town& town) {
   for (const TownLandmark& l : town.landmarks)
     text += fmt::format("{},{}{},{},{:.4f},{:.4f},0,{},{},{},{},{},{},{},{},{}\n", l.type, l.type,
                         ++count[l.type], l.kind, l.at.x(), l.at.y(), angle_cell(l.direction),
-                        cell_of(l.opening_angle), cell_of(l.side), angle_cell(l.orientation), angle_cell(l.facing),
-                        cell_of(l.diameter), cell_of(l.height), cell_of(l.width), cell_of(l.length));
+                        cell_of(l.opening_angle), cell_of(l.side), angle_cell(l.orientation),
+                        angle_cell(l.facing), cell_of(l.diameter), cell_of(l.height), cell_of(l.width),
+                        cell_of(l.length));
   return text;
 }
 
