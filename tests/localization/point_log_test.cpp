@@ -54,14 +54,16 @@ std::string floats(std::initializer_list<float> values, bool swap = false) {
   return bytes;
 }
 
-/// A pole of 3 m at (8, 6) on the ground 1.7 m below the scanner.
+/// A pole of 3 m and 0.2 m wide at (8, 6) on the ground 1.7 m below the scanner, and what is seen of it.
 std::string kitti_scan() {
   std::string bytes;
   for (float x = -20; x < 20; x += 0.25F)
     for (float y = -20; y < 20; y += 0.25F) bytes += floats({x, y, -1.7F, 0});
   for (float z = -1.7F; z < 1.3F; z += 0.1F)
-    for (float side = -0.08F; side <= 0.081F; side += 0.04F)
-      bytes += floats({8 - 0.6F * side, 6 + 0.8F * side, z, 0});
+    for (float turn = -1.2F; turn <= 1.21F; turn += 0.3F) {
+      const float facing = std::atan2(-6.0F, -8.0F) + turn;
+      bytes += floats({8 + 0.1F * std::cos(facing), 6 + 0.1F * std::sin(facing), z, 0});
+    }
   return bytes;
 }
 
@@ -74,7 +76,7 @@ TEST_F(PointLog, ScansOfAFolderBecomeSightings) {
   EXPECT_EQ(log.events[1].t, 5.5);
   const auto& seen = std::get<localization::SightingSet>(log.events[1].what);
   ASSERT_EQ(seen.sightings.size(), 1U);
-  EXPECT_NEAR(*seen.sightings[0].range, 10, 0.15);
+  EXPECT_NEAR(*seen.sightings[0].range, 10, 0.03);
   EXPECT_NEAR(seen.sightings[0].bearing, std::atan2(6, 8), 0.01);
 }
 
