@@ -46,3 +46,5 @@ BENCHMARK(FindPoles)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench
+
+BENCHMARK_MAIN();

@@ -12,13 +12,15 @@
 #include "tests/support/reader_faults.hpp"
 
 namespace waymark::test {
-namespace {
 
-namespace fs = std::filesystem;
-
+// Names the parameter of a test; found by the namespace of Reader.
 void PrintTo(const Reader& reader, std::ostream* out) {
   *out << reader.name;
 }
+
+namespace {
+
+namespace fs = std::filesystem;
 
 std::vector<fs::path> files_in(const fs::path& folder) {
   if (!fs::is_directory(folder)) return {};
