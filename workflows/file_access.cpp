@@ -121,11 +121,11 @@ void require_files_inside(const pipeline::Pipeline& pipeline, const fs::path& jo
         const std::string what = fmt::format("{}.{} = {}", step->spec().name, option, text);
         if (is_on_network(text))
           throw Error(ErrorCode::usage, "the job names a place on the network: " + what, job.string(),
-                      "if you trust the job, pass --allow-outside and --allow-network");
+                      "if you trust the job, leave out --confined and pass --allow-network");
         const std::string file = file_within(text);
         if (file.empty() || is_below(folder / file, folder)) continue;
         throw Error(ErrorCode::usage, "the job names a file outside its folder: " + what, job.string(),
-                    "if you trust the job, pass --allow-outside; or put the file beside it");
+                    "if you trust the job, leave out --confined; or put the file beside it");
       }
   }
 }

@@ -31,14 +31,13 @@ class Run final : public Command {
                    "Run this stage only, or with --shard its units of the shard; other results are reused"});
     all.push_back(
         {"--unit", "ID", &asked_.request.unit, "Run this unit of work only; `waymark plan` lists them"});
-    all.push_back({"--allow-outside", "", &allow_outside_, "Let the job name files outside its folder"});
+    all.push_back({"--confined", "", &confined_, "Refuse a job that names files outside its folder"});
     return {
         .name = "run",
         .group = Group::make,
         .summary = "Run a job file and write the map",
         .about =
-            "Paths in the job file start at its folder, and stay in it. With --work every finished unit of "
-            "work is kept "
+            "Paths in the job file start at its folder. With --work every finished unit of work is kept "
             "under a fingerprint of its options and inputs: a second run does only what is missing or has "
             "changed.",
         .arguments = all,
@@ -53,7 +52,7 @@ class Run final : public Command {
   }
 
   int run(const Session& session) override {
-    const pipeline::Job job = workflows::load_job(job_, settings_, allow_outside_);
+    const pipeline::Job job = workflows::load_job(job_, settings_, confined_);
     if (!shard_.empty()) asked_.request.shard = parse_shard(shard_);
     return make_map_command(job, asked_, session);
   }
@@ -61,7 +60,7 @@ class Run final : public Command {
  private:
   std::string job_, shard_;
   std::vector<std::string> settings_;
-  bool allow_outside_ = false;
+  bool confined_ = false;
   MapCommand asked_;
 };
 

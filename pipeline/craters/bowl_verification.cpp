@@ -70,9 +70,9 @@ double logistic(double x) {
 
 // Output of the model for a candidate.
 struct ModelEstimate {
-  double log_odds = 0;             // at the corrected circle
-  double diameter = 0;             // of that circle by the model; 0: none
-  CraterCandidate corrected = {};  // diameter 0: none
+  double log_odds = 0;                  // at the corrected circle
+  double diameter = 0;                  // of that circle by the model; 0: none
+  CraterCandidate corrected = {};       // diameter 0: none
   std::optional<double> verified = {};  // log odds of the verifier at that circle
 };
 
@@ -107,8 +107,7 @@ ModelEstimate model_estimate(const BowlJudges& judges, const PatchSource& patche
     estimate.log_odds = (first + log_odds(second.probability)) / 2;
     estimate.diameter *= std::exp(second.log_size / 2);
   }
-  if (judges.verifier)
-    estimate.verified = log_odds(*judges.verifier, features);
+  if (judges.verifier) estimate.verified = log_odds(*judges.verifier, features);
   return estimate;
 }
 

@@ -38,13 +38,13 @@ struct VerifiedBowl {
 
 /// Trained networks that judge bowls.
 struct BowlJudges {
-  const CraterModel* model = nullptr;         ///< null: the correlation alone decides
-  const ReliefVerifier* verifier = nullptr;   ///< second opinion on circles that passed the model's first look
+  const CraterModel* model = nullptr;        ///< null: the correlation alone decides
+  const ReliefVerifier* verifier = nullptr;  ///< second opinion on circles that passed the model's first look
 };
 
 /// Measures the rim of each candidate (score: its correlation) and estimates the probability that it is a
-/// crater. It combines the correlation before and after with the log odds of the networks; a verifier weighs a
-/// third. The fraction of craters among the candidates is estimated from the image (Saerens, Latinne &
+/// crater. It combines the correlation before and after with the log odds of the networks; a verifier weighs
+/// a third. The fraction of craters among the candidates is estimated from the image (Saerens, Latinne &
 /// Decaestecker 2002), and probabilities are moved towards it in part. Runs in parallel; the order and the
 /// result are deterministic.
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,

@@ -60,7 +60,8 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                                        .min_correlation = kMinCorrelation}),
                         0.5);
   BowlJudges judges;
-  if (search.verify) judges = {&built_in_crater_model(), &built_in_relief_verifier()};
+  if (search.verify)
+    judges = {&built_in_crater_model(), search.second_opinion ? &built_in_relief_verifier() : nullptr};
   return verify_bowls(image, sun, candidates, judges, search.min_confidence);
 }
 

@@ -17,15 +17,15 @@ constexpr double kUnclear = 0.2;    // clarity of craters that count neither way
 
 // Turned window of the relief: pixel (x, y) lies at start + turn * (x, y).
 struct Window {
-  double column, row;       // of the window's centre
-  double zoom;              // pixels per cell
-  double cosine, sine;      // of the turn
-  double narrow;            // width of a cell over its height
-  double middle;            // (side - 1) / 2
+  double column, row;   // of the window's centre
+  double zoom;          // pixels per cell
+  double cosine, sine;  // of the turn
+  double narrow;        // width of a cell over its height
+  double middle;        // (side - 1) / 2
 
   cv::Matx23d to_relief() const {
     const double x = 1 / (zoom * narrow), y = 1 / zoom;
-    return {cosine * x, -sine * x, column - (cosine - sine) * middle * x,
+    return {cosine * x, -sine * x,  column - (cosine - sine) * middle * x,
             sine * y,   cosine * y, row - (sine + cosine) * middle * y};
   }
   LabelledCrater in_window(const CataloguedCrater& c) const {
@@ -41,8 +41,12 @@ LabelledScene relief_scene(const CrateredRelief& relief, std::uint64_t seed, int
   const double zoom = random.log_uniform(kMinReliefZoom, 1), turn = random.uniform(0, 2 * std::numbers::pi);
   const double reach = 0.72 * side / zoom;
   Window window{random.uniform(reach, double(relief.heights.columns()) - reach),
-                random.uniform(reach, double(relief.heights.rows()) - reach), zoom, std::cos(turn), std::sin(turn),
-                1, (side - 1) / 2.0};
+                random.uniform(reach, double(relief.heights.rows()) - reach),
+                zoom,
+                std::cos(turn),
+                std::sin(turn),
+                1,
+                (side - 1) / 2.0};
   window.narrow = relief.cell_widths.at(static_cast<std::size_t>(window.row));
 
   const cv::Mat1f all(static_cast<int>(relief.heights.rows()), static_cast<int>(relief.heights.columns()),
@@ -71,7 +75,9 @@ LabelledScene relief_scene(const CrateredRelief& relief, std::uint64_t seed, int
     const double radius = c.diameter / 2;
     if (c.x < -radius || c.y < -radius || c.x > side - 1 + radius || c.y > side - 1 + radius) continue;
     const bool whole = c.x >= radius && c.y >= radius && c.x <= side - 1 - radius && c.y <= side - 1 - radius;
-    if (!whole || known.diameter < kMinReliefDiameter || c.diameter < kMinPixels || known.depth_ratio < kMinDepth) c.clarity = kUnclear;
+    if (!whole || known.diameter < kMinReliefDiameter || c.diameter < kMinPixels ||
+        known.depth_ratio < kMinDepth)
+      c.clarity = kUnclear;
     scene.craters.push_back(c);
   }
   stretch_contrast(scene.image, random);

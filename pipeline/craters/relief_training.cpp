@@ -27,11 +27,11 @@ std::vector<CraterExample> make_relief_examples(LabelledScene scene, std::uint64
   const Radians sun{scene.sun_angle.value + random.normal(0, 0.06)};
   const FilledImage whole = fill_holes(scene.image);
   const double side = double(std::min(scene.image.columns(), scene.image.rows()));
-  const auto candidates = suppress_overlaps(bowl_candidates(whole.pixels, {.sun_angle = sun,
-                                                                           .min_diameter = 11,
-                                                                           .max_diameter = 0.6 * side,
-                                                                           .min_correlation = 0.5}),
-                                            0.5);
+  const auto candidates = suppress_overlaps(
+      bowl_candidates(
+          whole.pixels,
+          {.sun_angle = sun, .min_diameter = 11, .max_diameter = 0.6 * side, .min_correlation = 0.5}),
+      0.5);
   const PatchSource patches(whole.pixels, sun);
   const double cosine = std::cos(sun.value), sine = std::sin(sun.value);
   std::vector<CraterExample> examples;
@@ -45,20 +45,20 @@ std::vector<CraterExample> make_relief_examples(LabelledScene scene, std::uint64
     const auto [best, common] = match_crater(scene, c);
     const bool crater = common >= kMinCommon && best->clarity >= kMinClear;
     if (!crater && common > kMaxBackground) continue;
-    const double dx = crater ? (best->x - c.x) / c.diameter : 0, dy = crater ? (best->y - c.y) / c.diameter : 0;
+    const double dx = crater ? (best->x - c.x) / c.diameter : 0,
+                 dy = crater ? (best->y - c.y) / c.diameter : 0;
     const auto along = static_cast<float>(dx * cosine + dy * sine),
                across = static_cast<float>(dy * cosine - dx * sine),
                log_size = static_cast<float>(crater ? std::log(best->diameter / c.diameter) : 0);
     for (const bool mirrored : {false, true})
-      examples.push_back({patches.features(c, c.score, mirrored), crater, along, mirrored ? -across : across,
-                          log_size});
+      examples.push_back(
+          {patches.features(c, c.score, mirrored), crater, along, mirrored ? -across : across, log_size});
   }
   return examples;
 }
 
 ReliefVerifier train_relief_verifier(std::span<const CraterExample> examples, CraterTraining training,
-                                     int networks,
-                                     const std::function<void(int, int, double)>& progress) {
+                                     int networks, const std::function<void(int, int, double)>& progress) {
   const auto craters = std::ranges::count_if(examples, &CraterExample::crater);
   if (craters == 0 || craters == std::ssize(examples))
     throw std::logic_error("a verifier needs examples of craters and of background");

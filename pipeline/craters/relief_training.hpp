@@ -17,8 +17,8 @@ std::vector<CraterExample> make_relief_examples(LabelledScene scene, std::uint64
 
 /// Trains `networks` networks that differ in their seed, in parallel. `progress` receives the network, the
 /// epoch and its mean loss, from several threads. Throws std::logic_error if all examples are of one class.
-ReliefVerifier train_relief_verifier(std::span<const CraterExample> examples, CraterTraining training,
-                                     int networks,
-                                     const std::function<void(int network, int round, double loss)>& progress);
+ReliefVerifier train_relief_verifier(
+    std::span<const CraterExample> examples, CraterTraining training, int networks,
+    const std::function<void(int network, int round, double loss)>& progress);
 
 }  // namespace waymark::pipeline

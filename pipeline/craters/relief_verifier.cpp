@@ -64,7 +64,8 @@ ReliefVerifier parse_relief_verifier(std::string_view text, const std::string& w
         {layer.inputs(), layer.outputs(), as_floats(layer.weights), as_floats(layer.biases)});
     complete = ends_network(layer);
   }
-  if (verifier.networks.empty() || !complete) refuse_network(kKind, "the last layer must have 4 outputs", where);
+  if (verifier.networks.empty() || !complete)
+    refuse_network(kKind, "the last layer must have 4 outputs", where);
   return verifier;
 }
 

@@ -63,7 +63,7 @@ struct PlanCommand {
   std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
   std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
   std::string sensor = {};      ///< name or file of the profile that the map records; empty: none
-  bool allow_outside = false;   ///< the job may name files outside its folder
+  bool confined = false;        ///< a job that names files outside its folder is refused
   std::size_t max_shards = 64;  ///< calls per stage over tiles or images
   /// By stage, "map" for the call that writes the map, "" for all others.
   std::map<std::string, CallResources> resources = {};

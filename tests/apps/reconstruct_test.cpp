@@ -49,8 +49,7 @@ TEST_F(ReconstructCommand, MakesTheMapInOneCommand) {
        {"out/cameras.json", "out/dem.tif", "out/orthophoto.tif", "out/job.json", "map.gpkg"})
     EXPECT_TRUE(fs::exists(folder_ / file)) << file;
   EXPECT_EQ(waymark({"validate", folder_ / "map.gpkg"}).code, 0);
-  const Outcome again =
-      waymark({"run", folder_ / "out/job.json", "-o", folder_ / "again.gpkg", "--allow-outside"});
+  const Outcome again = waymark({"run", folder_ / "out/job.json", "-o", folder_ / "again.gpkg"});
   EXPECT_EQ(again.code, 0) << again.err;
 }
 

@@ -41,11 +41,11 @@ class JobFiles : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   /// Returns the message about a job whose DEM is `file`; empty if it is accepted.
-  std::string refusal(const std::string& file, bool allow_outside = false) {
+  std::string refusal(const std::string& file, bool confined = true) {
     const fs::path job = folder_ / "job/job.json";
     std::ofstream(job) << R"({"stages": [{"stage": "load_dem", "files": [")" + file + R"("]}]})";
     try {
-      load_job(job, {}, allow_outside);
+      load_job(job, {}, confined);
       return {};
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::usage);
@@ -62,13 +62,13 @@ TEST_F(JobFiles, InItsFolderAreAccepted) {
     EXPECT_EQ(refusal(file), "") << file;
 }
 
-TEST_F(JobFiles, OutsideItsFolderAreRefusedUnlessAllowed) {
+TEST_F(JobFiles, OutsideItsFolderAreRefusedIfConfined) {
   for (const std::string& file :
        {std::string("../other.tif"), std::string("/etc/passwd"), std::string("link.tif"),
         std::string("tiles/../../other.tif"), std::string("/vsizip//etc/a.zip/b.tif")}) {
     EXPECT_THAT(refusal(file), AllOf(HasSubstr("outside its folder: load_dem.files = " + file),
-                                     HasSubstr("job.json"), HasSubstr("--allow-outside")));
-    EXPECT_EQ(refusal(file, true), "") << file;
+                                     HasSubstr("job.json"), HasSubstr("--confined")));
+    EXPECT_EQ(refusal(file, false), "") << file;
   }
 }
 

@@ -141,9 +141,9 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
 }
 
 pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings,
-                       bool allow_outside) {
+                       bool confined) {
   pipeline::Job job = pipeline::read_job(file, all_stages());
-  if (!allow_outside) require_files_inside(job.pipeline, file);
+  if (confined) require_files_inside(job.pipeline, file);
   require_metric_dem(job.pipeline);
   for (const std::string& setting : settings) job.pipeline.set(setting);
   return job;

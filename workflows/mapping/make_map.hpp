@@ -69,8 +69,8 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
 
 /// Reads a job file with all built-in stages and applies `settings` (STAGE.OPTION=VALUE). A DEM that images
 /// are placed on is requested in metres. Throws Error{usage} as read_job(), and as require_files_inside()
-/// unless `allow_outside`; `settings` may name any file.
+/// if `confined`; `settings` may name any file.
 pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings = {},
-                       bool allow_outside = true);
+                       bool confined = false);
 
 }  // namespace waymark::workflows

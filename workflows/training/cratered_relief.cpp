@@ -87,9 +87,10 @@ pipeline::CrateredRelief read_cratered_relief(const std::string& dem_and_catalog
   const std::string& where = import.files[0];
   const auto needed = static_cast<std::int64_t>(std::ceil(1.44 * side / pipeline::kMinReliefZoom)) + 2;
   if (grid.columns < needed || grid.rows < needed)
-    throw Error(ErrorCode::input,
-                fmt::format("the DEM has {} x {} cells, too few for scenes of craters", grid.columns, grid.rows),
-                where, fmt::format("it must have {0} x {0}", needed));
+    throw Error(
+        ErrorCode::input,
+        fmt::format("the DEM has {} x {} cells, too few for scenes of craters", grid.columns, grid.rows),
+        where, fmt::format("it must have {0} x {0}", needed));
   if (grid.where.crs.kind() == CrsKind::local)
     throw Error(ErrorCode::input, "the DEM has no CRS, so the catalogue's positions cannot be found", where);
   const Crs lonlat = geographic_crs(grid.where.crs);

@@ -140,8 +140,9 @@ TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& 
   const auto examples = make_relief_examples(request.relief, scenes, callbacks);
   const auto craters = std::ranges::count_if(examples, &pipeline::CraterExample::crater);
   if (craters == 0 || craters == std::ssize(examples))
-    throw Error(ErrorCode::input, fmt::format("the model found {} circles, {} of them craters of the catalogue",
-                                              examples.size(), craters),
+    throw Error(ErrorCode::input,
+                fmt::format("the model found {} circles, {} of them craters of the catalogue",
+                            examples.size(), craters),
                 request.relief[0], "check that the catalogue belongs to the DEM");
   pipeline::CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
   training.rounds = request.rounds > 0 ? static_cast<int>(request.rounds) : kReliefRounds;
@@ -149,8 +150,8 @@ TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& 
   auto verifier = pipeline::train_relief_verifier(
       examples, training, static_cast<int>(kNetworks), [&](int network, int round, double loss) {
         const std::scoped_lock lock(one_at_a_time);
-        callbacks.summary(
-            fmt::format("network {} of {}, round {}: loss {:.4f}\n", network + 1, kNetworks, round + 1, loss));
+        callbacks.summary(fmt::format("network {} of {}, round {}: loss {:.4f}\n", network + 1, kNetworks,
+                                      round + 1, loss));
       });
   verifier.trained_on =
       fmt::format("{} images of {} areas of measured relief, {} px, {} examples, {} rounds, seed {}", scenes,

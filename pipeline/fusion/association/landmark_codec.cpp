@@ -2,6 +2,7 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 
 #include "core/bytes.hpp"
+#include "pipeline/fusion/association/observation_bytes.hpp"
 
 namespace waymark::pipeline {
 namespace {

@@ -24,11 +24,6 @@ struct Codec<std::vector<Observation>> {
   static std::vector<Observation> decode(std::string_view bytes);
 };
 
-/// Returns one observation as bytes; those of several may be put together.
-std::string encode_observation(const Observation& observation);
-/// Returns all observations of such bytes. Throws std::runtime_error on malformed bytes.
-std::vector<Observation> decode_observations(std::string_view bytes);
-
 /// Landmarks between stages, all members, bit by bit.
 template <>
 struct Codec<std::vector<Landmark>> {

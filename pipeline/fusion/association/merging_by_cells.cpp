@@ -11,6 +11,7 @@
 #include "pipeline/fusion/association/bucket_file.hpp"
 #include "pipeline/fusion/association/cell_tree.hpp"
 #include "pipeline/fusion/association/clustering.hpp"
+#include "pipeline/fusion/association/observation_bytes.hpp"
 #include "pipeline/fusion/association/observed_object_maker.hpp"
 #include "pipeline/fusion/association/repeated_uids.hpp"
 #include "pipeline/fusion/association/seams.hpp"

@@ -18,8 +18,8 @@ namespace {
 
 constexpr int kSide = 160;
 
-// A plain of 600 x 600 cells with paraboloid bowls at the knots of a lattice 60 cells wide, seen from latitude
-// 60: columns are half as wide as rows, so each bowl covers twice as many columns.
+// A plain of 600 x 600 cells with paraboloid bowls at the knots of a lattice 60 cells wide, seen from
+// latitude 60: columns are half as wide as rows, so each bowl covers twice as many columns.
 CrateredRelief bowls_at_latitude_60() {
   CrateredRelief relief;
   relief.heights = Grid<float>(1200, 600, 0.0F);
@@ -80,7 +80,8 @@ TEST(ReliefVerifier, TextKeepsIt) {
 TEST(ReliefVerifier, AveragesLogOddsForEvenPriors) {
   const ReliefVerifier& verifier = built_in_relief_verifier();
   CraterFeatures features{};
-  for (std::size_t i = 0; i < features.size(); ++i) features[i] = static_cast<float>(std::sin(2.0 * double(i)));
+  for (std::size_t i = 0; i < features.size(); ++i)
+    features[i] = static_cast<float>(std::sin(2.0 * double(i)));
   double sum = 0;
   for (const auto& network : verifier.networks) {
     const double p = predict(network, features).probability;
