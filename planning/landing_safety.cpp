@@ -11,7 +11,7 @@
 namespace waymark::planning {
 namespace {
 
-constexpr double kBlurReach = 4;               // standard deviations
+constexpr double kBlurReach = 4;           // standard deviations
 constexpr double kMinConditional = 3;      // cells: narrower blurs along rows are summed directly
 constexpr double kInterpolation = 1. / 6;  // cells^2, mean variance that linear interpolation adds
 

@@ -62,9 +62,9 @@ void ObstacleMemory::add(std::span<const HazardObject> seen, const localization:
     const Eigen::Vector2d at = moved(odometry_from_robot, object.position);
     const double radius = object.radius + 2 * object.radius_sd;
     std::size_t nearest = obstacles_.size();
-    double least = kGate + radius;
+    double min_distance = kGate + radius;
     for (std::size_t i = 0; i < obstacles_.size(); ++i)
-      if (const double d = (obstacles_[i].at - at).norm(); d < least) least = d, nearest = i;
+      if (const double d = (obstacles_[i].at - at).norm(); d < min_distance) min_distance = d, nearest = i;
     if (nearest == obstacles_.size()) {
       obstacles_.push_back({at, radius, kFirst});
       again.push_back(1);

@@ -15,8 +15,8 @@ namespace waymark::importers {
 
 /// Options for reading a log.
 struct LogImport {
-  std::string format = {};  ///< waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam,
-                            ///< g2o, toro; empty: recognised by what is there
+  std::string format = {};   ///< waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam,
+                             ///< g2o, toro; empty: recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
   /// waymark, csv: its standard deviations are those of sightings for which the log gives none.

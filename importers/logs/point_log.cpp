@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/point_files.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
@@ -31,7 +32,8 @@ std::vector<fs::path> scans_in(const fs::path& folder) {
 
 std::vector<double> times_of(const fs::path& folder, std::size_t scans, std::vector<std::string>& remarks) {
   std::vector<double> times;
-  if (std::ifstream in(folder / "times.txt"); in) {
+  if (fs::exists(folder / "times.txt")) {
+    std::istringstream in(read_text(folder / "times.txt", "the times of the scans"));
     for (double t; in >> t;) times.push_back(t);
     if (times.size() != scans)
       throw Error(ErrorCode::input, fmt::format("there are {} times for {} scans", times.size(), scans),

@@ -106,11 +106,11 @@ std::vector<Eigen::Vector2d> candidates(const PointGrid& grid) {
     for (int x = 1; x + 1 < grid.cells(); ++x) {
       const std::size_t own = grid.count(x, y);
       if (own == 0 || grid.layers(x, y) < kMinCandidateLayers) continue;
-      bool most = true;
-      for (int v = y - 1; most && v <= y + 1; ++v)
-        for (int u = x - 1; most && u <= x + 1; ++u)  // of equal cells the first
-          most = grid.count(u, v) < own + ((v > y || (v == y && u >= x)) ? 1 : 0);
-      if (most)
+      bool is_maximum = true;
+      for (int v = y - 1; is_maximum && v <= y + 1; ++v)
+        for (int u = x - 1; is_maximum && u <= x + 1; ++u)  // of equal cells the first
+          is_maximum = grid.count(u, v) < own + ((v > y || (v == y && u >= x)) ? 1 : 0);
+      if (is_maximum)
         found.emplace_back((x - grid.cells() / 2 + 0.5) * kCell, (y - grid.cells() / 2 + 0.5) * kCell);
     }
   return found;

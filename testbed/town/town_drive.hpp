@@ -16,8 +16,8 @@ struct TownDrive {
 /// Deterministic for a seed and for any number of threads.
 TownDrive drive_through(const Town& town, const DriveSettings& settings, std::uint64_t seed);
 
-/// Returns settings for a robot in a street or a hall at 1 m/s: a laser of 270 degrees, each half second, with
-/// beams of a quarter of a degree to 30 m.
+/// Returns settings for a robot in a street or a hall at 1 m/s: a laser of 270 degrees, each half second,
+/// with beams of a quarter of a degree to 30 m.
 DriveSettings town_settings();
 
 }  // namespace waymark::testbed

@@ -59,7 +59,7 @@ void read_dem(const std::string& path) {
 
 void read_image(const std::string& path) {
   const auto listed = importers::list_images({.files = {path}, .import = {.crs = "EPSG:32633"}});
-  if (!listed.warnings.empty()) throw Error(ErrorCode::input, listed.warnings[0], path);
+  if (listed.images.at(0).columns == 0) throw Error(ErrorCode::input, listed.warnings.at(0), path);
 }
 
 void read_points(const std::string& path) {

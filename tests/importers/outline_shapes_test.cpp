@@ -10,7 +10,8 @@
 
 #include "core/units.hpp"
 
-namespace waymark::importers {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 using Kind = GeometryPart::Kind;
@@ -143,4 +144,4 @@ TEST(OutlineShapes, SharedWallsAndCornersAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace waymark::importers
+}  // namespace waymark::test

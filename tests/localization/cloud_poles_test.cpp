@@ -11,7 +11,8 @@
 
 #include "localization/detectors/scan_landmarks.hpp"
 
-namespace waymark::localization {
+namespace waymark::test {
+using namespace localization;
 namespace {
 
 /// Upright cylinder on the ground, or a box of a wall: the nearest hit of a ray counts.
@@ -147,4 +148,4 @@ TEST(CloudPoles, TheDetectorGivesSightingsOfTheMapsTypes) {
 }
 
 }  // namespace
-}  // namespace waymark::localization
+}  // namespace waymark::test

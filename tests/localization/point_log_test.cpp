@@ -12,7 +12,8 @@
 #include "importers/logs/point_files.hpp"
 #include "localization/robot_log.hpp"
 
-namespace waymark::importers {
+namespace waymark::test {
+using namespace importers;
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,4 +128,4 @@ TEST_F(PointLog, FaultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace waymark::importers
+}  // namespace waymark::test

@@ -11,7 +11,8 @@
 #include "testbed/scenario.hpp"
 #include "testbed/town/town_drive.hpp"
 
-namespace waymark::testbed {
+namespace waymark::test {
+using namespace testbed;
 namespace {
 
 using testing::HasSubstr;
@@ -116,4 +117,4 @@ TEST(Town, AScenarioIsOnePlace) {
 }
 
 }  // namespace
-}  // namespace waymark::testbed
+}  // namespace waymark::test

@@ -25,10 +25,10 @@ void block(std::vector<char>& passable, const planning::RouteCells& cells,
 std::int64_t nearest_passable(const planning::RouteCells& cells, const std::vector<char>& passable,
                               const Eigen::Vector2d& at) {
   std::int64_t best = -1;
-  double least = 3 * cells.cell;
+  double min_distance = 3 * cells.cell;
   for (std::int64_t i = 0; i < cells.count(); ++i) {
     const double d = std::hypot(cells.x(i) - at.x(), cells.y(i) - at.y());
-    if (passable[static_cast<std::size_t>(i)] && d < least) least = d, best = i;
+    if (passable[static_cast<std::size_t>(i)] && d < min_distance) min_distance = d, best = i;
   }
   return best;
 }

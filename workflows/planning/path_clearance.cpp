@@ -67,7 +67,7 @@ std::string add_clearance(const RouteRequest& request, const RobotMap& map, Rout
   if (request.dem.empty()) return {};
   const planning::Vehicle vehicle = planning::find_vehicle(request.vehicle);
   const DemRange terrain(request.dem, map);
-  double least = std::numeric_limits<double>::infinity(), steepest = 0;
+  double min_clearance = std::numeric_limits<double>::infinity(), max_tilt = 0;
   std::size_t unknown = 0;
   for (PlannedRoute& route : result.routes)
     for (RouteStation& station : route.stations) {
@@ -80,14 +80,14 @@ std::string add_clearance(const RouteRequest& request, const RobotMap& map, Rout
       if (!station.clearance)
         ++unknown;
       else if (&route == &result.routes.front())
-        least = std::min(least, station.clearance->belly),
-        steepest = std::max(steepest, station.clearance->tilt);
+        min_clearance = std::min(min_clearance, station.clearance->belly),
+        max_tilt = std::max(max_tilt, station.clearance->tilt);
     }
   std::string text;
-  if (std::isfinite(least))
+  if (std::isfinite(min_clearance))
     text = fmt::format("  {}: clearance of at least {:.2f} m, tilt of at most {:.1f} deg{}\n", vehicle.name,
-                       least, steepest,
-                       least < 0 || steepest > vehicle.max_slope.value
+                       min_clearance, max_tilt,
+                       min_clearance < 0 || max_tilt > vehicle.max_slope.value
                            ? ", by bounds that hold for any error: touching is not ruled out"
                            : "");
   if (unknown) text += fmt::format("  {} stations are on unknown terrain\n", unknown);

@@ -2,8 +2,7 @@
 // Results in parts: written, stored and read with one part in memory.
 #include "pipeline/engine/parts.hpp"
 
-#include <fstream>
-
+#include "core/text_file.hpp"
 #include "pipeline/engine/sha256.hpp"
 #include "pipeline/engine/store/parts_file.hpp"
 #include "tests/pipeline/engine/toy_test.hpp"
@@ -25,8 +24,7 @@ std::vector<std::int64_t> values_of(const Parts<Number>& parts) {
 }
 
 std::string bytes_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  return read_text(file, "the parts");
 }
 
 TEST(Parts, OutliveTheirWriter) {
