@@ -8,6 +8,7 @@
 #include "apps/log.hpp"
 #include "core/error.hpp"
 #include "core/source_date.hpp"
+#include "workflows/file_access.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -43,11 +44,14 @@ std::vector<Argument> global_arguments(Session& session) {
           .one_of({"auto", "bar", "dots", "json", "none"})
           .or_else("auto"),
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
+      {"--allow-network", "", &session.allow_network,
+       "Let files name files on the network; an address on the command line allows it, too"},
   };
 }
 
 void begin(const Session& session) {
   CPLSetErrorHandler(log_gdal);
+  if (!session.allow_network && !session.names_network) workflows::refuse_network();
   set_log_level(session.quiet ? LogLevel::errors : session.verbose ? LogLevel::all : LogLevel::warnings);
   if (session.threads < 0)
     throw Error(ErrorCode::usage, "--threads must be 1 or more, or 0 for one per processor, is " +

@@ -11,6 +11,8 @@ struct Session {
   std::int64_t threads = 0;  ///< 0: one per processor
   std::string progress = "auto";
   std::vector<std::string> gdal_config;  ///< KEY=VALUE
+  bool allow_network = false;
+  bool names_network = false;  ///< a word of the command line does
   bool quiet = false, verbose = false;
   bool help = false, version = false;
 };

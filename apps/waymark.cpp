@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <signal.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <iostream>
 #include <new>
@@ -9,10 +7,12 @@
 
 #include "apps/command.hpp"
 #include "apps/help.hpp"
+#include "apps/interrupt.hpp"
 #include "apps/log.hpp"
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
 #include "core/error.hpp"
+#include "workflows/file_access.hpp"
 #include "workflows/provenance.hpp"
 
 namespace waymark::apps {
@@ -43,6 +43,7 @@ int run_command(const CommandTable& commands, Session& session, const std::vecto
 int run_program(const std::vector<std::string>& words) {
   Session session;
   session.command_line = quoted(words);
+  session.names_network = workflows::names_network(words);
   CommandTable commands;
   register_commands(commands);
   const std::vector<Argument> globals = global_arguments(session);
@@ -66,25 +67,16 @@ int guarded(const std::vector<std::string>& words) {
       throw Error(ErrorCode::output, "cannot write to standard output", "", "is the disk full?");
     return code;
   } catch (const Error& error) {
+    wait_if_interrupted();
     log_error(error.what());
     return exit_code(error.code());
   } catch (const std::bad_alloc&) {
     log_error("out of memory\n  fewer --threads or smaller --tile-cells need less");
   } catch (const std::exception& error) {
+    wait_if_interrupted();
     log_error(std::string("this is a fault of waymark itself: ") + error.what());
   }
   return 1;
-}
-
-/// Reports an interrupted run, and ends as by the default action, so that shells and makefiles see it.
-void report_interrupt(int signal) {
-  constexpr char text[] =
-      "\nerror: interrupted; an output that was not finished is not put in place\n  with --work, the same "
-      "command "
-      "again continues where it stopped\n";
-  static_cast<void>(!::write(STDERR_FILENO, text, sizeof text - 1));
-  ::signal(signal, SIG_DFL);
-  ::raise(signal);
 }
 
 }  // namespace
@@ -92,7 +84,7 @@ void report_interrupt(int signal) {
 
 int main(int argc, char** argv) {
   std::ios::sync_with_stdio(false);
-  for (const int signal : {SIGINT, SIGTERM}) ::signal(signal, waymark::apps::report_interrupt);
+  waymark::apps::watch_interrupts();
   std::vector<std::string> words(argv, argv + argc);
   words[0] = "waymark";
   return waymark::apps::guarded(words);

@@ -6,7 +6,10 @@
 #include <filesystem>
 #include <random>
 
+#include "geodb/geopackage/geometry_blob.hpp"
+#include "geodb/layers/landmark_layout.hpp"
 #include "geodb/map_store.hpp"
+#include "geodb/sqlite/sqlite.hpp"
 #include "geodb/write_map.hpp"
 #include "random_rocks.hpp"
 
@@ -28,6 +31,42 @@ void WriteMap(benchmark::State& state) {
   state.counters["bytes"] = static_cast<double>(std::filesystem::file_size(kMap)) / 1e6;
 }
 BENCHMARK(WriteMap)->Unit(benchmark::kSecond)->UseRealTime()->Iterations(3);
+
+/// The same rows by SQLite alone, in the order of the landmarks, in a new file without a journal: what any
+/// writer of this table must spend. With state.range(0), the unique index of uids as well; never an RTree.
+void RawRows(benchmark::State& state) {
+  const geodb::MapContents& map = million_map();
+  const geodb::LandmarkLayout layout(map.types[0], 0);
+  for (auto _ : state) {
+    std::filesystem::remove(kMap);
+    geodb::sqlite::Database database(kMap, geodb::sqlite::OpenMode::create);
+    database.execute("PRAGMA page_size = 16384; PRAGMA cache_size = -8192; BEGIN");
+    database.execute(layout.create_table());
+    {
+      geodb::sqlite::Statement insert = database.prepare(layout.insert());
+      std::int64_t row = 0;
+      for (const Landmark& landmark : map.landmarks) {
+        const geodb::PointBlob geometry = geodb::point_blob(landmark.position.xyz, 32632);
+        layout.bind(insert, ++row, landmark, geometry);
+        insert.run();
+      }
+    }
+    if (state.range(0) != 0) {
+      database.execute("PRAGMA threads = 2");
+      database.execute("CREATE UNIQUE INDEX rock_uid ON rock (uid)");
+    }
+    database.execute("COMMIT");
+    database.close();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(map.landmarks.size()));
+}
+BENCHMARK(RawRows)
+    ->ArgName("uid_index")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime()
+    ->Iterations(3);
 
 /// Boxes that hold state.range(0) landmarks on average, at random places.
 void BoxQuery(benchmark::State& state) {

@@ -1,8 +1,8 @@
 # Warnings and floating-point rules every target of ours is compiled with, and nobody who links to us.
 add_library(waymark_build_rules INTERFACE)
 target_compile_options(waymark_build_rules INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Wold-style-cast -Werror
-  -Wno-restrict -Wno-stringop-overflow  # false alarms of g++ 12 on std::string (bug 105651)
+  $<$<CXX_COMPILER_ID:GNU>:-Wall;-Wextra;-Wconversion;-Wshadow;-Wold-style-cast;-Werror>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-stringop-overflow>  # false alarms of g++ 12 on std::string (bug 105651)
   -ffp-contract=off)  # the same bits on a machine with and without fused multiply-add
 # The libraries go into the program and into the Python module, which takes position-independent code only. Hidden
 # symbols are called directly and inlined, as in an executable, so the program is not slower for it.

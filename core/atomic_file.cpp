@@ -258,12 +258,9 @@ std::vector<fs::path> AtomicFileSet::commit() {
   flush_all(path_, output_);
   rename_or_fail(path_, aside_.path() / kReady, output_);
   flush(aside_.path(), output_);
-  try {
-    finish_set(aside_.path(), folder_, output_);
-  } catch (...) {
-    aside_.abandon();  // the older files may be gone: another process may finish it
-    throw;
-  }
+  aside_.abandon();  // older files go now: if this process ends before it is done, the next one finishes it
+  finish_set(aside_.path(), folder_, output_);
+  aside_.reclaim();
   return files;
 }
 

@@ -71,6 +71,7 @@ class ByteReader {
     if (size > bytes_.size() / item_size) throw std::runtime_error("artifact ends too early");
     return static_cast<std::size_t>(size);
   }
+  bool at_end() const { return bytes_.empty(); }
   void expect_end() const {
     if (!bytes_.empty())
       throw std::runtime_error("artifact has " + std::to_string(bytes_.size()) + " bytes too many");

@@ -12,7 +12,9 @@
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 
@@ -77,7 +79,28 @@ bool is_dead(const Owner& owner) {
   return owner.host == host_name() && ::kill(owner.process, 0) != 0 && errno == ESRCH;
 }
 
+/// Folders that this process removes. Never destroyed: a signal may come while the process ends.
+struct OwnFolders {
+  std::mutex mutex;
+  std::set<fs::path> paths;
+};
+
+OwnFolders& own_folders() {
+  static auto* const all = new OwnFolders;
+  return *all;
+}
+
 }  // namespace
+
+void remove_own_folders() noexcept try {
+  OwnFolders& own = own_folders();
+  const std::lock_guard lock(own.mutex);
+  std::error_code ignored;
+  for (const fs::path& folder : own.paths)
+    for (int tries = 0; tries < 8 && fs::exists(folder, ignored); ++tries)  // other threads may write to it
+      fs::remove_all(folder, ignored);
+} catch (const std::exception&) {  // left to the next process
+}
 
 void remove_dead_folders(const fs::path& parent, const std::function<void(const fs::path&)>& before_removal) {
   std::error_code ignored;  // another process may be clearing the same folder
@@ -112,6 +135,7 @@ LockedFolder::LockedFolder(const fs::path& parent,
     if (lock.state != LockState::of_another && is_there(name, lock)) {
       lock_ = lock.handle;
       path_ = name;
+      reclaim();
       return;
     }
     if (lock.handle >= 0) ::close(lock.handle);
@@ -121,9 +145,25 @@ LockedFolder::LockedFolder(const fs::path& parent,
                              std::error_code(errno, std::generic_category()));
 }
 
+void LockedFolder::abandon() {
+  const std::lock_guard lock(own_folders().mutex);
+  own_folders().paths.erase(path_);
+}
+
+void LockedFolder::reclaim() {
+  const std::lock_guard lock(own_folders().mutex);
+  own_folders().paths.insert(path_);
+}
+
+bool LockedFolder::is_abandoned() const {
+  const std::lock_guard lock(own_folders().mutex);
+  return !own_folders().paths.contains(path_);
+}
+
 LockedFolder::~LockedFolder() {
   std::error_code ignored;
-  if (!abandoned_) fs::remove_all(path_, ignored);
+  if (!is_abandoned()) fs::remove_all(path_, ignored);
+  abandon();
   if (lock_ >= 0) ::close(lock_);
 }
 

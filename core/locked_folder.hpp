@@ -12,6 +12,10 @@ inline constexpr std::string_view kAsidePrefix = ".waymark-";
 void remove_dead_folders(const std::filesystem::path& parent,
                          const std::function<void(const std::filesystem::path& dead)>& before_removal = {});
 
+/// Removes the locked folders of this process that are not abandoned: for the end by a signal, which calls no
+/// destructors.
+void remove_own_folders() noexcept;
+
 /// A folder .waymark-<process>-<host>-XXXXXX, removed with its content by the destructor. It is locked while
 /// the process lives; the constructor removes those of dead processes in the same folder.
 class LockedFolder {
@@ -26,12 +30,15 @@ class LockedFolder {
 
   const std::filesystem::path& path() const { return path_; }
   /// Leaves the folder to the next process that makes one in the same parent.
-  void abandon() { abandoned_ = true; }
+  void abandon();
+  /// Lets the destructor remove the folder again.
+  void reclaim();
 
  private:
+  bool is_abandoned() const;
+
   std::filesystem::path path_;
   int lock_ = -1;
-  bool abandoned_ = false;
 };
 
 }  // namespace waymark::inline core

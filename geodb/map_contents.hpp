@@ -49,6 +49,8 @@ struct LandmarkParts {
   std::function<std::shared_ptr<const std::vector<Landmark>>(std::size_t part)> landmarks = {};
   /// Observations of the landmarks of that part; none is rejected.
   std::function<std::shared_ptr<const std::vector<Observation>>(std::size_t part)> evidence = {};
+  /// Rejected observations, divided into the same number of parts; null: none.
+  std::function<std::shared_ptr<const std::vector<Observation>>(std::size_t part)> rejected = {};
 };
 
 /// Contents of a map file, in memory except for the parts.

@@ -24,6 +24,7 @@
 #include "geodb/replace_map.hpp"
 #include "geodb/rtree/landmark_order.hpp"
 #include "geodb/rtree/packed_rtree.hpp"
+#include "geodb/rtree/rejected_order.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/uid_index.hpp"
 
@@ -95,6 +96,7 @@ class MapWriter {
         statistics_(&statistics),
         max_in_memory_(options.max_landmarks_in_memory),
         changed_(time_stamp(contents.run.started_utc)),
+        rejected_(contents.parts, options.max_landmarks_in_memory),
         row_index_(contents.landmarks.size()) {
     choose_types(options.empty_tables);
   }
@@ -121,6 +123,7 @@ class MapWriter {
                      });
     std::vector<char> has_observations(contents_->types.size());
     for (const auto& o : contents_->observations) has_observations.at(o.type) = 1;
+    for (const TypeId type : rejected_.types()) has_observations.at(type) = 1;
     for (TypeId id = 0; id < contents_->types.size(); ++id) {
       const LandmarkType& type = contents_->types[id];
       if (all || has_observations[id] || (*statistics_)[id].count > 0 ||
@@ -222,6 +225,10 @@ class MapWriter {
         observation.type = new_id_.at(type);
         writer.add(observation, row_at(type, row_index));
       });
+    rejected_.visit([&](Observation observation) {
+      observation.type = new_id_.at(observation.type);
+      writer.add(observation, std::nullopt);
+    });
     create_index("INDEX observation_uid ON observation (uid)");
   }
 
@@ -255,6 +262,7 @@ class MapWriter {
   const std::vector<TypeStatistics>* statistics_;  ///< by type of the contents
   std::size_t max_in_memory_;
   std::string changed_;
+  RejectedOrder rejected_;
   std::vector<std::uint32_t> row_index_;    ///< index in the order of rows of each of MapContents::landmarks
   std::map<TypeId, LandmarkOrder> orders_;  ///< by type of the contents
   TypeRegistry types_;                      ///< of the map: those of the contents that get a table

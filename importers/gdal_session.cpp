@@ -2,6 +2,7 @@
 #include "importers/gdal_session.hpp"
 
 #include <cpl_vsi.h>
+#include <fmt/format.h>
 #include <gdal_priv.h>
 
 #include <mutex>
@@ -26,6 +27,26 @@ bool is_plain_path(const std::string& path) {
     throw Error(ErrorCode::input, "the file is empty", path, "fetch or write it again");
   throw Error(ErrorCode::input, "this is not a raster that GDAL reads" + (said.empty() ? "" : ": " + said),
               path, "`gdalinfo --formats` lists what can be read; a damaged file must be fetched again");
+}
+
+// Deflate stores at most 1,032 bytes in one; a block may be larger than the file by this ratio.
+constexpr double kBigBlock = 64e6, kMaxRatio = 2000;
+
+/// Throws Error{input} for a block that is large and can by no means be stored in the file: reading a cell
+/// would allocate it all.
+void check_blocks(GDALDataset& dataset, const std::string& path) {
+  VSIStatBufL status;
+  if (dataset.GetRasterCount() == 0 || VSIStatL(path.c_str(), &status) != 0) return;
+  int columns = 0, rows = 0;
+  GDALRasterBand* const band = dataset.GetRasterBand(1);
+  band->GetBlockSize(&columns, &rows);
+  const double bytes =
+      static_cast<double>(columns) * rows * GDALGetDataTypeSizeBytes(band->GetRasterDataType());
+  if (bytes <= kBigBlock || bytes <= kMaxRatio * static_cast<double>(status.st_size)) return;
+  throw Error(ErrorCode::input,
+              fmt::format("the header states blocks of {} x {} cells ({:.3g} MB), but the file has {:.3g} MB",
+                          columns, rows, bytes / 1e6, static_cast<double>(status.st_size) / 1e6),
+              path, "the file is damaged or hostile; a sound one can be tiled: gdal_translate -co TILED=YES");
 }
 
 }  // namespace
@@ -63,6 +84,7 @@ GdalDataset open_raster(const std::string& path) {
   GdalDataset dataset(GDALDataset::Open(seekable_path(path).c_str(),
                                         GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) refuse(path, gdal.error_about(path));
+  check_blocks(*dataset, path);
   return dataset;
 }
 

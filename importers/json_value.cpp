@@ -31,7 +31,11 @@ struct JsonValue::Document {
 };
 
 JsonValue JsonValue::from_file(const std::string& path, const std::vector<std::string>& skipped) {
-  const std::string content = read_vsi_text(path);
+  return from_text(read_vsi_text(path), path, skipped);
+}
+
+JsonValue JsonValue::from_text(const std::string& content, const std::string& path,
+                               const std::vector<std::string>& skipped) {
   checked_json(content, path);
   auto document = std::make_shared<Document>();
   document->path = path;

@@ -16,6 +16,9 @@ class JsonValue {
   /// Reads a file, `/vsi` paths included. Skips members named in `skipped` at any depth while reading, such
   /// as point clouds of gigabytes.
   static JsonValue from_file(const std::string& path, const std::vector<std::string>& skipped = {});
+  /// Reads a text; errors name `path`.
+  static JsonValue from_text(const std::string& content, const std::string& path,
+                             const std::vector<std::string>& skipped = {});
 
   bool is_object() const;
   bool is_array() const;

@@ -7,134 +7,114 @@
 #include "localization/identification/joint_evidence.hpp"
 
 namespace waymark::localization {
-namespace {
 
-class Replay {
- public:
-  Replay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options, const ScanDetector& detect,
-         const TimeSource& clock, const TerrainHeight& ground)
-      : log_(log),
-        localizer_(localizer),
-        options_(options),
-        odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
-        detect_(detect),
-        clock_(clock),
-        ground_(ground),
-        repeated_({options.error_memory * log.error_memory.range,
-                   options.error_memory * log.error_memory.bearing}) {}
+LogReplay::LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options,
+                     ScanDetector detect, TimeSource clock, TerrainHeight ground)
+    : localizer_(localizer),
+      options_(options),
+      car_(log.car),
+      odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
+      detect_(std::move(detect)),
+      clock_(std::move(clock)),
+      ground_(std::move(ground)),
+      repeated_(
+          {options.error_memory * log.error_memory.range, options.error_memory * log.error_memory.bearing}) {}
 
-  Track replay(const TrackWatcher& watch) {
-    if (!log_.events.empty()) now_ = last_step_ = log_.events.front().t;
-    for (const LogEvent& event : log_.events) {
-      advance(event.t);
-      TrackRow row;
-      const bool seen = std::visit([&](const auto& reading) { return take(reading, row); }, event.what);
-      if (!seen && !options_.every_event) continue;
-      row.t = event.t;
-      row.at = localizer_.estimate();
-      row.lost = localizer_.status() != LocalizationStatus::tracking;
-      update_terrain_pose(row.at.pose);
-      row.z = terrain_pose_.z, row.roll = terrain_pose_.roll, row.pitch = terrain_pose_.pitch;
-      if (!row.at.pose.finite() || !row.at.covariance.allFinite())
-        throw std::logic_error("the estimate of the localizer is not finite");
-      track_.rows.push_back(row);
-      if (watch) watch(track_);
+bool LogReplay::take(const LogEvent& event) {
+  if (!first_) first_ = now_ = last_step_ = event.t;
+  advance(event.t);
+  TrackRow row;
+  const bool seen = std::visit([&](const auto& reading) { return take(reading, row); }, event.what);
+  if (!seen && !options_.every_event) return false;
+  row.t = event.t;
+  row.at = localizer_.estimate();
+  row.lost = localizer_.status() != LocalizationStatus::tracking;
+  update_terrain_pose(row.at.pose);
+  row.z = terrain_pose_.z, row.roll = terrain_pose_.roll, row.pitch = terrain_pose_.pitch;
+  if (!row.at.pose.finite() || !row.at.covariance.allFinite())
+    throw std::logic_error("the estimate of the localizer is not finite");
+  track_.rows.push_back(row);
+  return true;
+}
+
+// Applies the speeds of the last reading until `t`, but no longer than max_hold. Then the robot
+// stands, and only the uncertainty of time grows.
+void LogReplay::advance(double t) {
+  const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.max_hold);
+  now_ = std::max(now_, t);
+  if (const auto* twist = std::get_if<TwistReading>(&current_reading_))
+    drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_));
+  else if (const auto* car = std::get_if<CarReading>(&current_reading_))
+    drive(ackermann_motion(car_, car->wheel_speed, car->steering, driven, odometry_));
+  if (seconds > driven) predict(step_motion({}, seconds - driven, odometry_));
+}
+
+void LogReplay::drive(BodyMotion motion) {
+  motion.step = project_to_map(motion.step, terrain_pose_);
+  predict(motion);
+}
+
+void LogReplay::predict(const BodyMotion& motion) {
+  localizer_.predict(motion);
+  repeated_.predict(motion);
+  dead_reckoning_ = dead_reckoning_ * motion.step;
+}
+
+void LogReplay::update_terrain_pose(const Pose2& pose) {
+  if (!ground_) return;
+  const auto terrain_pose = pose_on_terrain(ground_, pose, {options_.wheelbase, options_.track_width});
+  terrain_pose_ = terrain_pose ? *terrain_pose : TerrainPose{pose, terrain_pose_.z, 0, 0};
+}
+
+bool LogReplay::take(const TwistReading& reading, TrackRow&) {
+  return current_reading_ = reading, false;
+}
+bool LogReplay::take(const CarReading& reading, TrackRow&) {
+  return current_reading_ = reading, false;
+}
+bool LogReplay::take(const StepReading& reading, TrackRow&) {
+  drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), odometry_));
+  last_step_ = now_;
+  return false;
+}
+
+template <class Fix>
+bool LogReplay::take_fix(const Fix& fix, TrackRow&) {
+  if (!options_.use_fixes) return false;
+  ++track_.fixes;
+  track_.fixes_rejected += !localizer_.fix(fix);
+  return false;
+}
+
+bool LogReplay::take(SightingSet seen, TrackRow& row) {
+  for (SeenLandmark& s : seen.sightings) {
+    s.bearing_sd *= options_.sensor_noise;
+    s.range_sd *= options_.sensor_noise;
+  }
+  repeated_.widen(seen, now_);
+  const Eigen::Matrix3d prior = localizer_.estimate().covariance;
+  const double before = clock_ ? clock_() : 0;
+  matches_ = localizer_.update(seen);
+  if (clock_) track_.seconds += row.seconds = clock_() - before;
+  ++track_.updates;
+  JointEvidence evidence;
+  for (std::size_t i = 0; i < matches_.size(); ++i) {
+    ++track_.verdicts[static_cast<std::size_t>(matches_[i].verdict)];
+    if (matches_[i].verdict != Verdict::matched) {
+      ++row.rejected;
+      continue;
     }
-    return std::move(track_);
+    ++row.matched;
+    evidence += matches_[i].pairing.evidence;
+    if (!seen.sightings[i].identity) continue;
+    ++track_.named;
+    row.wrong += *seen.sightings[i].identity != matches_[i].key;
   }
-
- private:
-  // Applies the speeds of the last reading until `t`, but no longer than max_hold. Then the robot
-  // stands, and only the uncertainty of time grows.
-  void advance(double t) {
-    const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.max_hold);
-    now_ = std::max(now_, t);
-    if (const auto* twist = std::get_if<TwistReading>(&current_reading_))
-      drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_));
-    else if (const auto* car = std::get_if<CarReading>(&current_reading_))
-      drive(ackermann_motion(log_.car, car->wheel_speed, car->steering, driven, odometry_));
-    if (seconds > driven) predict(step_motion({}, seconds - driven, odometry_));
-  }
-
-  void drive(BodyMotion motion) {
-    motion.step = project_to_map(motion.step, terrain_pose_);
-    predict(motion);
-  }
-
-  void predict(const BodyMotion& motion) {
-    localizer_.predict(motion);
-    repeated_.predict(motion);
-  }
-
-  void update_terrain_pose(const Pose2& pose) {
-    if (!ground_) return;
-    const auto terrain_pose = pose_on_terrain(ground_, pose, {options_.wheelbase, options_.track_width});
-    terrain_pose_ = terrain_pose ? *terrain_pose : TerrainPose{pose, terrain_pose_.z, 0, 0};
-  }
-
-  bool take(const TwistReading& reading, TrackRow&) { return current_reading_ = reading, false; }
-  bool take(const CarReading& reading, TrackRow&) { return current_reading_ = reading, false; }
-  bool take(const StepReading& reading, TrackRow&) {
-    drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), odometry_));
-    last_step_ = now_;
-    return false;
-  }
-  bool take(const GnssFix& fix, TrackRow&) { return take_fix(fix); }
-  bool take(const HeadingFix& fix, TrackRow&) { return take_fix(fix); }
-  bool take(const LaserScan& scan, TrackRow& row) { return detect_ && take(detect_(scan), row); }
-
-  template <class Fix>
-  bool take_fix(const Fix& fix) {
-    if (!options_.use_fixes) return false;
-    ++track_.fixes;
-    track_.fixes_rejected += !localizer_.fix(fix);
-    return false;
-  }
-
-  bool take(SightingSet seen, TrackRow& row) {
-    for (SeenLandmark& s : seen.sightings) {
-      s.bearing_sd *= options_.sensor_noise;
-      s.range_sd *= options_.sensor_noise;
-    }
-    repeated_.widen(seen, now_);
-    const Eigen::Matrix3d prior = localizer_.estimate().covariance;
-    const double before = clock_ ? clock_() : 0;
-    const std::vector<Match> matches = localizer_.update(seen);
-    if (clock_) track_.seconds += row.seconds = clock_() - before;
-    ++track_.updates;
-    JointEvidence evidence;
-    for (std::size_t i = 0; i < matches.size(); ++i) {
-      ++track_.verdicts[static_cast<std::size_t>(matches[i].verdict)];
-      if (matches[i].verdict != Verdict::matched) {
-        ++row.rejected;
-        continue;
-      }
-      ++row.matched;
-      evidence += matches[i].pairing.evidence;
-      if (!seen.sightings[i].identity) continue;
-      ++track_.named;
-      row.wrong += *seen.sightings[i].identity != matches[i].key;
-    }
-    track_.wrong += row.wrong;
-    if (evidence.rows) row.nis = joint_distance(evidence, prior).squares, row.nis_rows = evidence.rows;
-    return true;
-  }
-
-  const RobotLog& log_;
-  Localizer& localizer_;
-  const ReplayOptions& options_;
-  const OdometryNoise odometry_;
-  const ScanDetector& detect_;
-  const TimeSource& clock_;
-  const TerrainHeight& ground_;
-  TerrainPose terrain_pose_;
-  RepeatedSightings repeated_;
-  Track track_;
-  std::variant<std::monostate, TwistReading, CarReading> current_reading_;
-  double now_ = 0, last_step_ = 0;
-};
-
-}  // namespace
+  track_.wrong += row.wrong;
+  if (evidence.rows) row.nis = joint_distance(evidence, prior).squares, row.nis_rows = evidence.rows;
+  seen_ = std::move(seen);
+  return true;
+}
 
 void ReplayOptions::describe(OptionVisitor& option) {
   odometry.describe(option);
@@ -160,7 +140,10 @@ void ReplayOptions::describe(OptionVisitor& option) {
 Track replay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options,
              const ScanDetector& detect, const TimeSource& clock, const TerrainHeight& ground,
              const TrackWatcher& watch) {
-  return Replay(log, localizer, options, detect, clock, ground).replay(watch);
+  LogReplay replay(log, localizer, options, detect, clock, ground);
+  for (const LogEvent& event : log.events)
+    if (replay.take(event) && watch) watch(replay.track());
+  return replay.track();
 }
 
 }  // namespace waymark::localization

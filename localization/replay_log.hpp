@@ -27,6 +27,57 @@ using TimeSource = std::function<double()>;
 /// Receives the track so far after each new row.
 using TrackWatcher = std::function<void(const Track&)>;
 
+/// Gives readings to a localizer one by one, in the order of time, as replay() does. The localizer must
+/// outlive it.
+class LogReplay {
+ public:
+  /// Of the log only the car, the memory of errors and the odometry noise are used.
+  LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options, ScanDetector detect = {},
+            TimeSource clock = {}, TerrainHeight ground = {});
+
+  /// Takes the next event. Returns false if it makes no row of the track.
+  bool take(const LogEvent& event);
+
+  const Track& track() const { return track_; }
+  /// Returns the sightings that were taken last, and a match for each.
+  const SightingSet& seen() const { return seen_; }
+  const std::vector<Match>& matches() const { return matches_; }
+  /// Returns the motion by odometry alone since the first event.
+  const Pose2& dead_reckoning() const { return dead_reckoning_; }
+
+ private:
+  void advance(double t);
+  void drive(BodyMotion motion);
+  void predict(const BodyMotion& motion);
+  void update_terrain_pose(const Pose2& pose);
+  bool take(const TwistReading& reading, TrackRow& row);
+  bool take(const CarReading& reading, TrackRow& row);
+  bool take(const StepReading& reading, TrackRow& row);
+  bool take(const GnssFix& fix, TrackRow& row) { return take_fix(fix, row); }
+  bool take(const HeadingFix& fix, TrackRow& row) { return take_fix(fix, row); }
+  bool take(const LaserScan& scan, TrackRow& row) { return detect_ && take(detect_(scan), row); }
+  bool take(SightingSet seen, TrackRow& row);
+  template <class Fix>
+  bool take_fix(const Fix& fix, TrackRow& row);
+
+  Localizer& localizer_;
+  ReplayOptions options_;
+  Ackermann car_;
+  OdometryNoise odometry_;
+  ScanDetector detect_;
+  TimeSource clock_;
+  TerrainHeight ground_;
+  TerrainPose terrain_pose_;
+  RepeatedSightings repeated_;
+  Track track_;
+  SightingSet seen_;
+  std::vector<Match> matches_;
+  Pose2 dead_reckoning_;
+  std::variant<std::monostate, TwistReading, CarReading> current_reading_;
+  std::optional<double> first_;
+  double now_ = 0, last_step_ = 0;
+};
+
 /// Replays a log to a localizer, from the first event to the last. Every row is finite. With `ground`,
 /// distances driven on a slope are projected to the map, and rows have z, roll and pitch. Where the terrain
 /// is unknown, rows have the last known height and zero angles.

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
@@ -59,6 +62,14 @@ void read_drive(DriveSettings& into, std::string_view json, const std::string& s
     into.waypoints = waypoints_of(file["waypoints"], source);
     if (!file.contains("route")) into.route = "waypoints";
   }
+  constexpr std::array<std::string_view, 4> kRoutes{"waypoints", "loop", "lanes", "wander"};
+  if (!into.planned() && std::ranges::find(kRoutes, into.route) == kRoutes.end())
+    throw Error(ErrorCode::usage, fmt::format("drive.route must not be '{}'", into.route), source,
+                "choose waypoints, loop, lanes, wander, or a file: .csv, .gpkg or .geojson");
+  if (into.planned() && into.navigation.map.empty())
+    throw Error(ErrorCode::usage,
+                fmt::format("drive.route is the file {}, but drive.navigation.map is missing", into.route),
+                source, "name the map by which the vehicle localizes");
   if (into.route == "waypoints" && into.waypoints.empty())
     throw Error(ErrorCode::usage, "drive.route is waypoints, but drive.waypoints is missing", source,
                 "give a list of [east, north], metres from the middle of the site");
@@ -166,6 +177,11 @@ Scenario read_scenario(std::string_view json, const std::string& source, const O
     throw Error(ErrorCode::usage, fmt::format("picture.bits must be 8 or 16, is {}", scenario.bits), source);
   if (file.contains("drive")) read_drive(scenario.drive, file["drive"].dump(), source, warn);
   scenario.forest.on = file.contains("forest");
+  scenario.street.on = file.contains("street");
+  scenario.hall.on = file.contains("hall");
+  if (scenario.forest.on + scenario.street.on + scenario.hall.on > 1)
+    throw Error(ErrorCode::usage, "the scenario has several of the sections forest, street and hall", source,
+                "a scenario is one place: make a file for each");
   read_flights(scenario, file, source, warn);
   return scenario;
 }
@@ -174,7 +190,9 @@ std::string scenario_json(const Scenario& scenario) {
   Scenario copy = scenario;
   Json file{{"waymark_scenario", kVersion}};
   for (const ScenarioSection& section : scenario_sections()) {
-    if (section.name == "forest" && !scenario.forest.on) continue;
+    if ((section.name == "forest" && !scenario.forest.on) ||
+        (section.name == "street" && !scenario.street.on) || (section.name == "hall" && !scenario.hall.on))
+      continue;
     const Json fields =
         Json::parse(options_as_json(option_table([&](OptionVisitor& v) { section.describe(copy, v); })));
     if (section.name.empty())

@@ -9,6 +9,7 @@
 #include "testbed/forest/forest_model.hpp"
 #include "testbed/render.hpp"
 #include "testbed/site_model.hpp"
+#include "testbed/town/town_model.hpp"
 namespace waymark::testbed {
 
 /// Camera of all flights: Brown distortion model, square pixels, principal point in the centre.
@@ -60,6 +61,8 @@ struct Scenario {
   DemModel orbital_dem{.cell = 0, .height_sd = 0.2, .correlation = 50};  ///< cell 0: none
   DriveSettings drive;                                                   ///< `on` if the file has the section
   ForestModel forest;                                                    ///< `on` if the file has the section
+  StreetModel street;                                                    ///< the same
+  HallModel hall;                                                        ///< the same
 };
 
 /// Reads a scenario (docs/reference/scenario.md). `source` names the file in messages. Throws Error{usage}

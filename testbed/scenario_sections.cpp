@@ -186,6 +186,8 @@ const std::vector<ScenarioSection>& scenario_sections() {
       {"camera", "Camera of all flights", describe_camera},
       {"pose_errors", "Errors of the poses in the camera file", describe_poses},
       {"forest", "A forest instead of a landing site", describe_forest},
+      {"street", "A street of a town instead of a landing site", describe_street},
+      {"hall", "A floor of a building instead of a landing site", describe_hall},
       {"dem", "DEM supplied with the images", describe_dem},
       {"orbital_dem", "Coarse DEM known before the landing", describe_orbital_dem},
   };

@@ -16,6 +16,8 @@ struct ScenarioSection {
 /// Returns the sections in the order of the file, without flights.
 const std::vector<ScenarioSection>& scenario_sections();
 void describe_forest(Scenario& scenario, OptionVisitor& field);
+void describe_street(Scenario& scenario, OptionVisitor& field);
+void describe_hall(Scenario& scenario, OptionVisitor& field);
 void describe_flight(Flight& flight, OptionVisitor& field);
 
 }  // namespace waymark::testbed

@@ -21,22 +21,4 @@ const pipeline::Registry& all_stages() {
   return registry;
 }
 
-const TypeRegistry& all_types() {
-  static const TypeRegistry registry = [] {
-    TypeRegistry made;
-    register_landmark_types(made);
-    return made;
-  }();
-  return registry;
-}
-
-const SensorRegistry& all_sensors() {
-  static const SensorRegistry registry = [] {
-    SensorRegistry made;
-    register_sensor_profiles(made);
-    return made;
-  }();
-  return registry;
-}
-
 }  // namespace waymark::workflows

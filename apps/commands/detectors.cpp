@@ -16,13 +16,13 @@ class Detectors final : public Command {
             "A detector turns the scans of a log into sightings of landmarks. `localize` and `map` choose "
             "them by the types of the map; `--set scans=NAME,NAME` names them. Detectors in images and "
             "elevation models are stages: `waymark stages`.",
-        .arguments = reference_arguments(what_, localization::laser_detectors().names()),
+        .arguments = reference_arguments(what_, localization::scan_detectors().names()),
         .examples = {{"waymark detectors walls", "The record it reads and the types it makes"},
                      {"waymark detectors --format json", "All of them for a script"}}};
   }
 
   int run(const Session&) override {
-    print_reference(registry_reference(localization::laser_detectors()), "detector", what_);
+    print_reference(registry_reference(localization::scan_detectors()), "detector", what_);
     return 0;
   }
 

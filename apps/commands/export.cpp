@@ -8,6 +8,7 @@
 #include "exporters/vector/export_map.hpp"
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/postgres_map.hpp"
+#include "workflows/localization/export_robot_map.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::apps {
@@ -25,6 +26,9 @@ class Export final : public Command {
             "Crater counts for craterstats: .scc has the craters with their positions and the outline of "
             "the counting area, .diam their diameters. The area is that of the images' footprints, or of "
             "the DEM.\n\n"
+            "For robots: -of beluga writes the landmarks with a category for each type, -of MRPT the beacons "
+            "of a "
+            "landmark map in a configuration, both in metres of the frame of `waymark localize`.\n\n"
             "pg:CONNECTION stores the whole map, with evidence and runs, in a schema of a PostgreSQL "
             "database "
             "(schema=NAME, default waymark). A schema that holds a map is updated by uid.",
@@ -33,7 +37,7 @@ class Export final : public Command {
                                 "File to write; its extension selects the format. Or pg:CONNECTION"),
                       Argument{"-of,--format", "OGR_DRIVER", &options_.driver,
                                "Format by GDAL's name, if the extension is ambiguous"}
-                          .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf"}),
+                          .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf", "beluga", "MRPT"}),
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
                           .offering(workflows::all_types().names()),
                       Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
@@ -48,14 +52,17 @@ class Export final : public Command {
             {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
              "A table in UTM metres"},
             {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+            {"waymark export alps.gpkg alps.sqlite", "SQLite, with geometries and indexes of SpatiaLite"},
             {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
              "A table with a label for the Planetary Data System"},
             {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
+            {"waymark export forest.gpkg trees.yaml -of beluga --type tree", "A landmark list for a robot"},
             {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}}};
   }
 
   int run(const Session&) override {
     if (geodb::postgres::is_address(out_)) return export_to_server();
+    if (const auto format = workflows::parse_robot_format(options_.driver)) return export_to_robot(*format);
     const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
     for (const exporters::ExportedLayer& layer : done.layers)
@@ -65,6 +72,20 @@ class Export final : public Command {
   }
 
  private:
+  int export_to_robot(workflows::RobotFormat format) {
+    if (!options_.crs.empty())
+      throw Error(ErrorCode::usage,
+                  "a robot's landmark list is in metres of the local frame: --crs does not apply", out_,
+                  "leave it out");
+    const std::int64_t count = workflows::export_robot_map({.map = map_,
+                                                            .output = out_,
+                                                            .format = format,
+                                                            .types = options_.types,
+                                                            .overwrite = options_.overwrite});
+    log_summary(fmt::format("{}: {} landmarks, {}\n", out_, count, options_.driver));
+    return 0;
+  }
+
   int export_to_server() {
     if (!options_.types.empty() || !options_.crs.empty() || !options_.driver.empty())
       throw Error(ErrorCode::usage,

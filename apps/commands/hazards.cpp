@@ -57,6 +57,16 @@ class Hazards final : public Command {
                  .or_else("0.05"),
              Argument{"--hazard", "P", &request_.min_hazard, "Probability from which a cell is a hazard"}
                  .or_else("0.5"),
+             Argument{
+                 "--landing-ellipse", "MAJOR,MINOR[,AZIMUTH]", &request_.landing_ellipse,
+                 "Add the band landing: the probability of a safe touchdown for an aim at each cell, with "
+                 "these standard deviations (metres; degrees clockwise from north)"},
+             Argument{"--sun", "AZIMUTH,ELEVATION", &request_.sun,
+                      "Add the bands horizon (degrees, in the azimuth of the sun) and shade (1 where the "
+                      "terrain hides the sun)"},
+             Argument{"--horizon-reach", "METRES", &request_.horizon_reach,
+                      "Farthest terrain that hides the sun"}
+                 .or_else("1000"),
              Argument{"--polygons", "FILE.gpkg", &request_.polygons,
                       "Write areas that are not safe as polygons, layer hazard"}
                  .offering(Offer::file),

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "apps/command.hpp"
+#include "apps/command_json.hpp"
 #include "apps/session.hpp"
 
 namespace waymark::apps {
@@ -12,12 +13,16 @@ namespace {
 class Help final : public Command {
  public:
   CommandSpec describe() override {
-    return {.name = "help",
-            .group = Group::look_up,
-            .summary = "Explain a command, or list all commands",
-            .about = "`waymark help COMMAND` is `waymark COMMAND --help`.",
-            .arguments = {Argument{"", "COMMAND", &command_, "Command to explain"}},
-            .examples = {{"waymark help peaks", "Options and examples of `waymark peaks`"}}};
+    return {
+        .name = "help",
+        .group = Group::look_up,
+        .summary = "Explain a command, or list all commands",
+        .about =
+            "`waymark help COMMAND` is `waymark COMMAND --help`. As JSON, the declarations are for programs "
+            "that make forms of them.",
+        .arguments = {Argument{"", "COMMAND", &command_, "Command to explain"}, format_option(&format_)},
+        .examples = {{"waymark help peaks", "Options and examples of `waymark peaks`"},
+                     {"waymark help --format json", "All commands and options, for a program"}}};
   }
 
   int run(const Session&) override {
@@ -25,13 +30,19 @@ class Help final : public Command {
     register_commands(commands);
     Session any;
     const std::vector<Argument> globals = global_arguments(any);
+    if (format_ == "json") {
+      std::vector<CommandSpec> asked = commands.describe();
+      if (!command_.empty()) asked = {commands.find(command_).describe()};
+      std::cout << commands_as_json(asked, globals);
+      return 0;
+    }
     std::cout << (command_.empty() ? program_help(commands.describe(), globals)
                                    : command_help(commands.find(command_).describe(), globals));
     return 0;
   }
 
  private:
-  std::string command_;
+  std::string command_, format_;
 };
 
 }  // namespace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "geodb/postgres/connection.hpp"
@@ -29,6 +31,8 @@ class Import final : public Command {
             "tan, deg, rad, min and max. \"depth=\" leaves a target out.\n\n"
             "Rows without a position and rows outside the plausible range of a feature (`waymark types`) "
             "are rejected and counted.\n\n"
+            "--rules makes landmarks of the elements of GIS layers, drawings and city models by their tags "
+            "and geometries: points, centroids, corners, ends, walls.\n\n"
             "pg:CONNECTION reads a map that `waymark export` stored in PostgreSQL (schema=NAME, default "
             "waymark).",
         .arguments = {file_word("TABLE", &request_.table, "Table to read; /vsi paths too. Or pg:CONNECTION"),
@@ -53,6 +57,10 @@ class Import final : public Command {
                       Argument{"--mapping", "FILE.json", &request_.mapping,
                                "Mapping file: types by the words of a column, columns, CRSs; options win"}
                           .offering(Offer::file),
+                      Argument{"--rules", "FILE.json|NAME", &request_.rules,
+                               "Rules for GIS layers: tags to types; a file, or " + names_of_ready_rules()}
+                          .offering(Offer::file),
+                      Argument{"--print-rules", "", &print_rules_, "Print these rules and stop"}.alone(),
                       Argument{"--layer", "NAME", &request_.layer, "Layer of a file that holds several"},
                       {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
                        "Reject rows that cannot be read, instead of stopping at the first"}},
@@ -65,10 +73,16 @@ class Import final : public Command {
              "A survey with its accuracy"},
             {"waymark import truth.csv -o truth.gpkg --map-crs EPSG:32611",
              "All types of a table with a column `type`"},
+            {"waymark import town.osm -o town.gpkg --rules osm",
+             "Lamps, signs, trees and buildings of OpenStreetMap"},
             {"waymark import 'pg:dbname=maps schema=alps' -o alps.gpkg", "A map from PostGIS"}}};
   }
 
   int run(const Session& session) override {
+    if (print_rules_) {
+      std::cout << workflows::rules_text(request_.rules);
+      return 0;
+    }
     if (geodb::postgres::is_address(request_.table)) {
       geodb::import_from_postgres(request_.table, request_.map);
       return 0;
@@ -79,7 +93,14 @@ class Import final : public Command {
   }
 
  private:
+  static std::string names_of_ready_rules() {
+    std::string names;
+    for (const std::string& name : workflows::ready_rule_names()) names += (names.empty() ? "" : ", ") + name;
+    return names;
+  }
+
   workflows::ImportRequest request_;
+  bool print_rules_ = false;
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ class Localize final : public Command {
              Argument{"--seed", "N", &request_.seed, "Seed of all random numbers"}.or_else("1"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam",
-                          "g2o", "toro"})
+                          "g2o", "toro", "points"})
                  .or_else("recognised by the files"),
              Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
                       "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},

@@ -39,7 +39,7 @@ class MapDrive final : public Command {
                  .or_else("walls"),
              Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else("local"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
-                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap"})
+                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})
                  .or_else("recognised by the files"),
              Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"}},
         .examples = {

@@ -49,7 +49,8 @@ class PlanJob final : public Command {
               "Processors, memory and time that each call asks for; with STAGE or `map` those of one stage; "
               "may be "
               "repeated"},
-             {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"}},
+             {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"},
+             {"--confined", "", &confined_, "Refuse a job that names files outside its folder"}},
         .examples = {{"waymark plan job.json --format jsonl", "One unit per line, done or not"},
                      {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
                       "Run by Snakemake"},
@@ -69,7 +70,7 @@ class PlanJob final : public Command {
       throw Error(ErrorCode::usage, "--sensor is recorded in a map, but the plan writes none",
                   "--sensor " + sensor_, "pass -o MAP.gpkg");
     if (!map_.empty()) workflows::check_map_output(map_);
-    const pipeline::Job job = workflows::load_job(job_, settings_);
+    const pipeline::Job job = workflows::load_job(job_, settings_, confined_);
     const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
     const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
@@ -79,6 +80,7 @@ class PlanJob final : public Command {
                                      .settings = settings_,
                                      .map = map_,
                                      .sensor = sensor_,
+                                     .confined = confined_,
                                      .max_shards = static_cast<std::size_t>(shards_),
                                      .resources = workflows::parse_resources(resources_, stages_of(units))};
     std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
@@ -99,6 +101,7 @@ class PlanJob final : public Command {
   std::string job_, format_ = "jsonl", work_ = "work", map_, sensor_;
   long shards_ = 64;
   std::vector<std::string> settings_, resources_;
+  bool confined_ = false;
 };
 
 }  // namespace

@@ -60,6 +60,11 @@ class RouteCommand final : public Command {
              Argument{"--alternatives", "N", &request_.alternatives,
                       "Routes along the front of length and sd, each a tenth better"}
                  .or_else("1"),
+             Argument{"--dem", "DEM...", &request_.dem,
+                      "Terrain: gives the stations bounds of the belly's clearance and of the tilt"}
+                 .offering(Offer::file),
+             Argument{"--vehicle", "NAME|FILE", &request_.vehicle, "Vehicle of these bounds"}.or_else(
+                 "rover"),
              Argument{"--seed", "N", &request_.seed, "Seed of the worlds"}.or_else("1")},
         .examples = {
             {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor horizontal_laser --limit-sigma 0.5 "

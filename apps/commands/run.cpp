@@ -31,6 +31,7 @@ class Run final : public Command {
                    "Run this stage only, or with --shard its units of the shard; other results are reused"});
     all.push_back(
         {"--unit", "ID", &asked_.request.unit, "Run this unit of work only; `waymark plan` lists them"});
+    all.push_back({"--confined", "", &confined_, "Refuse a job that names files outside its folder"});
     return {
         .name = "run",
         .group = Group::make,
@@ -51,7 +52,7 @@ class Run final : public Command {
   }
 
   int run(const Session& session) override {
-    const pipeline::Job job = workflows::load_job(job_, settings_);
+    const pipeline::Job job = workflows::load_job(job_, settings_, confined_);
     if (!shard_.empty()) asked_.request.shard = parse_shard(shard_);
     return make_map_command(job, asked_, session);
   }
@@ -59,6 +60,7 @@ class Run final : public Command {
  private:
   std::string job_, shard_;
   std::vector<std::string> settings_;
+  bool confined_ = false;
   MapCommand asked_;
 };
 

@@ -12,7 +12,7 @@ class Simulate final : public Command {
     return {
         .name = "simulate",
         .group = Group::make,
-        .summary = "Make a landing site or a forest whose every rock, crater or tree is known",
+        .summary = "Make a landing site, a forest, a street or a hall whose every landmark is known",
         .about =
             "Writes into a folder: the DEM, the images, the camera file with the sun, a job that makes a "
             "map of them, and the truth to evaluate the map with. The same scenario and seed give the "
@@ -20,6 +20,9 @@ class Simulate final : public Command {
             "With a section `forest` it makes a forest instead, as an airborne laser scanner measures it: "
             "dtm.tif, dsm.tif, chm.tif, points.las, stands.geojson, the job and the truth "
             "(docs/reference/forest_scenario.md).\n\n"
+            "With a section `street` or `hall` it makes a robot's drive with a laser scanner through a "
+            "street "
+            "or the floor of a building: log.jsonl and the truth (docs/reference/town_scenario.md).\n\n"
             "The scenario is JSON; every field has a default: docs/reference/scenario.md.",
         .arguments = {file_word("SCENARIO.json", &request_.scenario, "What to make"),
                       Argument{"-o,--output", "DIR", &request_.folder, "Folder for the files; it may exist"}

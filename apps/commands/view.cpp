@@ -52,7 +52,7 @@ class View final : public Command {
              Argument{"--title", "TEXT", &request_.title, "Title of the page"}.or_else("the file's name"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam", "g2o",
-                          "toro"})
+                          "toro", "points"})
                  .or_else("recognised by the files"),
              Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"}},
         .examples = {{"waymark view mars.gpkg -o mars.html", "A landing with its images on the terrain"},

@@ -59,6 +59,10 @@ std::string encode_png(const Grid<Colour>& picture) {
   return encoded(picture, "PNG", 4, "ZLEVEL=9");
 }
 
+std::string encode_rgb_png(const Grid<Colour>& picture) {
+  return encoded(picture, "PNG", 3, "ZLEVEL=6");
+}
+
 std::string encode_jpeg(const Grid<Colour>& picture, int quality) {
   const bool grey = std::ranges::all_of(
       picture.cells(), [](const Colour& c) { return c.red == c.green && c.green == c.blue; });

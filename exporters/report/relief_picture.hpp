@@ -35,6 +35,8 @@ Grid<Colour> shade(const Relief& relief, const HypsometricTint& tint);
 
 /// Returns the bytes of a PNG file, written by GDAL.
 std::string encode_png(const Grid<Colour>& picture);
+/// Returns the same without alpha, compressed faster: for pictures whose colours are numbers.
+std::string encode_rgb_png(const Grid<Colour>& picture);
 /// Returns the bytes of a JPEG file, one band if every pixel is grey. `quality` is 1 to 100; alpha is
 /// ignored.
 std::string encode_jpeg(const Grid<Colour>& picture, int quality);

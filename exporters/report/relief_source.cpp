@@ -159,6 +159,24 @@ std::optional<Extent> relief_extent(const std::vector<std::string>& names, const
   return extent;
 }
 
+std::int64_t relief_pixels(const std::vector<std::string>& names, const Crs& crs, double near_x,
+                           std::int64_t max_pixels) {
+  const GdalMessages quiet;
+  const std::vector<Raster> rasters = open_rasters(names, crs, near_x);
+  if (rasters.empty()) return 0;
+  Extent extent = rasters.front().extent;
+  double cell_x = extent.width(), cell_y = extent.height();
+  for (const Raster& raster : rasters) {
+    extent = extent.united(raster.extent);
+    cell_x = std::min(cell_x, raster.extent.width() / raster.file->GetRasterXSize());
+    cell_y = std::min(cell_y, raster.extent.height() / raster.file->GetRasterYSize());
+  }
+  const GroundScale scale = ground_scale(crs, extent);
+  const bool wide = extent.width() * scale.x >= extent.height() * scale.y;
+  const double cells = wide ? extent.width() / cell_x : extent.height() / cell_y;
+  return std::clamp<std::int64_t>(std::llround(std::min(cells, 1e9)), 1, max_pixels);
+}
+
 std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
                                   std::int64_t pixels, const std::optional<Extent>& within) {
   const GdalMessages quiet;

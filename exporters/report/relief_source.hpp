@@ -44,6 +44,11 @@ GroundScale ground_scale(const Crs& crs, const Extent& extent);
 std::optional<Relief> read_relief(const std::vector<std::string>& names, const Crs& crs, double near_x,
                                   std::int64_t pixels, const std::optional<Extent>& within = {});
 
+/// Returns the `pixels` at which a picture of all DEMs under these names has the cells of the finest one, at
+/// most `max_pixels`; 0 if there is no DEM.
+std::int64_t relief_pixels(const std::vector<std::string>& names, const Crs& crs, double near_x,
+                           std::int64_t max_pixels);
+
 /// Returns the rectangle of all DEMs under these names; `std::nullopt` if there is none.
 std::optional<Extent> relief_extent(const std::vector<std::string>& names, const Crs& crs, double near_x);
 

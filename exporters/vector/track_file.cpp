@@ -198,7 +198,8 @@ localization::Track read_track_csv(const fs::path& file) {
       throw Error(ErrorCode::input,
                   fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]),
                   fmt::format("{}, line {}", file.string(), number),
-                  "counts are whole numbers from 0 to a million");
+                  *wrong == 0 ? fmt::format("times are seconds, at most {:g} from 0", kMaxTime)
+                              : "counts are whole numbers from 0 to a million");
     track.rows.push_back(row_of(values));
   }
   if (wrong_known)

@@ -119,6 +119,11 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   if (format.driver.ends_with("KML")) format.name_field = "Name", format.description_field = "Description";
   if (format.driver == "GPX") format.name_field = "name", format.description_field = "desc";
   if (format.driver == "GeoRSS") format.name_field = "title", format.description_field = "description";
+  // With the tables and functions of SpatiaLite, and only the CRS that is used instead of 6000 (6 MB).
+  const char* offered = driver.GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
+  if (format.driver == "SQLite" && offered != nullptr &&
+      std::string_view(offered).find("'SPATIALITE'") != std::string_view::npos)
+    format.creation_options = {"SPATIALITE=YES", "INIT_WITH_EPSG=NO"};
   format.max_name_length = format.driver == "ESRI Shapefile" ? kDbfName : 0;
   return format;
 }

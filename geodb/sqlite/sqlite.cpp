@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "geodb/geopackage/geometry_functions.hpp"
@@ -90,6 +91,33 @@ std::uint64_t max_steps(const std::filesystem::path& path) {
   std::error_code unknown;
   const auto bytes = std::filesystem::file_size(path, unknown);
   return kMinSteps + (unknown ? 0 : kStepsPerByte * bytes);
+}
+
+// Longest text or blob of a map, bytes: a tile, a record of a run with all its inputs.
+constexpr int kMaxLength = 256 << 20;
+
+// Authorizer of SQLite: what a trigger or view of the map may do while the map is changed. Ours, and those of
+// GDAL and the GeoPackage standard, keep spatial indexes and counts, note moved landmarks and name new ones.
+int authorize(void*, int action, const char* table, const char* column, const char*, const char* trigger) {
+  if (trigger == nullptr) return SQLITE_OK;
+  const std::string_view name = table ? table : "";
+  switch (action) {
+    case SQLITE_SELECT:
+    case SQLITE_READ:
+    case SQLITE_FUNCTION:
+    case SQLITE_RECURSIVE:
+      return SQLITE_OK;
+    case SQLITE_UPDATE:
+      if (column && std::string_view(column) == "uid") return SQLITE_OK;
+      [[fallthrough]];
+    case SQLITE_INSERT:
+    case SQLITE_DELETE:
+      return name.starts_with("rtree_") || name == "waymark_moved" || name == "gpkg_ogr_contents"
+                 ? SQLITE_OK
+                 : SQLITE_DENY;
+    default:
+      return SQLITE_DENY;
+  }
 }
 
 // Progress handler of SQLite: interrupts the statement if it returns other than 0.
@@ -191,7 +219,9 @@ Database::Database(const std::filesystem::path& path, OpenMode mode) {
   if (mode != OpenMode::create) {
     limit_ = std::make_unique<StepLimit>(StepLimit{.max_steps = max_steps(path)});
     sqlite3_progress_handler(handle, kStepsPerCheck, count_steps, limit_.get());
+    sqlite3_limit(handle, SQLITE_LIMIT_LENGTH, kMaxLength);
   }
+  if (mode == OpenMode::update) sqlite3_set_authorizer(handle, authorize, nullptr);
   execute(pragmas(mode));
 }
 

@@ -76,7 +76,9 @@ enum class OpenMode {
 };
 
 /// Connection with the geometry functions that GeoPackage triggers call. A statement that takes far more
-/// instructions than a scan of the file throws Error{input}; in a new file it may take any number.
+/// instructions than a scan of the file throws Error{input}; in a new file it may take any number. Values of
+/// a map are at most 256 MB. A change throws Error{input} if a foreign trigger would change more than
+/// indexes.
 class Database {
  public:
   Database(const std::filesystem::path& path, OpenMode mode);

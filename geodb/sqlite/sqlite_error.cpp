@@ -50,6 +50,12 @@ Explanation explain(sqlite3* database) {
               fmt::format("reading or writing failed: {} ({})", message, std::strerror(cause)),
               "check the disk"};
     }
+    case SQLITE_AUTH:
+      return {ErrorCode::input, "a trigger that is not Waymark's would change other rows of this map",
+              "list them: SELECT name, sql FROM sqlite_master WHERE type = 'trigger'; and drop it"};
+    case SQLITE_TOOBIG:
+      return {ErrorCode::input, "a text or blob of this map has more than 256 MB",
+              "the map is damaged or hostile: run its job again"};
     case SQLITE_INTERRUPT:
       return endless();
     case SQLITE_NOMEM:

@@ -51,15 +51,24 @@ std::vector<std::string> folders_of(const std::vector<std::string>& files, const
   return folders;
 }
 
+// Returns the name of an image as a path that stays in its folder: of others, such as /etc/a.png or ../a.png,
+// the file name.
+fs::path inside(const std::string& image) {
+  const fs::path path = fs::path(image).lexically_normal();
+  const bool stays = path.is_relative() && !path.empty() && *path.begin() != "..";
+  return stays ? path : path.filename();
+}
+
 // Returns the camera's image in one of the folders, with an extension if the camera file omits it.
-std::string locate(const std::string& image, const std::vector<std::string>& folders,
+std::string locate(const std::string& name, const std::vector<std::string>& folders,
                    const std::map<std::string, std::string>& by_stem) {
+  const fs::path image = inside(name);
   for (const std::string& folder : folders)
-    for (const fs::path& path : {fs::path(folder) / image, fs::path(folder) / fs::path(image).filename()})
+    for (const fs::path& path : {fs::path(folder) / image, fs::path(folder) / image.filename()})
       if (exists(path.string()) && !is_folder(path.string())) return path.string();
-  for (const std::string& stem : {fs::path(image).filename().string(), fs::path(image).stem().string()})
+  for (const std::string& stem : {image.filename().string(), image.stem().string()})
     if (const auto found = by_stem.find(stem); found != by_stem.end()) return found->second;
-  return folders.empty() ? image : (fs::path(folders[0]) / image).string();
+  return folders.empty() ? image.string() : (fs::path(folders[0]) / image).string();
 }
 
 // Prefixes names with folders until they are unique.

@@ -18,9 +18,10 @@ std::string recognised(const fs::path& path) {
     if (fs::exists(path / "Barcodes.dat")) return "mrclam";
     if (fs::exists(path / "LASER.txt") && fs::exists(path / "DRS.txt")) return "victoria-park";
     if (!bag_files(path).empty()) return "rosbag2";
+    if (is_point_log(path)) return "points";
     throw Error(ErrorCode::input, "the folder holds no log of a known format", path.string(),
-                "known are MRCLAM (Barcodes.dat), Victoria Park (LASER.txt, DRS.txt) and bags of ROS 2 "
-                "(.db3, .mcap)");
+                "known are MRCLAM (Barcodes.dat), Victoria Park (LASER.txt, DRS.txt), bags of ROS 2 (.db3, "
+                ".mcap) and 3-D scans (.bin, .ply)");
   }
   if (!fs::exists(path))
     throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
@@ -67,9 +68,11 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "carmen") return import_carmen_log(path);
   if (format == "rosbag2" || format == "mcap") return import_bag_log(path);
+  if (format == "points") return import_point_log(path, types);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
-  throw Error(ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
-              "known are waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o and toro");
+  throw Error(
+      ErrorCode::usage, "there is no log format '" + format + "'", path.string(),
+      "known are waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam, g2o and toro");
 }
 
 }  // namespace

@@ -15,8 +15,8 @@ namespace waymark::importers {
 
 /// Options for reading a log.
 struct LogImport {
-  std::string format = {};   ///< waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro;
-                             ///< empty: recognised by what is there
+  std::string format = {};   ///< waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam,
+                             ///< g2o, toro; empty: recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
   /// waymark, csv: its standard deviations are those of sightings for which the log gives none.
@@ -68,5 +68,13 @@ localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 /// steps, scans get their place on the robot from tf and tf_static. Of several topics of a type, the one with
 /// the most messages is read. Messages that cannot be read are skipped and counted. Throws Error{input}.
 localization::RobotLog import_bag_log(const std::filesystem::path& path);
+
+/// Reads a folder of 3-D scans (point_files.hpp), or its subfolder `velodyne`, in the order of their names:
+/// each becomes sightings by the detectors whose types the map has, so that one scan is in memory at a time.
+/// `times.txt` gives their seconds. There is no odometry: poses come from elsewhere, as in `waymark map
+/// --poses`.
+localization::RobotLog import_point_log(const std::filesystem::path& folder, const TypeRegistry& types);
+/// Returns whether a folder holds 3-D scans.
+bool is_point_log(const std::filesystem::path& folder);
 
 }  // namespace waymark::importers

@@ -36,6 +36,7 @@ class LogLine {
   localization::Pose2 pose() const;
   localization::Pose2 mount() const;
 
+  const std::filesystem::path& file() const { return file_; }
   [[noreturn]] void fail(const std::string& problem) const;
 
  private:

@@ -14,9 +14,11 @@
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/log_line.hpp"
 #include "importers/logs/log_records.hpp"
+#include "importers/logs/point_files.hpp"
 #include "localization/detectors/depth_rocks.hpp"
 #include "localization/detectors/detected_types.hpp"
 #include "localization/detectors/horizon_summits.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
 
 namespace waymark::importers {
@@ -44,6 +46,8 @@ class Reader {
       add(t, sightings(line));
     else if (kind == "laser")
       add(t, scan(line));
+    else if (kind == "points")
+      add(t, points(line));
     else if (kind == "depth")
       add(t,
           localization::sightings_of_rocks(depth(line), {.type = localization::detected_types(types_).rock}));
@@ -179,6 +183,13 @@ class Reader {
     return scan;
   }
 
+  localization::SightingSet points(const LogLine& line) {
+    if (!detect_) detect_ = localization::make_point_detector(types_);
+    const std::filesystem::path file = line.text("file");
+    return detect_({.robot_from_sensor = line.mount(),
+                    .points = read_point_file(file.is_absolute() ? file : line.file().parent_path() / file)});
+  }
+
   static std::int64_t pixels(const LogLine& line, const char* key) {
     const double count = line.positive(key, 1);
     if (!(count <= 1e5 && count == std::floor(count)))
@@ -237,6 +248,7 @@ class Reader {
   }
 
   double last_truth_yaw_ = 0;
+  localization::PointDetector detect_;
   const TypeRegistry& types_;
   std::optional<SensorCoverage> sensor_;  // absent: assumed deviations
   localization::RobotLog log_;

@@ -51,7 +51,7 @@ Sample sample_of(const CanopySource& canopy, const CanopyReader& read) {
 }
 
 std::string percent(std::int64_t part, std::int64_t of) {
-  return fmt::format("{:.2g} %", 100 * static_cast<double>(part) / static_cast<double>(of));
+  return fmt::format("{:.3g} %", 100 * static_cast<double>(part) / static_cast<double>(of));
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ constexpr double kHalo = 20;          // metres of points around a block
 constexpr double kGroundHalo = 60;    // metres of points around a block for finding the ground
 constexpr double kMinDensity = 0.25;  // returns per m2; below, ground cannot be recognised by its shape
 constexpr std::size_t kKeptBlocks = 256;
+// Memory of the points of a block, in units of --memory: surveys stay far below it.
+constexpr std::int64_t kMemoryTimes = 4;
 // Cells of the grid: the work is bounded by the size of the input. A survey has .01 to 20 cells per point.
 constexpr double kMinCells = 1e8, kCellsPerPoint = 2000;
 
@@ -193,15 +195,34 @@ class PointCanopy final : public ImportedCanopy {
     const bool classified = catalogue_.ground_points() > 0;
     const double around = (classified ? kHalo : kGroundHalo) / unit_, last = static_cast<double>(kBlock);
     pipeline::LaserPoints points;
+    const std::size_t max_points =
+        static_cast<std::size_t>(std::max<std::int64_t>(1, kMemoryTimes * import_.memory_bytes) /
+                                 std::int64_t{sizeof(Eigen::Vector3d)});
     catalogue_.visit({where.x(first) - around, where.y(top + last) - around, where.x(first + last) + around,
                       where.y(top) + around},
                      [&](const LasPoint& p) {
                        const Eigen::Vector3d at(p.x * unit_, p.y * unit_, p.z * height_unit_);
                        if (p.classification == 2 || !classified) points.ground.push_back(at);
                        if (is_first(p)) points.surface.push_back(at);
+                       if (points.ground.size() + points.surface.size() > max_points)
+                         refuse_density(column, row);
                      });
     if (!classified) points.ground = pipeline::ground_returns(points.ground);
     return pipeline::canopy_block(points, frame, spacing_);
+  }
+
+  /// Throws: the points of a block do not fit into the memory.
+  [[noreturn]] void refuse_density(std::int64_t column, std::int64_t row) const {
+    const double side = static_cast<double>(kBlock);
+    throw Error(
+        ErrorCode::input,
+        fmt::format("more points lie near ({:.10g}, {:.10g}) than {} times --memory holds ({} MB)",
+                    grid_.where.x((static_cast<double>(column) + 0.5) * side),
+                    grid_.where.y((static_cast<double>(row) + 0.5) * side), kMemoryTimes,
+                    kMemoryTimes * import_.memory_bytes / 1'000'000),
+        import_.las[0],
+        "a damaged or hostile file repeats points; thin a dense cloud (pdal sample), or pass a larger "
+        "--memory");
   }
 
   CanopyImport import_;

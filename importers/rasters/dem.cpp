@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/error.hpp"
+#include "importers/rasters/dem_memory.hpp"
 #include "importers/rasters/fill_voids.hpp"
 #include "importers/rasters/inspect.hpp"
 #include "importers/rasters/metric_dem.hpp"
@@ -28,9 +30,12 @@ std::vector<RasterHeader> read_headers(const DemImport& import) {
 
 class MosaicDem : public ImportedDem {
  public:
-  explicit MosaicDem(const DemImport& import)
-      : import_(import), mosaic_(read_headers(import), cache_bytes()) {
-    GDALSetCacheMax64(import.memory_bytes / 8);  // GDAL's cache, used for VRTs and masks
+  explicit MosaicDem(const DemImport& import) : MosaicDem(import, read_headers(import)) {}
+  MosaicDem(const DemImport& import, std::vector<RasterHeader> headers)
+      : import_(import),
+        memory_(dem_memory(import.memory_bytes, headers)),
+        mosaic_(std::move(headers), cache_bytes()) {
+    GDALSetCacheMax64(memory_ / 8);  // GDAL's cache, used for VRTs and masks
     for (const RasterHeader& header : mosaic_.headers())
       warnings_.insert(warnings_.end(), header.warnings.begin(), header.warnings.end());
     if (!import.area.empty()) area_ = read_area_of_interest(import.area, geometry().where.crs);
@@ -59,9 +64,10 @@ class MosaicDem : public ImportedDem {
   const DemImport& import() const override { return import_; }
 
  private:
-  std::size_t cache_bytes() const { return static_cast<std::size_t>(import_.memory_bytes / 8 * 7); }
+  std::size_t cache_bytes() const { return static_cast<std::size_t>(memory_ / 8 * 7); }
 
   DemImport import_;
+  std::int64_t memory_;  ///< bytes
   Mosaic mosaic_;
   std::optional<Area> area_;
   std::vector<std::string> warnings_;

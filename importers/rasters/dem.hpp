@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-#include "core/options/memory_option.hpp"
 #include "geo/dem_source.hpp"
 namespace waymark::importers {
 
@@ -15,13 +14,13 @@ struct DemImport {
   NodataPolicy nodata = NodataPolicy::ocean;
   std::string crs = {};  ///< replaces the files' own; "local": metres on no body; empty: the files' own
   int band = 0;          ///< of the heights, from 1; 0: the only one
-  std::string height_unit = {};  ///< replaces that of the band; empty: the band's
-  double height_scale = 1;       ///< factor of all heights
-  std::string area = {};         ///< file of polygons: the area of interest (DemSource::in_area); empty: all
-  int fill_distance = 100;       ///< cells; NodataPolicy::fill interpolates voids up to here from data
-  std::int64_t memory_bytes = MemoryOption{}.bytes();  ///< for decoded blocks, all threads together
-  double height_sd = 0;                                ///< of a height, metres; 0: unknown
-  bool metric = false;  ///< project a DEM in degrees to a plane in metres (metric_dem.hpp)
+  std::string height_unit = {};   ///< replaces that of the band; empty: the band's
+  double height_scale = 1;        ///< factor of all heights
+  std::string area = {};          ///< file of polygons: the area of interest (DemSource::in_area); empty: all
+  int fill_distance = 100;        ///< cells; NodataPolicy::fill interpolates voids up to here from data
+  std::int64_t memory_bytes = 0;  ///< for decoded blocks, all threads together; 0: dem_memory()
+  double height_sd = 0;           ///< of a height, metres; 0: unknown
+  bool metric = false;            ///< project a DEM in degrees to a plane in metres (metric_dem.hpp)
   bool inspect = true;  ///< compare seams, refuse a DEM without heights; false: open the headers only
 };
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/options/memory_option.hpp"
 #include "importers/rasters/dem.hpp"
 #include "importers/rasters/dem_codec.hpp"
 #include "importers/rasters/nodata_policy.hpp"
@@ -22,7 +21,7 @@ struct LoadDem {
     std::string aoi;
     bool metric = false;
     std::int64_t tile_cells = 512;
-    MemoryOption memory;
+    std::int64_t memory = 0;
 
     void describe(OptionVisitor& option) {
       option("files", files,
@@ -58,7 +57,12 @@ struct LoadDem {
              {.help = "Side of the tiles for processing; the map does not depend on it",
               .min = 64,
               .max = 16384});
-      memory.describe(option);
+      option("memory", memory,
+             {.help = "Memory for decoded rasters, megabytes; 0: 512 for a DEM that fits, else 96 (up to 512 "
+                      "where rows of tiles touch more)",
+              .min = 0,
+              .max = 1e7,
+              .affects_result = false});
     }
   };
 
@@ -88,7 +92,7 @@ struct LoadDem {
                      .height_scale = options.height_scale,
                      .area = options.aoi.empty() ? "" : unit.path(options.aoi),
                      .fill_distance = static_cast<int>(options.fill_distance),
-                     .memory_bytes = options.memory.bytes(),
+                     .memory_bytes = options.memory << 20,
                      .height_sd = options.height_sd.value,
                      .metric = options.metric};
     for (const std::string& file : options.files) import.files.push_back(unit.path(file));

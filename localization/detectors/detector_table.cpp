@@ -9,7 +9,10 @@ namespace waymark::localization {
 void DetectorTable::add(DetectorSpec detector) {
   if (detector.name.empty() || find(detector.name))
     throw std::logic_error("a detector has no name, or two are named '" + detector.name + "'");
-  if (detector.record != "laser" || detector.types.empty() || !detector.make)
+  const bool makes = detector.record == "laser"    ? bool(detector.make)
+                     : detector.record == "points" ? bool(detector.make_points)
+                                                   : false;
+  if (!makes || detector.types.empty())
     throw std::logic_error("detector " + detector.name + " declares no record, types or function");
   detectors_.push_back(std::move(detector));
 }

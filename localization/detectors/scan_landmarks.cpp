@@ -65,6 +65,39 @@ const DetectorTable& laser_detectors() {
   return table;
 }
 
+const DetectorTable& point_detectors() {
+  static const DetectorTable table = [] {
+    DetectorTable made;
+    register_point_detectors(made);
+    return made;
+  }();
+  return table;
+}
+
+const DetectorTable& scan_detectors() {
+  static const DetectorTable table = [] {
+    DetectorTable made;
+    register_laser_detectors(made);
+    register_point_detectors(made);
+    return made;
+  }();
+  return table;
+}
+
+PointDetector make_point_detector(const TypeRegistry& types) {
+  std::vector<PointDetector> detectors;
+  for (const DetectorSpec& detector : point_detectors())
+    if (makes_type_of(detector, types)) detectors.push_back(detector.make_points(types));
+  return [detectors = std::move(detectors)](const PointCloud& cloud) {
+    SightingSet all{cloud.robot_from_sensor, {}};
+    for (const PointDetector& detect : detectors) {
+      SightingSet some = detect(cloud);
+      all.sightings.insert(all.sightings.end(), some.sightings.begin(), some.sightings.end());
+    }
+    return all;
+  };
+}
+
 LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options) {
   std::vector<LaserDetector> detectors;
   for (const DetectorSpec* detector :

@@ -18,6 +18,14 @@ struct ScanDetectionOptions {
 /// Returns all detectors for laser scans.
 const DetectorTable& laser_detectors();
 
+/// Returns all detectors for the points of 3-D scanners.
+const DetectorTable& point_detectors();
+/// Returns the detectors for both.
+const DetectorTable& scan_detectors();
+
+/// Returns the detectors for 3-D scans whose types a map has, as one.
+PointDetector make_point_detector(const TypeRegistry& types);
+
 /// Returns the detectors that the options name, for the types of a map, as one. Throws Error{usage} for an
 /// unknown name.
 LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options);

@@ -53,6 +53,11 @@ constexpr double kModelSize = 0.35;           // weight of the model's diameter 
 constexpr double kNeutralUntrained = 0.645;   // same, where correlation alone decides
 constexpr double kPriorWeight = 0.45;         // step towards the image's own fraction of craters, [0, 1]
 
+// Three kinds of evidence weigh the same: convolutional and dense networks of the model, and the verifier.
+constexpr double kVerifierWeight = 1.0 / 3;
+// The verifier learnt at a fraction of craters that no image has, so its part of the step is whole.
+constexpr double kVerifiedPriorWeight = (1 - kVerifierWeight) * kPriorWeight + kVerifierWeight;
+
 // Factor on the final log odds, so that probabilities are those that labelled images show; the decision at
 // 0.5 does not depend on it (docs/evaluation/2026-11-23-overlapping-and-filled-craters.md).
 constexpr double kSharpness = 1.1;
@@ -65,9 +70,10 @@ double logistic(double x) {
 
 // Output of the model for a candidate.
 struct ModelEstimate {
-  double log_odds = 0;             // at the corrected circle
-  double diameter = 0;             // of that circle by the model; 0: none
-  CraterCandidate corrected = {};  // diameter 0: none
+  double log_odds = 0;                  // at the corrected circle
+  double diameter = 0;                  // of that circle by the model; 0: none
+  CraterCandidate corrected = {};       // diameter 0: none
+  std::optional<double> verified = {};  // log odds of the verifier at that circle
 };
 
 double log_odds(double p) {
@@ -77,8 +83,9 @@ double log_odds(double p) {
 // Corrects the candidate twice and evaluates it at the result. Convolutional networks, if present, do the
 // corrections, since sampling their patch is cheaper than gradients; both evaluate the final position,
 // since they err on different candidates.
-ModelEstimate model_estimate(const CraterModel& model, const PatchSource& patches,
+ModelEstimate model_estimate(const BowlJudges& judges, const PatchSource& patches,
                              const CraterCandidate& candidate) {
+  const CraterModel& model = *judges.model;
   const auto predict_at = [&](const CraterCandidate& at) {
     return model.convolution_nets.empty()
                ? predict(model, patches.features(at, candidate.score))
@@ -93,9 +100,25 @@ ModelEstimate model_estimate(const CraterModel& model, const PatchSource& patche
     at = apply_correction(at, prediction, patches.sun_angle());
   }
   const double first = log_odds(predict_at(at).probability);
-  if (model.convolution_nets.empty()) return {first, at.diameter, at};
-  const CraterPrediction second = predict(model, patches.features(at, candidate.score));
-  return {(first + log_odds(second.probability)) / 2, at.diameter * std::exp(second.log_size / 2), at};
+  const CraterFeatures features = patches.features(at, candidate.score);
+  ModelEstimate estimate{first, at.diameter, at};
+  if (!model.convolution_nets.empty()) {
+    const CraterPrediction second = predict(model, features);
+    estimate.log_odds = (first + log_odds(second.probability)) / 2;
+    estimate.diameter *= std::exp(second.log_size / 2);
+  }
+  if (judges.verifier) estimate.verified = log_odds(*judges.verifier, features);
+  return estimate;
+}
+
+// Adds the verifier's opinion where it has one, and moves all log odds towards the fraction of craters among
+// the candidates.
+void combine(std::vector<double>& evidence, const std::vector<ModelEstimate>& estimates, bool verified) {
+  for (std::size_t i = 0; i < evidence.size(); ++i)
+    if (const auto& opinion = estimates[i].verified)
+      evidence[i] = (1 - kVerifierWeight) * evidence[i] + kVerifierWeight * *opinion;
+  const double shift = (verified ? kVerifiedPriorWeight : kPriorWeight) * prior_shift(evidence, 0.5);
+  for (double& value : evidence) value += shift;
 }
 
 // The steepest change of brightness lies inside the crest of a degraded rim; the model has learnt by how
@@ -161,7 +184,8 @@ std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candid
 
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,
                                        const std::vector<CraterCandidate>& candidates,
-                                       const CraterModel* model, double min_probability) {
+                                       const BowlJudges& judges, double min_probability) {
+  const CraterModel* const model = judges.model;
   const PatchSource patches(image.pixels, sun_angle);
   std::vector<double> evidence(candidates.size());
   std::vector<ModelEstimate> estimates(candidates.size());
@@ -171,16 +195,16 @@ std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_ang
     // Candidates with a correlation this low never pass, whatever the model returns.
     const bool min_first_probability = correlation < kNeutralCorrelation - 0.09;
     if (model)
-      estimates[i] = min_first_probability ? ModelEstimate{-4.6, 0} : model_estimate(*model, patches, c);
+      estimates[i] = min_first_probability ? ModelEstimate{-4.6, 0} : model_estimate(judges, patches, c);
     evidence[i] =
         model ? kTemperature * (estimates[i].log_odds + kPerCorrelation * (correlation - kNeutralCorrelation))
               : kPerCorrelation * (correlation - kNeutralUntrained);
   });
-  const double odds = model ? kPriorWeight * prior_shift(evidence, 0.5) : 0;
+  if (model) combine(evidence, estimates, judges.verifier != nullptr);
   std::vector<CraterCandidate> likely;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (const double p = logistic(kSharpness * (evidence[i] + odds)); p >= min_probability) {
+    if (const double p = logistic(kSharpness * evidence[i]); p >= min_probability) {
       likely.push_back(candidates[i]);
       index.push_back(i);
       likely.back().score = p;

@@ -8,6 +8,7 @@
 #include "pipeline/craters/crater_candidate.hpp"
 #include "pipeline/craters/crater_model.hpp"
 #include "pipeline/craters/filled_image.hpp"
+#include "pipeline/craters/relief_verifier.hpp"
 namespace waymark::pipeline {
 
 /// Rim measured in the image.
@@ -35,13 +36,19 @@ struct VerifiedBowl {
   double centre_sd = 0, diameter_sd = 0;  ///< pixels
 };
 
+/// Trained networks that judge bowls.
+struct BowlJudges {
+  const CraterModel* model = nullptr;        ///< null: the correlation alone decides
+  const ReliefVerifier* verifier = nullptr;  ///< second opinion on circles that passed the model's first look
+};
+
 /// Measures the rim of each candidate (score: its correlation) and estimates the probability that it is a
-/// crater. The probability combines the correlation before and after, and `model` where there is one. The
-/// fraction of craters among the candidates is estimated from the image (Saerens, Latinne & Decaestecker
-/// 2002); probabilities are moved half-way towards it. Runs in parallel; the order and the result are
-/// deterministic.
+/// crater. It combines the correlation before and after with the log odds of the networks; a verifier weighs
+/// a third. The fraction of craters among the candidates is estimated from the image (Saerens, Latinne &
+/// Decaestecker 2002), and probabilities are moved towards it in part. Runs in parallel; the order and the
+/// result are deterministic.
 std::vector<VerifiedBowl> verify_bowls(const FilledImage& image, Radians sun_angle,
                                        const std::vector<CraterCandidate>& candidates,
-                                       const CraterModel* model, double min_probability = 0);
+                                       const BowlJudges& judges, double min_probability = 0);
 
 }  // namespace waymark::pipeline

@@ -34,17 +34,21 @@ CraterPrediction prediction_from(const std::vector<float>& out) {
 
 }  // namespace
 
-CraterPrediction predict(const CraterModel& model, const CraterFeatures& features) {
+CraterPrediction predict(std::span<const CraterModel::Layer> layers, const CraterFeatures& features) {
   std::vector<float> in(features.begin(), features.end()), out;
-  for (const CraterModel::Layer& layer : model.layers) {
+  for (const CraterModel::Layer& layer : layers) {
     assert(static_cast<std::size_t>(layer.inputs) == in.size());
     out = layer.biases;
     add_products(layer, in, out);
-    if (&layer != &model.layers.back())
+    if (&layer != &layers.back())
       for (float& value : out) value = value > 0 ? value : 0.1F * value;
     in.swap(out);
   }
   return prediction_from(in);
+}
+
+CraterPrediction predict(const CraterModel& model, const CraterFeatures& features) {
+  return predict(std::span<const CraterModel::Layer>(model.layers), features);
 }
 
 CraterPrediction predict(std::span<const ConvolutionNet> convolution_nets, const WidePatch& wide) {

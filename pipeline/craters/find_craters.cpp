@@ -59,8 +59,10 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                                        .max_diameter = sizes.largest,
                                                        .min_correlation = kMinCorrelation}),
                         0.5);
-  return verify_bowls(image, sun, candidates, search.verify ? &built_in_crater_model() : nullptr,
-                      search.min_confidence);
+  BowlJudges judges;
+  if (search.verify)
+    judges = {&built_in_crater_model(), search.second_opinion ? &built_in_relief_verifier() : nullptr};
+  return verify_bowls(image, sun, candidates, judges, search.min_confidence);
 }
 
 }  // namespace

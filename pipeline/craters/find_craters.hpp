@@ -25,6 +25,7 @@ struct CraterSearch {
   double max_diameter = 0;      ///< pixels; 0: 0.6 times the image's shorter side
   double min_confidence = 0.5;  ///< candidates below are discarded; 0 keeps all
   bool verify = true;           ///< false: use the correlation alone, without the trained model
+  bool second_opinion = true;   ///< ask the verifier trained on measured relief, too, if `verify`
 };
 
 /// Returns the craters of an image by descending confidence (ties by position), no two with the same rim.

@@ -12,10 +12,23 @@ namespace waymark::pipeline {
 template <class T>
 struct Codec;
 
+/// Encoded parts of a value that does not fit into memory (pipeline/engine/parts.hpp).
+struct EncodedParts;
+
 /// Type-erased Codec.
 struct ErasedCodec {
   std::string (*encode)(const void* value);
   std::shared_ptr<const void> (*decode)(std::string_view bytes);
+  /// Of a Parts<T>, which is stored and read part by part; null for all other values.
+  const EncodedParts& (*parts)(const void* value) = nullptr;
+  std::shared_ptr<const void> (*from_parts)(EncodedParts parts) = nullptr;
+};
+
+/// Access to the parts of a value; specialised for Parts<T>.
+template <class T>
+struct PartAccess {
+  static constexpr decltype(ErasedCodec::parts) parts = nullptr;
+  static constexpr decltype(ErasedCodec::from_parts) from_parts = nullptr;
 };
 
 /// Returns the codec of a type behind void pointers.
@@ -25,7 +38,8 @@ const ErasedCodec& erased_codec() {
       [](const void* value) { return Codec<T>::encode(*static_cast<const T*>(value)); },
       [](std::string_view bytes) -> std::shared_ptr<const void> {
         return std::make_shared<T>(Codec<T>::decode(bytes));
-      }};
+      },
+      PartAccess<T>::parts, PartAccess<T>::from_parts};
   return codec;
 }
 

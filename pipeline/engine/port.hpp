@@ -26,13 +26,19 @@ struct Stream {
   const char* name;
 };
 
+/// Declares a gathered input of a map-scope stage that is read item by item, as a Stream.
+template <class T>
+struct GatherStream {
+  const char* name;
+};
+
 /// Declares an output. T needs a Codec. Several stages may write one name if all its readers gather it.
 template <class T>
 struct Out {
   const char* name;
 };
 
-/// In<T>, Gather<T> or Stream<T> as listed by StageSpec.
+/// In<T>, Gather<T>, Stream<T> or GatherStream<T> as listed by StageSpec.
 struct InputPort {
   std::string name;
   std::type_index type;
@@ -45,6 +51,8 @@ struct InputPort {
   InputPort(Gather<T> port) : name(port.name), type(typeid(T)), gathers(true) {}
   template <class T>
   InputPort(Stream<T> port) : name(port.name), type(typeid(T)), streams(true) {}
+  template <class T>
+  InputPort(GatherStream<T> port) : name(port.name), type(typeid(T)), gathers(true), streams(true) {}
 };
 
 /// Out<T> as listed by StageSpec.

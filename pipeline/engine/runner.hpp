@@ -12,6 +12,7 @@
 #include "core/input_file.hpp"
 #include "pipeline/engine/artifact.hpp"
 #include "pipeline/engine/image_item.hpp"
+#include "pipeline/engine/parts.hpp"
 #include "pipeline/engine/pipeline.hpp"
 #include "pipeline/engine/progress.hpp"
 #include "pipeline/engine/report.hpp"
@@ -62,6 +63,7 @@ struct PlanCommand {
   std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
   std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
   std::string sensor = {};      ///< name or file of the profile that the map records; empty: none
+  bool confined = false;        ///< a job that names files outside its folder is refused
   std::size_t max_shards = 64;  ///< calls per stage over tiles or images
   /// By stage, "map" for the call that writes the map, "" for all others.
   std::map<std::string, CallResources> resources = {};
@@ -105,8 +107,8 @@ struct RunOptions {
   /// Map-scope artifacts that the caller will read. The others are released after their last reader; empty:
   /// all are kept.
   std::vector<std::string> results = {};
-  /// Folder for a nameless file that receives tile results that need not stay in memory; empty: the system's
-  /// temporary folder. Not used with a work folder.
+  /// Folder for nameless files that receive results which need not stay in memory; empty: the system's
+  /// temporary folder. With a work folder they are there.
   std::filesystem::path scratch = {};
   /// Bytes per stage of such tile results that stay in memory without a work folder.
   std::size_t max_bytes_in_memory = std::size_t{32} << 20;
@@ -151,8 +153,19 @@ class RunResult {
   template <class T>
   std::vector<Reader<T>> take_readers(std::string_view name) {
     std::vector<Reader<T>> readers;
-    for (ArtifactPtr& item : take_tiles(name, typeid(T)))
+    for (ArtifactPtr& item : take_items(name, typeid(T), Scope::tile))
       readers.push_back([item] { return std::static_pointer_cast<const T>(item->value()); });
+    return readers;
+  }
+  /// Moves the parts of map-scope artifacts out of the result, as readers of all of them.
+  template <class T>
+  std::vector<Reader<T>> take_parts(std::string_view name) {
+    std::vector<Reader<T>> readers;
+    for (ArtifactPtr& item : take_items(name, typeid(Parts<T>), Scope::map)) {
+      const auto parts = std::static_pointer_cast<const Parts<T>>(item->value());
+      for (std::size_t i = 0; i < parts->count(); ++i)
+        readers.push_back([parts, i] { return std::make_shared<const T>(parts->read(i)); });
+    }
     return readers;
   }
   /// Moves the artifacts out of the result; copies only those with other owners.
@@ -175,7 +188,7 @@ class RunResult {
   };
   Artifact::Value find_one(std::string_view name, std::type_index type) const;
   std::vector<Artifact::Value> find_all(std::string_view name, std::type_index type) const;
-  std::vector<ArtifactPtr> take_tiles(std::string_view name, std::type_index type);
+  std::vector<ArtifactPtr> take_items(std::string_view name, std::type_index type, Scope scope);
 
   std::vector<StoredOutput> artifacts_;
 };

@@ -19,6 +19,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/codec.hpp"
 #include "pipeline/engine/image_item.hpp"
+#include "pipeline/engine/parts.hpp"
 #include "pipeline/engine/port.hpp"
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/stage_context.hpp"

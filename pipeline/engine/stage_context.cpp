@@ -106,6 +106,10 @@ std::string StageContext::path(const std::string& option) const {
   return resolve_path(inputs_.base_folder, option);
 }
 
+std::shared_ptr<ScratchFile> StageContext::make_scratch_file(std::size_t in_memory) const {
+  return std::make_shared<ScratchFile>(inputs_.scratch, in_memory);
+}
+
 void StageContext::count_in(std::int64_t n) {
   const std::lock_guard lock(mutex_);
   outcome_.counts.in += n;

@@ -12,6 +12,7 @@
 #include "pipeline/engine/artifact.hpp"
 #include "pipeline/engine/image_item.hpp"
 #include "pipeline/engine/stage_spec.hpp"
+#include "pipeline/engine/store/scratch_file.hpp"
 #include "pipeline/engine/tile.hpp"
 namespace waymark::inline landmarks {
 class TypeRegistry;
@@ -45,6 +46,7 @@ struct UnitInputs {
   int threads = 1;
   const TypeRegistry* types = nullptr;  ///< landmark types of the run
   std::function<void(double)> progress = {};
+  std::filesystem::path scratch = {};  ///< folder for temporary files; empty: the system's
 };
 
 /// Results of a unit.
@@ -85,8 +87,23 @@ class StageContext {
   /// at a time.
   template <class T, class Visit>
   void visit(Stream<T> port, Visit&& take) {
+    for (const auto& read : readers<T>(port.name)) take(read());
+  }
+  /// Returns one reader per artifact, in the order of visit(), to be called any number of times. Thread-safe.
+  template <class T>
+  std::vector<std::function<std::shared_ptr<const T>()>> readers(Stream<T> port) {
+    return readers<T>(port.name);
+  }
+  template <class T>
+  std::vector<std::function<std::shared_ptr<const T>()>> readers(GatherStream<T> port) {
+    return readers<T>(port.name);
+  }
+  /// Calls take(T) for the artifacts in the order of the readers, each of them released before the next.
+  /// Artifacts in memory cannot be read afterwards.
+  template <class T, class Take>
+  void consume(GatherStream<T> port, Take&& take) {
     for (const ArtifactPtr& item : declared_input(port.name, typeid(T)).items)
-      take(std::static_pointer_cast<const T>(item->value()));
+      take(move_or_copy<T>(item.use_count() > 1 ? item->value() : item->take()));
   }
   /// Returns the artifact by value for a stage that modifies it; copied only if another unit still needs it.
   /// A port is taken once and cannot be read afterwards.
@@ -122,6 +139,11 @@ class StageContext {
   /// Returns the path of an option that names a file, relative to the folder of the job file.
   std::string path(const std::string& option) const;
 
+  /// Returns the folder for temporary files; empty: the system's.
+  const std::filesystem::path& scratch() const { return inputs_.scratch; }
+  /// Returns a file for temporary results, of which `in_memory` bytes need no disk.
+  std::shared_ptr<ScratchFile> make_scratch_file(std::size_t in_memory = std::size_t{4} << 20) const;
+
   /// Counts items. A stage that counts its input must count every item out or reject it: the engine checks in
   /// = out + rejected. A stage that only counts out is a source.
   void count_in(std::int64_t n);
@@ -140,6 +162,13 @@ class StageContext {
   std::vector<std::shared_ptr<const T>> read_values(std::string_view port) {
     std::vector<std::shared_ptr<const T>> all;
     for (auto& value : read_each(port, typeid(T))) all.push_back(std::static_pointer_cast<const T>(value));
+    return all;
+  }
+  template <class T>
+  std::vector<std::function<std::shared_ptr<const T>()>> readers(std::string_view port) {
+    std::vector<std::function<std::shared_ptr<const T>()>> all;
+    for (const ArtifactPtr& item : declared_input(port, typeid(T)).items)
+      all.push_back([item] { return std::static_pointer_cast<const T>(item->value()); });
     return all;
   }
   template <class T>

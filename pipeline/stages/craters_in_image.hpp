@@ -63,12 +63,15 @@ struct CratersInImage {
       unit.write(detections, std::vector<Detection>{});
       return;
     }
+    // In maps the heights give the second opinion; with the verifier, too, maps of landings lost recall
+    // (docs/evaluation/2026-11-25-craters-of-measured-relief.md).
     auto found = find_craters(pixels, {.method = kMethod,
                                        .type = types.id("crater"),
                                        .sun_angle = sun,
                                        .min_diameter = options.min_diameter,
                                        .max_diameter = options.max_diameter,
-                                       .min_confidence = options.min_confidence});
+                                       .min_confidence = options.min_confidence,
+                                       .second_opinion = false});
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.write(detections, std::move(found));
   }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "geo/dem_handle.hpp"
@@ -57,18 +58,18 @@ struct JoinMountainTops {
           all.faults.implausible, all.faults.height, grid.where.x(static_cast<double>(all.faults.column)),
           grid.where.y(static_cast<double>(all.faults.row))));
     const auto percent = [&](std::int64_t cells) {
-      return 100 * static_cast<double>(cells) / static_cast<double>(grid.cells());
+      return std::round(1000 * static_cast<double>(cells) / static_cast<double>(grid.cells())) / 10;
     };
     if (all.faults.filled + all.empty > 0 && source.nodata_policy() == NodataPolicy::fill)
       unit.warn(
-          fmt::format("{} cells without height ({:.2g} %) were interpolated; {} ({:.2g} %) are too far from "
+          fmt::format("{} cells without height ({} %) were interpolated; {} ({} %) are too far from "
                       "data and stay unknown (fill_distance)",
                       all.faults.filled, percent(all.faults.filled), all.empty, percent(all.empty)));
     if (all.rim == 0 || found.empty()) return;
     const auto bounded =
         std::ranges::count_if(found, [](const Summit& s) { return s.prominence_low < s.prominence; });
     std::string text = fmt::format(
-        "{:.2g} % of the cells have no height, and {} cells{} lie beside them: {} of {} summits may be less "
+        "{} % of the cells have no height, and {} cells{} lie beside them: {} of {} summits may be less "
         "prominent than measured and are ranked by their certified bound (prominence_low)",
         percent(all.empty), all.rim,
         source.nodata_policy() == NodataPolicy::ocean ? " too high for a shore" : "", bounded, found.size());

@@ -3,9 +3,7 @@
 
 #include "geo/dem_handle.hpp"
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/association/landmark_codec.hpp"
-#include "pipeline/fusion/association/merging.hpp"
-#include "pipeline/fusion/cleaning/rejection_counter.hpp"
+#include "pipeline/fusion/association/merging_by_cells.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -51,32 +49,20 @@ struct MergeObservations {
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
-  static constexpr Gather<std::vector<Observation>> observations{"observations"};
-  static constexpr Out<std::vector<Landmark>> merged{"merged"};
-  static constexpr Out<std::vector<Observation>> merged_evidence{"merged_evidence"};
+  static constexpr GatherStream<std::vector<Observation>> observations{"observations"};
+  static constexpr Out<Parts<std::vector<Landmark>>> merged{"merged"};
+  static constexpr Out<Parts<std::vector<Observation>>> merged_evidence{"merged_evidence"};
 
   static StageSpec spec() {
     return {.name = "merge_observations",
             .summary = "Merges observations of different images into landmarks",
-            .version = 5,
+            .version = 6,
             .scope = Scope::map,
             .inputs = {dem, observations},
             .outputs = {merged, merged_evidence}};
   }
 
-  // Releases each part as soon as it is appended.
-  static std::vector<Observation> concatenate(std::vector<std::vector<Observation>> parts) {
-    std::size_t count = 0;
-    for (const auto& part : parts) count += part.size();
-    std::vector<Observation> all;
-    all.reserve(count);
-    for (auto& part : parts) std::ranges::move(std::exchange(part, {}), std::back_inserter(all));
-    return all;
-  }
-
   static void run(const Options& options, StageContext& unit) {
-    const TypeRegistry& types = unit.types();
-    std::vector<Observation> all = concatenate(unit.take_all(observations));
     MergeRules rules;
     rules.association.position_gate = options.position_gate;
     rules.association.size_gate = options.size_gate;
@@ -84,11 +70,17 @@ struct MergeObservations {
     if (options.max_distance.value > 0) rules.association.max_distance = options.max_distance.value;
     rules.common_fraction = options.common_fraction;
     rules.weights = options.weights == "precision" ? FeatureWeights::precision : FeatureWeights::quality;
-    std::sort(all.begin(), all.end(), comes_before);
-    RejectionCounter count(unit, all);
-    MergedObservations made =
-        merge_observations(std::move(all), types, unit.read(dem)->geometry().where.crs, rules);
-    count.close(made.evidence);
+    const auto readers = unit.readers(observations);
+    const ObservationStream stream{[&](const auto& look) {
+                                     for (const auto& read : readers) look(*read());
+                                   },
+                                   [&](const auto& take) { unit.consume(observations, take); }};
+    CellRules cells{.scratch = unit.scratch(), .progress = [&](double done) { unit.progress(done); }};
+    MergedParts made =
+        merge_by_cells(stream, unit.types(), unit.read(dem)->geometry().where.crs, rules, cells);
+    unit.count_in(made.in);
+    unit.count_out(made.out);
+    for (const auto& [reason, count] : made.rejected) unit.reject(reason, count);
     unit.write(merged, std::move(made.landmarks));
     unit.write(merged_evidence, std::move(made.evidence));
   }

@@ -4,9 +4,9 @@
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
-#include "pipeline/fusion/association/landmark_codec.hpp"
-#include "pipeline/fusion/valuation/area_filter.hpp"
+#include "pipeline/forest/drawn_crowns.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
+#include "pipeline/stages/valued_parts.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -17,43 +17,43 @@ struct ValueFlights {
     void describe(OptionVisitor&) {}
   };
   static constexpr In<Canopies> canopies{"canopies"};
-  static constexpr In<std::vector<Landmark>> merged{"merged"};
-  static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
-  static constexpr In<CrownTable> seen_crowns{"seen_crowns"};
-  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
-  static constexpr Out<std::vector<Observation>> evidence{"evidence"};
-  static constexpr Out<CrownTable> crowns{"crowns"};
+  static constexpr Stream<CrownTable> seen_crowns{"seen_crowns"};
+  static constexpr Out<Parts<CrownTable>> crowns{"crowns"};
 
   static StageSpec spec() {
     return {.name = "value_flights",
             .summary =
                 "Values trees by the canopy models that show them and that could have; assigns their crowns",
-            .version = 4,
+            .version = 5,
             .scope = Scope::map,
-            .inputs = {canopies, merged, merged_evidence, seen_crowns},
-            .outputs = {landmarks, evidence, crowns}};
+            .inputs = {canopies, ValuedParts::merged, ValuedParts::merged_evidence, seen_crowns},
+            .outputs = {ValuedParts::landmarks, ValuedParts::evidence, ValuedParts::rejected, crowns}};
   }
 
   static void run(const Options&, StageContext& unit) {
     const TypeRegistry& types = unit.types();
-    std::vector<Landmark> all = unit.take(merged);
-    std::vector<Observation> seen = unit.take(merged_evidence);
-    value_landmarks(all, seen, {}, nullptr, types, 1);
     const Canopies& surveys = unit.read(canopies);
-    if (surveys.size() > 1) {
-      for (Landmark& landmark : all) {
-        landmark.quality.visible = std::max(landmark.quality.seen, count_covering(surveys, landmark));
-        const int missed = landmark.quality.visible - landmark.quality.seen;
-        landmark.confidence *= std::pow(kMissedFactor, missed);
-      }
+    const DrawnCrowns drawn(unit.readers(seen_crowns));
+    PartsWriter<CrownTable> named(unit.make_scratch_file());
+    ValuedParts::write(
+        unit,
+        [&](LandmarkList& all, ObservationList& seen) {
+          value_landmarks(all, seen, {}, nullptr, types, 1);
+          if (surveys.size() > 1) lower_confidence(all, surveys);
+        },
+        [&](double x, double y) { return surveys[0]->in_area(x, y); },
+        [&](LandmarkList& all, ObservationList& seen) {
+          named.add(name_crowns(drawn.near(seen), seen, all));
+        });
+    unit.write(crowns, named.parts());
+  }
+
+  // Of trees that some surveys should show but do not.
+  static void lower_confidence(LandmarkList& all, const Canopies& surveys) {
+    for (Landmark& landmark : all) {
+      landmark.quality.visible = std::max(landmark.quality.seen, count_covering(surveys, landmark));
+      landmark.confidence *= std::pow(kMissedFactor, landmark.quality.visible - landmark.quality.seen);
     }
-    unit.count_in(static_cast<std::int64_t>(all.size()));
-    unit.reject(kOutsideArea,
-                remove_outside(all, seen, [&](double x, double y) { return surveys[0]->in_area(x, y); }));
-    unit.write(crowns, name_crowns(unit.take_all(seen_crowns), seen, all));
-    unit.count_out(static_cast<std::int64_t>(all.size()));
-    unit.write(landmarks, std::move(all));
-    unit.write(evidence, std::move(seen));
   }
 
   // Factor on the confidence of a tree for each survey that should show it but does not.

@@ -2,11 +2,10 @@
 #include <cmath>
 
 #include "pipeline/engine/stage.hpp"
-#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
-#include "pipeline/fusion/valuation/area_filter.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
+#include "pipeline/stages/valued_parts.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -38,41 +37,35 @@ struct ValueLandmarks {
   };
   static constexpr In<DemHandle> dem{"dem"};
   static constexpr In<std::vector<ImageView>> aligned_views{"aligned_views"};
-  static constexpr In<std::vector<Landmark>> merged{"merged"};
-  static constexpr In<std::vector<Observation>> merged_evidence{"merged_evidence"};
-  static constexpr Out<std::vector<Landmark>> landmarks{"landmarks"};
-  static constexpr Out<std::vector<Observation>> evidence{"evidence"};
   static constexpr Out<std::vector<ImageView>> image_views{"image_views"};
 
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: multiplicity, spread of features, probability of existence",
-            .version = 6,
+            .version = 7,
             .scope = Scope::map,
-            .inputs = {dem, aligned_views, merged, merged_evidence},
-            .outputs = {landmarks, evidence, image_views}};
+            .inputs = {dem, aligned_views, ValuedParts::merged, ValuedParts::merged_evidence},
+            .outputs = {ValuedParts::landmarks, ValuedParts::evidence, ValuedParts::rejected, image_views}};
   }
 
   static void run(const Options& options, StageContext& unit) {
     const TypeRegistry& types = unit.types();
     const std::vector<ImageView>& images = unit.read(aligned_views);
-    std::vector<Landmark> all = unit.take(merged);
-    std::vector<Observation> seen = unit.take(merged_evidence);
     const DemHandle& ground = unit.read(dem);
     const Terrain terrain = load_terrain(ground);
     ValuationRules rules;
     rules.cover = options.covers == "paper" ? CoverRule::paper : CoverRule::sound;
     rules.spread = options.spread == "paper" ? SpreadRule::paper : SpreadRule::sound;
     rules.coverage.min_diameter = options.min_diameter;
-    value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
-                    rules);
-    unit.count_in(static_cast<std::int64_t>(all.size()));
-    if (!options.keep_improbable) unit.reject("landmark improbable", remove_improbable(all, seen, types));
-    unit.reject(kOutsideArea,
-                remove_outside(all, seen, [&](double x, double y) { return ground->in_area(x, y); }));
-    unit.count_out(static_cast<std::int64_t>(all.size()));
-    unit.write(landmarks, std::move(all));
-    unit.write(evidence, std::move(seen));
+    ValuedParts::write(
+        unit,
+        [&](LandmarkList& all, ObservationList& seen) {
+          value_landmarks(all, seen, images, &terrain, types, ground->geometry().where.crs.metres_per_unit(),
+                          rules);
+          if (!options.keep_improbable)
+            unit.reject("landmark improbable", remove_improbable(all, seen, types));
+        },
+        [&](double x, double y) { return ground->in_area(x, y); });
     unit.write(image_views, images);
   }
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pybind11/numpy.h>
 
+#include <limits>
+
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/callbacks.hpp"
 #include "python/bindings/keywords.hpp"
@@ -10,10 +12,12 @@
 namespace waymark::python {
 namespace {
 
-/// Station of a route in a structured array; positions in the map's CRS.
+/// Station of a route in a structured array; positions in the map's CRS. Clearance and tilt are NaN without
+/// a DEM and on unknown terrain.
 struct Station {
   double x, y, distance, yaw, sd;
   std::int64_t landmarks;
+  double clearance, tilt;
 };
 
 const Keywords<workflows::RouteRequest>& route_keywords() {
@@ -36,7 +40,9 @@ const Keywords<workflows::RouteRequest>& route_keywords() {
                               .add("start_sd", &R::start_sd)
                               .add("worlds", &R::worlds)
                               .add("alternatives", &R::alternatives)
-                              .add("seed", &R::seed);
+                              .add("seed", &R::seed)
+                              .add("dem", &R::dem)
+                              .add("vehicle", &R::vehicle);
   return all;
 }
 
@@ -55,6 +61,9 @@ const Keywords<workflows::HazardMapRequest>& hazard_keywords() {
                               .add("detection_limit", &R::detection_limit)
                               .add("uncertain", &R::min_uncertain)
                               .add("hazard", &R::min_hazard)
+                              .add("landing_ellipse", &R::landing_ellipse)
+                              .add("sun", &R::sun)
+                              .add("horizon_reach", &R::horizon_reach)
                               .add("tile_cells", &R::tile_cells)
                               .add("threads", &R::threads);
   return all;
@@ -65,7 +74,15 @@ py::dict as_dict(const workflows::PlannedRoute& route) {
   Station* to = stations.mutable_data();
   py::list important;
   for (const workflows::RouteStation& one : route.stations) {
-    *to++ = {one.at.x(), one.at.y(), one.distance, one.yaw, one.sd, one.landmarks};
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    *to++ = {one.at.x(),
+             one.at.y(),
+             one.distance,
+             one.yaw,
+             one.sd,
+             one.landmarks,
+             one.clearance ? one.clearance->belly : kUnknown,
+             one.clearance ? one.clearance->tilt : kUnknown};
     important.append(one.important);
   }
   return py::dict(py::arg("length") = route.length, py::arg("worst_sd") = route.worst_sd,
@@ -99,7 +116,7 @@ void hazards(const py::dict& keywords, py::object progress, py::object message) 
 }  // namespace
 
 void bind_planning(py::module_& module) {
-  PYBIND11_NUMPY_DTYPE(Station, x, y, distance, yaw, sd, landmarks);
+  PYBIND11_NUMPY_DTYPE(Station, x, y, distance, yaw, sd, landmarks, clearance, tilt);
   module.def("route", &route, py::arg("keywords"), py::arg("progress"), py::arg("message"));
   module.def("route_keywords", [] { return route_keywords().defaults(); });
   module.def("hazards", &hazards, py::arg("keywords"), py::arg("progress"), py::arg("message"));

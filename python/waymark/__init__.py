@@ -17,6 +17,7 @@ from .localization import Localization, localize, localize_methods, localize_set
 from .mapping import Run, merge, run, simulate
 from .maps import Feature, LandmarkType, Map, open, read_map
 from .planning import hazards, route
+from .publishing import web
 from .reconstruction import reconstruct
 
 __version__ = _version.removeprefix("waymark ").split()[0]
@@ -24,5 +25,5 @@ __all__ = [
     "EnvironmentError", "Error", "Feature", "InputError", "LandmarkType", "Localization", "Map", "OutputError", "Run",
     "UnitsFailed", "UsageError", "Warning", "detect", "evaluate", "evaluate_track", "find_craters",
     "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "localize",
-    "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages",
+    "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages", "web",
 ]

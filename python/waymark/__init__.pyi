@@ -730,7 +730,7 @@ def evaluate_track(track: Any, truth: Any, *, drive: Any = ..., align: _Path = .
 
     Keywords:
         align: "none", "se2" or "sim2"
-        log_format: waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro; empty: recognised by what is there
+        log_format: waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam, g2o, toro; empty: recognised by what is there
         columns: csv: target=expression, separated by commas (import_csv_log)
         robot: MRCLAM: which of the five; 0: the robot of the named file
         max_gap: s between two true poses that may be interpolated
@@ -796,7 +796,7 @@ def find_trees(chm: Any = ..., *, dsm: Any = ..., dtm: Any = ..., las: Any = ...
     `find_mountain_tops`. Options: preset, min_height, allometry, species, ..."""
     ...
 
-def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ..., polygons: _Path = ..., nav2: _Path = ..., height_sd: float = ..., height_correlation: float = ..., rock_cover: float = ..., detection_limit: float = ..., uncertain: float = ..., hazard: float = ..., tile_cells: int = ..., threads: int = ...) -> None:
+def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ..., polygons: _Path = ..., nav2: _Path = ..., height_sd: float = ..., height_correlation: float = ..., rock_cover: float = ..., detection_limit: float = ..., uncertain: float = ..., hazard: float = ..., landing_ellipse: _Path = ..., sun: _Path = ..., horizon_reach: float = ..., tile_cells: int = ..., threads: int = ...) -> None:
     """Writes a hazard map of a map or a DEM, as `waymark hazards`. options: vehicle, dem, polygons, nav2, ...
 
     Keywords:
@@ -810,6 +810,9 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         detection_limit: metres; < 0: fitted to the map's rocks
         uncertain
         hazard
+        landing_ellipse: MAJOR,MINOR[,AZIMUTH] for the band `landing`; empty: none
+        sun: AZIMUTH,ELEVATION in degrees for the bands `horizon`, `shade`; empty: none
+        horizon_reach: metres
         tile_cells
         threads"""
     ...
@@ -826,7 +829,7 @@ def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ...
         sensor: profile of eq. 8, for `quality=paper` and maps without confidence; empty: equal weights
         min_confidence: landmarks less probable than this are not used
         seed: of all random numbers
-        log_format: waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, isam, g2o, toro; empty: recognised by what is there
+        log_format: waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam, g2o, toro; empty: recognised by what is there
         columns: csv: target=expression, separated by commas (import_csv_log)
         robot: MRCLAM: which of the five; 0: the robot of the named file
         use_identities: identities in the log are used for data association
@@ -893,7 +896,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         threads: 0: one per processor"""
     ...
 
-def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ...) -> dict[str, Any]:
+def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
     """Plans a route and writes it to `output`, as `waymark route`.
 
     start is (x, y) or (x, y, yaw in degrees), goal and each via (x, y), in the map's CRS. One of limit_sigma,
@@ -912,7 +915,9 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         start_sd: metres
         worlds: random sets of existing landmarks
         alternatives
-        seed"""
+        seed
+        dem: terrain, for clearance and tilt at the stations; empty: none
+        vehicle: of clearance and tilt"""
     ...
 
 def run(job: Any, output: Any = ..., *, settings: Any = ..., folder: Any = ..., progress: Any = ..., work: _Path = ..., stage: _Path = ..., rerun_from: _Path = ..., unit: _Path = ..., check: bool = ..., with_dem: bool = ..., sensor: _Path = ..., threads: int = ...) -> Run:
@@ -942,4 +947,19 @@ def simulate(scenario: Any, folder: Any, *, progress: Any = ..., seed: int | Non
         seed: in place of the scenario's
         drive_seed: in place of that of the section drive
         drive_only: write the drive and its truth, no DEM and no images"""
+    ...
+
+def web(map: Any, output: Any, *, progress: Any = ..., types: Sequence[Any] | _Path = ..., min_confidence: float = ..., dem: Sequence[Any] | _Path = ..., terrain_pixels: int = ..., max_zoom: int = ..., assets: _Path = ..., title: _Path = ..., threads: int = ...) -> dict[str, int]:
+    """Writes a folder that shows a map in web browsers, as `waymark web`; returns counts: landmarks, outside,
+    max_zoom, landmark_tiles, terrain_tiles.
+
+    Keywords:
+        types: landmark types shown; empty: all
+        min_confidence: landmarks of less are left out
+        dem: elevation models; empty: stored in the map, or read by its runs
+        terrain_pixels: of the longer side of the terrain, at most; 0: no terrain
+        max_zoom: zoom that shows all landmarks; -1: chosen by their density
+        assets: folder of the map library; empty: fetched later
+        title: empty: the map's name
+        threads"""
     ...

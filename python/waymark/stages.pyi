@@ -93,7 +93,7 @@ def load_dem(*, files: list[str] = ..., nodata: str = ..., crs: str = ..., heigh
     aoi: Polygons of the area of interest: landmarks outside are left out, but measured on the whole DEM
     metric: true: project a DEM in degrees to metres about its middle, as images need it; jobs that load images set it themselves
     tile_cells: Side of the tiles for processing; the map does not depend on it (at least 64, at most 16384)
-    memory: Memory for decoded rasters, points or trees, megabytes (at least 16, at most 1e+07)"""
+    memory: Memory for decoded rasters, megabytes; 0: 512 for a DEM that fits, else 96 (up to 512 where rows of tiles touch more) (at least 0, at most 1e+07)"""
     ...
 
 def load_images(*, files: list[str] = ..., cameras: str = ..., camera_format: str = ..., interior: str = ..., crs: str = ..., camera_crs: str = ..., height_offset: float = ..., control_points: str = ..., similarity: str = ..., rotation_sd: float = ..., position_sd: float = ..., sun: str = ..., sun_azimuth: float = ..., sun_elevation: float = ..., sun_sd: float = ..., image_sun_angle: str = ..., time_zone: str = ..., gsd: float = ..., saturated: float = ..., band: int = ...) -> dict[str, Any]:

@@ -6,9 +6,10 @@ namespace {
 
 void describe_drive(DriveSettings& d, OptionVisitor& field) {
   field("vehicle", d.vehicle, {.help = "What drives", .choices = {"rover", "harvester"}});
-  field("route", d.route,
-        {.help = "Route: given waypoints, or automatic: ring, parallel lanes, random positions",
-         .choices = {"waypoints", "loop", "lanes", "wander"}});
+  field(
+      "route", d.route,
+      {.help = "waypoints: those given; loop, lanes, wander: automatic; FILE.csv, .gpkg or .geojson: a route "
+               "that `waymark route` planned, followed by the estimated pose"});
   field("length", d.length, {.help = "Length of an automatic route, metres", .min = 1, .max = 1e6});
   field("lane_spacing", d.lane_spacing, {.help = "Spacing of lanes, metres", .min = 2, .max = 1e4});
   field("margin", d.margin,
@@ -101,6 +102,27 @@ void describe_crane(DriveSettings& d, OptionVisitor& field) {
   field("height_sd", c.height_sd, {.help = "Error of the stem length, metres", .min = 0, .max = 10});
 }
 
+void describe_navigation(DriveSettings& d, OptionVisitor& field) {
+  NavigationModel& n = d.navigation;
+  field("map", n.map, {.help = "Map of landmarks by which the vehicle localizes, relative to the scenario"});
+  field("method", n.method,
+        {.help = "Method of `waymark localize`", .choices = {"ekf", "ukf", "pf", "odometry"}});
+  field("sensor", n.sensor, {.help = "Sensor profile of the plan and the localizer"});
+  field("hazards", n.hazards, {.help = "Hazard map (.tif) that new routes avoid, or none"});
+  field("vehicle", n.vehicle, {.help = "Vehicle that hazards are judged for: a name or a file"});
+  field("limit_sigma", n.limit_sigma,
+        {.help = "Largest standard deviation of the position, metres; 0: none", .min = 0, .max = 1e3});
+  field("sd_factor", n.sd_factor,
+        {.help = "Tolerated ratio of the estimated to the planned standard deviation", .min = 1, .max = 100});
+  field("cell", n.cell, {.help = "Cells of the search for another route, metres", .min = 0.2, .max = 100});
+  field("margin", n.margin, {.help = "Metres between the vehicle and an obstacle", .min = 0, .max = 20});
+  field("replans", n.replans,
+        {.help = "Most new routes before the vehicle gives up; 0: it keeps to its route",
+         .min = 0,
+         .max = 1e4});
+  field("avoid", n.avoid, {.help = "Avoid obstacles that the vehicle's own sensors see"});
+}
+
 }  // namespace
 
 const std::vector<DrivePart>& drive_parts() {
@@ -113,6 +135,7 @@ const std::vector<DrivePart>& drive_parts() {
       {"panorama", "Skyline of the full circle", describe_drive_panorama},
       {"gnss", "GNSS positions", describe_gnss},
       {"crane", "Felling by a harvester", describe_crane},
+      {"navigation", "Driving a planned route by the estimated pose", describe_navigation},
   };
   return parts;
 }

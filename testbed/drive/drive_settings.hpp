@@ -49,10 +49,25 @@ struct CraneModel {
   double height_sd = 0.3;      ///< metres
 };
 
+/// How a vehicle follows a planned route by its own estimate of the pose.
+struct NavigationModel {
+  std::string map;             ///< relative to the scenario, as `hazards`
+  std::string method = "ekf";  ///< of `waymark localize`; identities are unknown
+  std::string sensor = "horizontal_laser";
+  std::string hazards = "none";   ///< made by `waymark hazards`
+  std::string vehicle = "rover";  ///< of `waymark vehicles`, or a file
+  double limit_sigma = 0;         ///< metres, of the position; 0: none
+  double sd_factor = 1.5;         ///< tolerated ratio of the estimated sd to the planned one
+  double cell = 2;                ///< metres, of the search for another route
+  double margin = 0.2;            ///< metres between the vehicle and an obstacle
+  std::int64_t replans = 30;      ///< most new routes before the vehicle gives up; 0: the route as it is
+  bool avoid = true;              ///< avoid obstacles that its own sensors see
+};
+
 struct DriveSettings {
   bool on = false;                         ///< whether the scenario has a drive
   std::string vehicle = "rover";           ///< or harvester
-  std::string route = "wander";            ///< waypoints, loop, lanes, wander
+  std::string route = "wander";            ///< waypoints, loop, lanes, wander, or a file of a planned route
   std::vector<Eigen::Vector2d> waypoints;  ///< metres from the middle of the site
   double length = 200;                     ///< metres, of an automatic route
   double lane_spacing = 20;                ///< metres
@@ -74,10 +89,13 @@ struct DriveSettings {
   GnssModel gnss;
   ForestClutter clutter;
   CraneModel crane;
+  NavigationModel navigation;
   std::string trees;  ///< table of real trees; replaces the forest of the scenario
   std::string stand;  ///< use only rows of the table with this stand_id
 
   bool harvester() const { return vehicle == "harvester"; }
+  /// Returns whether the route is a file.
+  bool planned() const { return route.find('.') != std::string::npos; }
 };
 
 /// Part of the section `drive`; an empty name denotes its own fields.

@@ -105,27 +105,50 @@ std::vector<FelledTree> fell(const DriveWorld& world, std::uint64_t seed) {
 
 }  // namespace
 
-DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
-                      std::uint64_t seed) {
-  const std::uint64_t own = settings.seed >= 0 ? static_cast<std::uint64_t>(settings.seed) : seed;
-  DriveSettings s = settings;
+namespace {
+
+std::uint64_t seed_of(const DriveSettings& settings, std::uint64_t seed) {
+  return settings.seed >= 0 ? static_cast<std::uint64_t>(settings.seed) : seed;
+}
+
+DriveSettings completed(DriveSettings s) {
   if (s.harvester() && s.laser.field.value == 240) s.laser.field = Degrees{180};
   if (s.laser_height == 0) s.laser_height = s.harvester() ? 2.0 : 0.35;
-  DriveWorld world{s, own, plan_path(s, scene, own), {}, std::move(trees), {}, {scene.terrain, {}}};
-  world.steps = drive_along(scene.terrain, world.path, s, own);
-  // Bushes and branches depend on the site, not on the drive.
-  ForestSolids solids =
-      world.trees.empty() ? ForestSolids{} : forest_solids(world.trees, s.clutter, scene.terrain, seed);
-  if (s.harvester()) {
-    world.felled = fell(world, own);
-    for (const FelledTree& f : world.felled) {
-      solids.stems[f.tree].felled_at = f.t;
-      for (Thicket& t : solids.thickets)
-        if (t.stem == f.tree) t.felled_at = f.t;
-    }
+  return s;
+}
+
+// Adds rocks, stems and branches. Bushes and branches depend on the site, not on the drive.
+void add_targets(DriveWorld& world, const Scene& scene, std::uint64_t site_seed) {
+  ForestSolids solids = world.trees.empty()
+                            ? ForestSolids{}
+                            : forest_solids(world.trees, world.settings.clutter, scene.terrain, site_seed);
+  for (const FelledTree& f : world.felled) {
+    solids.stems[f.tree].felled_at = f.t;
+    for (Thicket& t : solids.thickets)
+      if (t.stem == f.tree) t.felled_at = f.t;
   }
   world.targets =
       LaserTargets(scene.terrain, scene.solids, std::move(solids.stems), std::move(solids.thickets));
+}
+
+}  // namespace
+
+DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
+                      std::uint64_t seed) {
+  const std::uint64_t own = seed_of(settings, seed);
+  const DriveSettings s = completed(settings);
+  DriveWorld world{s, own, plan_path(s, scene, own), {}, std::move(trees), {}, {scene.terrain, {}}};
+  world.steps = drive_along(scene.terrain, world.path, s, own);
+  if (s.harvester()) world.felled = fell(world, own);
+  add_targets(world, scene, seed);
+  return world;
+}
+
+DriveWorld make_drive_site(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
+                           std::uint64_t seed) {
+  DriveWorld world{completed(settings), seed_of(settings, seed), {}, {}, std::move(trees), {},
+                   {scene.terrain, {}}};
+  add_targets(world, scene, seed);
   return world;
 }
 

@@ -29,6 +29,10 @@ struct DriveWorld {
 DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
                       std::uint64_t seed);
 
+/// Returns the site of a drive without path and steps: a vehicle that steers itself adds them.
+DriveWorld make_drive_site(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
+                           std::uint64_t seed);
+
 /// Reads a table of real trees. Throws Error{input}.
 /// - Columns: x or x_coord, y or y_coord (metres), dbh (cm) or diameter (m); optional height, stand_id,
 ///   year (the last of each tree_id is used).

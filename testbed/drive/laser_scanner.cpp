@@ -46,6 +46,15 @@ LaserModel LaserModel::ideal_model() const {
 }
 
 localization::LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor,
+                              const LaserModel& laser, Random& random) {
+  const RayCast cast = [&](const Eigen::Vector3d& along) {
+    const auto hit = fan.cast(along, &random);
+    return hit ? std::optional(hit->range) : std::nullopt;
+  };
+  return sweep(cast, grid_from_sensor, laser, random);
+}
+
+localization::LaserScan sweep(const RayCast& cast, const Eigen::Matrix3d& grid_from_sensor,
                               const LaserModel& given, Random& random) {
   const LaserModel laser = given.perfect ? given.ideal_model() : given;
   localization::LaserScan scan;
@@ -63,7 +72,7 @@ localization::LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_fro
       const double within = (static_cast<double>(k) + 0.5) / static_cast<double>(rays) - 0.5;
       const double angle = scan.first_angle + static_cast<double>(i) * scan.angle_step + within * width;
       const Eigen::Vector3d along = grid_from_sensor * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
-      if (const auto hit = fan.cast(along, &random)) hits[count++] = hit->range;
+      if (const auto range = cast(along)) hits[count++] = *range;
     }
     std::sort(hits.begin(), hits.begin() + static_cast<std::ptrdiff_t>(count));
     double range = count > 0 ? measured_range({hits.data(), count}, rays, laser, random) : 0;

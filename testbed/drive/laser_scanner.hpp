@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
+#include <optional>
 #include <string>
 #include "core/options.hpp"
 #include "core/units.hpp"
@@ -32,8 +34,13 @@ struct LaserModel {
 };
 void describe_laser(LaserModel& laser, OptionVisitor& field);
 
+/// Returns the range of the first hit along a unit vector; `std::nullopt` if nothing is hit.
+using RayCast = std::function<std::optional<double>(const Eigen::Vector3d& along)>;
+
 /// Simulates one sweep in the x-y plane of the sensor; z up. Only the rotation of `grid_from_sensor` is
 /// used; rays start at the origin of the fan.
+localization::LaserScan sweep(const RayCast& cast, const Eigen::Matrix3d& grid_from_sensor,
+                              const LaserModel& laser, Random& random);
 localization::LaserScan sweep(const RayFan& fan, const Eigen::Matrix3d& grid_from_sensor,
                               const LaserModel& laser, Random& random);
 

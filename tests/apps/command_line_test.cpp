@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "program.hpp"
 
@@ -38,6 +40,24 @@ TEST(CommandLine, HelpOfACommandHasUsageOptionsAndExamples) {
     EXPECT_THAT(said.out,
                 AllOf(HasSubstr("--near X Y RADIUS"), HasSubstr("Examples:"), HasSubstr("--threads N")));
   }
+}
+
+TEST(CommandLine, DeclarationsAreJsonForPrograms) {
+  const auto all = nlohmann::json::parse(waymark({"help", "--format", "json"}).out);
+  EXPECT_THAT(all["version"].get<std::string>(), StartsWith("waymark "));
+  std::set<std::string> names;
+  for (const auto& command : all["commands"]) names.insert(command["name"]);
+  EXPECT_TRUE(names.contains("peaks") && names.contains("web") && names.contains("help"));
+  const auto query = nlohmann::json::parse(waymark({"help", "query", "--format", "json"}).out)["commands"][0];
+  std::map<std::string, nlohmann::json> arguments;
+  for (const auto& argument : query["arguments"])
+    arguments[argument["names"].empty() ? argument["value"] : argument["names"][0]] = argument;
+  EXPECT_EQ(arguments.at("MAP.gpkg")["offer"], "file");
+  EXPECT_EQ(arguments.at("MAP.gpkg")["required"], true);
+  EXPECT_EQ(arguments.at("--near")["kind"], "numbers");
+  EXPECT_EQ(arguments.at("--near")["value"], "X Y RADIUS");
+  EXPECT_EQ(arguments.at("--limit")["kind"], "integer");
+  EXPECT_THAT(arguments.at("--format")["choices"], testing::Contains("geojson"));
 }
 
 TEST(CommandLine, VersionIsOneLine) {

@@ -75,6 +75,21 @@ TEST(Memory, OfTreesDoesNotGrowWithTheRaster) {
   EXPECT_LT(large, small + 30) << "MB; " << small << " for a quarter of the raster";
 }
 
+// 375,000 observations more: in memory they would take 450 MB.
+TEST(Memory, OfFlightsDoesNotGrowWithTheirTrees) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const auto peak = [&](int times) {
+    const std::string first = mosaic(folder, times, 8), second = folder / "later.vrt";
+    std::filesystem::copy_file(first, second, std::filesystem::copy_options::overwrite_existing);
+    return peak_of({"-q", "trees", "--chm", first, second, "--flights", "--memory", "32", "--threads", "1",
+                    "--tile-cells", "1000", "-o", folder / "trees.gpkg"});
+  };
+  const double small = peak(1), large = peak(2);
+  EXPECT_GT(small, 20) << "MB";
+  EXPECT_LT(large, small + 100) << "MB; " << small << " for a quarter of the surveys";
+}
+
 // 84 M cells more: their tiles' borders and saddles would take 80 MB if all were held to the end.
 TEST(Memory, OfPeaksGrowsSlowerThanItsTiles) {
   if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";

@@ -242,6 +242,14 @@ TEST_F(Peaks, FilledVoidsAreCounted) {
   EXPECT_THAT(last_summary_, HasSubstr("1 cells without height (4.8 %) were interpolated; 0 (0 %)"));
 }
 
+TEST_F(Peaks, VoidsNearlyEverywhereAreAPercentageWithoutAnExponent) {
+  MadeDem dem{.columns = 60, .rows = 50, .height = [](int column, int row) {
+                return column / 4 == 7 && row / 4 == 6 ? 100.0 + column * row : -9999.0;
+              }};
+  table({make_dem(folder_ / "island.tif", dem), "--nodata", "fill", "--fill-distance", "1"});
+  EXPECT_THAT(last_summary_, AllOf(HasSubstr("(98.9 %) are too far from data"), Not(HasSubstr("e+"))));
+}
+
 TEST_F(Peaks, AreaOfInterestKeepsSummitsMeasuredOnTheWholeDem) {
   write_text(folder_ / "area.geojson",
              R"({"type": "FeatureCollection",

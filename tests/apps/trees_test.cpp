@@ -125,6 +125,19 @@ TEST_F(Trees, FlightsAreMerged) {
   EXPECT_GT(both, 190);
 }
 
+TEST_F(Trees, FlightsDoNotDependOnTilesAndThreads) {
+  const std::string first = chm(), second = make_dem(folder_ / "later.tif", cones(0.3));
+  const auto made = [&](const std::string& map, std::vector<std::string> words) {
+    words.insert(words.begin(), {"--chm", first, second, "--flights"});
+    EXPECT_EQ(trees(words, map).code, 0);
+    return rows(map);
+  };
+  const std::string once = made("trees.gpkg", {});
+  EXPECT_EQ(made("tiles.gpkg", {"--tile-cells", "64", "--threads", "1"}), once);
+  EXPECT_EQ(made("work.gpkg", {"--tile-cells", "64", "--work", folder_ / "work"}), once);
+  EXPECT_EQ(made("resumed.gpkg", {"--tile-cells", "64", "--work", folder_ / "work"}), once);
+}
+
 TEST_F(Trees, WrongUseIsExplained) {
   EXPECT_THAT(trees({}).err, HasSubstr("no canopy is given"));
   EXPECT_EQ(trees({}).code, 2);

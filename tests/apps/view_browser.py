@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens a page in headless Chromium with software GL, carries out steps, and prints one line of JSON per step.
 
-usage: view_browser.py PAGE.html[#STATE] STEP...
+usage: view_browser.py PAGE.html[#STATE]|http://... STEP...
 steps: eval:EXPRESSION            prints its value
        click:X,Y                  presses and releases the left button at CSS pixels
        clickon:EXPRESSION         the same at the {x, y} that the expression gives
@@ -112,7 +112,8 @@ def main():
             browser.call('Emulation.setDeviceMetricsOverride', width=SIZE[0], height=SIZE[1], deviceScaleFactor=1,
                          mobile=False)
             path, _, state = page.partition('#')
-            browser.call('Page.navigate', url='file://' + os.path.abspath(path) + ('#' + state if state else ''))
+            url = page if page.startswith('http://') else 'file://' + os.path.abspath(path) + ('#' + state if state else '')
+            browser.call('Page.navigate', url=url)
             for _ in range(600):
                 if browser.evaluate("document.readyState") == 'complete' and browser.evaluate("location.href") != 'about:blank':
                     break

@@ -40,6 +40,17 @@ TEST_F(LockedFolders, VanishWithTheirContent) {
   EXPECT_TRUE(names().empty());
 }
 
+TEST_F(LockedFolders, VanishOnRequestUnlessAbandoned) {
+  LockedFolder kept(parent_), dropped(parent_);
+  std::ofstream(dropped.path() / "file") << "x";
+  kept.abandon();
+  remove_own_folders();
+  EXPECT_EQ(names(), std::set<std::string>{kept.path().filename()});
+  kept.reclaim();
+  remove_own_folders();
+  EXPECT_TRUE(names().empty());
+}
+
 TEST_F(LockedFolders, OfAKilledProcessAreRemovedByTheNext) {
   int ready[2];
   ASSERT_EQ(::pipe(ready), 0);

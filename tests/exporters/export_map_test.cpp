@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <ogrsf_frmts.h>
+#include <sqlite3.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -146,6 +147,55 @@ TEST_F(ExportMap, TypesShareAFileWhereTheFormatHasLayers) {
 TEST_F(ExportMap, TypesGetAFileEachWhereItHasNot) {
   const ExportSummary summary = export_map(two, out("all.geojson"));
   EXPECT_THAT(summary.files, ElementsAre(out("all_crater.geojson"), out("all_mountain_top.geojson")));
+}
+
+// Runs SQL on a database with SpatiaLite's functions; text of the first column of the first row.
+std::string spatialite_answer(const std::string& path, const char* sql) {
+  sqlite3* database = nullptr;
+  sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+  sqlite3_enable_load_extension(database, 1);
+  std::string answer = "no SpatiaLite";
+  if (sqlite3_load_extension(database, "mod_spatialite", nullptr, nullptr) == SQLITE_OK) {
+    sqlite3_stmt* statement = nullptr;
+    answer = sqlite3_prepare_v2(database, sql, -1, &statement, nullptr) != SQLITE_OK
+                 ? sqlite3_errmsg(database)
+             : sqlite3_step(statement) != SQLITE_ROW
+                 ? "no row"
+                 : reinterpret_cast<const char*>(sqlite3_column_text(statement, 0));
+    sqlite3_finalize(statement);
+  }
+  sqlite3_close(database);
+  return answer;
+}
+
+TEST_F(ExportMap, SqliteIsReadBySpatiaLite) {
+  const ExportSummary summary = export_map(earth, out("tops.sqlite"));
+  EXPECT_EQ(summary.driver, "SQLite");
+  EXPECT_THAT(summary.warnings, IsEmpty());
+  const auto answer = [&](const char* sql) { return spatialite_answer(out("tops.sqlite"), sql); };
+  if (answer("SELECT 1") == "no SpatiaLite")
+    GTEST_SKIP() << "no SpatiaLite: apt install libsqlite3-mod-spatialite";
+  EXPECT_EQ(answer("SELECT group_concat(uid || ' ' || ST_X(geometry) || ' ' || ST_Y(geometry) || ' ' || "
+                   "ST_Z(geometry)) FROM mountain_top WHERE uid = 'mt-one'"),
+            "mt-one -70.01 -32.65 3000.0");
+  EXPECT_EQ(answer("SELECT count(*) FROM mountain_top WHERE prominence > 0 AND ST_SRID(geometry) = 4326"),
+            "3");
+  EXPECT_EQ(answer("SELECT CheckSpatialIndex('mountain_top', 'geometry')"), "1");
+}
+
+TEST_F(ExportMap, SqliteKeepsAPlanetaryCrs) {
+  export_map(mars, out("mars.sqlite"));
+  const auto written = open("mars.sqlite");
+  ASSERT_NE(written, nullptr);
+  const OGRSpatialReference* crs = written->GetLayer(0)->GetSpatialRef();
+  ASSERT_NE(crs, nullptr);
+  EXPECT_NEAR(crs->GetSemiMajor(), 3396190, 1);
+}
+
+TEST_F(ExportMap, SqliteHoldsSeveralTypes) {
+  const ExportSummary summary = export_map(two, out("both.sqlite"));
+  EXPECT_THAT(summary.files, ElementsAre(out("both.sqlite")));
+  EXPECT_EQ(open("both.sqlite")->GetLayerCount(), 2);
 }
 
 TEST_F(ExportMap, OneTypeIsTakenAlone) {

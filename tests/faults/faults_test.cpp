@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::Each;
+using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -317,6 +318,31 @@ TEST_P(Faults, OfAKilledProcessLeaveTheOldOrTheNew) {
     }
     expect_whole(when + " and run again");
     EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when << " and run again";
+  }
+}
+
+// Hidden folders do not wait for the next run; only a set of files that was being moved does.
+TEST_P(Faults, OfAnInterruptLeaveTheOldOrTheNewAndNothingHidden) {
+  std::mt19937 random(14);
+  for (int round = 0; round < (is_slow() ? rounds() : 1); ++round) {
+    restore();
+    const long call = 2 + static_cast<long>(random()) % (calls_ - 1);
+    const std::string when = "interrupted at call " + std::to_string(call) + " of " + std::to_string(calls_);
+    const Outcome ended = run(GetParam().newer, at("interrupt", call));
+    EXPECT_EQ(ended.code, 128 + 2) << when;
+    EXPECT_THAT(ended.err, HasSubstr("error: interrupted; an output")) << when;
+    EXPECT_THAT(ended.err, Not(HasSubstr("cannot write"))) << when;
+    std::vector<std::string> left = hidden();
+    std::erase_if(left, [](const std::string& path) {
+      return fs::exists(path + "/ready") || fs::exists(path + "/moving");
+    });
+    if (!GetParam().edits_map) {
+      EXPECT_THAT(left, ::testing::IsEmpty()) << when;
+    }
+    write_other();
+    expect_whole(when);
+    EXPECT_EQ(run(GetParam().newer).code, 0) << when;
+    EXPECT_THAT(hidden(), ::testing::IsEmpty()) << when;
   }
 }
 

@@ -105,6 +105,46 @@ TEST_F(HostileFile, AnEndlessTriggerChangesNothing) {
   EXPECT_EQ(query_text(map_, "SELECT group_concat(uid || height) FROM lamp_post"), before);
 }
 
+TEST_F(HostileFile, AForeignTriggerThatChangesRowsIsRefused) {
+  for (const char* body :
+       {"DELETE FROM lamp_post WHERE id <> NEW.id", "UPDATE lamp_post SET height = 99",
+        "DELETE FROM observation", "INSERT INTO run (job) VALUES ('x')", "DELETE FROM waymark_type"}) {
+    const auto copy = folder_ / "copy.gpkg";
+    std::filesystem::copy_file(map_, copy, std::filesystem::copy_options::overwrite_existing);
+    execute_sql(copy,
+                std::string("CREATE TRIGGER t AFTER UPDATE OF height ON lamp_post BEGIN ") + body + "; END");
+    const char* all = "SELECT group_concat(uid || height) || (SELECT count(*) FROM run) FROM lamp_post";
+    const std::string before = query_text(copy, all);
+    MapEditor editor = MapEditor::open(copy);
+    Landmark landmark = editor.map().query({.limit = 1}).at(0);
+    landmark.features[0].value += 1;
+    EXPECT_THAT(problem_of([&] { editor.update(landmark); }),
+                AllOf(HasSubstr("a trigger that is not Waymark's"), HasSubstr("copy.gpkg")))
+        << body;
+    EXPECT_EQ(query_text(copy, all), before) << body;
+  }
+}
+
+// GDAL makes such triggers in every GeoPackage that it changes.
+TEST_F(HostileFile, ATriggerThatCountsRowsIsNoFault) {
+  execute_sql(map_,
+              "CREATE TABLE gpkg_ogr_contents(table_name TEXT PRIMARY KEY, feature_count INTEGER);"
+              "INSERT INTO gpkg_ogr_contents VALUES ('lamp_post', 60);"
+              "CREATE TRIGGER c AFTER UPDATE ON lamp_post BEGIN UPDATE gpkg_ogr_contents SET feature_count = "
+              "61; END");
+  MapEditor editor = MapEditor::open(map_);
+  Landmark landmark = editor.map().query({.limit = 1}).at(0);
+  landmark.position.xyz.x() += 1;
+  EXPECT_EQ(problem_of([&] { editor.update(landmark); }), "");
+  EXPECT_EQ(query_text(map_, "SELECT feature_count FROM gpkg_ogr_contents"), "61");
+}
+
+TEST_F(HostileFile, AHugeValueIsRefused) {
+  const sqlite::Database database(map_, sqlite::OpenMode::read);
+  EXPECT_THAT(refusal([&] { database.integer("SELECT length(hex(zeroblob(200000000)))"); }),
+              HasSubstr("more than 256 MB"));
+}
+
 TEST_F(HostileFile, ValuesOfAnotherKindAreNoFault) {
   execute_sql(map_,
               R"(UPDATE run SET inputs = '[{"path": 1, "bytes": "x", "sha256": []}, 5, {"bytes": -3}]')");

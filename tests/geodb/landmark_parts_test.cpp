@@ -72,6 +72,38 @@ MapContents without_landmarks(MapContents contents) {
   return contents;
 }
 
+// Rejected observations do not belong to landmarks: they may be in any part.
+TEST(LandmarkParts, WriteRejectedObservationsInOneOrder) {
+  const TemporaryFolder folder;
+  const MapContents whole = held(300);
+  std::vector<Observation> rejected(whole.observations.begin(), whole.observations.begin() + 200);
+  for (std::size_t i = 0; i < rejected.size(); ++i) {
+    rejected[i].landmark_uid.clear();
+    rejected[i].rejected = i % 2 == 0 ? "seen twice in one image" : "outside the area of interest";
+  }
+  std::string first;
+  for (const int columns : {1, 3})
+    for (const std::size_t max_in_memory : {10u, 100'000u}) {
+      Parts parts(whole, columns);
+      MapContents contents = without_landmarks(whole);
+      contents.parts = parts.parts();
+      contents.parts.rejected = [&, count = contents.parts.count](std::size_t part) {
+        auto own = std::make_shared<std::vector<Observation>>();
+        for (std::size_t i = 0; i < rejected.size(); ++i)
+          if (i * 7 % count == part) own->push_back(rejected[rejected.size() - 1 - i]);
+        return own;
+      };
+      write_map(folder / "map.gpkg", contents, {.max_landmarks_in_memory = max_in_memory});
+      const std::string bytes = file_bytes(folder / "map.gpkg");
+      if (first.empty()) first = bytes;
+      EXPECT_TRUE(bytes == first) << columns << " x " << columns << ", " << max_in_memory << " at once";
+    }
+  const auto stored = MapStore::open(folder / "map.gpkg").observations();
+  EXPECT_EQ(std::ranges::count(stored, "seen twice in one image", &Observation::rejected), 100);
+  EXPECT_EQ(std::ranges::count(stored, "", &Observation::rejected),
+            static_cast<std::ptrdiff_t>(whole.observations.size()));
+}
+
 TEST(LandmarkParts, GiveTheSameBytesForEveryDivision) {
   const TemporaryFolder folder;
   const MapContents whole = held(3000);

@@ -135,7 +135,7 @@ TEST(OtherReaders, QgisDrawsTheLayerInOurStyle) {
   EXPECT_THAT(result.output, HasSubstr("colour: #d0a020"));
   EXPECT_THAT(result.output, HasSubstr("labels: True"));
   EXPECT_THAT(result.output, HasSubstr("alias of height: Height (m)"));
-  EXPECT_THAT(result.output, HasSubstr("display name: Lamp post 1"));
+  EXPECT_THAT(result.output, HasSubstr("display name: Lamp post 8 m"));
   EXPECT_THAT(result.output, HasSubstr("map tip: <b>[% coalesce('Lamp post ' ||"));
   EXPECT_THAT(result.output, HasSubstr("added: True, named: True"));
   EXPECT_THAT(result.output, HasSubstr("label: round(\"height\""));

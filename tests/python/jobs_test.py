@@ -128,3 +128,12 @@ def test_simulate_makes_the_files_of_the_program(tmp_path):
     program("simulate", scenario, "-o", tmp_path / "program", "--seed", 5)
     truth = [(tmp_path / folder / "truth/landmarks.csv").read_bytes() for folder in ("python", "program")]
     assert truth[0] == truth[1] and len(truth[0]) > 1000
+
+
+def test_a_web_map_has_the_bytes_of_the_program(tmp_path):
+    made = waymark.run(job(), tmp_path / "map.gpkg")
+    counts = waymark.web(made.map, tmp_path / "python", terrain_pixels=64, title="Tops")
+    assert counts["landmarks"] == len(made.map) and counts["terrain_tiles"] > 0
+    program("web", tmp_path / "map.gpkg", "-o", tmp_path / "program", "--terrain-pixels", 64, "--title", "Tops")
+    for file in sorted((tmp_path / "program").iterdir()):
+        assert (tmp_path / "python" / file.name).read_bytes() == file.read_bytes(), file.name

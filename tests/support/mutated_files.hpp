@@ -13,14 +13,12 @@
 #include <string_view>
 
 #include "core/error.hpp"
-#include "core/printable.hpp"
 #include "core/text_file.hpp"
 #include "exporters/raster/raster_file.hpp"
 #include "tests/support/mutations.hpp"
+#include "tests/support/reader_faults.hpp"
 namespace waymark::test {
 
-// A screen of a terminal, generously.
-inline constexpr std::size_t kMaxLines = 30, kMaxBytes = 3500;
 // Slower than any mutation of such small files should be by far, also on a busy machine.
 inline constexpr double kMaxSeconds = 5;
 
@@ -79,16 +77,8 @@ class MutatedFiles : public ::testing::Test {
   }
 
   static std::string fault_of_message(const Error& error, const std::string& path) {
+    if (const std::string fault = fault_of_text(error); !fault.empty()) return fault;
     const std::string said = error.what();
-    if (error.code() != ErrorCode::input && error.code() != ErrorCode::usage)
-      return "an error of another kind: " + said;
-    if (error.problem().empty()) return "no problem is named: " + said;
-    if (said.size() > kMaxBytes || std::ranges::count(said, '\n') > std::ptrdiff_t{kMaxLines})
-      return "more than a screen: " + said;
-    if (said != printable(said, said.size())) return "control characters: " + printable(said, kMaxBytes);
-    for (const char* internal :
-         {"json.exception", "std::", "basic_string", "vector::", "stoi", "stod", "map::at"})
-      if (said.find(internal) != said.npos) return std::string("a message of a library: ") + said;
     // The readers of a data set name the part of it.
     if (said.find(std::filesystem::path(path).parent_path().filename().string()) == said.npos)
       return "the file is not named: " + said;

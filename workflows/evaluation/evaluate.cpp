@@ -141,8 +141,8 @@ void warn_unmatched(const std::string& type, const std::vector<testbed::Evaluate
   };
   const Eigen::AlignedBox2d a = extent(found), b = extent(truth);
   const auto text = [](const Eigen::AlignedBox2d& box) {
-    return fmt::format("x {:g} to {:g}, y {:g} to {:g}", box.min().x(), box.max().x(), box.min().y(),
-                       box.max().y());
+    return fmt::format("x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", box.min().x(), box.max().x(),
+                       box.min().y(), box.max().y());
   };
   callbacks.warning(fmt::format("no {} of the result matches a true one: the result has {}, the truth {}; {}",
                                 type, text(a), text(b),
@@ -173,6 +173,10 @@ std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request
     scores[type] = score(things.first, things.second, rules, request.size_edges);
     warn_unmatched(type, things.first, things.second, scores[type], callbacks);
   }
+  if (scores.empty())
+    callbacks.warning(fmt::format(
+        "{} has no landmarks{}: nothing can be compared; it has one row per true landmark, with x and y",
+        request.truth, request.type.empty() ? "" : " of type " + request.type));
   return scores;
 }
 

@@ -33,14 +33,6 @@ std::optional<exporters::TrackFormat> pose_format(const std::string& output) {
   return {};
 }
 
-/// Expects landmarks where the sensor detects them. Without a known range the settings stay.
-void set_coverage(const SensorCoverage& coverage, localization::WeightOptions& weight) {
-  if (!(coverage.range > 0)) return;
-  weight.view_range = coverage.range;
-  weight.view_angle = std::min(coverage.view / 360, 1.0) * 2 * std::numbers::pi;
-  weight.detection = coverage.detection;
-}
-
 void check_track_output(const std::string& output) {
   const std::filesystem::path file(output);
   if (file.extension() != ".csv" && file.extension() != ".gpkg" && !pose_format(output))
@@ -205,18 +197,11 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   check_written_map(request, method);
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
-  LocalizeSettings settings;
-  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
-  settings.particles.seed = request.seed;
+  LocalizeSettings settings = make_settings(request, method, sensor.get(), callbacks);
   const DescribeOptions options = [&](OptionVisitor& visitor) {
     settings.describe(visitor);
     method.describe(visitor);
   };
-  for (const std::string& setting : request.set)
-    for (const std::string& warning : set_option(options, setting)) callbacks.warning(warning);
-  settings.check_distance(request.method);
-  settings.identification.use_identities = request.use_identities;
-  settings.particles.threads = request.threads;
   if (!(request.min_confidence >= 0 && request.min_confidence <= 1))
     throw Error(ErrorCode::usage,
                 fmt::format("--min-confidence must be 0 to 1, is {:g}", request.min_confidence));
@@ -261,14 +246,11 @@ std::string localize_settings(const LocalizeRequest& request) {
   LocalizeMethod& method = methods.find(request.method);
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
-  LocalizeSettings settings;
-  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
-  settings.particles.seed = request.seed;
+  LocalizeSettings settings = make_settings(request, method, sensor.get(), {});
   const DescribeOptions options = [&](OptionVisitor& visitor) {
     settings.describe(visitor);
     method.describe(visitor);
   };
-  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
   return options_as_text(option_table(options));
 }
 

@@ -4,13 +4,27 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
+#include <numbers>
 
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
+#include "workflows/localization/localize.hpp"
 
 namespace waymark::workflows {
+namespace {
+
+/// Expects landmarks where the sensor detects them. Without a known range the settings stay.
+void set_coverage(const SensorCoverage& coverage, localization::WeightOptions& weight) {
+  if (!(coverage.range > 0)) return;
+  weight.view_range = coverage.range;
+  weight.view_angle = std::min(coverage.view / 360, 1.0) * 2 * std::numbers::pi;
+  weight.detection = coverage.detection;
+}
+
+}  // namespace
 
 void LocalizeSettings::describe(OptionVisitor& option) {
   identification.describe(option);
@@ -50,6 +64,23 @@ std::vector<std::string> set_option(const DescribeOptions& describe, const std::
   return set_option(describe, std::string_view(setting).substr(0, equals),
                     std::string_view(setting).substr(equals + 1),
                     {.owner = "localize", .where = "--set " + setting});
+}
+
+LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& method,
+                               const SensorProfile* sensor, const Callbacks& callbacks) {
+  LocalizeSettings settings;
+  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
+  settings.particles.seed = request.seed;
+  const DescribeOptions options = [&](OptionVisitor& visitor) {
+    settings.describe(visitor);
+    method.describe(visitor);
+  };
+  for (const std::string& setting : request.set)
+    for (const std::string& warning : set_option(options, setting)) callbacks.warning(warning);
+  settings.check_distance(request.method);
+  settings.identification.use_identities = request.use_identities;
+  settings.particles.threads = request.threads;
+  return settings;
 }
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {

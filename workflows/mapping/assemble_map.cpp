@@ -15,6 +15,7 @@
 #include "geo/dem_handle.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/survey_outline.hpp"
+#include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
 #include "workflows/mapping/summit_layers.hpp"
@@ -96,17 +97,52 @@ std::vector<T> concatenate(std::vector<std::vector<T>> parts) {
   return all;
 }
 
-/// Returns readers of the tiles' results, which stay where the engine keeps them.
-geodb::LandmarkParts tile_parts(pipeline::RunResult& result) {
-  const auto landmarks = result.take_readers<std::vector<Landmark>>("landmarks");
-  const auto evidence = result.take_readers<std::vector<Observation>>("evidence");
-  return {.count = landmarks.size(),
-          .landmarks = [landmarks](std::size_t part) { return landmarks[part](); },
-          .evidence =
-              [evidence](std::size_t part) {
-                return evidence.empty() ? std::make_shared<const std::vector<Observation>>()
-                                        : evidence[part]();
-              }};
+using ObservationReaders = std::vector<pipeline::RunResult::Reader<std::vector<Observation>>>;
+
+/// Appends the readers of tiles, then those of parts.
+template <class T>
+std::vector<pipeline::RunResult::Reader<T>> take_all_readers(pipeline::RunResult& result,
+                                                             std::string_view name) {
+  auto readers = result.take_readers<T>(name);
+  for (auto& part : result.take_parts<T>(name)) readers.push_back(std::move(part));
+  return readers;
+}
+
+/// Returns readers of tiles and parts, which stay where the engine keeps them. Tiles reject no observations.
+geodb::LandmarkParts stored_parts(pipeline::RunResult& result) {
+  const auto landmarks = take_all_readers<std::vector<Landmark>>(result, "landmarks");
+  const ObservationReaders evidence = take_all_readers<std::vector<Observation>>(result, "evidence");
+  const ObservationReaders rejected = take_all_readers<std::vector<Observation>>(result, "rejected");
+  const auto nothing = std::make_shared<const std::vector<Observation>>();
+  geodb::LandmarkParts parts{.count = landmarks.size()};
+  parts.landmarks = [landmarks](std::size_t part) { return landmarks[part](); };
+  parts.evidence = [evidence, nothing](std::size_t part) {
+    return evidence.empty() ? nothing : evidence[part]();
+  };
+  if (!rejected.empty())
+    parts.rejected = [rejected, nothing, first = landmarks.size() - rejected.size()](std::size_t part) {
+      return part < first ? nothing : rejected[part - first]();
+    };
+  return parts;
+}
+
+/// Numbers of observations.
+struct ObservationCounts {
+  std::size_t all = 0, used = 0;
+};
+
+ObservationCounts count_observations(const geodb::MapContents& contents) {
+  ObservationCounts count;
+  const auto add = [&](const std::vector<Observation>& some) {
+    count.all += some.size();
+    count.used += static_cast<std::size_t>(std::ranges::count(some, "", &Observation::rejected));
+  };
+  add(contents.observations);
+  for (std::size_t part = 0; part < contents.parts.count; ++part) {
+    add(*contents.parts.evidence(part));
+    if (contents.parts.rejected) add(*contents.parts.rejected(part));
+  }
+  return count;
 }
 
 }  // namespace
@@ -121,7 +157,7 @@ bool has_all_landmarks(const pipeline::Pipeline& pipeline, const pipeline::RunRe
 }
 
 std::vector<std::string> map_artifacts() {
-  return {"dem", "landmarks", "evidence", "crowns", "canopies", "image_views", "place_names"};
+  return {"dem", "landmarks", "evidence", "rejected", "crowns", "canopies", "image_views", "place_names"};
 }
 
 geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry& types, geodb::RunRecord run,
@@ -132,12 +168,12 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry&
   contents.crs = dem->geometry().where.crs;
   contents.run = std::move(run);
   if (with_dem) contents.dem_coverage = dem;
-  contents.parts = tile_parts(result);
+  contents.parts = stored_parts(result);
   contents.landmarks = concatenate(result.take<std::vector<Landmark>>("landmarks"));
   contents.observations = concatenate(result.take<std::vector<Observation>>("evidence"));
   for (const auto& names : result.artifacts<importers::PlaceNames>("place_names"))
     name_summits(contents, *names);
-  auto tables = result.take_readers<pipeline::CrownTable>("crowns");
+  auto tables = take_all_readers<pipeline::CrownTable>(result, "crowns");
   for (pipeline::CrownTable& table : result.take<pipeline::CrownTable>("crowns"))
     tables.push_back(
         [held = std::make_shared<const pipeline::CrownTable>(std::move(table))] { return held; });
@@ -168,9 +204,9 @@ std::string summarize_run(const pipeline::RunResult& result, const geodb::MapCon
   for (const auto& surveys : canopies) cells = static_cast<double>(common_grid(*surveys).cells());
   std::string text = fmt::format("{}: {}\n", map, list_counts(written));
   if (canopies.empty() && !contents.images.empty()) {
-    const auto used = std::ranges::count(contents.observations, "", &Observation::rejected);
+    const ObservationCounts count = count_observations(contents);
     text += fmt::format("{} images, {} observations, {} of them used, {:.2f} s\n", contents.images.size(),
-                        contents.observations.size(), used, result.report.seconds);
+                        count.all, count.used, result.report.seconds);
     return text;
   }
   text += fmt::format("{}, {:.2f} s", cell_count(cells), result.report.seconds);

@@ -10,6 +10,8 @@
 #include "core/error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
+#include "importers/rules/ready_rules.hpp"
+#include "importers/rules/rule_landmarks.hpp"
 #include "importers/tables/import_mapping.hpp"
 #include "importers/tables/table.hpp"
 #include "workflows/mapping/staged_landmarks.hpp"
@@ -50,6 +52,22 @@ importers::ImportedTable read_table(const ImportRequest& request, StagedLandmark
                                  [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); });
 }
 
+importers::ImportedTable read_elements(const ImportRequest& request, StagedLandmarks& landmarks) {
+  for (const auto& [given, name] : {std::pair{!request.mapping.empty(), "--mapping"},
+                                    {!request.options.columns.empty(), "--columns"},
+                                    {!request.options.type.empty(), "--type"}})
+    if (given)
+      throw Error(ErrorCode::usage, fmt::format("{} is for tables, not for rules", name), "--rules",
+                  "rules give the types and their features");
+  const importers::ImportRules rules = importers::read_import_rules(request.rules);
+  const auto first = [](const std::string& a, const std::string& b) { return a.empty() ? b : a; };
+  const auto source = importers::open_elements(request.table, first(request.layer, rules.layer));
+  return importers::import_by_rules(*source, request.table, all_types(), rules,
+                                    first(request.options.table_crs, rules.crs),
+                                    first(request.options.map_crs, rules.map_crs),
+                                    [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); });
+}
+
 /// Reads Landmark_Groundtruth.dat: numbered posts in a local CRS.
 importers::ImportedTable read_mrclam_table(const std::string& file, const std::string& type,
                                            StagedLandmarks& landmarks) {
@@ -77,8 +95,8 @@ geodb::RunRecord run_record(const importers::ImportedTable& table, const std::st
   return make_single_step_record(std::move(stage), file, command_line, started);
 }
 
-void send_counts(const importers::ImportedTable& table, const Callbacks& callbacks) {
-  callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, ", ")));
+void send_counts(const importers::ImportedTable& table, bool by_rules, const Callbacks& callbacks) {
+  callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, by_rules ? "\n" : ", ")));
   for (const std::string& warning : table.warnings) callbacks.warning(warning);
   callbacks.summary(fmt::format("{} rows, {} landmarks, {} rejected\n", table.rows, table.landmarks,
                                 table.rows - table.landmarks));
@@ -89,6 +107,19 @@ void send_counts(const importers::ImportedTable& table, const Callbacks& callbac
 }
 
 }  // namespace
+
+std::vector<std::string> ready_rule_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, rules] : importers::ready_rules()) names.push_back(name);
+  return names;
+}
+
+std::string rules_text(const std::string& file_or_name) {
+  if (file_or_name.empty())
+    throw Error(ErrorCode::usage, "--print-rules needs --rules", "--rules",
+                fmt::format("ready ones are {}", fmt::join(ready_rule_names(), ", ")));
+  return importers::import_rules_text(file_or_name);
+}
 
 importers::ImportedTable import_landmarks(const ImportRequest& request, const Callbacks& callbacks) {
   check_map_output(request.map);
@@ -102,6 +133,8 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
       file = (std::filesystem::path(file) / "Landmark_Groundtruth.dat").string();
     const std::string coded = all_types()[find_self_identifying_type(all_types()).value()].name;
     table = read_mrclam_table(file, request.options.type.empty() ? coded : request.options.type, landmarks);
+  } else if (!request.rules.empty()) {
+    table = read_elements(request, landmarks);
   } else {
     table = read_table(with_mapping(request), landmarks);
   }
@@ -109,7 +142,7 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
   contents.types = all_types();
   contents.crs = table.crs;
   contents.run = run_record(table, file, request.command_line, started);
-  send_counts(table, callbacks);
+  send_counts(table, !request.rules.empty(), callbacks);
   contents.parts = landmarks.finish(table.crs, file);
   contents.observations = std::move(table.rejected);
   geodb::write_map(request.map, contents,

@@ -12,6 +12,7 @@
 #include "importers/hash.hpp"
 #include "importers/points/find_las.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
+#include "workflows/file_access.hpp"
 #include "workflows/mapping/assemble_map.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
@@ -139,8 +140,10 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   return options;
 }
 
-pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings) {
+pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings,
+                       bool confined) {
   pipeline::Job job = pipeline::read_job(file, all_stages());
+  if (confined) require_files_inside(job.pipeline, file);
   require_metric_dem(job.pipeline);
   for (const std::string& setting : settings) job.pipeline.set(setting);
   return job;

@@ -68,7 +68,9 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
 pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks = {});
 
 /// Reads a job file with all built-in stages and applies `settings` (STAGE.OPTION=VALUE). A DEM that images
-/// are placed on is requested in metres. Throws Error{usage} as read_job().
-pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings = {});
+/// are placed on is requested in metres. Throws Error{usage} as read_job(), and as require_files_inside()
+/// if `confined`; `settings` may name any file.
+pipeline::Job load_job(const std::filesystem::path& file, const std::vector<std::string>& settings = {},
+                       bool confined = false);
 
 }  // namespace waymark::workflows

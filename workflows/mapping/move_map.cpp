@@ -161,12 +161,14 @@ void move_map(geodb::MapContents& contents, const MapMove& move, const Crs& crs)
     for (Landmark& l : *moved) moved_landmark(l, types[l.type]);
     return std::shared_ptr<const std::vector<Landmark>>(moved);
   };
-  const auto evidence = std::move(contents.parts.evidence);
-  contents.parts.evidence = [evidence, types, moved_observation](std::size_t part) {
-    auto moved = std::make_shared<std::vector<Observation>>(*evidence(part));
-    for (Observation& o : *moved) moved_observation(o, types[o.type]);
-    return std::shared_ptr<const std::vector<Observation>>(moved);
-  };
+  for (auto* observations : {&contents.parts.evidence, &contents.parts.rejected}) {
+    if (!*observations) continue;
+    *observations = [read = std::move(*observations), types, moved_observation](std::size_t part) {
+      auto moved = std::make_shared<std::vector<Observation>>(*read(part));
+      for (Observation& o : *moved) moved_observation(o, types[o.type]);
+      return std::shared_ptr<const std::vector<Observation>>(moved);
+    };
+  }
   contents.crs = crs;
 }
 

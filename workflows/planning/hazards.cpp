@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iterator>
 #include <optional>
 
 #include "core/atomic_file.hpp"
@@ -17,6 +16,7 @@
 #include "geo/metric_crs.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/rasters/dem.hpp"
+#include "workflows/planning/hazard_extras.hpp"
 #include "workflows/planning/raster_style.hpp"
 #include "workflows/planning/raster_tiles.hpp"
 #include "workflows/provenance.hpp"
@@ -186,16 +186,15 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
                     cell, 2 * vehicle.base_radius(), 2 * hazards.fitted_radius()));
   std::vector<exporters::CogStream::Band> bands;
   for (const auto& [name, unit] : planning::hazard_band_names()) bands.push_back({name, unit});
+  const HazardExtras extras = parse_hazard_extras(request, grid);
+  for (const auto& [name, unit] : extras.bands()) bands.push_back({name, unit});
   exporters::CogStream file(request.output, bands, grid);
   write_tiles(
       grid, {request.tile_cells, request.threads, "hazards"},
-      [&](const Window& window) {
-        planning::HazardTile tile = hazards.compute(window);
-        return std::vector<Grid<float>>(std::make_move_iterator(tile.begin()),
-                                        std::make_move_iterator(tile.end()));
-      },
+      [&](const Window& window) { return compute_with_extras(hazards, *dem, window, extras); },
       [&](const std::vector<Grid<float>>& tile) {
-        for (const float c : tile.back().cells()) ++result.cells.at(static_cast<std::size_t>(c));
+        for (const float c : tile[planning::kHazardBands - 1].cells())
+          ++result.cells.at(static_cast<std::size_t>(c));
       },
       file, callbacks);
   file.commit(
@@ -206,6 +205,8 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
        {"HEIGHT_CORRELATION", fmt::format("{:g}", hazard.errors.correlation)},
        {"CLASSES", "0 safe, 1 uncertain, 2 hazard, 3 unknown"},
        {"CLASS_LIMITS", fmt::format("{:g} {:g}", request.min_uncertain, request.min_hazard)},
+       {"LANDING_ELLIPSE", request.landing_ellipse},
+       {"SUN", request.sun},
        {"ROCK_COVER", hazard.undetected.known ? fmt::format("{:.4g}", hazard.undetected.cover.k) : "unknown"},
        {"DETECTED_DIAMETER", fmt::format("{:.4g}", hazard.undetected.detected_diameter)},
        {"UNDETECTED_PER_METRE", fmt::format("{:.4g}", result.undetected_per_metre.value)}});

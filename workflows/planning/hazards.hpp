@@ -19,6 +19,9 @@ struct HazardMapRequest {
   double rock_cover = -1;                         ///< k of the site; < 0: fitted to the map's rocks
   double detection_limit = -1;                    ///< metres; < 0: fitted to the map's rocks
   double min_uncertain = 0.05, min_hazard = 0.5;  ///< probabilities
+  std::string landing_ellipse;  ///< MAJOR,MINOR[,AZIMUTH] for the band `landing`; empty: none
+  std::string sun;  ///< AZIMUTH,ELEVATION in degrees for the bands `horizon`, `shade`; empty: none
+  double horizon_reach = 1000;  ///< metres
   std::int64_t tile_cells = 512;
   int threads = 0;
   std::string command_line;

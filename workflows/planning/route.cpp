@@ -17,6 +17,7 @@
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "workflows/localization/robot_map.hpp"
+#include "workflows/planning/path_clearance.hpp"
 #include "workflows/planning/planning_sensor.hpp"
 #include "workflows/planning/route_cells.hpp"
 #include "workflows/planning/route_layers.hpp"
@@ -273,6 +274,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
           planning::distances_to(cells, reached, problem.to)[static_cast<std::size_t>(problem.from)];
     }
   }
+  const std::string clearance = add_clearance(request, map, result);
   write_routes(request, map.crs(), result);
   const PlannedRoute& best = result.routes.front();
   std::string text = fmt::format(
@@ -288,7 +290,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   if (request.keep_landmarks > 0)
     text += fmt::format(", {:.1f} m with fewer than {:g} landmarks in sight", best.outside,
                         request.keep_landmarks);
-  callbacks.summary(text + "\n");
+  callbacks.summary(text + "\n" + clearance);
   return result;
 }
 

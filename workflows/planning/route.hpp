@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "planning/clearance.hpp"
 #include "planning/hazard_map.hpp"
 #include "planning/route_search.hpp"
 #include "workflows/callbacks.hpp"
@@ -25,6 +26,8 @@ struct RouteRequest {
   std::int64_t worlds = 32;      ///< random sets of existing landmarks
   std::int64_t alternatives = 1;
   std::int64_t seed = 1;
+  std::vector<std::string> dem = {};  ///< terrain, for clearance and tilt at the stations; empty: none
+  std::string vehicle = "rover";      ///< of clearance and tilt
 };
 
 /// One row of the layer `route_station`.
@@ -34,7 +37,8 @@ struct RouteStation {
   planning::Symmetric3 covariance;
   double sd = 0;
   int landmarks = 0;
-  std::vector<std::string> important;  ///< uids of the three that inform most
+  std::vector<std::string> important;                       ///< uids of the three that inform most
+  std::optional<planning::ClearanceBounds> clearance = {};  ///< with a DEM, where the terrain is known
 };
 
 struct PlannedRoute {

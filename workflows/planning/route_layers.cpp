@@ -72,7 +72,9 @@ geodb::ShapeLayer station_layer(const RouteResult& result) {
                                       {"azimuth", "deg", Kind::real, "Worst direction, clockwise from north"},
                                       {"yaw_sd", "rad", Kind::real, "Sd of the heading"},
                                       {"landmarks", "", Kind::integer, "Landmarks in sight"},
-                                      {"important", "", Kind::text, "Up to three uids that inform most"}},
+                                      {"important", "", Kind::text, "Up to three uids that inform most"},
+                                      {"belly", "m", Kind::real, "Least clearance below the belly, a bound"},
+                                      {"tilt", "deg", Kind::real, "Largest tilt of the vehicle, a bound"}},
                           .style = {.colour = "#1565c0"}};
   for (std::size_t i = 0; i < result.routes.size(); ++i)
     for (const RouteStation& s : result.routes[i].stations) {
@@ -87,18 +89,22 @@ geodb::ShapeLayer station_layer(const RouteResult& result) {
                       e.azimuth,
                       std::sqrt(s.covariance.tt),
                       std::int64_t{s.landmarks},
-                      joined(s.important)};
+                      joined(s.important),
+                      s.clearance ? AttributeValue{s.clearance->belly} : AttributeValue{},
+                      s.clearance ? AttributeValue{s.clearance->tilt} : AttributeValue{}};
       layer.rows.push_back(std::move(shape));
     }
   return layer;
 }
 
 std::string as_csv(const PlannedRoute& route) {
-  std::string text = "distance,x,y,yaw,var_x,var_y,cov_xy,var_yaw,sd,landmarks,important\n";
+  std::string text = "distance,x,y,yaw,var_x,var_y,cov_xy,var_yaw,sd,landmarks,important,belly,tilt\n";
   for (const RouteStation& s : route.stations)
-    text += fmt::format("{:.3f},{:.9g},{:.9g},{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f},{},{}\n", s.distance,
-                        s.at.x(), s.at.y(), s.yaw, s.covariance.xx, s.covariance.yy, s.covariance.xy,
-                        s.covariance.tt, s.sd, s.landmarks, joined(s.important));
+    text +=
+        fmt::format("{:.3f},{:.9g},{:.9g},{:.6f},{:.6g},{:.6g},{:.6g},{:.6g},{:.4f},{},{},{}\n", s.distance,
+                    s.at.x(), s.at.y(), s.yaw, s.covariance.xx, s.covariance.yy, s.covariance.xy,
+                    s.covariance.tt, s.sd, s.landmarks, joined(s.important),
+                    s.clearance ? fmt::format("{:.3f},{:.2f}", s.clearance->belly, s.clearance->tilt) : ",");
   return text;
 }
 

@@ -16,12 +16,15 @@
 #include "core/text_file.hpp"
 #include "exporters/raster/image_file.hpp"
 #include "exporters/raster/raster_file.hpp"
+#include "exporters/vector/track_file.hpp"
 #include "geo/crs.hpp"
 #include "testbed/drive/drive_log.hpp"
 #include "testbed/landing/lit_terrain.hpp"
 #include "testbed/scenario.hpp"
 #include "testbed/scene_files.hpp"
+#include "testbed/town/town_drive.hpp"
 #include "workflows/mapping/image_stages.hpp"
+#include "workflows/simulation/route_drive.hpp"
 #include "workflows/simulation/write_forest.hpp"
 
 namespace waymark::workflows {
@@ -35,7 +38,8 @@ testbed::Scenario load_scenario(const SimulateRequest& request, const Callbacks&
                              [&](const std::string& warning) { callbacks.warning(warning); });
   scenario.seed = request.seed.value_or(scenario.seed);
   scenario.drive.seed = request.drive_seed.value_or(scenario.drive.seed);
-  if ((request.drive_only || request.drive_seed) && !scenario.drive.on)
+  const bool town = scenario.street.on || scenario.hall.on;
+  if ((request.drive_only || request.drive_seed) && !scenario.drive.on && !town)
     throw Error(ErrorCode::usage, "the scenario has no section drive", request.scenario,
                 "docs/reference/scenario.md describes it; {} stands for a drive with all defaults");
   return scenario;
@@ -108,11 +112,27 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
   write_file(folder / "truth/detections.csv", truth.detections);
 }
 
+// Writes log.jsonl, truth/track.csv, the track estimated while driving and drive.json. Returns a summary.
+std::string write_route_drive(const fs::path& folder, const RouteDrive& drive) {
+  const DriveReport& r = drive.report;
+  write_file(folder / "log.jsonl", drive.log);
+  write_file(folder / "truth/track.csv", drive.true_track);
+  exporters::write_track_csv(folder / "track.csv", drive.track);
+  write_file(folder / "drive.json", drive_report_json(r));
+  return fmt::format(
+      "drive along a route of {:.0f} m: {}; {:.0f} m in {:.0f} s, {} new routes, {} stops, worst sd {:.2f} "
+      "m, "
+      "worst error {:.2f} m{}",
+      r.planned_length, r.reached ? "reached the goal" : "ended by " + r.ended, r.driven, r.seconds,
+      r.replans, r.stops, r.worst_sd, r.worst_error,
+      r.reached || r.events.empty() ? "" : "\n  " + r.events.back().reason);
+}
+
 // Makes the drive of a scenario and writes log.jsonl, truth/track.csv and, in a forest, truth/trees.csv and
 // truth/felled.csv. A table of real trees is read relative to the scenario file. Returns a summary.
 std::string write_drive(const fs::path& folder, const testbed::Scenario& scenario,
                         const testbed::Scene& scene, std::vector<testbed::StandingTree> trees,
-                        const fs::path& scenario_file) {
+                        const fs::path& scenario_file, const Callbacks& callbacks) {
   const testbed::DriveSettings& drive = scenario.drive;
   if (!drive.trees.empty()) {
     const fs::path table = scenario_file.parent_path() / drive.trees;
@@ -121,10 +141,14 @@ std::string write_drive(const fs::path& folder, const testbed::Scenario& scenari
     trees = testbed::trees_from_table(text, table, drive.stand, {scene.ground.east, scene.ground.north},
                                       scene.terrain);
   }
-  const testbed::DriveWorld world = testbed::make_drive(drive, scene, std::move(trees), scene.seed);
   const testbed::LogCrs place{scenario.crs,
                               scenario.crs == "local" ? 1 : Crs::from_text(scenario.crs).metres_per_unit()};
   make_folder(folder / "truth");
+  if (drive.planned()) {
+    const testbed::DriveWorld site = testbed::make_drive_site(drive, scene, std::move(trees), scene.seed);
+    return write_route_drive(folder, drive_route(site, scene, place, scenario_file.parent_path(), callbacks));
+  }
+  const testbed::DriveWorld world = testbed::make_drive(drive, scene, std::move(trees), scene.seed);
   write_file(folder / "log.jsonl", testbed::drive_log(world, place));
   write_file(folder / "truth/track.csv", testbed::true_track(world, place));
   if (!world.trees.empty()) {
@@ -160,11 +184,38 @@ SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Sc
     forest = write_forest(folder, scenario, scene, crs);
     write_file(folder / "scenario.json", testbed::scenario_json(scenario));
     if (scenario.drive.on)
-      drive = write_drive(folder, scenario, scene, forest.trees, request.scenario) + "\n";
+      drive = write_drive(folder, scenario, scene, forest.trees, request.scenario, callbacks) + "\n";
   });
   if (!drive.empty()) callbacks.summary(drive);
   callbacks.summary(fmt::format("{}: {}\n", request.folder, forest.summary));
   return {.trees = forest.trees.size()};
+}
+
+/// Writes a street or a floor: the log and the truth. Without a section drive the robot is that of
+/// town_settings().
+SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scenario& scenario,
+                             const Callbacks& callbacks) {
+  if (scenario.crs != "local")
+    throw Error(ErrorCode::usage,
+                fmt::format("crs is {}: a street or a hall is made in metres", scenario.crs),
+                request.scenario, "remove crs, or write \"local\"");
+  const auto seed = static_cast<std::uint64_t>(scenario.seed);
+  const std::uint64_t drive_seed =
+      scenario.drive.seed >= 0 ? static_cast<std::uint64_t>(scenario.drive.seed) : seed;
+  const testbed::Town town = scenario.street.on ? testbed::plan_street(scenario.street, seed, drive_seed)
+                                                : testbed::plan_hall(scenario.hall, seed, drive_seed);
+  const testbed::TownDrive drive =
+      testbed::drive_through(town, scenario.drive.on ? scenario.drive : testbed::town_settings(), drive_seed);
+  write_scene(request.folder, [&](const fs::path& folder) {
+    make_folder(folder / "truth");
+    write_file(folder / "log.jsonl", drive.log);
+    write_file(folder / "truth/track.csv", drive.track);
+    write_file(folder / "truth/landmarks.csv", testbed::town_table(town));
+    write_file(folder / "scenario.json", testbed::scenario_json(scenario));
+  });
+  callbacks.summary(fmt::format("{}: {} landmarks, a drive of {:.0f} m in {:.0f} s\n", request.folder,
+                                town.landmarks.size(), drive.distance, drive.seconds));
+  return {.landmarks = town.landmarks.size()};
 }
 
 }  // namespace
@@ -172,6 +223,7 @@ SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Sc
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks) {
   testbed::Scenario scenario = load_scenario(request, callbacks);
   const Crs crs = scenario_crs(scenario, request.scenario);
+  if (scenario.street.on || scenario.hall.on) return simulate_town(request, scenario, callbacks);
   if (scenario.forest.on) return simulate_forest(request, scenario, crs, callbacks);
   const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);
   scenario.ground = testbed::size_site(scenario, shots);
@@ -181,7 +233,7 @@ SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbac
 
   std::string drive;
   const auto add_drive = [&](const fs::path& folder) {
-    drive = write_drive(folder, scenario, scene, {}, request.scenario);
+    drive = write_drive(folder, scenario, scene, {}, request.scenario, callbacks);
     write_file(folder / "scenario.json", testbed::scenario_json(scenario));
   };
   if (request.drive_only) {

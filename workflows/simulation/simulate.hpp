@@ -19,11 +19,12 @@ struct SimulateRequest {
 /// What was made.
 struct SimulateResult {
   std::size_t images = 0, rocks = 0, craters = 0, trees = 0;
+  std::size_t landmarks = 0;  ///< of a street or a hall
 };
 
-/// Makes a landing site or a forest with its truth: DEM, images or laser points, cameras, a job and tables.
-/// The same scenario and seed give the same bytes. Throws Error{usage} for a scenario that lacks what is
-/// asked, Error{output} for a folder that cannot be written or holds images of another scene.
+/// Makes a landing site, a forest, a street or a hall with its truth: DEM, images or laser points, cameras, a
+/// job and tables. The same scenario and seed give the same bytes. Throws Error{usage} for a scenario that
+/// lacks what is asked, Error{output} for a folder that cannot be written or holds images of another scene.
 /// Messages: a summary of the drive, then of the site.
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks = {});
 

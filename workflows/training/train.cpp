@@ -2,16 +2,20 @@
 #include "workflows/training/train.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <mutex>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
+#include "pipeline/craters/relief_training.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "workflows/training/crater_training_data.hpp"
+#include "workflows/training/cratered_relief.hpp"
 #include "workflows/training/rock_training_data.hpp"
 #include "workflows/training/tree_training_data.hpp"
 #include "workflows/training/treetop_training_data.hpp"
@@ -21,7 +25,8 @@ namespace {
 
 constexpr int kSceneSide = 640;         // pixels of a scene of craters
 constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
-constexpr std::int64_t kCraterScenes = 120, kTreeForests = 120;
+constexpr std::int64_t kCraterScenes = 120, kReliefScenes = 300, kTreeForests = 120;
+constexpr int kReliefRounds = 8;
 constexpr int kParts = 3;  // of the images, left out in turn
 
 // Names in the source file that a trained model is written as.
@@ -113,6 +118,53 @@ TrainResult train_craters(const TrainRequest& request, const Callbacks& callback
   return result;
 }
 
+std::vector<pipeline::CraterExample> make_relief_examples(const std::vector<std::string>& relief,
+                                                          std::int64_t scenes, const Callbacks& callbacks) {
+  std::vector<pipeline::CrateredRelief> measured;
+  for (const std::string& one : relief) measured.push_back(read_cratered_relief(one, kSceneSide));
+  std::vector<std::vector<pipeline::CraterExample>> of_scene(static_cast<std::size_t>(scenes));
+  pipeline::ProgressMeter meter(callbacks.progress, "scenes of relief", scenes);
+  tbb::parallel_for(std::size_t{0}, of_scene.size(), [&](std::size_t i) {
+    of_scene[i] = pipeline::make_relief_examples(
+        pipeline::relief_scene(measured[i % measured.size()], i, kSceneSide), i);
+    meter.add(1);
+  });
+  meter.finish();
+  std::vector<pipeline::CraterExample> examples;
+  for (const auto& some : of_scene) examples.insert(examples.end(), some.begin(), some.end());
+  return examples;
+}
+
+TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& callbacks) {
+  const std::int64_t scenes = request.scenes > 0 ? request.scenes : kReliefScenes;
+  const auto examples = make_relief_examples(request.relief, scenes, callbacks);
+  const auto craters = std::ranges::count_if(examples, &pipeline::CraterExample::crater);
+  if (craters == 0 || craters == std::ssize(examples))
+    throw Error(ErrorCode::input,
+                fmt::format("the model found {} circles, {} of them craters of the catalogue",
+                            examples.size(), craters),
+                request.relief[0], "check that the catalogue belongs to the DEM");
+  pipeline::CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
+  training.rounds = request.rounds > 0 ? static_cast<int>(request.rounds) : kReliefRounds;
+  std::mutex one_at_a_time;
+  auto verifier = pipeline::train_relief_verifier(
+      examples, training, static_cast<int>(kNetworks), [&](int network, int round, double loss) {
+        const std::scoped_lock lock(one_at_a_time);
+        callbacks.summary(fmt::format("network {} of {}, round {}: loss {:.4f}\n", network + 1, kNetworks,
+                                      round + 1, loss));
+      });
+  verifier.trained_on =
+      fmt::format("{} images of {} areas of measured relief, {} px, {} examples, {} rounds, seed {}", scenes,
+                  request.relief.size(), kSceneSide, examples.size(), training.rounds, request.seed);
+  TrainResult result{as_text(verifier)};
+  if (!request.output.empty())
+    write_model(request.output, result.model,
+                {"waymark train craters --relief DEM,CATALOGUE", "pipeline/craters/relief_verifier.hpp",
+                 "ReliefVerifier", "built_in_relief_verifier", "parse_relief_verifier",
+                 "the built-in verifier of craters", 560});
+  return result;
+}
+
 void write_crown_network(const TrainRequest& request, const std::string& text) {
   const std::string name = request.colour ? "crown_network_colour" : "crown_network_infrared";
   write_model(request.output, text,
@@ -200,11 +252,14 @@ TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
   if (request.scenes < 0 || request.rounds < 0)
     throw Error(ErrorCode::usage, "there must be at least one scene and one round", "",
                 "leave out --scenes and --rounds for the usual");
+  if (!request.relief.empty() && request.what != "craters")
+    throw Error(ErrorCode::usage, "--relief is for craters", "train " + request.what);
   if (request.what == "trees")
     return request.images.empty() ? train_treetops(request, callbacks) : train_crowns(request, callbacks);
   if (!request.images.empty())
     throw Error(ErrorCode::usage, request.what + " are trained on made scenes, not on images",
                 request.images[0]);
+  if (!request.relief.empty()) return train_relief_verifier(request, callbacks);
   return request.what == "rocks" ? train_rocks(request, callbacks) : train_craters(request, callbacks);
 }
 

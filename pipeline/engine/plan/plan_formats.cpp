@@ -36,6 +36,7 @@ std::string run_command(const PlanCommand& command, const std::string& stage) {
   std::string call = fmt::format("{} run {} --work {}", quote_for_shell(command.program),
                                  quote_for_shell(command.job), quote_for_shell(command.work));
   for (const std::string& setting : command.settings) call += " --set " + quote_for_shell(setting);
+  if (command.confined) call += " --confined";
   if (const int threads = resources_of(command, stage).processors; threads > 0)
     call += fmt::format(" --threads {}", threads);
   return call;

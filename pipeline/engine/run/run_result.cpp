@@ -33,10 +33,10 @@ bool RunResult::is_complete(std::string_view stage, std::string_view name) const
   });
 }
 
-std::vector<ArtifactPtr> RunResult::take_tiles(std::string_view name, std::type_index type) {
+std::vector<ArtifactPtr> RunResult::take_items(std::string_view name, std::type_index type, Scope scope) {
   std::vector<ArtifactPtr> items;
   std::erase_if(artifacts_, [&](StoredOutput& kept) {
-    if (kept.name != name || kept.type != type || kept.scope != Scope::tile) return false;
+    if (kept.name != name || kept.type != type || kept.scope != scope) return false;
     for (ArtifactPtr& item : kept.items)
       if (item) items.push_back(std::move(item));
     return true;

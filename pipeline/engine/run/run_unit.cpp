@@ -105,7 +105,8 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   auto outputs = std::exchange(state.outcome.outputs, {});
   for (const OutputPort& port : spec.outputs) {
     Artifact::Value& value = outputs.at(port.name);
-    state.artifacts[port.name] = !is_offloaded(stage, port.name)
+    state.artifacts[port.name] = saved && port.codec->parts ? store_->artifact(what, spec, port)
+                                 : !is_offloaded(stage, port.name)
                                      ? std::make_shared<Artifact>(std::move(value))
                                  : saved ? store_->artifact(what, spec, port)
                                          : offload(stage, port, std::move(value));
@@ -115,7 +116,7 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
 }
 
 /// Returns whether an artifact is kept out of memory: it belongs to a tile and no map-scope stage reads it,
-/// but as a stream. Otherwise a map-scope stage would hold all of them at once, so nothing would be saved.
+/// except as a stream. Otherwise a map-scope stage would hold all of them at once, so nothing would be saved.
 bool Run::is_offloaded(std::size_t stage, const std::string& port) const {
   if (step(stage).spec().scope != Scope::tile) return false;
   for (std::size_t later = stage + 1; later < wires_.size(); ++later)
@@ -152,7 +153,9 @@ UnitInputs Run::unit_inputs(std::size_t stage, std::size_t unit) const {
                     .image = what.image,
                     .base_folder = pipeline_.base_folder,
                     .threads = tbb::this_task_arena::max_concurrency(),
-                    .types = types_};
+                    .types = types_,
+                    .progress = {},
+                    .scratch = options_.work.empty() ? options_.scratch : options_.work};
   for (const Wire& wire : wires_[stage]) {
     PortInput& input = inputs.ports[wire.port];
     const bool all_items = !wire.same_item && step(wire.writer).spec().scope != Scope::map;

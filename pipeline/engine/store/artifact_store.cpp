@@ -5,12 +5,14 @@
 
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/text_file.hpp"
 #include "pipeline/engine/sha256.hpp"
+#include "pipeline/engine/store/parts_file.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -63,7 +65,7 @@ Json intact_manifest(const fs::path& result) try {
   if (!is_there(result / kManifest)) return nullptr;
   Json manifest = Json::parse(checked_json(read_file(result / kManifest), kManifest));
   for (const auto& [port, sum] : manifest.at("outputs").items())
-    if (sha256(read_file(payload_file(result, port))) != sum.get<std::string>()) return nullptr;
+    if (hash_plain_file(payload_file(result, port)).sha256 != sum.get<std::string>()) return nullptr;
   return manifest;
 } catch (const Error&) {
   return nullptr;
@@ -72,10 +74,22 @@ Json intact_manifest(const fs::path& result) try {
 }
 
 Artifact::Value load(const fs::path& file, const ErasedCodec& codec, const std::string& stage) try {
-  return codec.decode(read_file(file));
+  return codec.from_parts ? codec.from_parts(open_parts(file)) : codec.decode(read_file(file));
 } catch (const std::exception& problem) {
   throw Error(ErrorCode::input, std::string("cannot read a stored result: ") + problem.what(), file.string(),
               "compute it again with --rerun-from " + stage);
+}
+
+/// Writes one output. Returns its SHA-256.
+std::string write_output(const fs::path& file, const OutputPort& port, const Artifact::Value& value) {
+  if (port.codec->parts) try {
+      return write_parts(file, port.codec->parts(value.get()));
+    } catch (const std::system_error& error) {
+      fail_work(file, error.code().message());
+    }
+  const std::string bytes = port.codec->encode(value.get());
+  write_result(file, bytes);
+  return sha256(bytes);
 }
 
 /// Renames a complete result in `aside` to its final path. If another process was first, its equal result
@@ -155,11 +169,9 @@ void ArtifactStore::save(const Unit& unit, const StageSpec& spec, const UnitOutc
                 {"rejected", outcome.counts.rejected},
                 {"warnings", outcome.warnings},
                 {"outputs", Json::object()}};
-  for (const OutputPort& port : spec.outputs) {
-    const std::string bytes = port.codec->encode(outcome.outputs.find(port.name)->second.get());
-    write_result(payload_file(complete, port.name), bytes);
-    manifest["outputs"][port.name] = sha256(bytes);
-  }
+  for (const OutputPort& port : spec.outputs)
+    manifest["outputs"][port.name] =
+        write_output(payload_file(complete, port.name), port, outcome.outputs.find(port.name)->second);
   write_result(complete / kManifest, manifest.dump(2, ' ', false, Json::error_handler_t::replace));
   publish(complete, result_folder(unit), aside);
   std::error_code ignored;

@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <queue>
 #include <tuple>
@@ -132,6 +133,14 @@ struct Buckets {
   }
 };
 
+double candidate_reach(const ObservedObject& object, const MapPlane& plane, const AssociationRules& rules) {
+  return gate_radius(object, rules) * (plane.flat() ? 1 : 1.0002);
+}
+
+double duplicate_reach(const ObservedObject& object, const AssociationRules& rules) {
+  return std::isnan(object.log_size) ? 0 : rules.duplicate_overlap * std::exp(object.log_size);
+}
+
 }  // namespace
 
 std::vector<IndexPair> candidate_pairs(std::span<const ObservedObject> objects, const MapPlane& plane,
@@ -140,12 +149,30 @@ std::vector<IndexPair> candidate_pairs(std::span<const ObservedObject> objects, 
   std::vector<double> reaches(objects.size());
   for (std::size_t i = 0; i < objects.size(); ++i) {
     points[i] = plane.to_cartesian(objects[i].at);
-    reaches[i] = gate_radius(objects[i], rules) * (plane.flat() ? 1 : 1.0002);
+    reaches[i] = candidate_reach(objects[i], plane, rules);
   }
   return find_neighbour_pairs(points, reaches, [&](Index a, Index b) {
     const ObservedObject &s = objects[a], &t = objects[b];
     return s.type == t.type && s.source != t.source && association_cost(s, t, plane, rules);
   });
+}
+
+std::vector<IndexPair> duplicate_pairs(std::span<const ObservedObject> objects, const MapPlane& plane,
+                                       const AssociationRules& rules) {
+  std::vector<Eigen::Vector3d> points(objects.size());
+  std::vector<double> reaches(objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    points[i] = plane.to_cartesian(objects[i].at);
+    reaches[i] = duplicate_reach(objects[i], rules);
+  }
+  return find_neighbour_pairs(points, reaches, [&](Index a, Index b) {
+    const ObservedObject &s = objects[a], &t = objects[b];
+    return s.type == t.type && s.source == t.source && are_duplicates(s, t, plane, rules);
+  });
+}
+
+double pair_reach(const ObservedObject& object, const MapPlane& plane, const AssociationRules& rules) {
+  return std::max(candidate_reach(object, plane, rules), duplicate_reach(object, rules));
 }
 
 std::vector<std::uint32_t> cluster(std::span<const ObservedObject> objects, const MapPlane& plane,

@@ -23,4 +23,12 @@ std::vector<std::uint32_t> cluster(std::span<const ObservedObject> objects, cons
 std::vector<IndexPair> candidate_pairs(std::span<const ObservedObject> objects, const MapPlane& plane,
                                        const AssociationRules& rules);
 
+/// Returns the pairs of objects of one source that are duplicates (are_duplicates).
+std::vector<IndexPair> duplicate_pairs(std::span<const ObservedObject> objects, const MapPlane& plane,
+                                       const AssociationRules& rules);
+
+/// Returns the distance, metres, at which an object can be a pair of one of the two kinds: at most the sum of
+/// both reaches, as chord (MapPlane::to_cartesian).
+double pair_reach(const ObservedObject& object, const MapPlane& plane, const AssociationRules& rules);
+
 }  // namespace waymark::pipeline

@@ -2,6 +2,7 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 
 #include "core/bytes.hpp"
+#include "pipeline/fusion/association/observation_bytes.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -159,6 +160,19 @@ std::vector<Observation> Codec<std::vector<Observation>>::decode(std::string_vie
   std::vector<Observation> observations(in.length(139));
   for (Observation& o : observations) o = read_observation(in);
   in.expect_end();
+  return observations;
+}
+
+std::string encode_observation(const Observation& observation) {
+  ByteWriter out;
+  write(out, observation);
+  return out.take();
+}
+
+std::vector<Observation> decode_observations(std::string_view bytes) {
+  ByteReader in(bytes);
+  std::vector<Observation> observations;
+  while (!in.at_end()) observations.push_back(read_observation(in));
   return observations;
 }
 

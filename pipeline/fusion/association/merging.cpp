@@ -10,27 +10,15 @@
 #include <map>
 #include <numeric>
 
-#include "core/covariance.hpp"
 #include "core/reorder.hpp"
 #include "landmarks/semantic_map.hpp"
-#include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/association/clustering.hpp"
+#include "pipeline/fusion/association/observed_object_maker.hpp"
 
 namespace waymark::pipeline {
 namespace {
 
 using Index = std::uint32_t;
-
-// Returns an invertible covariance, limited to the smallest standard deviation of the rules; invalid input is
-// replaced.
-Eigen::Matrix2d usable_covariance(const Eigen::Matrix3d& covariance, double radius, const MergeRules& rules) {
-  const double min_sd = std::max(rules.min_sd, rules.min_sd_per_radius * radius);
-  Eigen::Matrix2d plane = covariance.topLeftCorner<2, 2>();
-  plane = (plane + plane.transpose()).eval() / 2;
-  if (!is_covariance(plane))
-    plane = Eigen::Matrix2d::Identity() * std::max(radius, 1.0) * std::max(radius, 1.0);
-  return plane + Eigen::Matrix2d::Identity() * min_sd * min_sd;
-}
 
 struct ObservedObjects {
   std::vector<ObservedObject> all;
@@ -39,8 +27,7 @@ struct ObservedObjects {
 
 ObservedObjects observed_objects(std::span<const Observation> observations, const TypeRegistry& types,
                                  const MergeRules& rules) {
-  std::vector<std::optional<BodyIndex>> sizes;
-  for (const LandmarkType& type : types) sizes.push_back(body_index(type));
+  const ObservedObjectMaker make(types, rules);
   std::map<std::string_view, Index> sources;  // by name, so numbers do not depend on the order
   for (const Observation& o : observations) sources.emplace(o.source, 0);
   Index next = 0;
@@ -52,17 +39,7 @@ ObservedObjects observed_objects(std::span<const Observation> observations, cons
   for (Index i = 0; i < observations.size(); ++i) {
     const Observation& o = observations[i];
     if (!o.rejected.empty()) continue;
-    ObservedObject s;
-    const auto body = body_radius(sizes.at(o.type), o.features);
-    s.at = o.position.xyz.head<2>();
-    s.covariance = usable_covariance(o.covariance, body ? body->metres : 0, rules);
-    if (body) s.log_size = std::log(body->metres), s.log_size_variance = body->log_variance;
-    const auto& features = types[o.type].features;
-    const auto direction = std::ranges::find(features, Scale::direction, &FeatureSpec::scale);
-    const auto index = static_cast<std::size_t>(direction - features.begin());
-    if (direction != features.end() && index < o.features.size() && o.features[index].known())
-      s.direction = o.features[index].value, s.direction_variance = o.features[index].variance;
-    s.type = o.type;
+    ObservedObject s = make(o);
     s.source = sources.at(o.source);
     found.all.push_back(s);
     found.observation.push_back(i);
@@ -73,18 +50,7 @@ ObservedObjects observed_objects(std::span<const Observation> observations, cons
 // Rejects the less confident of two observations of one source at the same position.
 void reject_duplicates(ObservedObjects& seen, std::vector<Observation>& observations, const MapPlane& plane,
                        const AssociationRules& rules) {
-  std::vector<Eigen::Vector3d> points;
-  std::vector<double> reach;
-  points.reserve(seen.all.size());
-  reach.reserve(seen.all.size());
-  for (const ObservedObject& s : seen.all) {
-    points.push_back(plane.to_cartesian(s.at));
-    reach.push_back(std::isnan(s.log_size) ? 0 : rules.duplicate_overlap * std::exp(s.log_size));
-  }
-  const auto pairs = find_neighbour_pairs(points, reach, [&](Index a, Index b) {
-    const ObservedObject &s = seen.all[a], &t = seen.all[b];
-    return s.type == t.type && s.source == t.source && are_duplicates(s, t, plane, rules);
-  });
+  const auto pairs = duplicate_pairs(seen.all, plane, rules);
   if (pairs.empty()) return;
   // Most confident first: a rejected observation rejects no other.
   std::vector<std::vector<Index>> others(seen.all.size());

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 #include "core/landmark.hpp"
+#include "core/observation_order.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/fusion/association/observed_object.hpp"
@@ -55,9 +56,5 @@ std::vector<std::uint32_t> associate(std::span<const Observation> observations, 
 /// features.
 Landmark merge_as_one(std::span<const Observation> members, const TypeRegistry& types, const Crs& crs,
                       const MergeRules& rules = {});
-
-/// Total order by content: type, source, position, then all other members. Equal only if all members are
-/// equal.
-bool comes_before(const Observation& a, const Observation& b);
 
 }  // namespace waymark::pipeline

@@ -2,6 +2,7 @@
 // Preloaded into the program by tests: counts the system calls that change files below WAYMARK_FAULT_FOLDER,
 // and at call number WAYMARK_FAULT_AT
 //   WAYMARK_FAULT=kill   kills the process,
+//   WAYMARK_FAULT=interrupt  sends SIGINT to the process, whose call then does not return,
 //   WAYMARK_FAULT=once   lets this call fail with EIO,
 //   WAYMARK_FAULT=full   lets this and every later call fail that needs space, with ENOSPC,
 //   WAYMARK_FAULT=short  lets this call write half of its bytes.
@@ -63,9 +64,18 @@ bool fails(Need need) {
   const Plan& p = plan();
   if (p.at == 0 || number < p.at) return false;
   if (p.fault == "kill") ::syscall(SYS_kill, ::getpid(), SIGKILL);
+  if (p.fault == "interrupt" && number == p.at) {
+    ::kill(::getpid(), SIGINT);
+    for (;;) ::pause();
+  }
   if (p.fault == "once" && number == p.at) return errno = EIO, true;
   if (p.fault == "full" && need == Need::space) return errno = ENOSPC, true;
   return false;
+}
+
+/// Returns whether the planned fault ends the process.
+bool is_an_end() {
+  return plan().fault == "kill" || plan().fault == "interrupt";
 }
 
 /// Counts a rename. Returns true, with errno, if it must fail.
@@ -177,20 +187,20 @@ char* mkdtemp(char* pattern) {
   static auto* const call = real<char*(char*)>("mkdtemp");
   return is_below(pattern) && fails(Need::space) ? nullptr : call(pattern);
 }
-// Only killed here: what cannot be removed is no fault of a write.
+// Only killed and interrupted here: what cannot be removed is no fault of a write.
 int unlink(const char* path) {
   static auto* const call = real<int(const char*)>("unlink");
-  if (is_below(path) && plan().fault == "kill") fails(Need::none);
+  if (is_below(path) && is_an_end()) fails(Need::none);
   return call(path);
 }
 int remove(const char* path) {
   static auto* const call = real<int(const char*)>("remove");
-  if (is_below(path) && plan().fault == "kill") fails(Need::none);
+  if (is_below(path) && is_an_end()) fails(Need::none);
   return call(path);
 }
 int unlinkat(int folder, const char* path, int flags) {
   static auto* const call = real<int(int, const char*, int)>("unlinkat");
-  if (is_below(folder) && plan().fault == "kill") fails(Need::none);
+  if (is_below(folder) && is_an_end()) fails(Need::none);
   return call(folder, path, flags);
 }
 

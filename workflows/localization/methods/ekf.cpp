@@ -14,7 +14,6 @@ class Ekf final : public FilterMethod {
   StartPolicy start() const override { return StartPolicy::required_or_none; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
- protected:
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_kalman_localizer(task, search_, false);
   }

@@ -14,7 +14,6 @@ class Global final : public FilterMethod {
   StartPolicy start() const override { return StartPolicy::ignored; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
- protected:
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_particle_localizer(task, std::nullopt, search_);
   }

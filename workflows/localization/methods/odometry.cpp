@@ -10,7 +10,6 @@ class Odometry final : public FilterMethod {
   std::string_view summary() const override { return "dead reckoning alone, the baseline of the others"; }
   bool requires_map() const override { return false; }
 
- protected:
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return std::make_unique<localization::DeadReckoning>(*task.start);
   }

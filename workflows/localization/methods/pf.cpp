@@ -13,7 +13,6 @@ class Pf final : public FilterMethod {
   StartPolicy start() const override { return StartPolicy::optional; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
- protected:
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return make_particle_localizer(task, task.start, search_);
   }

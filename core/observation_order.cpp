@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/observation_order.hpp"
+
+#include <Eigen/Core>
+#include <bit>
+#include <cstdint>
 #include <tuple>
 
-#include "pipeline/fusion/association/merging.hpp"
-
-namespace waymark::pipeline {
+namespace waymark::inline core {
 namespace {
 
 // Maps doubles to integers of the same total order, NaN included.
@@ -51,4 +54,4 @@ bool comes_before(const Observation& a, const Observation& b) {
   return std::tie(a.rejected, a.landmark_uid) < std::tie(b.rejected, b.landmark_uid);
 }
 
-}  // namespace waymark::pipeline
+}  // namespace waymark::inline core

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "importers/rules/rule_landmarks.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "core/error.hpp"
+#include "geo/local_frame.hpp"
+#include "importers/rules/rule_expression.hpp"
+#include "importers/rules/shared_outlines.hpp"
+#include "importers/tables/plausible_landmark.hpp"
+#include "importers/tables/table_positions.hpp"
+
+namespace waymark::importers {
+namespace {
+
+constexpr double kFrameReach = 1000;  // m from the origin of a frame; north differs by less than 0.02 deg
+constexpr std::size_t kTagsShown = 8;
+
+/// A rule whose names are looked up.
+struct BoundRule {
+  const ImportRule* rule = nullptr;
+  TypeId type = 0;
+  std::vector<std::optional<RuleExpression>> features, deviations;  // one per feature of the type
+  std::vector<std::string> attributes;                              // tag or 'text', one per attribute
+  std::optional<RuleExpression> z, position_sd, confidence;
+  std::int64_t elements = 0, landmarks = 0;
+};
+
+std::optional<RuleExpression> parse(const std::string& text, const std::string& where) {
+  if (text.empty()) return {};
+  try {
+    return RuleExpression(text);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.problem(), where + ": " + error.where(), error.hint());
+  }
+}
+
+BoundRule bind(const ImportRule& rule, const TypeRegistry& types, std::size_t number) {
+  const std::string where = fmt::format("rule {}, {}", number, rule.title());
+  BoundRule bound;
+  bound.rule = &rule;
+  bound.type = types.id(rule.type);
+  const LandmarkType& type = types[bound.type];
+  std::vector<std::string> targets = {"z"};
+  for (const FeatureSpec& feature : type.features) {
+    targets.insert(targets.end(), {feature.name, feature.name + "_sd"});
+    const auto text = [&](const std::string& name) {
+      const auto found = rule.features.find(name);
+      return found == rule.features.end() ? std::string() : found->second;
+    };
+    bound.features.push_back(parse(text(feature.name), where));
+    bound.deviations.push_back(parse(text(feature.name + "_sd"), where));
+  }
+  std::vector<std::string> words;
+  for (const AttributeSpec& attribute : type.attributes) {
+    words.push_back(attribute.name);
+    const auto found = rule.attributes.find(attribute.name);
+    bound.attributes.push_back(found == rule.attributes.end() ? "" : found->second);
+  }
+  const auto refuse_unknown = [&](const auto& given, const std::vector<std::string>& known,
+                                  const char* what) {
+    for (const auto& [name, text] : given)
+      if (std::ranges::find(known, name) == known.end())
+        throw Error(ErrorCode::usage, fmt::format("{} has no {} '{}'", type.name, what, name), where,
+                    known.empty() ? "leave it out" : fmt::format("it has {}", fmt::join(known, ", ")));
+  };
+  refuse_unknown(rule.features, targets, "feature");
+  refuse_unknown(rule.attributes, words, "attribute");
+  const auto height = rule.features.find("z");
+  if (height != rule.features.end()) bound.z = parse(height->second, where);
+  bound.position_sd = parse(rule.position_sd, where);
+  bound.confidence = parse(rule.confidence, where);
+  return bound;
+}
+
+/// Converts positions of a file to metres near an element, and back.
+class NearbyFrame {
+ public:
+  explicit NearbyFrame(const Crs& crs) : crs_(crs) {}
+
+  void move_to(const Eigen::Vector3d& vertex) {
+    const Point<MapCrs> at{{vertex.x(), vertex.y(), 0}};
+    if (frame_ && frame_->map_frame_from_crs(at).xyz.head<2>().norm() < kFrameReach) return;
+    frame_.emplace(crs_, at);
+  }
+  Eigen::Vector3d metres(const Eigen::Vector3d& vertex) const {
+    const Eigen::Vector3d flat = frame_->map_frame_from_crs({{vertex.x(), vertex.y(), 0}}).xyz;
+    return {flat.x(), flat.y(), vertex.z()};
+  }
+  Eigen::Vector3d back(const Eigen::Vector3d& metres) const {
+    const Eigen::Vector3d at = frame_->crs_from_map_frame({{metres.x(), metres.y(), 0}}).xyz;
+    return {at.x(), at.y(), metres.z()};
+  }
+
+ private:
+  Crs crs_;
+  std::optional<LocalFrame> frame_;
+};
+
+double wrapped(double value, Scale scale) {
+  return is_angle(scale) ? difference(value, 0, scale) : value;
+}
+
+class RuleImport {
+ public:
+  RuleImport(ElementSource& source, const std::string& path, const TypeRegistry& types,
+             const ImportRules& rules, const std::string& table_crs, const std::string& map_crs,
+             const std::function<void(Landmark&&)>& take)
+      : source_(source),
+        types_(types),
+        take_(take),
+        header_(described(source, path)),
+        positions_(header_, table_crs, map_crs, false),
+        frame_(table_crs.empty() ? source.crs().value_or(positions_.map_crs()) : Crs::from_text(table_crs)) {
+    std::size_t number = 0;
+    for (const ImportRule& rule : rules.rules) rules_.push_back(bind(rule, types, ++number));
+    result_.crs = positions_.map_crs();
+    for (const BoundRule& rule : rules_)
+      if (const std::string& name = types[rule.type].name;
+          std::ranges::find(result_.types, name) == result_.types.end())
+        result_.types.push_back(name);
+  }
+
+  ImportedTable run() {
+    collect_shared();
+    MapElement element;
+    while (source_.next(element)) add(element);
+    for (const BoundRule& rule : rules_)
+      result_.bindings.push_back(
+          fmt::format("{}: {} elements, {} landmarks", rule.rule->title(), rule.elements, rule.landmarks));
+    result_.warnings = positions_.warnings();
+    refuse_empty();
+    return std::move(result_);
+  }
+
+ private:
+  static TableHeader described(const ElementSource& source, const std::string& path) {
+    TableHeader header;
+    header.path = path;
+    header.row_word = "element";
+    header.crs = source.crs();
+    return header;
+  }
+
+  void collect_shared() {
+    const auto needs = [](const BoundRule& bound) {
+      const ShapeOptions& shape = bound.rule->shape;
+      return shape.open == OpenSide::outside &&
+             (shape.shape == ShapeOf::corners || shape.shape == ShapeOf::walls);
+    };
+    if (!std::ranges::any_of(rules_, needs)) return;
+    MapElement element;
+    while (source_.next(element))
+      if (std::ranges::any_of(rules_,
+                              [&](const BoundRule& b) { return needs(b) && b.rule->matches(element); }))
+        shared_.add(element);
+    source_.restart();
+  }
+
+  void add(const MapElement& element) {
+    ++elements_;
+    for (const auto& [tag, value] : element.tags) ++tag_counts_[tag];
+    std::set<TypeId> done;
+    for (BoundRule& rule : rules_)
+      if (!done.contains(rule.type) && rule.rule->matches(element)) {
+        done.insert(rule.type);
+        ++rule.elements;
+        add(element, rule);
+      }
+  }
+
+  void add(const MapElement& element, BoundRule& rule) {
+    std::vector<GeometryPart> parts = element.parts;
+    const auto broken = [](const Eigen::Vector3d& v) {
+      return !(std::abs(v.x()) < 1e9 && std::abs(v.y()) < 1e9);
+    };
+    for (const GeometryPart& part : parts)
+      if (std::ranges::any_of(part.vertices, broken))
+        return reject(element, "coordinates that are no numbers", 1);
+    if (!parts.empty()) frame_.move_to(parts[0].vertices[0]);
+    for (GeometryPart& part : parts)
+      for (Eigen::Vector3d& vertex : part.vertices) vertex = frame_.metres(vertex);
+    const bool outside = rule.rule->shape.open == OpenSide::outside;
+    const DerivedShapes derived = derive_shapes(
+        parts, rule.rule->shape, outside ? shared_.of(element) : std::vector<std::vector<SharedVertex>>{});
+    for (const auto& [reason, count] : derived.omitted) reject(element, reason, count);
+    for (const Shape& shape : derived.shapes) add(element, rule, shape);
+  }
+
+  void add(const MapElement& element, BoundRule& rule, const Shape& shape) {
+    ++result_.rows;
+    Landmark landmark = landmark_of(element, rule, shape);
+    // A point keeps its coordinates to the last bit.
+    landmark.position.xyz = rule.rule->shape.shape == ShapeOf::point && element.parts.size() == 1
+                                ? element.parts[0].vertices[0]
+                                : frame_.back(shape.at);
+    if (rule.z) landmark.position.xyz.z() = rule.z->value(element.tags);
+    if (std::isnan(landmark.position.xyz.z())) landmark.position.xyz.z() = 0;
+    std::string reason = positions_.transform_to_map(landmark.position);
+    if (reason.empty()) reason = find_implausibility(types_[rule.type], landmark);
+    if (!reason.empty()) {
+      ++result_.rejected_by_reason[reason];
+      note_first(element, reason);
+      return;
+    }
+    ++rule.landmarks;
+    ++result_.landmarks;
+    take_(std::move(landmark));
+  }
+
+  Landmark landmark_of(const MapElement& element, const BoundRule& rule, const Shape& shape) const {
+    const LandmarkType& type = types_[rule.type];
+    std::map<std::string, std::string> tags = element.tags;
+    for (const auto& [name, value] : shape.values) tags["geom_" + name] = fmt::format("{}", value);
+    Landmark landmark;
+    landmark.type = rule.type;
+    if (const auto uid = element.tags.find(rule.rule->uid);
+        !rule.rule->uid.empty() && uid != element.tags.end())
+      landmark.uid = shape.vertex.empty() ? uid->second : uid->second + "/" + shape.vertex;
+    landmark.quality.seen = landmark.quality.visible = 1;
+    if (rule.confidence) landmark.confidence = rule.confidence->value(tags);
+    landmark.covariance =
+        covariance_of(rule.position_sd ? rule.position_sd->value(tags) : std::nan(""), shape);
+    landmark.features.resize(type.features.size());
+    landmark.quality.feature_confidences.resize(type.features.size());
+    for (std::size_t i = 0; i < type.features.size(); ++i) {
+      const FeatureSpec& spec = type.features[i];
+      const auto derived = shape.values.find(spec.name);
+      const double value = rule.features[i]                ? rule.features[i]->value(tags)
+                           : derived != shape.values.end() ? derived->second
+                                                           : std::nan("");
+      if (std::isnan(value)) continue;
+      const double sd = rule.deviations[i] ? rule.deviations[i]->value(tags) : std::nan("");
+      landmark.features[i] = {wrapped(value, spec.scale), std::isnan(sd) ? 0 : sd * std::abs(sd), 1};
+    }
+    for (std::size_t i = 0; i < type.attributes.size(); ++i)
+      landmark.attributes.push_back(attribute(element, rule.attributes[i], type.attributes[i]));
+    return landmark;
+  }
+
+  static Eigen::Matrix3d covariance_of(double sd, const Shape& shape) {
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::nan(""));
+    if (std::isnan(sd)) return covariance;
+    const double along = shape.along_sd * shape.along_sd;
+    covariance.topLeftCorner<2, 2>() =
+        sd * std::abs(sd) * Eigen::Matrix2d::Identity() + along * shape.along * shape.along.transpose();
+    return covariance;
+  }
+
+  static AttributeValue attribute(const MapElement& element, const std::string& from,
+                                  const AttributeSpec& spec) {
+    std::string text;
+    if (from.size() > 1 && from.front() == '\'' && from.back() == '\'')
+      text = from.substr(1, from.size() - 2);
+    else if (const auto tag = element.tags.find(from); tag != element.tags.end())
+      text = tag->second;
+    if (text.empty()) return {};
+    if (spec.kind == AttributeSpec::Kind::text) return text;
+    const auto number = parse_tag_number(text);
+    if (!number) return {};
+    if (spec.kind == AttributeSpec::Kind::integer) return static_cast<std::int64_t>(std::llround(*number));
+    return *number;
+  }
+
+  void reject(const MapElement& element, const std::string& reason, int count) {
+    result_.rows += count;
+    result_.rejected_by_reason[reason] += count;
+    note_first(element, reason);
+  }
+
+  void note_first(const MapElement& element, const std::string& reason) {
+    if (!result_.first_rejection.empty()) return;
+    const auto id = std::ranges::find_if(element.tags, [](const auto& tag) {
+      return tag.first == "osm_id" || tag.first == "osm_way_id" || tag.first == "id";
+    });
+    result_.first_rejection =
+        fmt::format("{}, layer {}, feature {}{}: {}", header_.path, element.layer, element.number,
+                    id == element.tags.end() ? "" : fmt::format(" ({} {})", id->first, id->second), reason);
+  }
+
+  std::string usual_tags() const {
+    std::vector<std::pair<std::int64_t, std::string>> counts;
+    for (const auto& [tag, count] : tag_counts_)
+      if (tag != "osm_id" && tag != "osm_way_id" && tag != "z_order") counts.emplace_back(-count, tag);
+    std::ranges::sort(counts);
+    std::vector<std::string> shown;
+    for (const auto& [count, tag] : counts)
+      if (shown.size() < kTagsShown) shown.push_back(fmt::format("{} ({})", tag, -count));
+    return shown.empty() ? "none" : fmt::format("{}", fmt::join(shown, ", "));
+  }
+
+  void refuse_empty() const {
+    if (elements_ == 0)
+      throw Error(ErrorCode::input, "the file has no elements with tags or columns", header_.path,
+                  "`ogrinfo -al -so` shows its content; OSM nodes and ways without tags have no meaning");
+    if (result_.rows == 0)
+      throw Error(ErrorCode::input, fmt::format("none of the {} elements matches a rule", elements_),
+                  header_.path,
+                  fmt::format("tags and columns of the file: {}; write rules for them", usual_tags()));
+    if (result_.landmarks > 0) return;
+    std::string reasons;
+    for (const auto& [reason, count] : result_.rejected_by_reason)
+      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+    throw Error(ErrorCode::input,
+                fmt::format("none of the {} shapes is plausible: {}", result_.rows, reasons), header_.path,
+                "lengths are metres; a file in degrees without a CRS needs --crs EPSG:4326");
+  }
+
+  ElementSource& source_;
+  const TypeRegistry& types_;
+  const std::function<void(Landmark&&)>& take_;
+  TableHeader header_;
+  TablePositions positions_;
+  NearbyFrame frame_;
+  std::vector<BoundRule> rules_;
+  SharedOutlines shared_;
+  std::int64_t elements_ = 0;
+  std::map<std::string, std::int64_t> tag_counts_;
+  ImportedTable result_;
+};
+
+}  // namespace
+
+ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,
+                              const ImportRules& rules, const std::string& table_crs,
+                              const std::string& map_crs, const std::function<void(Landmark&&)>& take) {
+  return RuleImport(source, path, types, rules, table_crs, map_crs, take).run();
+}
+
+}  // namespace waymark::importers

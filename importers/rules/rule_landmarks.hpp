@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include "core/landmark.hpp"
+#include "importers/rules/import_rules.hpp"
+#include "importers/tables/table_landmarks.hpp"
+#include "landmarks/landmark_type.hpp"
+namespace waymark::importers {
+
+/// Makes landmarks of the elements of a file by rules, and passes them to `take` in the order of elements.
+/// - Of the rules of one type the first that matches an element is used.
+/// - A row is a shape: a point, a corner, a piece of a wall. Rows are rejected, and counted, as by
+///   import_table(), and if the geometry does not fit the rule (no outline, a wall of zero length, a corner
+///   shared with a neighbouring building).
+/// - Elements without a matching rule are no rows; `bindings` has the count of each rule.
+/// Lengths and directions are measured in a plane tangent to the body at each element; directions are from
+/// true north. Reads the file twice if rules use the outside of outlines: vertices of outlines (16 bytes
+/// each) are then kept in memory. `table_crs` and `map_crs` are those of TableImport. Throws Error{usage} for
+/// rules with an unknown type, feature or attribute, Error{input} if no element matches or no landmark
+/// results.
+ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,
+                              const ImportRules& rules, const std::string& table_crs,
+                              const std::string& map_crs, const std::function<void(Landmark&&)>& take);
+
+}  // namespace waymark::importers

@@ -1,0 +1,1 @@
+UPDATE rock SET radius = 1e300, var_x = -1;

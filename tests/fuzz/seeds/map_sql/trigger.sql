@@ -1,0 +1,2 @@
+CREATE TRIGGER t AFTER INSERT ON rock BEGIN DELETE FROM rock; END;
+INSERT INTO waymark_type(name) VALUES ('x');

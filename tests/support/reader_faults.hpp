@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+#include <string>
+
+#include "core/error.hpp"
+#include "core/printable.hpp"
+namespace waymark::test {
+
+// A screen of a terminal, generously.
+inline constexpr std::size_t kMaxLines = 30, kMaxBytes = 3500;
+
+/// Returns what is wrong with a message about a bad file; empty if nothing is.
+inline std::string fault_of_text(const Error& error) {
+  const std::string said = error.what();
+  if (error.code() != ErrorCode::input && error.code() != ErrorCode::usage)
+    return "an error of another kind: " + said;
+  if (error.problem().empty()) return "no problem is named: " + said;
+  if (said.size() > kMaxBytes || std::ranges::count(said, '\n') > std::ptrdiff_t{kMaxLines})
+    return "more than a screen: " + said;
+  if (said != printable(said, said.size())) return "control characters: " + printable(said, kMaxBytes);
+  for (const char* internal :
+       {"json.exception", "std::", "basic_string", "vector::", "stoi", "stod", "map::at"})
+    if (said.find(internal) != said.npos) return std::string("a message of a library: ") + said;
+  return {};
+}
+
+}  // namespace waymark::test
