@@ -5,8 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
+
+#include "testbed/drive/ranges_text.hpp"
 
 namespace waymark::testbed {
 
@@ -58,7 +59,7 @@ std::string laser_line(const DriveWorld& world, std::size_t i, const DriveStep& 
   const double tilt = model.perfect ? 0 : to_radians(model.tilt_sd).value;
   const double roll = model.levelled ? 0 : step.at.roll + random.normal(0, tilt);
   const double pitch = model.levelled ? 0 : step.at.pitch + random.normal(0, tilt);
-  std::string line = fmt::format(
+  const std::string line = fmt::format(
       "{{\"kind\":\"laser\",\"t\":{:.3f},\"mount\":{{\"x\":{:.3f},\"y\":{:.3f},\"yaw\":{:.6f}}},\"roll\":{:"
       ".5f},"
       "\"pitch\":{:.5f},\"first_angle\":{:.7f},\"angle_step\":{:.9f},\"most_range\":{:g},\"beam_width\":{:."
@@ -66,14 +67,7 @@ std::string laser_line(const DriveWorld& world, std::size_t i, const DriveStep& 
       "\"ranges\":[",
       step.t, mount.x, mount.y, mount.yaw, roll, pitch, scan.first_angle, scan.angle_step, scan.max_range,
       model.perfect ? 0 : to_radians(model.divergence).value * std::max(0.0, 1 - 2 * model.sensitivity));
-  for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-    if (k > 0) line += ',';
-    if (scan.ranges[k] > 0)
-      fmt::format_to(std::back_inserter(line), "{:.3f}", scan.ranges[k]);
-    else
-      line += "null";
-  }
-  return line + "]}\n";
+  return line + ranges_text(scan.ranges, 3) + "]}\n";
 }
 
 std::string depth_line(const DriveWorld& world, std::size_t i, const DriveStep& step) {
@@ -82,18 +76,11 @@ std::string depth_line(const DriveWorld& world, std::size_t i, const DriveStep& 
   const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
   const RayFan fan(world.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.max_range, step.t);
   const localization::DepthImage image = depth_image(fan, body.linear(), model, random);
-  std::string line = fmt::format(
+  const std::string line = fmt::format(
       "{{\"kind\":\"depth\",\"t\":{:.3f},\"mount\":{{\"x\":0.5,\"y\":0}},\"height\":{:g},\"tilt\":{:.6f},"
       "\"roll\":{:.5f},\"pitch\":{:.5f},\"columns\":{},\"rows\":{},\"focal\":{:.4f},\"depths\":[",
       step.t, image.height, image.tilt, step.at.roll, step.at.pitch, image.columns, image.rows, image.focal);
-  for (std::size_t k = 0; k < image.depths.size(); ++k) {
-    if (k > 0) line += ',';
-    if (image.depths[k] > 0)
-      fmt::format_to(std::back_inserter(line), "{:.2f}", image.depths[k]);
-    else
-      line += "null";
-  }
-  return line + "]}\n";
+  return line + ranges_text(image.depths, 2) + "]}\n";
 }
 
 std::string camera_line(const DriveWorld& world, std::size_t i, const DriveStep& step) {
