@@ -96,7 +96,7 @@ TEST(BearingStarts, AnObjectInTheDirectionOfTheMotionHasNoRange) {
     const BodyMotion motion = twist_motion(0.5, 0, 0, 1, kNoise);
     truth = truth * motion.step;
     bearings.predict(motion);
-    EXPECT_TRUE(bearings.add(look(truth, {{33, 0}}, false, random), {0}, false).empty()) << step;
+    EXPECT_TRUE(bearings.add(look(truth, {{20.4, 0}}, false, random), {0}, false).empty()) << step;
   }
   EXPECT_EQ(bearings.objects(), 1u);
 }

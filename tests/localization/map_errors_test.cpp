@@ -123,7 +123,7 @@ TEST(MapErrors, AreThoseOfAStateWithAllLandmarks) {
       whole.predict(motion);
       errors.predict(at.pose, motion.step);
       at = predict_pose(at, motion);
-      const std::size_t which = random() % map.size();
+      const std::size_t which = random.uniform_index(map.size());
       SeenLandmark s;
       const ExpectedSighting e = expect(at.pose, {}, map[which].at);
       s.range = e.value[0] + random.normal(0, 0.1), s.range_sd = 0.1;
