@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/odometry_drift.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -15,12 +14,6 @@ constexpr double kMaxJump = 25;  // squared Mahalanobis distance beyond which an
 Eigen::Vector4d variances(const OdometryDrift& d) {
   return {d.scale_sd * d.scale_sd, d.slip_sd * d.slip_sd, d.sideways_sd * d.sideways_sd,
           d.yaw_rate_sd * d.yaw_rate_sd};
-}
-
-Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
-  const Eigen::Vector3d values = solver.eigenvalues().cwiseMax(0);
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 }  // namespace
@@ -65,7 +58,7 @@ BodyMotion DriftEstimator::correct(const PoseEstimate& pose, const BodyMotion& m
   const PoseErrors g = j.by_step * by_errors;
   const Eigen::Matrix3d cross = j.by_pose * with_pose_ * g.transpose();
   const Eigen::Matrix3d unknown = cross + cross.transpose() + g * covariance_ * g.transpose();
-  corrected.covariance += positive_part(j.by_step.transpose() * unknown * j.by_step);  // a rotation
+  corrected.covariance += j.by_step.transpose() * unknown * j.by_step;  // by_step is a rotation
 
   with_pose_ = j.by_pose * with_pose_ + g * covariance_;
   const double fade = std::exp(-odometry.at().norm() / prior_.drift_distance);

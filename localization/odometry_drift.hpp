@@ -22,8 +22,9 @@ struct OdometryDrift {
 /// update.
 /// - The four errors and the pose have one Gaussian. A measurement sees the pose alone, so what it teaches
 ///   about the errors follows from their covariance with the pose (regression; exact for a Kalman filter).
-/// - Motions are corrected by the estimate, and their covariance includes what is unknown of it. A part that
-///   would be negative, as after a turn back, counts as 0.
+/// - Motions are corrected by the estimate, and their covariance includes what is unknown of it and its
+///   covariance with the pose. It may have a negative part, which the Kalman filters use; what draws samples
+///   or inverts it counts that part as 0 (positive_part).
 class DriftEstimator {
  public:
   using Errors = Eigen::Vector4d;  ///< scale, slip, sideways, yaw rate

@@ -101,6 +101,7 @@ Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
 }
 
 void EkfSlam::apply_pending_motion() {
+  pending_.covariance = positive_part(pending_.covariance);
   state_.predict(pending_);
   pending_ = {};
   const double moved = (state_.pose().at() - centre_).norm();
