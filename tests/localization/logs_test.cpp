@@ -75,6 +75,38 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
 }
 
+TEST_F(WaymarkLog, StatesTheNoiseOfItsOdometryAndSensors) {
+  const std::string drive = R"(
+{"kind":"odometry","t":0,"v":1,"omega":0}
+{"kind":"sightings","t":1,"items":[{"range":4,"bearing":0},{"range":4,"bearing":0,"range_sd":0.2,"bearing_sd":0.1}]}
+)";
+  const RobotLog log = read(R"({"kind":"header","range_sd":0.5,"bearing_sd":0.03,)"
+                            R"("odometry_noise":{"yaw_per_metre":1e-6,"scale_sd":0.02}})" +
+                            drive);
+  ASSERT_TRUE(log.odometry);
+  EXPECT_EQ(log.odometry->yaw_per_metre, 1e-6);
+  EXPECT_EQ(log.odometry->along_per_metre, OdometryNoise{}.along_per_metre);
+  EXPECT_EQ(log.drift, (OdometryDrift{.scale_sd = 0.02}));
+  const auto& seen = std::get<SightingSet>(log.events[1].what).sightings;
+  EXPECT_EQ(seen[0].range_sd, 0.5);
+  EXPECT_EQ(seen[0].bearing_sd, 0.03);
+  EXPECT_EQ(seen[1].range_sd, 0.2);
+  EXPECT_EQ(seen[1].bearing_sd, 0.1);
+  EXPECT_FALSE(read(drive).odometry);
+  EXPECT_FALSE(read(drive).drift.any());
+
+  const auto header = [](const std::string& noise) {
+    return R"({"kind":"header","odometry_noise":{)" + noise + "}}";
+  };
+  EXPECT_THAT(refusal(header(R"("yaw_per_meter":1)")),
+              AllOf(HasSubstr("unknown \"yaw_per_meter\" in \"odometry_noise\""), HasSubstr("line 1")));
+  EXPECT_THAT(refusal(header(R"("yaw_per_metre":-1)")),
+              HasSubstr("\"yaw_per_metre\" must be at least 0, is -1"));
+  EXPECT_THAT(refusal(header(R"("scale_sd":3)")), HasSubstr("\"scale_sd\" must be 0 to 0.5, is 3"));
+  EXPECT_THAT(refusal(header(R"("drift_distance":0)")),
+              HasSubstr("\"drift_distance\" must be 0.1 to 1e+06, is 0"));
+}
+
 TEST_F(WaymarkLog, SaysWhatIsWrongAndWhere) {
   const std::string ok = R"({"kind":"odometry","t":0,"v":1,"omega":0})"
                          "\n";
