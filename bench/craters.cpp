@@ -14,22 +14,26 @@ const pipeline::LabelledScene& scene() {
   return made;
 }
 
-void find(benchmark::State& state, pipeline::CraterMethod method, bool verify) {
+void find(benchmark::State& state, pipeline::CraterMethod method, bool verify, bool second_opinion) {
   pipeline::CraterSearch search;
   search.method = method;
   search.verify = verify;
+  search.second_opinion = second_opinion;
   search.sun_angle = scene().sun_angle;
   for (auto _ : state) benchmark::DoNotOptimize(pipeline::find_craters(scene().image, search));
   state.SetItemsProcessed(state.iterations() * scene().image.columns() * scene().image.rows());
 }
 
-BENCHMARK_CAPTURE(find, bowl, pipeline::CraterMethod::bowl, true)
+BENCHMARK_CAPTURE(find, bowl, pipeline::CraterMethod::bowl, true, true)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(find, bowl_without_model, pipeline::CraterMethod::bowl, false)
+BENCHMARK_CAPTURE(find, bowl_without_verifier, pipeline::CraterMethod::bowl, true, false)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(find, edges, pipeline::CraterMethod::edges, true)
+BENCHMARK_CAPTURE(find, bowl_without_model, pipeline::CraterMethod::bowl, false, false)
+    ->MeasureProcessCPUTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(find, edges, pipeline::CraterMethod::edges, true, false)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 

@@ -42,12 +42,11 @@ class Train final : public Command {
                  .offering(Offer::file),
              Argument{"--map", "MAP", &map_, "sensor: map of the site of the logs"}.offering(Offer::file),
              {"--scenes", "N", &request_.scenes,
-              "Made scenes to train on; 0: 120 of craters, 300 of relief, 240 of rocks, 120 forests of each "
-              "type"},
+              "Made scenes to train on; 0: 120 of craters, 300 of relief, 240 of rocks, 120 forests of "
+              "each type"},
              Argument{"--relief", "DEM,CATALOGUE", &request_.relief,
                       "craters: relief without gaps, and a table of all its craters: lon, lat (degrees), "
-                      "diameter, "
-                      "depth (metres)"}
+                      "diameter, depth (metres)"}
                  .offering(Offer::file),
              {"--colour", "", &request_.colour, "trees in images: train on red, green and blue alone"},
              {"--rounds", "N", &request_.rounds, "Passes over all examples; 0: the default of the model"},
@@ -55,9 +54,8 @@ class Train final : public Command {
         .examples = {
             {"waymark train craters -o pipeline/craters/built_in_model.cpp", "The model we ship"},
             {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
-            {"waymark train craters --relief gld100.tif,lu.csv -o "
-             "pipeline/craters/built_in_relief_verifier.cpp",
-             "The verifier of craters, from lunar relief"},
+            {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
+             "A verifier of craters, from lunar relief"},
             {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp", "The shipped network"},
             {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
              "Confidence of treetops in canopy models"},

@@ -58,7 +58,8 @@ struct JoinMountainTops {
           all.faults.implausible, all.faults.height, grid.where.x(static_cast<double>(all.faults.column)),
           grid.where.y(static_cast<double>(all.faults.row))));
     const auto percent = [&](std::int64_t cells) {
-      return std::round(1000 * static_cast<double>(cells) / static_cast<double>(grid.cells())) / 10;
+      const double part = 100 * static_cast<double>(cells) / static_cast<double>(grid.cells());
+      return cells > 0 && part < 0.1 ? "under 0.1" : fmt::format("{}", std::round(10 * part) / 10);
     };
     if (all.faults.filled + all.empty > 0 && source.nodata_policy() == NodataPolicy::fill)
       unit.warn(

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 
 #include "core/options/option_table.hpp"
 #include "testbed/drive/odometry_errors.hpp"
+#include "testbed/drive/ranges_text.hpp"
 
 namespace waymark::testbed {
 namespace {
@@ -26,7 +26,8 @@ std::string noise_as_json(OdometryErrors errors) {
 
 }  // namespace
 
-std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start) {
+std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start,
+                       std::span<const DriveStep> steps) {
   Random random(world.seed, "start");
   const DriveSettings& s = world.settings;
   const double x = start.x + random.normal(0, s.start_sd), y = start.y + random.normal(0, s.start_sd);
@@ -38,7 +39,7 @@ std::string log_header(const DriveWorld& world, const LogCrs& place, const local
       "{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"odometry_noise\":{},\"vehicle\":\"{}\",\"seed\":{}}}\n",
       local ? "map" : "crs", local ? "" : fmt::format(",\"crs\":\"{}\"", place.crs),
       x / place.metres_per_unit, y / place.metres_per_unit, yaw, std::max(s.start_sd, 0.01),
-      std::max(to_radians(s.start_yaw_sd).value, 0.001), noise_as_json(odometry_errors(world)), s.vehicle,
+      std::max(to_radians(s.start_yaw_sd).value, 0.001), noise_as_json(odometry_errors(s, steps)), s.vehicle,
       world.seed);
 }
 
@@ -75,7 +76,7 @@ std::string laser_line(const DriveWorld& world, std::size_t i, const DriveStep& 
   const double tilt = model.perfect ? 0 : to_radians(model.tilt_sd).value;
   const double roll = model.levelled ? 0 : step.at.roll + random.normal(0, tilt);
   const double pitch = model.levelled ? 0 : step.at.pitch + random.normal(0, tilt);
-  std::string line = fmt::format(
+  const std::string line = fmt::format(
       "{{\"kind\":\"laser\",\"t\":{:.3f},\"mount\":{{\"x\":{:.3f},\"y\":{:.3f},\"yaw\":{:.6f}}},\"roll\":{:"
       ".5f},"
       "\"pitch\":{:.5f},\"first_angle\":{:.7f},\"angle_step\":{:.9f},\"most_range\":{:g},\"beam_width\":{:."
@@ -83,14 +84,7 @@ std::string laser_line(const DriveWorld& world, std::size_t i, const DriveStep& 
       "\"ranges\":[",
       step.t, mount.x, mount.y, mount.yaw, roll, pitch, scan.first_angle, scan.angle_step, scan.max_range,
       model.perfect ? 0 : to_radians(model.divergence).value * std::max(0.0, 1 - 2 * model.sensitivity));
-  for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-    if (k > 0) line += ',';
-    if (scan.ranges[k] > 0)
-      fmt::format_to(std::back_inserter(line), "{:.3f}", scan.ranges[k]);
-    else
-      line += "null";
-  }
-  return line + "]}\n";
+  return line + ranges_text(scan.ranges, 3) + "]}\n";
 }
 
 std::string depth_line(const DriveWorld& world, std::size_t i, const DriveStep& step) {
@@ -99,18 +93,11 @@ std::string depth_line(const DriveWorld& world, std::size_t i, const DriveStep& 
   const Eigen::Isometry3d body = step.at.grid_from_robot().transform;
   const RayFan fan(world.targets, body * Eigen::Vector3d(0.5, 0, model.height), model.max_range, step.t);
   const localization::DepthImage image = depth_image(fan, body.linear(), model, random);
-  std::string line = fmt::format(
+  const std::string line = fmt::format(
       "{{\"kind\":\"depth\",\"t\":{:.3f},\"mount\":{{\"x\":0.5,\"y\":0}},\"height\":{:g},\"tilt\":{:.6f},"
       "\"roll\":{:.5f},\"pitch\":{:.5f},\"columns\":{},\"rows\":{},\"focal\":{:.4f},\"depths\":[",
       step.t, image.height, image.tilt, step.at.roll, step.at.pitch, image.columns, image.rows, image.focal);
-  for (std::size_t k = 0; k < image.depths.size(); ++k) {
-    if (k > 0) line += ',';
-    if (image.depths[k] > 0)
-      fmt::format_to(std::back_inserter(line), "{:.2f}", image.depths[k]);
-    else
-      line += "null";
-  }
-  return line + "]}\n";
+  return line + ranges_text(image.depths, 2) + "]}\n";
 }
 
 std::string camera_line(const DriveWorld& world, std::size_t i, const DriveStep& step) {

@@ -12,8 +12,8 @@ constexpr double kRounding = 1e-8;     // m^2/m and rad^2/m: of the log's digits
 
 }  // namespace
 
-OdometryErrors odometry_errors(const DriveWorld& world) {
-  const OdometryModel& model = world.settings.odometry;
+OdometryErrors odometry_errors(const DriveSettings& settings, std::span<const DriveStep> steps) {
+  const OdometryModel& model = settings.odometry;
   OdometryErrors errors{.noise = {.along_per_metre = kRounding,
                                   .across_per_metre = kRounding,
                                   .yaw_per_metre = kRounding,
@@ -23,14 +23,14 @@ OdometryErrors odometry_errors(const DriveWorld& world) {
                         .drift = {}};
   if (model.perfect) return errors;
   double pitch = 0, roll = 0;
-  for (const DriveStep& step : world.steps) {
+  for (const DriveStep& step : steps) {
     pitch += std::pow(std::sin(step.at.pitch), 2);
     roll += std::pow(std::sin(step.at.roll), 2);
   }
-  const double steps = static_cast<double>(std::max<std::size_t>(1, world.steps.size()));
-  pitch = std::sqrt(pitch / steps), roll = std::sqrt(roll / steps);
+  const double count = static_cast<double>(std::max<std::size_t>(1, steps.size()));
+  pitch = std::sqrt(pitch / count), roll = std::sqrt(roll / count);
   const double yaw_sd = to_radians(model.yaw_sd).value;
-  errors.noise.along_per_metre += model.speed_sd * model.speed_sd * world.settings.speed / model.rate;
+  errors.noise.along_per_metre += model.speed_sd * model.speed_sd * settings.speed / model.rate;
   errors.noise.yaw_per_metre += yaw_sd * yaw_sd;
   errors.drift = {.scale_sd = std::hypot(model.slip, model.scale_sd),
                   .slip_sd = std::hypot(model.slip_per_slope * pitch, model.slip_sd),

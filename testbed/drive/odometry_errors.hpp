@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
 #include "localization/motion_model.hpp"
 #include "localization/odometry_drift.hpp"
 #include "testbed/drive/drive_world.hpp"
@@ -11,8 +12,8 @@ struct OdometryErrors {
 };
 
 /// Returns what the maker of the vehicle knows of its odometry on such ground: the errors of the model, with
-/// slip and sideways drift for the root mean square of pitch and roll along the drive. The mean slip counts
-/// as unknown, as part of `scale_sd`.
-OdometryErrors odometry_errors(const DriveWorld& world);
+/// slip and sideways drift for the root mean square of pitch and roll over the poses of `steps`, driven or
+/// planned (none: level ground). The mean slip counts as unknown, as part of `scale_sd`.
+OdometryErrors odometry_errors(const DriveSettings& settings, std::span<const DriveStep> steps);
 
 }  // namespace waymark::testbed

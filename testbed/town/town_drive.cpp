@@ -7,10 +7,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "core/random.hpp"
 #include "testbed/drive/drive.hpp"
+#include "testbed/drive/ranges_text.hpp"
 
 namespace waymark::testbed {
 namespace {
@@ -33,19 +33,12 @@ std::string scan_line(const Town& town, const DriveStep& step, const LaserModel&
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(step.at.plane.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const localization::LaserScan scan = sweep(cast, turn, laser, random);
-  std::string line = fmt::format(
+  const std::string line = fmt::format(
       "{{\"kind\":\"laser\",\"t\":{:.3f},\"first_angle\":{:.7f},\"angle_step\":{:.9f},\"most_range\":{:g},"
       "\"beam_width\":{:.6f},\"ranges\":[",
       step.t, scan.first_angle, scan.angle_step, scan.max_range,
       laser.perfect ? 0 : to_radians(laser.divergence).value * std::max(0.0, 1 - 2 * laser.sensitivity));
-  for (std::size_t k = 0; k < scan.ranges.size(); ++k) {
-    if (k > 0) line += ',';
-    if (scan.ranges[k] > 0)
-      fmt::format_to(std::back_inserter(line), "{:.3f}", scan.ranges[k]);
-    else
-      line += "null";
-  }
-  return line + "]}\n";
+  return line + ranges_text(scan.ranges, 3) + "]}\n";
 }
 
 }  // namespace

@@ -250,6 +250,14 @@ TEST_F(Peaks, VoidsNearlyEverywhereAreAPercentageWithoutAnExponent) {
   EXPECT_THAT(last_summary_, AllOf(HasSubstr("(98.9 %) are too far from data"), Not(HasSubstr("e+"))));
 }
 
+TEST_F(Peaks, AFewVoidsAreNoZeroPercent) {
+  MadeDem dem{.columns = 60, .rows = 50, .height = [](int column, int row) {
+                return column == 30 && row == 20 ? -9999.0 : 100.0 + column * row;
+              }};
+  table({make_dem(folder_ / "hole.tif", dem), "--nodata", "fill", "--fill-distance", "5"});
+  EXPECT_THAT(last_summary_, HasSubstr("1 cells without height (under 0.1 %) were interpolated"));
+}
+
 TEST_F(Peaks, AreaOfInterestKeepsSummitsMeasuredOnTheWholeDem) {
   write_text(folder_ / "area.geojson",
              R"({"type": "FeatureCollection",

@@ -11,66 +11,20 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/text_file.hpp"
-#include "geodb/map_store.hpp"
-#include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
-#include "workflows/registries.hpp"
+#include "tests/support/whole_map.hpp"
 
 namespace waymark::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Reads everything that commands read of a map. Throws Error{input} if the map has errors.
+/// Throws Error{input} if the map has errors.
 void read_map(const std::string& path) {
   const bool sound = geodb::validate_map(path).empty();
-  const geodb::MapStore map = geodb::MapStore::open(path);
-  for (const std::string& type : map.types().names()) map.visit(type, [](Landmark&&) {});
-  map.query({.nearest = geodb::MapQuery::NearestK{0, 0, 3}});
-  map.visit_observations([](Observation&&) {});
-  map.images();
-  map.runs();
-  for (const std::string& layer : geodb::shape_layers(path)) geodb::read_shape_layer(path, layer);
+  read_whole_map(path);
   if (!sound) throw Error(ErrorCode::input, "the map has errors", path);
-}
-
-geodb::MapContents contents() {
-  geodb::MapContents made;
-  made.types = workflows::all_types();
-  const TypeId rock = made.types.id("rock");
-  const LandmarkType& type = made.types[rock];
-  for (int i = 0; i < 6; ++i) {
-    Landmark l;
-    l.uid = "rk-" + std::to_string(i);
-    l.type = rock;
-    l.position.xyz << i % 3, i / 3, 0;
-    l.features.resize(type.features.size());
-    l.attributes.resize(type.attributes.size());
-    l.quality = {1, 1, std::vector<std::optional<double>>(type.features.size())};
-    made.landmarks.push_back(l);
-    Observation o;
-    o.type = rock;
-    o.landmark_uid = l.uid;
-    o.source = "a.png";
-    o.position = l.position;
-    o.features.resize(type.features.size());
-    made.observations.push_back(o);
-  }
-  made.images = {{.name = "a.png",
-                  .footprint = {{{0, 0}, {5, 0}, {5, 5}}},
-                  .camera_json = "{}",
-                  .taken_utc = {},
-                  .sun_azimuth = {},
-                  .sun_elevation = {},
-                  .gsd = {}}};
-  made.layers = {{.name = "track",
-                  .summary = "Track",
-                  .kind = geodb::ShapeKind::line,
-                  .columns = {},
-                  .rows = {{.parts = {{.outer = {{0, 0}, {4, 4}}}}, .values = {}}}}};
-  made.run.started_utc = "2026-11-21T07:21:14Z";
-  return made;
 }
 
 std::string map_beside(const std::string& file, const std::string& bytes) {
@@ -86,7 +40,7 @@ const std::string& sound_map() {
   static const std::string bytes = [] {
     std::string folder = (fs::temp_directory_path() / "waymark-map-XXXXXX").string();
     if (!::mkdtemp(folder.data())) throw std::runtime_error("cannot make " + folder);
-    geodb::write_map(folder + "/map.gpkg", contents(), {.empty_tables = {"rock"}});
+    geodb::write_map(folder + "/map.gpkg", map_with_everything(6, 3), {.empty_tables = {"rock"}});
     std::string made = read_text(folder + "/map.gpkg", "the map");
     fs::remove_all(folder);
     return made;

@@ -10,10 +10,9 @@ namespace waymark::workflows {
 struct TrainRequest {
   std::string what;         ///< "craters", "rocks" or "trees"
   std::string output = {};  ///< model to write, .txt, or .cpp for a source file; empty: none
-  std::int64_t scenes =
-      0;  ///< made scenes; 0: 120 of craters (300 of relief), 240 of rocks, 120 forests of each type
-  /// craters: "DEM,CATALOGUE" of measured relief with all its craters; trains the verifier instead of the
-  /// model
+  /// Made scenes; 0: 120 of craters (300 of relief), 240 of rocks, 120 forests of each type.
+  std::int64_t scenes = 0;
+  /// craters: "DEM,CATALOGUE" of measured relief with all its craters; trains the verifier, not the model.
   std::vector<std::string> relief = {};
   std::vector<std::string> images = {};  ///< trees: orthophotos, each with a table of its trees beside it
   bool colour = false;                   ///< trees: train on red, green and blue alone
@@ -28,9 +27,8 @@ struct TrainResult {
 };
 
 /// Trains a model and writes it:
-/// - craters: the classifier of bowls, on scenes of the testbed and of plain shading; with relief the
-/// verifier
-///   of what it finds, on images of that relief;
+/// - craters: the classifier of bowls, on scenes of the testbed and of plain shading; with relief
+///   the verifier of what it finds, on images of that relief;
 /// - rocks: the network of shadows, on images of synthetic rocks;
 /// - trees without images: the confidence of treetops in canopy models, on synthetic forests;
 /// - trees with images: the network of crowns in colour images.
