@@ -265,7 +265,7 @@ std::string resolved_name(const fs::path& folder, const std::string& name) {
 }
 
 /// Returns the poses of a vehicle along a planned route: what is known of its slopes before the drive.
-std::vector<testbed::DriveStep> planned_steps(const testbed::Terrain& terrain,
+std::vector<testbed::DriveStep> planned_steps(const geo::Terrain& terrain,
                                               std::span<const Eigen::Vector2d> path,
                                               const localization::Wheels& wheels) {
   const auto height = [&](const Eigen::Vector2d& p) { return terrain.height(p.x(), p.y()); };
