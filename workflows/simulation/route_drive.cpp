@@ -307,7 +307,8 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   RouteDrive drive;
   DriveReport& report = drive.report;
   report.limit_sigma = model.limit_sigma;
-  const std::string header = testbed::log_header(world, place, start, planned_steps(scene.terrain, planned, settings.wheels));
+  const std::string header =
+      testbed::log_header(world, place, start, planned_steps(scene.terrain, planned, settings.wheels));
   LiveLocalizer live({.map = map_file,
                       .log = {},
                       .method = model.method,
