@@ -109,6 +109,7 @@ class EkfSlam final : public Localizer {
     bool expected;
   };
   static constexpr double kPrecise = 1;  // m, standard deviation of a position
+  static constexpr double kOutdone = 2;  // ratio of two such deviations
   static double position_sd(const PoseEstimate& e) {
     return std::sqrt(e.covariance(0, 0) + e.covariance(1, 1));
   }

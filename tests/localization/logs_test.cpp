@@ -14,6 +14,7 @@
 #include "localization/filters/particle_filter.hpp"
 #include "localization/replay_log.hpp"
 #include "localization/robot_log.hpp"
+#include "localization/slam/ekf_slam.hpp"
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
@@ -272,6 +273,30 @@ TEST_F(Mrclam, HypothesesWithoutIdentities) {
   EXPECT_LE(all.rmse, 0.35);
   EXPECT_GT(all.named, 5000);
   EXPECT_LT(static_cast<double>(all.wrong), 0.05 * static_cast<double>(all.named));
+}
+
+// One Gaussian can identify a tenth of these sightings; the sum of Gaussians that follows the robot in the
+// map knows more, and SLAM takes its pose where it does.
+TEST_F(Mrclam, SlamInTheMapErrsAsTheHypothesesDo) {
+  const MrclamRobots robots = read_mrclam();
+  IdentificationOptions unnamed;
+  unnamed.use_identities = false;
+  for (std::size_t robot = 0; robot < 5; ++robot) {
+    const auto rmse_of = [&](Localizer& localizer) {
+      const RobotLog& log = robots.logs[robot];
+      return score(replay(log, localizer, {}), log.truth, TrackAlignment::none, true).ate_rmse;
+    };
+    const FeatureScales scales(robots.types);
+    MultiHypothesisFilter filter(robots.start[robot],
+                                 LandmarkMatcher(LandmarkWindow{LandmarkGrid(robots.map)}, scales, unnamed));
+    SlamOptions options;
+    options.identification = unnamed;
+    EkfSlam slam(robots.start[robot], LandmarkGrid(robots.map), scales, options);
+    slam.set_pose_finder([](auto&&...) { return PoseSearchResult{}; });
+    const double filtered = rmse_of(filter), mapped = rmse_of(slam);
+    EXPECT_LT(mapped, std::max(0.25, 1.5 * filtered)) << "robot " << robot + 1;
+    std::cout << "robot " << robot + 1 << ": " << filtered << " and " << mapped << " m\n";
+  }
 }
 
 TEST_F(Mrclam, ParticlesWithIdentities) {
