@@ -21,6 +21,8 @@ MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
 
 namespace {
 
+constexpr double kMinKept = 0.8;  // of the variance of a pose in one motion
+
 PoseEstimate predict_linearly(const PoseEstimate& estimate, const BodyMotion& motion) {
   const MotionJacobians j = motion_jacobians(estimate.pose, motion.step);
   const Eigen::Matrix3d p = j.by_pose * estimate.covariance * j.by_pose.transpose() +
@@ -44,9 +46,17 @@ Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
 }
 
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
-  PoseEstimate after = predict_linearly(estimate, motion);
-  if (!is_covariance(motion.covariance)) after.covariance = positive_part(after.covariance);
-  return after;
+  const PoseEstimate after = predict_linearly(estimate, motion);
+  if (is_covariance(motion.covariance)) return after;
+  // One motion undoes little of an error. More is undone of another pose's error, which was larger.
+  const Eigen::Matrix3d before =
+      predict_linearly(estimate, {motion.step, Eigen::Matrix3d::Zero()}).covariance;
+  if (is_covariance(after.covariance - kMinKept * before)) return after;
+  return predict_other_pose(estimate, motion);
+}
+
+PoseEstimate predict_other_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
+  return predict_linearly(estimate, {motion.step, positive_part(motion.covariance)});
 }
 
 BodyMotion compose(const BodyMotion& first, const BodyMotion& second) {

@@ -41,8 +41,12 @@ bool is_covariance(const Eigen::Matrix3d& symmetric);
 /// Returns a symmetric matrix without its negative eigenvalues.
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
-/// Prediction step of an extended Kalman filter.
+/// Prediction step of an extended Kalman filter. A negative part of the motion's covariance that would undo
+/// more than a fifth of a variance counts as 0.
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);
+
+/// Predicts a pose that is not the one whose error the motion may undo: the negative part counts as 0.
+PoseEstimate predict_other_pose(const PoseEstimate& estimate, const BodyMotion& motion);
 
 /// Returns lower triangular L with L L' = covariance + tiny, with zero rows where there is no noise.
 /// Accepts positive semidefinite covariances, such as those of a robot that cannot slip sideways. Negative

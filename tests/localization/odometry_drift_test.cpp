@@ -88,6 +88,20 @@ TEST(DriftEstimator, IsTheKalmanFilterOfPoseAndErrors) {
   }
 }
 
+// A motion undoes an error of the pose that it was estimated with. Of another pose, which may be much more
+// certain, it would undo more than there is: a covariance without width in one direction.
+TEST(DriftEstimator, OnlyThePoseThatErredBecomesMoreCertainByDriving) {
+  BodyMotion motion{{0.1, 0, 0}, Eigen::Vector3d(1e-5, 1e-5, 1e-6).asDiagonal()};
+  motion.covariance(0, 0) = -0.02;
+  const PoseEstimate erred{{}, Eigen::Vector3d(0.2, 0.2, 1e-4).asDiagonal()};
+  EXPECT_NEAR(predict_pose(erred, motion).covariance(0, 0), 0.18, 1e-6);
+  const PoseEstimate certain{{}, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+  for (const PoseEstimate& after : {predict_pose(certain, motion), predict_other_pose(certain, motion)})
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_GE(after.covariance(axis, axis), certain.covariance(axis, axis)) << axis;
+  EXPECT_NEAR(predict_other_pose(erred, motion).covariance(0, 0), 0.2, 1e-6);
+}
+
 struct Gap {
   double error = 0, ratio = 0;  // m at the end, and squared error over variance per coordinate
 };
