@@ -76,7 +76,7 @@ void draw(const TrackEvaluation& request, const localization::Track& track, cons
           OpenedMap* opened) {
   if (!request.picture.ends_with(".svg"))
     throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", request.picture);
-  exporters::TrackPicture picture{.title = std::filesystem::path(request.track).stem(),
+  exporters::TrackPicture picture{.title = "Estimated tracks and the truth",
                                   .map = {},
                                   .truth = truth.poses,
                                   .tracks = {},
