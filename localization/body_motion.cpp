@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/body_motion.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 
@@ -18,15 +19,48 @@ MotionJacobians motion_jacobians(const Pose2& pose, const Pose2& step) {
   return j;
 }
 
-PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
+namespace {
+
+constexpr double kMinKept = 0.8;  // of the variance of a pose in one motion
+
+PoseEstimate predict_linearly(const PoseEstimate& estimate, const BodyMotion& motion) {
   const MotionJacobians j = motion_jacobians(estimate.pose, motion.step);
   const Eigen::Matrix3d p = j.by_pose * estimate.covariance * j.by_pose.transpose() +
                             j.by_step * motion.covariance * j.by_step.transpose();
   return {estimate.pose * motion.step, (p + p.transpose()) / 2};
 }
 
+}  // namespace
+
+bool is_covariance(const Eigen::Matrix3d& m) {
+  if (m(0, 1) == 0 && m(0, 2) == 0 && m(1, 2) == 0) return m.diagonal().minCoeff() >= 0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() >= -1e-12 * solver.eigenvalues().maxCoeff();
+}
+
+Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
+  if (is_covariance(symmetric)) return symmetric;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
+  const Eigen::Vector3d values = solver.eigenvalues().cwiseMax(0);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
+  const PoseEstimate after = predict_linearly(estimate, motion);
+  if (is_covariance(motion.covariance)) return after;
+  // One motion undoes little of an error. More is undone of another pose's error, which was larger.
+  const Eigen::Matrix3d before =
+      predict_linearly(estimate, {motion.step, Eigen::Matrix3d::Zero()}).covariance;
+  if (is_covariance(after.covariance - kMinKept * before)) return after;
+  return predict_other_pose(estimate, motion);
+}
+
+PoseEstimate predict_other_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
+  return predict_linearly(estimate, {motion.step, positive_part(motion.covariance)});
+}
+
 BodyMotion compose(const BodyMotion& first, const BodyMotion& second) {
-  const PoseEstimate both = predict_pose({first.step, first.covariance}, second);
+  const PoseEstimate both = predict_linearly({first.step, first.covariance}, second);
   return {both.pose, both.covariance};
 }
 
@@ -40,7 +74,8 @@ void MotionCompensation::apply(Eigen::Vector2d& at, Eigen::Matrix2d& covariance)
   covariance = back_ * covariance * back_.transpose() + by_step * motion_.covariance * by_step.transpose();
 }
 
-Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance) {
+Eigen::Matrix3d square_root(const Eigen::Matrix3d& symmetric) {
+  const Eigen::Matrix3d covariance = positive_part(symmetric);
   Eigen::Matrix3d root = Eigen::Matrix3d::Zero();
   for (int j = 0; j < 3; ++j) {
     double left = covariance(j, j) - root.row(j).head(j).squaredNorm();

@@ -5,7 +5,8 @@
 namespace waymark::localization {
 
 /// Motion of the robot, new_from_old of its frame, with covariance (x forward, y left, yaw). Every motion
-/// model returns one, and every filter predicts with one.
+/// model returns one, and every filter predicts with one. Of an error that persists (DriftEstimator) the
+/// covariance may have a negative part: what the motion undoes of the pose's own.
 struct BodyMotion {
   Pose2 step;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -35,11 +36,21 @@ class MotionCompensation {
   Eigen::Matrix2d back_;
 };
 
-/// Prediction step of an extended Kalman filter.
+/// Returns whether a symmetric matrix has no negative eigenvalue, but for rounding.
+bool is_covariance(const Eigen::Matrix3d& symmetric);
+/// Returns a symmetric matrix without its negative eigenvalues.
+Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
+
+/// Prediction step of an extended Kalman filter. A negative part of the motion's covariance that would undo
+/// more than a fifth of a variance counts as 0.
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);
 
+/// Predicts a pose that is not the one whose error the motion may undo: the negative part counts as 0.
+PoseEstimate predict_other_pose(const PoseEstimate& estimate, const BodyMotion& motion);
+
 /// Returns lower triangular L with L L' = covariance + tiny, with zero rows where there is no noise.
-/// Accepts positive semidefinite covariances, such as those of a robot that cannot slip sideways.
-Eigen::Matrix3d square_root(const Eigen::Matrix3d& covariance);
+/// Accepts positive semidefinite covariances, such as those of a robot that cannot slip sideways. Negative
+/// eigenvalues count as 0.
+Eigen::Matrix3d square_root(const Eigen::Matrix3d& symmetric);
 
 }  // namespace waymark::localization

@@ -7,6 +7,13 @@
 #include "localization/identification/joint_evidence.hpp"
 
 namespace waymark::localization {
+namespace {
+
+OdometryDrift drift_of(const RobotLog& log, const ReplayOptions& options) {
+  return options.drift == OdometryDrift{} ? log.drift : options.drift;
+}
+
+}  // namespace
 
 LogReplay::LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options,
                      ScanDetector detect, TimeSource clock, TerrainHeight ground)
@@ -14,6 +21,8 @@ LogReplay::LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOpti
       options_(options),
       car_(log.car),
       odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
+      drift_(drift_of(log, options)),
+      estimates_drift_(drift_of(log, options).any()),
       detect_(std::move(detect)),
       clock_(std::move(clock)),
       ground_(std::move(ground)),
@@ -43,14 +52,15 @@ void LogReplay::advance(double t) {
   const double seconds = std::max(0.0, t - now_), driven = std::min(seconds, options_.max_hold);
   now_ = std::max(now_, t);
   if (const auto* twist = std::get_if<TwistReading>(&current_reading_))
-    drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_));
+    drive(twist_motion(twist->speed, twist->sideways, twist->turn, driven, odometry_), driven);
   else if (const auto* car = std::get_if<CarReading>(&current_reading_))
-    drive(ackermann_motion(car_, car->wheel_speed, car->steering, driven, odometry_));
+    drive(ackermann_motion(car_, car->wheel_speed, car->steering, driven, odometry_), driven);
   if (seconds > driven) predict(step_motion({}, seconds - driven, odometry_));
 }
 
-void LogReplay::drive(BodyMotion motion) {
+void LogReplay::drive(BodyMotion motion, double seconds) {
   motion.step = project_to_map(motion.step, terrain_pose_);
+  if (estimates_drift_) motion = drift_.correct(localizer_.estimate(), motion, seconds);
   predict(motion);
 }
 
@@ -73,7 +83,8 @@ bool LogReplay::take(const CarReading& reading, TrackRow&) {
   return current_reading_ = reading, false;
 }
 bool LogReplay::take(const StepReading& reading, TrackRow&) {
-  drive(step_motion(reading.step, std::max(0.0, now_ - last_step_), odometry_));
+  const double seconds = std::max(0.0, now_ - last_step_);
+  drive(step_motion(reading.step, seconds, odometry_), seconds);
   last_step_ = now_;
   return false;
 }
@@ -82,8 +93,18 @@ template <class Fix>
 bool LogReplay::take_fix(const Fix& fix, TrackRow&) {
   if (!options_.use_fixes) return false;
   ++track_.fixes;
+  const PoseEstimate prior = localizer_.estimate();
   track_.fixes_rejected += !localizer_.fix(fix);
+  learn_drift(prior);
   return false;
+}
+
+void LogReplay::learn_drift(const PoseEstimate& prior) {
+  if (!estimates_drift_) return;
+  if (localizer_.status() == LocalizationStatus::tracking)
+    drift_.learn(prior, localizer_.estimate());
+  else
+    drift_.restart();
 }
 
 bool LogReplay::take(SightingSet seen, TrackRow& row) {
@@ -92,10 +113,11 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
     s.range_sd *= options_.sensor_noise;
   }
   repeated_.widen(seen, now_);
-  const Eigen::Matrix3d prior = localizer_.estimate().covariance;
+  const PoseEstimate prior = localizer_.estimate();
   const double before = clock_ ? clock_() : 0;
   matches_ = localizer_.update(seen);
   if (clock_) track_.seconds += row.seconds = clock_() - before;
+  learn_drift(prior);
   ++track_.updates;
   JointEvidence evidence;
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -111,13 +133,15 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
     row.wrong += *seen.sightings[i].identity != matches_[i].key;
   }
   track_.wrong += row.wrong;
-  if (evidence.rows) row.nis = joint_distance(evidence, prior).squares, row.nis_rows = evidence.rows;
+  if (evidence.rows)
+    row.nis = joint_distance(evidence, prior.covariance).squares, row.nis_rows = evidence.rows;
   seen_ = std::move(seen);
   return true;
 }
 
 void ReplayOptions::describe(OptionVisitor& option) {
   odometry.describe(option);
+  drift.describe(option);
   option("max_hold", max_hold,
          {.help = "Seconds a speed holds without a new reading; then the robot stands",
           .min = 0,

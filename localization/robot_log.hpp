@@ -12,6 +12,7 @@
 #include "localization/body_motion.hpp"
 #include "localization/laser_scan.hpp"
 #include "localization/motion_model.hpp"
+#include "localization/odometry_drift.hpp"
 #include "localization/sighting.hpp"
 #include "localization/slam/graph.hpp"
 namespace waymark::localization {
@@ -98,7 +99,9 @@ struct RobotLog {
   std::string crs;  ///< CRS of positions if `in_crs` and given; any text Crs accepts
   LandmarkNames names;
   ErrorMemory error_memory;                ///< of its sensors
-  std::optional<OdometryNoise> odometry;   ///< odometry noise of this vehicle, if the reader knows it
+  std::optional<OdometryNoise> odometry;   ///< odometry noise of this vehicle, if log or reader state it
+  OdometryDrift drift;                     ///< persistent odometry errors of this vehicle
+  bool shows_stems = false;                ///< its scans show stems, whatever the map has
   std::shared_ptr<const PoseGraph> graph;  ///< if the log is a graph; the events are derived from it
   std::vector<std::string> remarks;        ///< what the reader corrected or omitted, for people
 };

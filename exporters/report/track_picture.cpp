@@ -123,7 +123,8 @@ class Drawing {
   }
 
   void legend() {
-    const double left = kWidth - kBorder - 242;
+    const double right = kBorder + scale_ * box_.sizes().x();
+    const double left = right + 12 + 236 <= kWidth ? right + 12 : right - 242;
     const auto rows = static_cast<double>(picture_.tracks.size() + 2);
     svg_ += fmt::format(
         "<rect x=\"{}\" y=\"36\" width=\"236\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "

@@ -20,6 +20,7 @@ localization::RobotLog import_victoria_park(const std::filesystem::path& folder)
   // Fitted for this car on the first 200 s.
   log.odometry = localization::OdometryNoise{
       .along_per_metre = 0.01, .across_per_metre = 0.001, .yaw_per_metre = 2e-4, .yaw_per_radian = 5e-3};
+  log.shows_stems = true;
   const auto drive = number_table(folder / "DRS.txt", 3);
   for (std::size_t i = 0; i < drive.size(); i += 3)
     log.events.push_back({drive[i], localization::CarReading{drive[i + 1], drive[i + 2]}});

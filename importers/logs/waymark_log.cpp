@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/options/option_table.hpp"
 #include "core/text_file.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/log_line.hpp"
@@ -25,6 +26,28 @@ namespace waymark::importers {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+/// Reads numbers of a record by the declaration of options.
+class NumberReader final : public OptionVisitor {
+ public:
+  explicit NumberReader(const LogLine& line) : line_(line) {}
+
+ private:
+  void number(std::string_view name, double& value, std::string_view, const Field& field) override {
+    const std::string key(name);
+    value = line_.number(key.c_str(), value);
+    if (!(value >= field.min && value <= field.max))
+      line_.fail(field.max < std::numeric_limits<double>::infinity()
+                     ? fmt::format("\"{}\" must be {:g} to {:g}, is {:g}", name, field.min, field.max, value)
+                     : fmt::format("\"{}\" must be at least {:g}, is {:g}", name, field.min, value));
+  }
+  void integer(std::string_view, std::int64_t&, const Field&) override {}
+  void flag(std::string_view, bool&, const Field&) override {}
+  void text(std::string_view, std::string&, const Field&) override {}
+  void texts(std::string_view, std::vector<std::string>&, const Field&) override {}
+
+  const LogLine& line_;
+};
 
 class Reader {
  public:
@@ -98,7 +121,23 @@ class Reader {
     log_.car.wheelbase = line.positive("wheelbase", log_.car.wheelbase);
     log_.car.encoder_offset = line.number("encoder_offset", log_.car.encoder_offset);
     log_.error_memory = {line.not_negative("range_memory"), line.not_negative("bearing_memory")};
+    if (line.has("odometry_noise")) odometry_noise(line.part("odometry_noise"));
+    if (line.has("range_sd")) range_sd_ = line.positive("range_sd", 1);
+    if (line.has("bearing_sd")) bearing_sd_ = line.positive("bearing_sd", 1);
     if (line.has("start")) start(line.part("start"));
+  }
+  void odometry_noise(const LogLine& line) {
+    log_.odometry.emplace();
+    const DescribeOptions all = [&](OptionVisitor& option) {
+      log_.odometry->describe(option);
+      log_.drift.describe(option);
+    };
+    const std::vector<OptionRow> names = option_table(all);
+    for (const std::string& key : line.keys())
+      if (std::ranges::find(names, key, &OptionRow::name) == names.end())
+        line.fail(fmt::format("has the unknown \"{}\" in \"odometry_noise\"", key));
+    NumberReader reader(line);
+    all(reader);
   }
   void start(const LogLine& line) {
     log_.start = line.pose(), log_.start_sd = line.has("sd") ? line.positive("sd", 1) : 0;
@@ -120,12 +159,14 @@ class Reader {
     s.bearing = line.angle("bearing");
     if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
       line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", s.bearing));
-    s.bearing_sd =
-        line.positive("bearing_sd", sensor_ ? to_radians(Degrees{sensor_->bearing_sd}).value : 0.02);
+    s.bearing_sd = line.positive("bearing_sd", bearing_sd_ ? *bearing_sd_
+                                               : sensor_   ? to_radians(Degrees{sensor_->bearing_sd}).value
+                                                           : 0.02);
     if (line.has("range")) s.range = line.number("range");
-    s.range_sd = line.positive("range_sd", sensor_ && sensor_->range_sd > 0 ? sensor_->range_sd
-                                           : s.range                        ? 0.05 + 0.02 * std::abs(*s.range)
-                                                                            : 0.1);
+    s.range_sd = line.positive("range_sd", range_sd_                          ? *range_sd_
+                                           : sensor_ && sensor_->range_sd > 0 ? sensor_->range_sd
+                                           : s.range ? 0.05 + 0.02 * std::abs(*s.range)
+                                                     : 0.1);
     s.confidence = line.number("confidence", 1);
     if (!(s.confidence > 0 && s.confidence <= 1)) line.fail("\"confidence\" must be within (0, 1]");
     if (line.has("elevation")) {
@@ -250,7 +291,8 @@ class Reader {
   double last_truth_yaw_ = 0;
   localization::PointDetector detect_;
   const TypeRegistry& types_;
-  std::optional<SensorCoverage> sensor_;  // absent: assumed deviations
+  std::optional<SensorCoverage> sensor_;         // absent: assumed deviations
+  std::optional<double> range_sd_, bearing_sd_;  // of the header, m and rad
   localization::RobotLog log_;
   std::map<std::string, std::size_t> unknown_, no_type_;
 };

@@ -17,7 +17,7 @@ class Convergence {
   /// `prior`: the estimate before any sighting. `identities`: whether landmarks identify themselves.
   Convergence(const PoseEstimate& prior, bool identities) : prior_(prior), identities_(identities) {}
 
-  void predict(const BodyMotion& motion) { prior_ = predict_pose(prior_, motion); }
+  void predict(const BodyMotion& motion) { prior_ = predict_other_pose(prior_, motion); }
   /// Bounds the prior by a measured position.
   void fix(const GnssFix& gnss);
   /// Adds a set of sightings: the fraction that fits, and the fraction that fits by chance. `unimodal`:

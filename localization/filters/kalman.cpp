@@ -84,14 +84,24 @@ template bool KalmanLocalizer::apply_fix(const GnssFix&, int);
 template bool KalmanLocalizer::apply_fix(const HeadingFix&, int);
 
 ExtendedKalman::ExtendedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options)
-    : KalmanLocalizer(std::move(matcher), options), estimate_(start) {
+    : KalmanLocalizer(std::move(matcher), options), estimate_(start), errors_(options.error_memory_distance) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
 }
 
+void ExtendedKalman::predict(const BodyMotion& motion) {
+  errors_.predict(estimate_.pose, motion.step);
+  estimate_ = predict_pose(estimate_, motion);
+}
+
 void ExtendedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
   for (const MatchedSighting& use : uses)
-    estimate_ = ekf_update(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+    estimate_ = errors_.correct(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+}
+
+void ExtendedKalman::replace(const PoseEstimate& estimate) {
+  errors_.follow(estimate_, estimate);
+  estimate_ = estimate;
 }
 
 void ExtendedKalman::widen(double factor) {
@@ -99,6 +109,7 @@ void ExtendedKalman::widen(double factor) {
   const Eigen::Vector3d wide = clamp_sd(sd * factor);
   // Drops correlations: the estimate was wrong.
   estimate_.covariance = wide.cwiseAbs2().asDiagonal();
+  errors_.clear();
 }
 
 PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "localization/filters/map_errors.hpp"
 #include "localization/identification/landmark_matcher.hpp"
 #include "localization/localizer.hpp"
 namespace waymark::localization {
 
 /// Options of the extended and the unscented Kalman filter.
 struct KalmanOptions {
-  std::int64_t lost_after = 10;  ///< consecutive sets without a match before the search begins
-  double search_growth = 2;      ///< growth of the standard deviations per further set; 1: no search
+  std::int64_t lost_after = 10;        ///< consecutive sets without a match before the search begins
+  double search_growth = 2;            ///< growth of the standard deviations per further set; 1: no search
+  double error_memory_distance = 200;  ///< m: memory of MapErrors; described by MultiHypothesisOptions
 
   void describe(OptionVisitor& option);
 };
@@ -53,14 +55,15 @@ class KalmanLocalizer : public Localizer {
 class ExtendedKalman final : public KalmanLocalizer {
  public:
   ExtendedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options = {});
-  void predict(const BodyMotion& motion) override { estimate_ = predict_pose(estimate_, motion); }
+  void predict(const BodyMotion& motion) override;
   PoseEstimate estimate() const override { return estimate_; }
 
  private:
   void correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) override;
-  void replace(const PoseEstimate& estimate) override { estimate_ = estimate; }
+  void replace(const PoseEstimate& estimate) override;
   void widen(double factor) override;
   PoseEstimate estimate_;
+  MapErrors errors_;
 };
 
 /// Clamps the standard deviations of a lost filter to at most 10 km and half a turn.
@@ -72,13 +75,10 @@ PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
 
 /// Prediction of the unscented filter below, on covariances.
 PoseEstimate ukf_predict(const PoseEstimate& estimate, const BodyMotion& motion);
-/// Update of the unscented filter by one sighting. `trust` in (0, 1] divides the noise.
-PoseEstimate ukf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
-                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust = 1);
 
 /// Unscented filter with the symmetric points of Arasaratnam & Haykin (2009, "cubature"), which have
-/// positive weights. Square-root form: the covariance cannot become negative. Angles are averaged on the
-/// circle.
+/// positive weights. Predictions are in square-root form; updates are linear regressions over the points, in
+/// Joseph form (MapErrors). The covariance cannot become negative. Angles are averaged on the circle.
 class UnscentedKalman final : public KalmanLocalizer {
  public:
   UnscentedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options = {});
@@ -91,6 +91,7 @@ class UnscentedKalman final : public KalmanLocalizer {
   void widen(double factor) override;
   Pose2 pose_;
   Eigen::Matrix3d root_;  ///< lower triangular
+  MapErrors errors_;
 };
 
 }  // namespace waymark::localization

@@ -26,11 +26,12 @@ void MultiHypothesisOptions::describe(OptionVisitor& option) {
          {.help = "Squared Mahalanobis distance below which two Gaussians are merged", .min = 0});
   option("split_yaw", split_yaw,
          {.help = "Standard deviation of yaw, radians, above which a Gaussian is split", .min = 0.01});
-  option("error_correlation_distance", error_correlation_distance,
-         {.help = "Metres driven until the error of a landmark on the map counts as new; 0: at once",
-          .min = 0,
-          .max = 1e6,
-          .formerly = "same_error"});
+  option(
+      "error_correlation_distance", error_correlation_distance,
+      {.help = "Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once",
+       .min = 0,
+       .max = 1e6,
+       .formerly = "same_error"});
 }
 
 MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, LandmarkMatcher matcher,
@@ -38,26 +39,21 @@ MultiHypothesisFilter::MultiHypothesisFilter(const PoseEstimate& start, Landmark
     : matcher_(std::move(matcher)), options_(options) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
-  components_.push_back({start, 1, {}, {}});
+  components_.push_back({start, MapErrors(options_.error_correlation_distance), 1, {}, {}});
 }
 
 void MultiHypothesisFilter::predict(const BodyMotion& motion) {
-  for (Component& component : components_)
+  for (Component& component : components_) {
+    component.errors.predict(component.at.pose, motion.step);
     component.at =
         options_.unscented ? ukf_predict(component.at, motion) : predict_pose(component.at, motion);
-  driven_ += motion.step.at().norm();
+  }
   follower_.predict(motion);
 }
 
 void MultiHypothesisFilter::expect_landmarks(const WeightOptions& view, LineOfSight visible) {
   if (view.expect_unseen) view_ = view;
   visible_ = std::move(visible);
-}
-
-double MultiHypothesisFilter::recent_sightings(LandmarkKey key) const {
-  const auto used = uses_.find(key);
-  if (used == uses_.end() || !(options_.error_correlation_distance > 0)) return 0;
-  return used->second.count * std::exp((used->second.driven - driven_) / options_.error_correlation_distance);
 }
 
 // Weights the Gaussians of a set by the landmarks they expect and that were not seen.
@@ -76,32 +72,26 @@ void MultiHypothesisFilter::weigh_unseen(const SightingSet& seen, const Landmark
   for (std::size_t i = 0; i < components_.size(); ++i) components_[i].weight = weights[i];
 }
 
-PoseEstimate MultiHypothesisFilter::update_component(const Component& component, const SightingSet& some,
-                                                     const std::vector<Candidates>& sets,
-                                                     const JointHypothesis& how,
-                                                     const LandmarkGrid& map) const {
-  PoseEstimate at = component.at;
-  JointEvidence evidence;
+void MultiHypothesisFilter::update_component(Component& component, const SightingSet& some,
+                                             const std::vector<Candidates>& sets, const JointHypothesis& how,
+                                             const LandmarkGrid& map) const {
   std::vector<AngleFix> fixes;
+  const double yaw = component.at.pose.yaw;
   for (std::size_t i = 0; i < sets.size(); ++i) {
     if (how.choice[i] < 0) continue;
-    MapLandmark landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
-    landmark.covariance *= 1 + recent_sightings(landmark.key) / 2;
-    const double trust = noise_divisor(landmark, matcher_.options());
+    const MapLandmark& landmark = map[sets[i].pairings[static_cast<std::size_t>(how.choice[i])].landmark];
     const SeenLandmark& seen = some.sightings[i];
-    if (options_.unscented)
-      at = ukf_update(at, seen, some.robot_from_sensor, landmark, trust);
-    else
-      evidence += evidence_of(seen, expect(component.at.pose, some.robot_from_sensor, landmark.at),
-                              landmark.covariance, trust);
-    for (const AngleFix& fix :
-         headings_from_angles(seen, some.robot_from_sensor, landmark, component.at.pose.yaw,
-                              matcher_.scales(), matcher_.options()))
+    component.at = component.errors.correct(component.at, seen, some.robot_from_sensor, landmark,
+                                            noise_divisor(landmark, matcher_.options()), options_.unscented);
+    for (const AngleFix& fix : headings_from_angles(seen, some.robot_from_sensor, landmark, yaw,
+                                                    matcher_.scales(), matcher_.options()))
       fixes.push_back(fix);
   }
-  if (!options_.unscented) at = update_pose(component.at, evidence);
-  for (const AngleFix& fix : fixes) at = update_pose(at, fix.heading).estimate;
-  return at;
+  for (const AngleFix& fix : fixes) {
+    const PoseEstimate after = update_pose(component.at, fix.heading).estimate;
+    component.errors.follow(component.at, after);
+    component.at = after;
+  }
 }
 
 namespace {
@@ -170,7 +160,7 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some,
       Component& after = next.emplace_back(component);
       const auto keys = decisions(h.choice, sets, map);
       for (std::size_t i = 0; i < keys.size(); ++i) after.of_object[objects[i].object] = keys[i];
-      after.at = update_component(component, some, sets, h, map);
+      update_component(after, some, sets, h, map);
       for (std::size_t i = 0; i < sets.size(); ++i)
         after.choice.push_back(
             h.choice[i] < 0
@@ -242,9 +232,10 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     match.probability = best->second;
     match.unmapped = weight.contains(-1) ? weight.at(-1) : 0;
     fits = fits || best->first >= 0;
+    const double certainty = identification.required_certainty(seen.sightings[places[k]]);
     if (best->first < 0) {
-      match.verdict = best->second > identification.certainty ? Verdict::too_far : Verdict::ambiguous;
-    } else if (best->second < identification.certainty) {
+      match.verdict = best->second > certainty ? Verdict::too_far : Verdict::ambiguous;
+    } else if (best->second < certainty) {
       match.verdict = Verdict::ambiguous;
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);
@@ -253,7 +244,6 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
       const SeenLandmark& s = seen.sightings[places[k]];
       match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
                                            landmark.covariance, noise_divisor(landmark, identification));
-      uses_[match.key] = {1 + recent_sightings(match.key), driven_};
     }
   }
   matcher_.learn(matches, seen, before.pose, map);
@@ -281,6 +271,7 @@ bool MultiHypothesisFilter::apply_fix(const Fix& measured, int rows) {
   std::vector<double> logs;
   for (Component& component : components_) {
     const FixUpdate update = update_pose(component.at, measured);
+    component.errors.follow(component.at, update.estimate);
     component.at = update.estimate;
     logs.push_back(std::log(component.weight) + update.log_density);
   }

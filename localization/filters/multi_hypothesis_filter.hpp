@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
-#include <unordered_map>
 #include "localization/filters/kalman.hpp"
+#include "localization/filters/map_errors.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "localization/identification/joint_search.hpp"
 #include "localization/identification/landmark_matcher.hpp"
@@ -19,12 +19,9 @@ struct MultiHypothesisOptions {
   double min_weight = 1e-6;
   double merge = 0.5;       ///< Gaussians nearer than this (squared Mahalanobis distance) are merged
   double split_yaw = 0.25;  ///< rad: Gaussians wider than this are split before an update
-  /// m driven until a landmark's error on the map counts as new; 0: at once. Repeated sightings of a
-  /// landmark share its map error: after n of them its variance counts 1 + n/2 times, which made the filter
-  /// consistent in simulated stands.
-  double error_correlation_distance = 15;
-  KalmanOptions search;    ///< of a lost filter; described by its owner
-  bool unscented = false;  ///< predicts and updates by sigma points instead of derivatives
+  double error_correlation_distance = 200;  ///< m: memory of MapErrors
+  KalmanOptions search;                     ///< of a lost filter; described by its owner
+  bool unscented = false;                   ///< predicts and updates by sigma points instead of derivatives
 
   void describe(OptionVisitor& option);
 };
@@ -58,6 +55,7 @@ class MultiHypothesisFilter final : public Localizer {
  private:
   struct Component {
     PoseEstimate at;
+    MapErrors errors;
     double weight = 1;        // they sum to 1
     std::vector<int> choice;  // landmark of each sighting of the current set, or -1
     std::map<int, std::optional<LandmarkKey>> of_object;  // decisions on objects that are followed
@@ -69,21 +67,13 @@ class MultiHypothesisFilter final : public Localizer {
   void prune();
   void update_jointly(const SightingSet& some, std::span<const SightingFollower::Seen> objects,
                       const LandmarkGrid& map);
-  /// Number of recent sightings of a landmark, discounted by the distance driven since.
-  double recent_sightings(LandmarkKey key) const;
   void weigh_unseen(const SightingSet& seen, const LandmarkGrid& map);
-  PoseEstimate update_component(const Component& component, const SightingSet& some,
-                                const std::vector<Candidates>& sets, const JointHypothesis& how,
-                                const LandmarkGrid& map) const;
+  void update_component(Component& component, const SightingSet& some, const std::vector<Candidates>& sets,
+                        const JointHypothesis& how, const LandmarkGrid& map) const;
 
   LandmarkMatcher matcher_;
   MultiHypothesisOptions options_;
   std::vector<Component> components_;
-  struct LandmarkUse {
-    double count = 0, driven = 0;  // sightings, and the distance driven at the last one
-  };
-  std::unordered_map<LandmarkKey, LandmarkUse> uses_;
-  double driven_ = 0;
   SightingFollower follower_;
   std::int64_t missed_ = 0;
   FixGate gnss_, heading_;

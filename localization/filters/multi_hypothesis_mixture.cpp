@@ -56,6 +56,7 @@ void MultiHypothesisFilter::prune() {
       const double a = k.weight / (k.weight + component.weight), b = 1 - a;
       k.at.covariance = a * k.at.covariance + b * component.at.covariance + a * b * d * d.transpose();
       k.at.pose = pose_of(k.at.pose.vector() + b * d);
+      k.errors.mix(component.errors, b);
       k.weight += component.weight;
       merged = true;
       break;
@@ -72,6 +73,7 @@ void MultiHypothesisFilter::widen(double factor) {
   for (Component& component : components_) {
     const Eigen::Vector3d sd = component.at.covariance.diagonal().cwiseSqrt() * factor;
     component.at.covariance = clamp_sd(sd).cwiseAbs2().asDiagonal();
+    component.errors.clear();
   }
 }
 

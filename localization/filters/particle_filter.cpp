@@ -12,7 +12,8 @@
 namespace waymark::localization {
 namespace {
 
-constexpr int kPatience = 10;  // fixes to ignore while a set of sightings is awaited
+constexpr double kNewError = 15;  // m driven until a landmark's map error has fallen to 1/e of an old one
+constexpr int kPatience = 10;     // fixes to ignore while a set of sightings is awaited
 
 Pose2 sample(const PoseEstimate& about, const Eigen::Matrix3d& root, Random& random) {
   const Eigen::Vector3d noise(random.normal(), random.normal(), random.normal());
@@ -68,6 +69,7 @@ LocalizationStatus ParticleFilter::status() const {
 
 void ParticleFilter::predict(const BodyMotion& motion) {
   pending_ = compose(pending_, motion);
+  driven_ += motion.step.at().norm();
   if (finder_) memory_.predict(motion);
   if (convergence_) convergence_->predict(motion);
   if (pending_.covariance(2, 2) > 0.01 || pending_.step.at().squaredNorm() > 4) apply_motion();
@@ -88,6 +90,12 @@ void ParticleFilter::apply_motion() {
     }
   });
   pending_ = {};
+}
+
+double ParticleFilter::map_error_factor(LandmarkKey key) const {
+  const auto used = uses_.find(key);
+  if (used == uses_.end()) return 1;
+  return 1 + used->second.count * std::exp((used->second.driven - driven_) / kNewError);
 }
 
 template <class Fit>
@@ -184,7 +192,10 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
   if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
   for (Match& match : matches) {
-    if (match.verdict == Verdict::matched) match.key = map[match.pairing.landmark].key;
+    if (match.verdict == Verdict::matched) {
+      match.key = map[match.pairing.landmark].key;
+      uses_[match.key] = {map_error_factor(match.key), driven_};
+    }
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations
   }
   if (convergence_)

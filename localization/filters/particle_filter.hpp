@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <unordered_map>
 #include "core/random.hpp"
 #include "localization/filters/convergence.hpp"
 #include "localization/filters/particle_weights.hpp"
@@ -73,6 +74,9 @@ class ParticleFilter final : public Localizer {
   bool can_search(const LandmarkGrid& map) const;
   void search(const SightingSet& seen, const LandmarkGrid& map, std::size_t count);
   std::size_t required_count() const;
+  /// Returns the factor on the map variance of a landmark: 1 plus its recent sightings, which had the same
+  /// error.
+  double map_error_factor(LandmarkKey key) const;
 
   LandmarkMatcher matcher_;
   ParticleOptions options_;
@@ -94,6 +98,11 @@ class ParticleFilter final : public Localizer {
   std::optional<Convergence> convergence_;  // only without a given start
   ChanceFraction chance_;
   LineOfSight visible_;
+  struct LandmarkUse {
+    double count = 0, driven = 0;  // sightings, and the distance driven at the last one
+  };
+  std::unordered_map<LandmarkKey, LandmarkUse> uses_;
+  double driven_ = 0;
 };
 
 }  // namespace waymark::localization

@@ -20,7 +20,8 @@ constexpr int kMaxSteps = 20;        // tempered steps of one update
 }  // namespace
 
 void ParticleFilter::weigh(const SightingSet& seen, const LandmarkGrid& map) {
-  SightingScore score(seen, map, matcher_.scales(), options_.weight, matcher_.options());
+  SightingScore score(seen, map, matcher_.scales(), options_.weight, matcher_.options(),
+                      [this](LandmarkKey key) { return map_error_factor(key); });
   if (score.sightings() == 0) return;
   // Computes occlusion from the mean. During a search there is none, and all landmarks are expected.
   const double spread = std::sqrt(summary_.covariance(0, 0) + summary_.covariance(1, 1));

@@ -28,7 +28,7 @@ RelocalizingFilter::RelocalizingFilter(const PoseEstimate& start, Factory factor
 void RelocalizingFilter::predict(const BodyMotion& motion) {
   if (located_) inner_->predict(motion);
   memory_.predict(motion);
-  reliable_ = predict_pose(reliable_, motion);
+  reliable_ = predict_other_pose(reliable_, motion);
 }
 
 bool RelocalizingFilter::lost() const {

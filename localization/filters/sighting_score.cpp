@@ -69,11 +69,13 @@ struct SightingScore::PositionMatch {
 };
 
 SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
-                             const WeightOptions& options, const IdentificationOptions& identification)
+                             const WeightOptions& options, const IdentificationOptions& identification,
+                             MapErrorFactor map_error)
     : map_(&map),
       scales_(&scales),
       options_(options),
       identification_(identification),
+      map_error_(std::move(map_error)),
       robot_from_sensor_(seen.robot_from_sensor),
       paper_(options.weights == "paper") {
   const double gate = -2 * std::log1p(-options.gate);  // chi-square quantile of two degrees of freedom
@@ -99,11 +101,16 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
     if (p.known) {
       if (const auto l = map.find(*s.identity))
         if (const auto alike = pose_free_terms(p, *l))
-          p.candidates.push_back({*l, map[*l].at, map[*l].covariance, *alike});
+          p.candidates.push_back({*l, map[*l].at, map_covariance(*l), *alike});
     }
     if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
     prepared_.push_back(std::move(p));
   }
+}
+
+Eigen::Matrix2d SightingScore::map_covariance(std::uint32_t landmark) const {
+  const MapLandmark& l = (*map_)[landmark];
+  return map_error_ ? Eigen::Matrix2d(map_error_(l.key) * l.covariance) : l.covariance;
 }
 
 double SightingScore::quality(std::uint32_t landmark) const {
@@ -222,7 +229,7 @@ SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& v
   map_->near(centre, p.radius, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (p.seen.type && *p.seen.type != l.type) return;
-    const auto there = match_position(p, l.at, l.covariance, view);
+    const auto there = match_position(p, l.at, map_covariance(i), view);
     if (!(there.squares <= p.gate)) return;
     if (const auto alike = pose_free_terms(p, i)) take(there, *alike, i);
   });

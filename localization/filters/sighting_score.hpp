@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
 #include <span>
 #include <vector>
 #include "localization/filters/particle_weights.hpp"
 #include "localization/identification/identification.hpp"
 namespace waymark::localization {
+
+/// Returns the factor on the map covariance of a landmark; empty: 1.
+using MapErrorFactor = std::function<double(LandmarkKey)>;
 
 /// Log likelihood of one set of sightings at a pose. Constructed once per set, then called for each
 /// particle from any thread. About 60 ns per sighting with a few landmarks inside the gate, whatever the
@@ -14,7 +18,8 @@ class SightingScore {
   /// `map` and `scales` must outlive it. Omits invalid sightings. Uses clutter, quality floor, feature
   /// limits, reach of bearings and identities of `identification`.
   SightingScore(const SightingSet& seen, const LandmarkGrid& map, const FeatureScales& scales,
-                const WeightOptions& options, const IdentificationOptions& identification);
+                const WeightOptions& options, const IdentificationOptions& identification,
+                MapErrorFactor map_error = {});
 
   /// Looks up the candidate landmarks of the sightings for all these poses at once, and compares their
   /// features. Does not change any score; other poses look up the map one by one.
@@ -93,6 +98,7 @@ class SightingScore {
   Best best(const Prepared& p, const View<double>& view, bool in_cloud, double sensor_yaw) const;
   void score_lanes(const Pose2* poses, double* fit) const;
   double quality(std::uint32_t landmark) const;
+  Eigen::Matrix2d map_covariance(std::uint32_t landmark) const;
   double log_unseen(std::uint32_t landmark) const;
   double unseen(const Eigen::Vector2d& sensor, double cosine, double sine,
                 std::span<const std::uint32_t> matched) const;
@@ -101,6 +107,7 @@ class SightingScore {
   const FeatureScales* scales_;
   WeightOptions options_;
   IdentificationOptions identification_;
+  MapErrorFactor map_error_;
   Pose2 robot_from_sensor_;
   std::vector<Prepared> prepared_;
   bool paper_;

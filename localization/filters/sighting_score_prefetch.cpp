@@ -61,7 +61,8 @@ void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
                               std::asin(radius / away) + kSlack;
       if (std::abs(std::atan2(out.x() * d.y() - out.y() * d.x(), out.dot(d))) > max_turn) return;
     }
-    if (const auto alike = pose_free_terms(p, i)) p.candidates.push_back({i, l.at, l.covariance, *alike});
+    if (const auto alike = pose_free_terms(p, i))
+      p.candidates.push_back({i, l.at, map_covariance(i), *alike});
   });
 }
 

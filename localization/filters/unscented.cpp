@@ -60,39 +60,6 @@ RootedPose predict_root(const RootedPose& before, const BodyMotion& motion) {
   return {pose_of(mean), lower_root<kPoints>(points / std::sqrt(double{kPoints}))};
 }
 
-RootedPose update_root(const RootedPose& before, const SeenLandmark& seen_landmark,
-                       const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
-  constexpr int kPoints = 6;
-  const double reach = std::sqrt(3.0);
-  Eigen::Matrix<double, 3, kPoints> points;
-  Eigen::Matrix<double, 2, kPoints> seen;
-  double bearings[kPoints];
-  for (int i = 0; i < kPoints; ++i) {
-    points.col(i) = (i % 2 ? -reach : reach) * before.root.col(i / 2);
-    seen.col(i) = expect(pose_of(before.pose.vector() + points.col(i)), robot_from_sensor, landmark.at).value;
-    bearings[i] = seen(1, i);
-    if (!seen_landmark.range) seen(0, i) = 0;
-  }
-  Eigen::Vector2d mean = seen.rowwise().mean();
-  mean[1] = circular_mean(bearings, kPoints);
-  seen.colwise() -= mean;
-  for (int i = 0; i < kPoints; ++i) seen(1, i) = wrap_angle(seen(1, i));
-  points /= std::sqrt(double{kPoints});
-  seen /= std::sqrt(double{kPoints});
-
-  const Eigen::Matrix2d by_landmark = expect(before.pose, robot_from_sensor, landmark.at).by_landmark;
-  Eigen::Matrix2d noise =
-      (sensor_noise(seen_landmark) + by_landmark * landmark.covariance * by_landmark.transpose()) / trust;
-  if (!seen_landmark.range) noise(0, 1) = noise(1, 0) = 0;
-  const Eigen::Matrix2d noise_root = noise.llt().matrixL();
-  const Eigen::Matrix2d s = seen * seen.transpose() + noise;
-  const Eigen::Matrix<double, 3, 2> gain = points * seen.transpose() * s.inverse();
-  Eigen::Matrix<double, 3, kPoints + 2> after;
-  after << points - gain * seen, gain * noise_root;
-  return {pose_of(before.pose.vector() + gain * innovation(seen_landmark, mean)),
-          lower_root<kPoints + 2>(after)};
-}
-
 }  // namespace
 
 PoseEstimate ukf_predict(const PoseEstimate& estimate, const BodyMotion& motion) {
@@ -100,33 +67,30 @@ PoseEstimate ukf_predict(const PoseEstimate& estimate, const BodyMotion& motion)
   return {after.pose, after.root * after.root.transpose()};
 }
 
-PoseEstimate ukf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
-                        const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
-  const RootedPose after = update_root({estimate.pose, square_root(estimate.covariance)}, seen,
-                                       robot_from_sensor, landmark, trust);
-  return {after.pose, after.root * after.root.transpose()};
-}
-
 UnscentedKalman::UnscentedKalman(const PoseEstimate& start, LandmarkMatcher matcher, KalmanOptions options)
-    : KalmanLocalizer(std::move(matcher), options), pose_(start.pose), root_(square_root(start.covariance)) {
+    : KalmanLocalizer(std::move(matcher), options),
+      pose_(start.pose),
+      root_(square_root(start.covariance)),
+      errors_(options.error_memory_distance) {
   if (!start.pose.finite() || !start.covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
 }
 
 void UnscentedKalman::predict(const BodyMotion& motion) {
+  errors_.predict(pose_, motion.step);
   const RootedPose after = predict_root({pose_, root_}, motion);
   pose_ = after.pose, root_ = after.root;
 }
 
 void UnscentedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
-  for (const MatchedSighting& use : uses) {
-    const RootedPose after =
-        update_root({pose_, root_}, *use.seen, robot_from_sensor, *use.landmark, use.trust);
-    pose_ = after.pose, root_ = after.root;
-  }
+  PoseEstimate at = estimate();
+  for (const MatchedSighting& use : uses)
+    at = errors_.correct(at, *use.seen, robot_from_sensor, *use.landmark, use.trust, true);
+  pose_ = at.pose, root_ = square_root(at.covariance);
 }
 
 void UnscentedKalman::replace(const PoseEstimate& estimate) {
+  errors_.follow(this->estimate(), estimate);
   pose_ = estimate.pose;
   root_ = square_root(estimate.covariance);
 }
@@ -134,6 +98,7 @@ void UnscentedKalman::replace(const PoseEstimate& estimate) {
 void UnscentedKalman::widen(double factor) {
   const Eigen::Vector3d sd = (root_ * root_.transpose()).diagonal().cwiseSqrt();
   root_ = clamp_sd(sd * factor).asDiagonal();
+  errors_.clear();
 }
 
 }  // namespace waymark::localization

@@ -105,7 +105,7 @@ std::vector<Match> assign_individually(const std::vector<Candidates>& all,
   return matches;
 }
 
-std::vector<Match> assign_by_probability(const std::vector<Candidates>& all,
+std::vector<Match> assign_by_probability(const SightingSet& seen, const std::vector<Candidates>& all,
                                          const std::vector<JointHypothesis>& hypotheses,
                                          const IdentificationOptions& options) {
   std::vector<Match> matches;
@@ -123,7 +123,7 @@ std::vector<Match> assign_by_probability(const std::vector<Candidates>& all,
       match.unmapped = none;
       if (none > 0.5)
         match.verdict = Verdict::too_far;
-      else if (match.probability < options.certainty)
+      else if (match.probability < options.required_certainty(seen.sightings[i]))
         match.verdict = Verdict::ambiguous;
     }
     matches.push_back(match);
@@ -161,6 +161,8 @@ void IdentificationOptions::describe(OptionVisitor& option) {
   option("gate", gate, {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.999999});
   option("certainty", certainty,
          {.help = "joint: pairings less probable are rejected as ambiguous", .min = 0, .max = 1});
+  option("bearing_certainty", bearing_certainty,
+         {.help = "joint: the same for sightings without a range, if it is more", .min = 0, .max = 1});
   option("ambiguity", ambiguity,
          {.help = "Other associations: lead in squared distance a landmark needs over the next", .min = 0});
   option("feature_tolerance", feature_tolerance,
@@ -304,7 +306,7 @@ Identification identify(const SightingSet& seen, const PoseEstimate& robot, cons
     all.push_back(candidates(sighting, seen.robot_from_sensor, robot, map, scales, options));
   if (options.chosen_association() == "joint") {
     if (const auto hypotheses = joint_hypotheses(all, seen, map, robot.covariance, options))
-      return {assign_by_probability(all, *hypotheses, options), mixture(robot, *hypotheses)};
+      return {assign_by_probability(seen, all, *hypotheses, options), mixture(robot, *hypotheses)};
   } else if (options.association == "jcbb") {
     if (const auto choice = joint_compatibility(all, robot.covariance, options)) {
       std::vector<Match> matches;

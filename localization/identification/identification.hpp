@@ -26,6 +26,7 @@ struct IdentificationOptions {
   std::string association = "auto";
   double gate = 0.99;               ///< probability that a right pairing passes
   double certainty = 0.6;           ///< `joint`: smallest probability of an accepted pairing
+  double bearing_certainty = 0.95;  ///< the same for a sighting without range
   double ambiguity = 0;             ///< others: smallest lead in squared distance over the next landmark
   double feature_tolerance = 0.15;  ///< relative standard deviation between two sensors
   double feature_limit = 9;         ///< squared standard deviations by which one feature may differ
@@ -50,6 +51,11 @@ struct IdentificationOptions {
   void describe(OptionVisitor& option);
   /// Returns the association that `auto` stands for, otherwise the given one.
   std::string_view chosen_association() const;
+  /// Returns the smallest probability of an accepted pairing of a sighting.
+  double required_certainty(const SeenLandmark& seen) const {
+    const bool is_bearing = !seen.range && !seen.elevation && !(use_identities && seen.identity);
+    return is_bearing ? std::max(certainty, bearing_certainty) : certainty;
+  }
   /// Returns the largest range of a sighting without range.
   double reach_of(const SeenLandmark& seen, const FeatureScales& scales) const {
     return bearing_reach > 0 ? bearing_reach : scales.identification_reach(seen.type);

@@ -55,7 +55,8 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
       scales_(std::move(scales)),
       visible_(std::move(visible)),
       map_(std::move(map)),
-      centre_(start.pose.at()) {
+      centre_(start.pose.at()),
+      starts_(options_.max_range) {
   if (!map_.empty()) {
     IdentificationOptions identification = options_.identification;
     identification.certainty = std::max(identification.certainty, kCertainty);
@@ -79,6 +80,7 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
 
 void EkfSlam::predict(const BodyMotion& motion) {
   pending_ = compose(pending_, motion);
+  starts_.predict(motion);
   if (search_) search_->predict(motion);
   if (rival_) rival_->predict(motion);
   if (tracker_) tracker_->predict(motion);
@@ -99,6 +101,7 @@ Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
 }
 
 void EkfSlam::apply_pending_motion() {
+  pending_.covariance = positive_part(pending_.covariance);
   state_.predict(pending_);
   pending_ = {};
   const double moved = (state_.pose().at() - centre_).norm();
@@ -269,23 +272,33 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   }
   match(seen, chosen);
   update_existence(near, found);
+  std::vector<std::size_t> new_bearings;
   for (std::size_t k = 0; k < matches.size(); ++k) {
     const SeenLandmark& s = seen.sightings[k];
     if (matches[k].verdict == Verdict::matched) continue;
+    const bool is_new = named(s) ? !landmark_by_key_.contains(*s.identity)
+                                 : lowest[k] > options_.fresh && (!s.range || closest[k] > options_.nearest);
     if (!s.is_valid())
       matches[k].verdict = Verdict::unsound;
     else if (s.type == kNoSuchType)
       matches[k].verdict = Verdict::unknown_type;
     else if (s.range && *s.range > options_.max_range)
       matches[k].verdict = Verdict::too_far;
-    else if (s.range && (named(s) ? !landmark_by_key_.contains(*s.identity)
-                                  : lowest[k] > options_.fresh && closest[k] > options_.nearest)) {
+    else if (!s.range && is_new) {
+      new_bearings.push_back(k);
+      matches[k].verdict = Verdict::nothing_near;
+    } else if (s.range && is_new) {
       add(s, seen.robot_from_sensor);
       last_[k] = landmarks_.size() - 1;
       matches[k].verdict = differs[k] ? Verdict::features_differ : Verdict::nothing_near;
     } else {
       matches[k].verdict = named(s) ? Verdict::too_far : Verdict::ambiguous;
     }
+  }
+  for (const BearingStarts::Start& start :
+       starts_.add(seen, new_bearings, options_.identification.use_identities)) {
+    add(start, seen);
+    last_[start.sighting] = landmarks_.size() - 1;
   }
   if (search_) check_relocalization(set, near, found);
   return matches;
@@ -362,6 +375,23 @@ void EkfSlam::add(const SeenLandmark& seen, const Pose2& mount) {
   const ExpectedSighting e = expect(state_.pose(), mount, fresh.at);
   const Eigen::Matrix2d back = e.by_landmark.inverse();
   fresh.slot = state_.add(fresh.at, -back * e.by_pose, back * sensor_noise(seen) * back.transpose());
+  append(std::move(fresh), seen);
+}
+
+void EkfSlam::add(const BearingStarts::Start& start, const SightingSet& seen) {
+  const Pose2& robot = state_.pose();
+  SlamLandmark fresh;
+  fresh.at = (robot * Pose2{start.at.x(), start.at.y(), 0}).at();
+  const Eigen::Vector2d to = fresh.at - robot.at();
+  Eigen::Matrix<double, 2, 3> by_pose;
+  by_pose << 1, 0, -to.y(), 0, 1, to.x();
+  Eigen::Matrix2d turn;
+  turn << std::cos(robot.yaw), -std::sin(robot.yaw), std::sin(robot.yaw), std::cos(robot.yaw);
+  fresh.slot = state_.add(fresh.at, by_pose, turn * start.covariance * turn.transpose());
+  append(std::move(fresh), seen.sightings[start.sighting]);
+}
+
+void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   fresh.type = seen.type;
   fresh.features = seen.features;
   fresh.matches = fresh.expected = 1;

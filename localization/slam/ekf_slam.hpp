@@ -14,6 +14,7 @@
 #include "localization/identification/landmark_matcher.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
+#include "localization/slam/bearing_starts.hpp"
 #include "localization/slam/slam_relocalization.hpp"
 #include "localization/slam/slam_state.hpp"
 namespace waymark::localization {
@@ -64,6 +65,7 @@ struct SlamLandmark {
 /// - Sightings without identities are associated one to one, least distance first, features included. A
 ///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
 ///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
+/// - Bearings without a range start a landmark once they have been seen from two sides (BearingStarts).
 /// - A pair with a landmark of the map must also be certain (0.9) among all others and an object that the
 ///   map lacks (LandmarkMatcher): after a gap several landmarks are inside the gate. Where it is not, a sum
 ///   of Gaussians that keeps several associations (MultiHypothesisFilter on the map alone) may decide it.
@@ -78,8 +80,9 @@ class EkfSlam final : public Localizer {
 
   /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
   /// it disagrees, is a rival, which a second filter follows; the filter restarts there if the rival explains
-  /// the sightings that come better, and without a trial if its own position is uncertain by a metre. It then
-  /// takes landmarks of the map from the map, and keeps new ones from before it was lost.
+  /// the sightings that come better. It restarts without a trial at the estimate of the sum of Gaussians if
+  /// that has a deviation of less than a metre and half of its own. It then takes landmarks of the map from
+  /// the map, and keeps new ones from before it was lost.
   void set_pose_finder(PoseFinder finder, PoseCheck check = {});
   int restarts() const { return restarts_; }
   /// Returns the estimate of the sum of Gaussians while this one has a standard deviation above a metre: it
@@ -107,6 +110,7 @@ class EkfSlam final : public Localizer {
     bool expected;
   };
   static constexpr double kPrecise = 1;  // m, standard deviation of a position
+  static constexpr double kOutdone = 2;  // ratio of two such deviations
   static double position_sd(const PoseEstimate& e) {
     return std::sqrt(e.covariance(0, 0) + e.covariance(1, 1));
   }
@@ -124,6 +128,8 @@ class EkfSlam final : public Localizer {
   std::vector<Pair> jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen);
   void match(const SightingSet& seen, const std::vector<Pair>& chosen);
   void add(const SeenLandmark& seen, const Pose2& mount);
+  void add(const BearingStarts::Start& start, const SightingSet& seen);
+  void append(SlamLandmark fresh, const SeenLandmark& seen);
   void update_existence(const std::vector<Near>& near, const std::vector<bool>& found);
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
@@ -147,6 +153,7 @@ class EkfSlam final : public Localizer {
   double focused_ = std::numeric_limits<double>::infinity();  ///< m about `centre_`: all in it is active
   double reach_ = 0, view_ = 0;                               ///< largest range and bearing seen so far
   bool sees_bearings_ = false;                                ///< a sighting had no range
+  BearingStarts starts_;
   double hits_ = 0, chances_ = 0;
   std::optional<SlamRelocalization> search_;
   std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial

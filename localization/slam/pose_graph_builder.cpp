@@ -42,7 +42,8 @@ std::vector<Match> PoseGraphBuilder::update(const SightingSet& seen) {
                           .at = slam_.estimate().pose,
                           .given = true,
                           .fixed = false});
-  Eigen::Matrix3d covariance = (pending_.covariance + pending_.covariance.transpose()) / 2;
+  const Eigen::Matrix3d covariance =
+      positive_part((pending_.covariance + pending_.covariance.transpose()) / 2);
   graph_.steps.push_back(
       {.from = pose - 1, .to = pose, .step = pending_.step, .root = root_of_covariance(covariance)});
   pending_ = {};

@@ -139,10 +139,12 @@ std::optional<PoseEstimate> EkfSlam::contradiction() const {
   return differs ? std::optional(at) : std::nullopt;
 }
 
-// Returns whether only the sum of Gaussians knows the position to a metre.
+// Returns whether the sum of Gaussians knows the position much better: it also uses the sightings that one
+// Gaussian cannot identify.
 bool EkfSlam::is_outdone() const {
-  return tracker_ && tracker_->status() != LocalizationStatus::lost &&
-         position_sd(own_estimate()) > kPrecise && position_sd(tracker_->estimate()) < kPrecise;
+  if (!tracker_ || tracker_->status() == LocalizationStatus::lost) return false;
+  const double tracked = position_sd(tracker_->estimate());
+  return tracked < kPrecise && position_sd(own_estimate()) > kOutdone * tracked;
 }
 
 LocalizationStatus EkfSlam::status() const {

@@ -43,7 +43,7 @@ class LogMaker {
     std::vector<std::string> lines(readings_.size());
     tbb::parallel_for(std::size_t{0}, readings_.size(),
                       [&](std::size_t i) { lines[i] = readings_[i].line(); });
-    std::string text = log_header(world_, place_, world_.steps.front().at.plane);
+    std::string text = log_header(world_, place_, world_.steps.front().at.plane, world_.steps);
     for (const std::string& line : lines) text += line;
     return text;
   }

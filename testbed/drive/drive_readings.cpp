@@ -7,11 +7,27 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/options/option_table.hpp"
+#include "testbed/drive/odometry_errors.hpp"
 #include "testbed/drive/ranges_text.hpp"
 
 namespace waymark::testbed {
+namespace {
 
-std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start) {
+std::string noise_as_json(OdometryErrors errors) {
+  std::string text;
+  for (const OptionRow& row : option_table([&](OptionVisitor& option) {
+         errors.noise.describe(option);
+         errors.drift.describe(option);
+       }))
+    text += fmt::format("{}\"{}\":{:.4g}", text.empty() ? "{" : ",", row.name, std::get<double>(row.value));
+  return text + "}";
+}
+
+}  // namespace
+
+std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start,
+                       std::span<const DriveStep> steps) {
   Random random(world.seed, "start");
   const DriveSettings& s = world.settings;
   const double x = start.x + random.normal(0, s.start_sd), y = start.y + random.normal(0, s.start_sd);
@@ -20,10 +36,11 @@ std::string log_header(const DriveWorld& world, const LogCrs& place, const local
   return fmt::format(
       "{{\"kind\":\"header\",\"version\":1,\"frame\":\"{}\"{},\"start\":{{\"x\":{:.4f},\"y\":{:.4f},"
       "\"yaw\":"
-      "{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"vehicle\":\"{}\",\"seed\":{}}}\n",
+      "{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"odometry_noise\":{},\"vehicle\":\"{}\",\"seed\":{}}}\n",
       local ? "map" : "crs", local ? "" : fmt::format(",\"crs\":\"{}\"", place.crs),
       x / place.metres_per_unit, y / place.metres_per_unit, yaw, std::max(s.start_sd, 0.01),
-      std::max(to_radians(s.start_yaw_sd).value, 0.001), s.vehicle, world.seed);
+      std::max(to_radians(s.start_yaw_sd).value, 0.001), noise_as_json(odometry_errors(s, steps)), s.vehicle,
+      world.seed);
 }
 
 std::string odometry_lines(const DriveWorld& world, const LogCrs& place, const DriveStep& step) {

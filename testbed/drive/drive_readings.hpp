@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 #include "core/random.hpp"
@@ -10,7 +11,10 @@ namespace waymark::testbed {
 /// Lines of a log (docs/reference/log_format.md), each with \n. Reading `i` of a sensor at step `i` has a
 /// random stream of its own, so it does not depend on other sensors and steps. Only settings, seed and
 /// targets of the world are used.
-std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start);
+///
+/// The header states the noise of odometry on ground as at the poses of `steps`, driven or planned.
+std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start,
+                       std::span<const DriveStep> steps);
 /// Returns the odometry until the next step, and the true pose if the log has it.
 std::string odometry_lines(const DriveWorld& world, const LogCrs& place, const DriveStep& step);
 /// Returns the poses of the line scanners on the vehicle.

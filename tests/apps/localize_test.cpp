@@ -48,6 +48,28 @@ TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
   EXPECT_THAT(waymark({"localize", map, data, "-o", track_}).err, HasSubstr("add --robot 1"));
 }
 
+TEST_F(Localize, TheLogStatesItsOdometryNoiseAndSettingsReplaceIt) {
+  const auto track = [&](const std::string& header, const std::vector<std::string>& settings) {
+    std::vector<std::string> options{"--method", "odometry", "--start", "0,0,0"};
+    for (const std::string& s : settings) options.insert(options.end(), {"--set", s});
+    const Outcome said = localize(header + "\n" + R"({"kind":"odometry","t":0,"v":1,"omega":0.1}
+{"kind":"odometry","t":1,"v":1,"omega":-0.1}
+{"kind":"odometry","t":2,"v":0,"omega":0}
+)",
+                                  options);
+    EXPECT_EQ(said.code, 0) << said.err;
+    return text_of(track_);
+  };
+  const std::string none = R"({"kind":"header","version":1})";
+  const std::string noisy =
+      R"({"kind":"header","version":1,"odometry_noise":{"yaw_per_metre":0.3,"scale_sd":0.1}})";
+  const std::string stated = track(noisy, {});
+  EXPECT_NE(stated, track(none, {}));
+  EXPECT_EQ(stated, track(none, {"yaw_per_metre=0.3", "scale_sd=0.1"}));
+  EXPECT_EQ(track(noisy, {"yaw_per_metre=0.002", "scale_sd=0"}), track(none, {}));
+  EXPECT_EQ(track(noisy, {"yaw_per_metre=0.002"}), track(none, {"scale_sd=0.1"}));
+}
+
 TEST_F(Localize, SettingsNeedNeitherMapNorLog) {
   const Outcome said = waymark({"localize", "--settings", "--method", "pf", "--set", "particles=777"});
   EXPECT_EQ(said.code, 0) << said.err;

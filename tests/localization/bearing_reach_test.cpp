@@ -8,6 +8,7 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
+#include "localization/motion_model.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -117,6 +118,59 @@ TEST(BearingReach, WithoutATypeIsTheSmallest) {
   const FeatureScales scales(built_in_types());
   EXPECT_EQ(scales.identification_reach({}), 100);
   EXPECT_EQ(FeatureScales().identification_reach({}), 100);
+}
+
+// A camera among rocks, four fifths of them mapped: a bearing is matched with the right rock or with none.
+TEST(Bearings, AreMatchedRightlyOrNotAtAll) {
+  int matched = 0, right = 0, sightings = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Random random(seed, "camera");
+    std::vector<MapLandmark> rocks, map;
+    for (LandmarkKey i = 1; i <= 60; ++i) {
+      rocks.push_back(landmark(i, random.uniform(-10, 50), random.uniform(-20, 20), "rock"));
+      if (!random.bernoulli(0.8)) continue;
+      map.push_back(rocks.back());
+      map.back().covariance = 0.01 * Eigen::Matrix2d::Identity();
+      map.back().at += 0.1 * Eigen::Vector2d(random.normal(), random.normal());
+    }
+    IdentificationOptions options;
+    options.use_identities = false, options.bearing_reach = 20;
+    MultiHypothesisFilter filter(
+        {{}, Eigen::Vector3d(0.04, 0.04, 4e-4).asDiagonal()},
+        LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)}, FeatureScales(built_in_types()), options));
+    Pose2 truth;
+    const OdometryNoise noise{.along_per_metre = 1e-3, .across_per_metre = 1e-3, .yaw_per_metre = 1e-4};
+    for (int step = 0; step < 40; ++step) {
+      const BodyMotion motion = twist_motion(0.5, 0, 0, 1, noise);
+      const Eigen::Vector3d sd = motion.covariance.diagonal().cwiseSqrt();
+      truth = truth * pose_of(motion.step.vector() + sd.cwiseProduct(Eigen::Vector3d(
+                                                         random.normal(), random.normal(), random.normal())));
+      filter.predict(motion);
+      SightingSet seen;
+      std::vector<LandmarkKey> keys;
+      for (const MapLandmark& rock : rocks) {
+        const Eigen::Vector2d to = rock.at - truth.at();
+        if (to.norm() > 20 || to.norm() < 1 || !random.bernoulli(0.5)) continue;
+        keys.push_back(rock.key);
+        seen.sightings.push_back(
+            {.type = rock.type,
+             .bearing = wrap_angle(std::atan2(to.y(), to.x()) - truth.yaw + 0.005 * random.normal()),
+             .bearing_sd = 0.005,
+             .range = {},
+             .features = {},
+             .identity = {}});
+      }
+      const std::vector<Match> matches = filter.update(seen);
+      for (std::size_t i = 0; i < matches.size(); ++i) {
+        ++sightings;
+        matched += matches[i].verdict == Verdict::matched;
+        right += matches[i].verdict == Verdict::matched && matches[i].key == keys[i];
+      }
+    }
+  }
+  RecordProperty("matched", matched), RecordProperty("right", right), RecordProperty("sightings", sightings);
+  EXPECT_GE(right, 0.9 * matched);
+  EXPECT_GT(matched, 0.2 * sightings);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "localization/filters/particle_filter.hpp"
 #include "localization/replay_log.hpp"
 #include "localization/robot_log.hpp"
+#include "localization/slam/ekf_slam.hpp"
 #include "localization/track_score.hpp"
 #include "mrclam_robots.hpp"
 
@@ -73,6 +74,38 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
   EXPECT_DOUBLE_EQ(seen.sightings[0].features.variance[0], 0.0025);
   EXPECT_FALSE(seen.sightings[1].range);
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
+}
+
+TEST_F(WaymarkLog, StatesTheNoiseOfItsOdometryAndSensors) {
+  const std::string drive = R"(
+{"kind":"odometry","t":0,"v":1,"omega":0}
+{"kind":"sightings","t":1,"items":[{"range":4,"bearing":0},{"range":4,"bearing":0,"range_sd":0.2,"bearing_sd":0.1}]}
+)";
+  const RobotLog log = read(R"({"kind":"header","range_sd":0.5,"bearing_sd":0.03,)"
+                            R"("odometry_noise":{"yaw_per_metre":1e-6,"scale_sd":0.02}})" +
+                            drive);
+  ASSERT_TRUE(log.odometry);
+  EXPECT_EQ(log.odometry->yaw_per_metre, 1e-6);
+  EXPECT_EQ(log.odometry->along_per_metre, OdometryNoise{}.along_per_metre);
+  EXPECT_EQ(log.drift, (OdometryDrift{.scale_sd = 0.02}));
+  const auto& seen = std::get<SightingSet>(log.events[1].what).sightings;
+  EXPECT_EQ(seen[0].range_sd, 0.5);
+  EXPECT_EQ(seen[0].bearing_sd, 0.03);
+  EXPECT_EQ(seen[1].range_sd, 0.2);
+  EXPECT_EQ(seen[1].bearing_sd, 0.1);
+  EXPECT_FALSE(read(drive).odometry);
+  EXPECT_FALSE(read(drive).drift.any());
+
+  const auto header = [](const std::string& noise) {
+    return R"({"kind":"header","odometry_noise":{)" + noise + "}}";
+  };
+  EXPECT_THAT(refusal(header(R"("yaw_per_meter":1)")),
+              AllOf(HasSubstr("unknown \"yaw_per_meter\" in \"odometry_noise\""), HasSubstr("line 1")));
+  EXPECT_THAT(refusal(header(R"("yaw_per_metre":-1)")),
+              HasSubstr("\"yaw_per_metre\" must be at least 0, is -1"));
+  EXPECT_THAT(refusal(header(R"("scale_sd":3)")), HasSubstr("\"scale_sd\" must be 0 to 0.5, is 3"));
+  EXPECT_THAT(refusal(header(R"("drift_distance":0)")),
+              HasSubstr("\"drift_distance\" must be 0.1 to 1e+06, is 0"));
 }
 
 TEST_F(WaymarkLog, SaysWhatIsWrongAndWhere) {
@@ -240,6 +273,30 @@ TEST_F(Mrclam, HypothesesWithoutIdentities) {
   EXPECT_LE(all.rmse, 0.35);
   EXPECT_GT(all.named, 5000);
   EXPECT_LT(static_cast<double>(all.wrong), 0.05 * static_cast<double>(all.named));
+}
+
+// One Gaussian can identify a tenth of these sightings; the sum of Gaussians that follows the robot in the
+// map knows more, and SLAM takes its pose where it does.
+TEST_F(Mrclam, SlamInTheMapErrsAsTheHypothesesDo) {
+  const MrclamRobots robots = read_mrclam();
+  IdentificationOptions unnamed;
+  unnamed.use_identities = false;
+  for (std::size_t robot = 0; robot < 5; ++robot) {
+    const auto rmse_of = [&](Localizer& localizer) {
+      const RobotLog& log = robots.logs[robot];
+      return score(replay(log, localizer, {}), log.truth, TrackAlignment::none, true).ate_rmse;
+    };
+    const FeatureScales scales(robots.types);
+    MultiHypothesisFilter filter(robots.start[robot],
+                                 LandmarkMatcher(LandmarkWindow{LandmarkGrid(robots.map)}, scales, unnamed));
+    SlamOptions options;
+    options.identification = unnamed;
+    EkfSlam slam(robots.start[robot], LandmarkGrid(robots.map), scales, options);
+    slam.set_pose_finder([](auto&&...) { return PoseSearchResult{}; });
+    const double filtered = rmse_of(filter), mapped = rmse_of(slam);
+    EXPECT_LT(mapped, std::max(0.25, 1.5 * filtered)) << "robot " << robot + 1;
+    std::cout << "robot " << robot + 1 << ": " << filtered << " and " << mapped << " m\n";
+  }
 }
 
 TEST_F(Mrclam, ParticlesWithIdentities) {

@@ -7,6 +7,8 @@
 #include <cstdio>
 
 #include "core/random.hpp"
+#include "localization/filters/map_errors.hpp"
+#include "localization/filters/measurement.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/motion_model.hpp"
 
@@ -65,13 +67,90 @@ double consistency(double error_correlation_distance) {
 }
 
 TEST(MultiHypothesisFilter, KnowsThatTheMapErrsTheSameWayAgain) {
-  const double independent = consistency(0), alike = consistency(15);
+  const double independent = consistency(0), alike = consistency(200);
   std::printf("mean squared error over claimed variance: %.1f taken as independent, %.1f as alike\n",
               independent, alike);
   EXPECT_GT(independent, 2) << "the test must show the effect";
   EXPECT_LT(alike, 0.5 * independent);
   EXPECT_LT(alike, 2);
   EXPECT_GT(alike, 0.2);
+}
+
+// The slow twin: one state of pose and all landmarks, whose rows of the gain are set to zero (Schmidt 1966).
+struct WholeState {
+  Pose2 pose;
+  Eigen::MatrixXd covariance;
+
+  void predict(const BodyMotion& motion) {
+    const MotionJacobians j = motion_jacobians(pose, motion.step);
+    Eigen::MatrixXd f = Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows());
+    f.topLeftCorner<3, 3>() = j.by_pose;
+    covariance = (f * covariance * f.transpose()).eval();
+    covariance.topLeftCorner<3, 3>() += j.by_step * motion.covariance * j.by_step.transpose();
+    pose = pose * motion.step;
+  }
+  void correct(const SeenLandmark& seen, const Eigen::Vector2d& at, Eigen::Index which) {
+    const ExpectedSighting e = expect(pose, {}, at);
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(2, covariance.rows());
+    h.leftCols<3>() = e.by_pose, h.middleCols<2>(3 + 2 * which) = e.by_landmark;
+    const Eigen::Matrix2d r = sensor_noise(seen), s = h * covariance * h.transpose() + r;
+    Eigen::MatrixXd gain = covariance * h.transpose() * s.inverse();
+    gain.bottomRows(covariance.rows() - 3).setZero();
+    pose = pose_of(pose.vector() + gain.topRows<3>() * innovation(seen, e.value));
+    const Eigen::MatrixXd a = Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows()) - gain * h;
+    covariance = (a * covariance * a.transpose() + gain * r * gain.transpose()).eval();
+  }
+};
+
+TEST(MapErrors, AreThoseOfAStateWithAllLandmarks) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed, "consider");
+    std::vector<MapLandmark> map(4);
+    WholeState whole{{}, Eigen::MatrixXd::Zero(11, 11)};
+    whole.covariance.topLeftCorner<3, 3>() = Eigen::Vector3d(0.1, 0.2, 0.01).asDiagonal();
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      map[i].key = 100 - i;
+      map[i].at = {random.uniform(5, 20), random.uniform(-10, 10)};
+      const double a = random.uniform(0.01, 0.3), b = random.uniform(0.01, 0.3);
+      map[i].covariance << a, 0.3 * std::sqrt(a * b), 0.3 * std::sqrt(a * b), b;
+      const auto row = static_cast<Eigen::Index>(3 + 2 * i);
+      whole.covariance.block<2, 2>(row, row) = map[i].covariance;
+    }
+    PoseEstimate at{{}, whole.covariance.topLeftCorner<3, 3>()};
+    MapErrors errors;
+    for (int k = 0; k < 40; ++k) {
+      const BodyMotion motion = twist_motion(0.2, 0, random.uniform(-0.1, 0.1), 1, {});
+      whole.predict(motion);
+      errors.predict(at.pose, motion.step);
+      at = predict_pose(at, motion);
+      const std::size_t which = random.uniform_index(map.size());
+      SeenLandmark s;
+      const ExpectedSighting e = expect(at.pose, {}, map[which].at);
+      s.range = e.value[0] + random.normal(0, 0.1), s.range_sd = 0.1;
+      s.bearing = wrap_angle(e.value[1] + random.normal(0, 0.02)), s.bearing_sd = 0.02;
+      whole.correct(s, map[which].at, static_cast<Eigen::Index>(which));
+      at = errors.correct(at, s, {}, map[which], 1);
+      ASSERT_LT((at.covariance - whole.covariance.topLeftCorner<3, 3>()).norm(), 1e-9) << seed << ' ' << k;
+      ASSERT_LT((at.pose.vector() - whole.pose.vector()).norm(), 1e-9) << seed << ' ' << k;
+    }
+  }
+}
+
+TEST(MapErrors, ALandmarkSeenForEverIsAsCertainAsItWasMapped) {
+  MapLandmark landmark{
+      .key = 1, .at = {10, 0}, .covariance = 0.04 * Eigen::Matrix2d::Identity(), .features = {}};
+  SeenLandmark s;
+  s.range = 10, s.range_sd = 0.05, s.bearing = 0, s.bearing_sd = 0.01;
+  for (const bool unscented : {false, true}) {
+    PoseEstimate at{{}, Eigen::Vector3d(1, 1, 1e-6).asDiagonal()};
+    MapErrors errors;
+    for (int i = 0; i < 1000; ++i) at = errors.correct(at, s, {}, landmark, 1, unscented);
+    EXPECT_NEAR(std::sqrt(at.covariance(0, 0)), 0.2, 0.01) << unscented;
+    MapErrors independent(0);
+    PoseEstimate sure{{}, Eigen::Vector3d(1, 1, 1e-6).asDiagonal()};
+    for (int i = 0; i < 1000; ++i) sure = independent.correct(sure, s, {}, landmark, 1, unscented);
+    EXPECT_LT(std::sqrt(sure.covariance(0, 0)), 0.01) << unscented;
+  }
 }
 
 }  // namespace

@@ -157,6 +157,15 @@ localization::RobotLog read_log(const LocalizeRequest& request, const SensorProf
   return log;
 }
 
+/// Gives the settings the odometry noise that the log states, and the log what the request sets.
+void share_odometry_noise(const LocalizeRequest& request, const DescribeOptions& options,
+                          localization::ReplayOptions& play, localization::RobotLog& log) {
+  if (log.odometry) play.odometry = *log.odometry;
+  play.drift = log.drift;
+  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
+  log.odometry = play.odometry, log.drift = play.drift;
+}
+
 void write_track(const LocalizeRequest& request, const localization::Track& track, const RobotMap& map) {
   exporters::TrackOutput form{
       .frame = request.in_map_crs ? &map.frame : nullptr, .crs = &map.crs(), .timing = request.timing};
@@ -211,6 +220,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
           : open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
   const RobotMap map = opened.map;
   localization::RobotLog log = read_log(request, sensor.get(), map, callbacks);
+  share_odometry_noise(request, options, settings.play, log);
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);

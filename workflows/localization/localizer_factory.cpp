@@ -165,6 +165,7 @@ std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& tas
     if (id.use_identities || id.chosen_association() != "joint") {
       localization::KalmanOptions options = settings.kalman;
       options.search_growth = growth;
+      options.error_memory_distance = settings.hypotheses.error_correlation_distance;
       if (unscented) return std::make_unique<localization::UnscentedKalman>(start, matcher, options);
       return std::make_unique<localization::ExtendedKalman>(start, matcher, options);
     }

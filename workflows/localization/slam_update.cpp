@@ -140,9 +140,9 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer) {
   localization::ScanDetectionOptions scans = task.settings.scans;
-  // A map without landmarks has all types, so the log decides: that of a park has odometry. Its beams are so
-  // far apart that a stem is one or two wide: diameters mislead (ATE 1.9 m with, 1.2 m without).
-  if (scans.find == "auto" && task.log.odometry)
+  // A map without landmarks has all types, so the log decides. The beams of the park are so far apart that a
+  // stem is one or two wide: diameters mislead (ATE 1.9 m with, 1.2 m without).
+  if (scans.find == "auto" && task.log.shows_stems)
     scans = {.find = "stems", .features = false};
   else if (scans.find == "auto" && task.map.map.landmarks == 0)
     scans.find = "rocks";

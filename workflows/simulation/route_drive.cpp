@@ -264,6 +264,20 @@ std::string resolved_name(const fs::path& folder, const std::string& name) {
   return name.ends_with(".json") ? resolved(folder, name) : name;
 }
 
+/// Returns the poses of a vehicle along a planned route: what is known of its slopes before the drive.
+std::vector<testbed::DriveStep> planned_steps(const geo::Terrain& terrain,
+                                              std::span<const Eigen::Vector2d> path,
+                                              const localization::Wheels& wheels) {
+  const auto height = [&](const Eigen::Vector2d& p) { return terrain.height(p.x(), p.y()); };
+  std::vector<testbed::DriveStep> steps;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector2d along = path[i] - path[i - 1];
+    const Pose2 pose{path[i].x(), path[i].y(), std::atan2(along.y(), along.x())};
+    if (const auto at = localization::pose_on_terrain(height, pose, wheels)) steps.push_back({.at = *at});
+  }
+  return steps;
+}
+
 }  // namespace
 
 RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& scene,
@@ -281,7 +295,9 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   const auto grid = [&](const Eigen::Vector2d& at) -> Eigen::Vector2d {
     return map.frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.head<2>() * place.metres_per_unit;
   };
-  const Eigen::Vector2d first = grid(stations[0].at), second = grid(stations[1].at), along = second - first;
+  std::vector<Eigen::Vector2d> planned;
+  for (const RoutePoint& station : stations) planned.push_back(grid(station.at));
+  const Eigen::Vector2d first = planned[0], along = planned[1] - first;
   const Pose2 start{first.x(), first.y(), std::atan2(along.y(), along.x())};
   if (!scene.terrain.height(start.x, start.y))
     throw Error(ErrorCode::input,
@@ -291,7 +307,8 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   RouteDrive drive;
   DriveReport& report = drive.report;
   report.limit_sigma = model.limit_sigma;
-  const std::string header = testbed::log_header(world, place, start);
+  const std::string header =
+      testbed::log_header(world, place, start, planned_steps(scene.terrain, planned, settings.wheels));
   LiveLocalizer live({.map = map_file,
                       .log = {},
                       .method = model.method,

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/filters/map_errors.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "localization/body_motion.hpp"
+#include "localization/filters/measurement.hpp"
+
+namespace waymark::localization {
+namespace {
+
+constexpr std::size_t kMaxLandmarks = 100;  // the least recently seen one is forgotten
+
+/// A sighting as a linear function of pose and landmark, with the noise of what is not linear.
+struct LinearSighting {
+  Eigen::Vector2d value;
+  Eigen::Matrix<double, 2, 3> by_pose;
+  Eigen::Matrix2d by_landmark;
+  Eigen::Matrix2d residual = Eigen::Matrix2d::Zero();
+};
+
+LinearSighting by_derivatives(const PoseEstimate& at, const Pose2& mount, const Eigen::Vector2d& landmark) {
+  const ExpectedSighting e = expect(at.pose, mount, landmark);
+  return {e.value, e.by_pose, e.by_landmark};
+}
+
+// Statistical linear regression over the symmetric points of three dimensions.
+LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const Eigen::Vector2d& landmark) {
+  constexpr int kPoints = 6;
+  LinearSighting line = by_derivatives(at, mount, landmark);
+  const Eigen::Matrix3d root = square_root(at.covariance);
+  if (!(root.diagonal().minCoeff() > 0)) return line;
+  Eigen::Matrix<double, 2, kPoints> seen;
+  for (int i = 0; i < kPoints; ++i) {
+    const double reach = std::sqrt(3.0) * (i % 2 ? -1 : 1);
+    seen.col(i) = expect(pose_of(at.pose.vector() + reach * root.col(i / 2)), mount, landmark).value;
+    seen(1, i) = wrap_angle(seen(1, i) - line.value[1]);  // about the bearing in the middle
+  }
+  const Eigen::Vector2d mean = seen.rowwise().mean();
+  seen.colwise() -= mean;
+  Eigen::Matrix<double, 2, 3> by_root;
+  for (int k = 0; k < 3; ++k) by_root.col(k) = (seen.col(2 * k) - seen.col(2 * k + 1)) / (2 * std::sqrt(3.0));
+  line.value = {mean[0], wrap_angle(line.value[1] + mean[1])};
+  line.by_pose = by_root * root.inverse();
+  line.residual = seen * seen.transpose() / kPoints - by_root * by_root.transpose();
+  return line;
+}
+
+}  // namespace
+
+void MapErrors::predict(const Pose2& before, const Pose2& step) {
+  driven_ += step.at().norm();
+  if (errors_.empty()) return;
+  const Eigen::Matrix3d by_pose = motion_jacobians(before, step).by_pose;
+  for (Entry& e : errors_) e.covariance = by_pose * e.covariance;
+}
+
+void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
+  if (errors_.empty()) return;
+  const Eigen::Matrix3d change =
+      after.covariance * (before.covariance + 1e-12 * Eigen::Matrix3d::Identity()).inverse();
+  if (!change.allFinite()) return clear();
+  for (Entry& e : errors_) e.covariance = change * e.covariance;
+}
+
+PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& seen,
+                                const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
+                                bool unscented) {
+  const LinearSighting line = unscented ? by_regression(before, robot_from_sensor, landmark.at)
+                                        : by_derivatives(before, robot_from_sensor, landmark.at);
+  const auto at = std::ranges::lower_bound(errors_, landmark.key, {}, &Entry::key);
+  const bool known = at != errors_.end() && at->key == landmark.key;
+  const WithLandmark with = known ? at->covariance : WithLandmark::Zero();
+  const Eigen::Matrix2d map_error = landmark.covariance / trust;
+  Eigen::Matrix<double, 2, 3> h = line.by_pose;
+  Eigen::Matrix2d b = line.by_landmark, r = sensor_noise(seen) / trust + line.residual;
+  if (!seen.range) {  // the range row carries no information
+    h.row(0).setZero(), b.row(0).setZero();
+    r(0, 1) = r(1, 0) = 0;
+  }
+  const Eigen::Matrix3d& p = before.covariance;
+  const Eigen::Matrix<double, 3, 2> with_map = with * b.transpose();  // of pose and the map's part
+  const Eigen::Matrix<double, 3, 2> with_seen = p * h.transpose() + with_map;
+  const Eigen::Matrix2d s =
+      h * with_seen + with_map.transpose() * h.transpose() + b * map_error * b.transpose() + r;
+  const Eigen::Matrix<double, 3, 2> gain = with_seen * s.inverse();
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * h;
+  const Eigen::Matrix3d cross = a * with_map * gain.transpose();
+  const Eigen::Matrix3d after = a * p * a.transpose() - cross - cross.transpose() +
+                                gain * (b * map_error * b.transpose() + r) * gain.transpose();
+  for (Entry& e : errors_) e.covariance = a * e.covariance;
+  if (memory_ > 0) {
+    const WithLandmark now = a * with - gain * b * map_error;
+    if (known)
+      *at = {landmark.key, now, driven_};
+    else
+      errors_.insert(at, {landmark.key, now, driven_});
+    drop_old();
+  }
+  return {pose_of(before.pose.vector() + gain * innovation(seen, line.value)),
+          (after + after.transpose()) / 2};
+}
+
+void MapErrors::mix(const MapErrors& other, double other_weight) {
+  std::vector<Entry> mixed;
+  auto i = errors_.begin();
+  auto j = other.errors_.begin();
+  while (i != errors_.end() || j != other.errors_.end()) {
+    const bool mine = i != errors_.end() && (j == other.errors_.end() || i->key <= j->key);
+    const bool theirs = j != other.errors_.end() && (i == errors_.end() || j->key <= i->key);
+    Entry e = mine ? *i : *j;
+    e.covariance.setZero();
+    if (mine) e.covariance += (1 - other_weight) * i->covariance, e.driven = std::max(e.driven, i++->driven);
+    if (theirs) e.covariance += other_weight * j->covariance, e.driven = std::max(e.driven, j++->driven);
+    mixed.push_back(e);
+  }
+  errors_ = std::move(mixed);
+}
+
+void MapErrors::drop_old() {
+  std::erase_if(errors_, [&](const Entry& e) { return driven_ - e.driven > memory_; });
+  if (errors_.size() > kMaxLandmarks) errors_.erase(std::ranges::min_element(errors_, {}, &Entry::driven));
+}
+
+}  // namespace waymark::localization

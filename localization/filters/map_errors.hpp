@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+#include "localization/identification/map_landmark.hpp"
+#include "localization/pose2.hpp"
+#include "localization/sighting.hpp"
+namespace waymark::localization {
+
+/// Covariances of a pose with the map errors of the landmarks that it was corrected by.
+/// A landmark's error on the map is the same at each sighting. The filter considers it without estimating it
+/// (Schmidt 1966): however often a landmark is seen, the pose never becomes more certain than the landmark.
+/// Errors of different landmarks count as independent.
+class MapErrors {
+ public:
+  /// `memory`: metres after which a landmark not seen meanwhile is forgotten; 0: each sighting has a new
+  /// error.
+  explicit MapErrors(double memory = 200) : memory_(memory) {}
+
+  /// Follows a prediction of the pose from `before` by a step.
+  void predict(const Pose2& before, const Pose2& step);
+  /// Follows a correction of the pose by measurements that do not depend on the map.
+  void follow(const PoseEstimate& before, const PoseEstimate& after);
+  /// Returns the pose corrected by a sighting, Joseph form. `trust` in (0, 1] divides the noise. `unscented`:
+  /// linear regression over sigma points instead of derivatives.
+  PoseEstimate correct(const PoseEstimate& before, const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                       const MapLandmark& landmark, double trust, bool unscented = false);
+  /// Becomes those of a mixture of two poses, with weights 1 - `other_weight` and `other_weight`.
+  void mix(const MapErrors& other, double other_weight);
+  /// Forgets all: the pose is a new one.
+  void clear() { errors_.clear(); }
+
+  std::size_t size() const { return errors_.size(); }
+
+ private:
+  using WithLandmark = Eigen::Matrix<double, 3, 2>;  // covariance of pose and landmark
+  struct Entry {
+    LandmarkKey key;
+    WithLandmark covariance;
+    double driven;  // at the last sighting, m
+  };
+  void drop_old();
+
+  double memory_, driven_ = 0;
+  std::vector<Entry> errors_;  // by key
+};
+
+}  // namespace waymark::localization

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/odometry_drift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "core/random.hpp"
+#include "localization/absolute_fix.hpp"
+#include "localization/motion_model.hpp"
+
+namespace waymark::test {
+using namespace localization;
+namespace {
+
+constexpr OdometryDrift kDrift{
+    .scale_sd = 0.03, .slip_sd = 0.03, .sideways_sd = 0.02, .drift_distance = 10, .yaw_rate_sd = 0.002};
+constexpr OdometryNoise kNoise{.along_per_metre = 1e-5,
+                               .across_per_metre = 1e-5,
+                               .yaw_per_metre = 1e-5,
+                               .yaw_per_radian = 1e-5,
+                               .position_per_second = 1e-8,
+                               .yaw_per_second = 1e-8};
+
+/// The slow twin: a Kalman filter of pose and errors in one state of seven.
+struct WholeState {
+  Eigen::Matrix<double, 7, 1> mean = Eigen::Matrix<double, 7, 1>::Zero();
+  Eigen::Matrix<double, 7, 7> covariance = Eigen::Matrix<double, 7, 7>::Zero();
+
+  WholeState() { covariance.diagonal() << 0.01, 0.01, 1e-4, 9e-4, 9e-4, 4e-4, 4e-6; }
+  void predict(const BodyMotion& motion, double seconds) {
+    const Pose2& step = motion.step;
+    const Eigen::Vector4d e = mean.tail<4>();
+    const Pose2 driven{step.x * (1 + e[0] + e[1]), step.x * e[2], step.yaw + e[3] * seconds};
+    const MotionJacobians j = motion_jacobians(pose_of(mean.head<3>()), driven);
+    Eigen::Matrix<double, 3, 4> by_errors = Eigen::Matrix<double, 3, 4>::Zero();
+    by_errors(0, 0) = by_errors(0, 1) = by_errors(1, 2) = step.x, by_errors(2, 3) = seconds;
+    Eigen::Matrix<double, 7, 7> f = Eigen::Matrix<double, 7, 7>::Identity(), q = f * 0;
+    f.topLeftCorner<3, 3>() = j.by_pose, f.topRightCorner<3, 4>() = j.by_step * by_errors;
+    q.topLeftCorner<3, 3>() = j.by_step * motion.covariance * j.by_step.transpose();
+    mean.head<3>() = (pose_of(mean.head<3>()) * driven).vector();
+    const double fade = std::exp(-step.x / kDrift.drift_distance);
+    Eigen::Matrix<double, 7, 1> fading;
+    fading << 1, 1, 1, 1, fade, fade, 1;
+    q(4, 4) = 9e-4 * (1 - fade * fade), q(5, 5) = 4e-4 * (1 - fade * fade);
+    mean = mean.cwiseProduct(fading);
+    f = fading.asDiagonal() * f;
+    covariance = f * covariance * f.transpose() + q;
+  }
+  void correct(const GnssFix& fix) {
+    const Eigen::Matrix2d s =
+        covariance.topLeftCorner<2, 2>() + fix.sd * fix.sd * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix<double, 7, 2> gain = covariance.leftCols<2>() * s.inverse();
+    mean += gain * (fix.at - mean.head<2>());
+    covariance -= (gain * s * gain.transpose()).eval();
+  }
+};
+
+TEST(DriftEstimator, IsTheKalmanFilterOfPoseAndErrors) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed, "drift");
+    WholeState whole;
+    DriftEstimator drift(kDrift);
+    PoseEstimate pose{{}, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+    for (int i = 0; i < 60; ++i) {
+      const BodyMotion odometry = twist_motion(0.5, 0, random.uniform(-0.02, 0.02), 1, kNoise);
+      const BodyMotion straight{{0.5, 0, odometry.step.yaw}, odometry.covariance};
+      whole.predict(straight, 1);
+      pose = predict_pose(pose, drift.correct(pose, straight, 1));
+      if (i % 5 != 4) continue;
+      const GnssFix fix{whole.mean.head<2>() + 0.05 * Eigen::Vector2d(random.normal(), random.normal()), 0.1};
+      const PoseEstimate before = pose;
+      whole.correct(fix);
+      pose = update_pose(pose, fix).estimate;
+      drift.learn(before, pose);
+    }
+    EXPECT_NEAR((pose.pose.vector() - whole.mean.head<3>()).norm(), 0, 1e-4) << seed;
+    EXPECT_NEAR((drift.errors() - whole.mean.tail<4>()).norm(), 0, 1e-4) << seed;
+    for (int k = 0; k < 4; ++k)
+      EXPECT_NEAR(std::sqrt(drift.covariance()(k, k)), std::sqrt(whole.covariance(3 + k, 3 + k)), 1e-4)
+          << seed << ", error " << k;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(std::sqrt(pose.covariance(k, k) / whole.covariance(k, k)), 1, 0.1)
+          << seed << ", axis " << k;
+  }
+}
+
+// A motion undoes an error of the pose that it was estimated with. Of another pose, which may be much more
+// certain, it would undo more than there is: a covariance without width in one direction.
+TEST(DriftEstimator, OnlyThePoseThatErredBecomesMoreCertainByDriving) {
+  BodyMotion motion{{0.1, 0, 0}, Eigen::Vector3d(1e-5, 1e-5, 1e-6).asDiagonal()};
+  motion.covariance(0, 0) = -0.02;
+  const PoseEstimate erred{{}, Eigen::Vector3d(0.2, 0.2, 1e-4).asDiagonal()};
+  EXPECT_NEAR(predict_pose(erred, motion).covariance(0, 0), 0.18, 1e-6);
+  const PoseEstimate certain{{}, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+  for (const PoseEstimate& after : {predict_pose(certain, motion), predict_other_pose(certain, motion)})
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_GE(after.covariance(axis, axis), certain.covariance(axis, axis)) << axis;
+  EXPECT_NEAR(predict_other_pose(erred, motion).covariance(0, 0), 0.2, 1e-6);
+}
+
+struct Gap {
+  double error = 0, ratio = 0;  // m at the end, and squared error over variance per coordinate
+};
+
+/// Drives 60 m with fixes, then 60 m without, by odometry whose errors are drawn from `kDrift`.
+Gap drive_into_a_gap(std::uint64_t seed, bool estimate) {
+  Random random(seed, "gap");
+  const double scale = random.normal(0, kDrift.scale_sd), bias = random.normal(0, kDrift.yaw_rate_sd);
+  double slip = random.normal(0, kDrift.slip_sd), aside = random.normal(0, kDrift.sideways_sd);
+  const double fade = std::exp(-0.5 / kDrift.drift_distance), fresh = std::sqrt(1 - fade * fade);
+  Pose2 truth;
+  PoseEstimate pose{{}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()};
+  DriftEstimator drift(kDrift);
+  for (int i = 0; i < 240; ++i) {
+    const double turn = 0.01 * std::sin(0.05 * i);
+    const double along = std::sqrt(kNoise.along_per_metre / 2) * random.normal(),
+                 across = std::sqrt(kNoise.across_per_metre / 2) * random.normal(),
+                 yaw = std::sqrt(kNoise.yaw_per_metre / 2) * random.normal();
+    truth = truth * Pose2{0.5 * (1 + scale + slip) + along, 0.5 * aside + across, turn + bias + yaw};
+    slip = fade * slip + fresh * random.normal(0, kDrift.slip_sd);
+    aside = fade * aside + fresh * random.normal(0, kDrift.sideways_sd);
+    BodyMotion motion = twist_motion(0.5, 0, turn, 1, kNoise);
+    if (estimate) motion = drift.correct(pose, motion, 1);
+    pose = predict_pose(pose, motion);
+    if (i >= 120) continue;
+    const PoseEstimate before = pose;
+    pose = update_pose(pose,
+                       GnssFix{truth.at() + 0.05 * Eigen::Vector2d(random.normal(), random.normal()), 0.05})
+               .estimate;
+    pose = update_pose(pose, HeadingFix{truth.yaw + random.normal(0, 0.01), 0.01}).estimate;
+    if (estimate) drift.learn(before, pose);
+  }
+  const Eigen::Vector2d off = pose.pose.at() - truth.at();
+  return {off.norm(), off.dot(pose.covariance.topLeftCorner<2, 2>().inverse() * off) / 2};
+}
+
+TEST(DriftEstimator, LearntErrorsCarryTheRobotThroughAGap) {
+  double with = 0, without = 0, ratio = 0;
+  constexpr int kDrives = 200;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    const Gap estimated = drive_into_a_gap(seed, true), ignored = drive_into_a_gap(seed, false);
+    with += estimated.error * estimated.error / kDrives, without += ignored.error * ignored.error / kDrives;
+    ratio += estimated.ratio / kDrives;
+  }
+  EXPECT_LT(std::sqrt(with), 0.6 * std::sqrt(without));
+  // 200 drives of two coordinates: the mean of chi-square over its rows is within 0.86 to 1.15 (95 %).
+  EXPECT_GT(ratio, 0.75);
+  EXPECT_LT(ratio, 1.3);
+}
+
+TEST(DriftEstimator, AJumpTeachesNothing) {
+  DriftEstimator drift(kDrift);
+  PoseEstimate pose{{}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()};
+  for (int i = 0; i < 20; ++i)
+    pose = predict_pose(pose, drift.correct(pose, twist_motion(0.5, 0, 0, 1, kNoise), 1));
+  drift.learn(pose, {{500, -200, 2}, pose.covariance});
+  EXPECT_EQ(drift.errors(), DriftEstimator::Errors::Zero());
+  EXPECT_NEAR(std::sqrt(drift.covariance()(0, 0)), kDrift.scale_sd, 1e-12);
+}
+
+}  // namespace
+}  // namespace waymark::test
