@@ -12,6 +12,9 @@
 namespace waymark::localization {
 namespace {
 
+constexpr double kHorizon = 10e3;  // m: types that are identified from farther away are seen on the horizon
+constexpr double kNearObjects = 100;  // m: objects that are confused with landmarks
+
 /// Returns quantiles of the gate by degrees of freedom, computed once per gate.
 double gate_of(const IdentificationOptions& options, int freedom) {
   constexpr int kMaxFreedom = 2 + static_cast<int>(kMaxFeatures);
@@ -151,6 +154,16 @@ PoseEstimate mixture(const PoseEstimate& before, const std::vector<JointHypothes
 
 }  // namespace
 
+double IdentificationOptions::reach_of(const SeenLandmark& seen, const FeatureScales& scales) const {
+  if (bearing_reach > 0) return bearing_reach;
+  const double reach = scales.identification_reach(seen.type);
+  return sensor_range > 0 && reach < kHorizon ? std::min(reach, sensor_range) : reach;
+}
+
+double IdentificationOptions::clutter_reach() const {
+  return bearing_reach > 0 ? bearing_reach : sensor_range > 0 ? sensor_range : kNearObjects;
+}
+
 void IdentificationOptions::describe(OptionVisitor& option) {
   option("distance", distance,
          {.help = "Distance of a sighting and a landmark: with all covariances, or eq. 11 of the paper",
@@ -180,7 +193,8 @@ void IdentificationOptions::describe(OptionVisitor& option) {
   option("learn_clutter", learn_clutter,
          {.help = "Estimate the density of sightings without a landmark over the drive"});
   option("bearing_reach", bearing_reach,
-         {.help = "Largest range of a sighting without range, metres; 0: that of its landmark type",
+         {.help = "Largest range of a sighting without range, metres; 0: that of its landmark type, or of a "
+                  "sensor that measures no ranges",
           .min = 0,
           .max = 1e6});
   option("node_limit", node_limit,

@@ -37,7 +37,8 @@ struct IdentificationOptions {
   /// `learn_clutter` the least one: filters estimate it over the drive.
   double clutter = 0.003;
   bool learn_clutter = true;
-  double bearing_reach = 0;         ///< m: largest range of a sighting without range; 0: that of its type
+  double bearing_reach = 0;  ///< m: largest range of a sighting without range; 0: that of its type and sensor
+  double sensor_range = 0;   ///< m: of a sensor that measures bearings alone; 0: unknown. No option
   std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` is used
   bool use_identities = true;       ///< use the identities of landmarks
   /// Landmarks that the terrain hides are no candidates, unless the log identifies them.
@@ -56,15 +57,15 @@ struct IdentificationOptions {
     const bool is_bearing = !seen.range && !seen.elevation && !(use_identities && seen.identity);
     return is_bearing ? std::max(certainty, bearing_certainty) : certainty;
   }
-  /// Returns the largest range of a sighting without range.
-  double reach_of(const SeenLandmark& seen, const FeatureScales& scales) const {
-    return bearing_reach > 0 ? bearing_reach : scales.identification_reach(seen.type);
-  }
-  /// Returns the density of false sightings without range, per radian: those nearer than `bearing_reach`, or
-  /// 100 m. Objects confused with landmarks are near, so it does not grow with the reach of a type.
+  /// Returns the largest range of a sighting without range. What is seen on the horizon, such as summits, is
+  /// seen beyond the range of a sensor.
+  double reach_of(const SeenLandmark& seen, const FeatureScales& scales) const;
+  /// Returns the density of false sightings without range, per radian: those nearer than `bearing_reach`, the
+  /// range of the sensor, or 100 m. Objects confused with landmarks are near, so it does not grow with the
+  /// reach of a type.
   double bearing_clutter() const { return clutter * clutter_reach(); }
   /// Returns the metres over which the density of false sightings without range is spread.
-  double clutter_reach() const { return bearing_reach > 0 ? bearing_reach : 100; }
+  double clutter_reach() const;
   /// Returns whether the association uses `distance`: not `paper` with one that has its own evidence.
   bool distance_applies() const;
 };

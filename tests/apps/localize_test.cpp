@@ -32,6 +32,25 @@ TEST_F(Localize, EveryMethodFollowsAWaymarkLog) {
   EXPECT_GT(score()["ate_rmse"], 0.12);
 }
 
+// A camera of 25 m among rocks to 100 m: what it cannot see is no candidate.
+TEST_F(Localize, BearingsAskForTheRangeOfTheirSensor) {
+  const std::string camera = folder_ / "camera.json";
+  std::ofstream(camera) << R"({"waymark_sensor":1,"coverage":{"range":25,"bearing_sd":1}})";
+  const auto said = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--ids", "unknown"});
+    const Outcome done = localize(R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0}}
+{"kind":"odometry","t":0,"v":1,"omega":0}
+{"kind":"sightings","t":1,"items":[{"type":"rock","bearing":0.1}]}
+)",
+                                  options);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return done.err;
+  };
+  EXPECT_THAT(said({}), HasSubstr("1 of 1 sightings have no range"));
+  EXPECT_THAT(said({"--sensor", camera}), Not(HasSubstr("have no range")));
+  EXPECT_THAT(said({"--set", "bearing_reach=25"}), Not(HasSubstr("have no range")));
+}
+
 TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
   const std::string data = folder_ / "MRCLAM", map = folder_ / "beacons.gpkg";
   write_mrclam(data);

@@ -113,6 +113,21 @@ TEST(BearingReach, OptionReplacesTheReachOfTypes) {
   EXPECT_EQ((IdentificationOptions{.bearing_reach = 30}).reach_of(rock, scales), 30);
 }
 
+// A camera's range says how far the landmarks on a bearing may be; summits are seen beyond it.
+TEST(BearingReach, ASensorWithoutRangesBoundsItForNearTypes) {
+  const FeatureScales scales(built_in_types());
+  const IdentificationOptions camera{.sensor_range = 25};
+  const auto reach_of = [&](const char* type) {
+    return camera.reach_of({.type = built_in_types().id(type), .range = {}, .features = {}, .identity = {}},
+                           scales);
+  };
+  EXPECT_EQ(reach_of("rock"), 25);
+  EXPECT_EQ(reach_of("crater"), 25);
+  EXPECT_EQ(reach_of("mountain_top"), 150e3);
+  EXPECT_EQ((IdentificationOptions{.bearing_reach = 30, .sensor_range = 25}).clutter_reach(), 30);
+  EXPECT_EQ(camera.clutter_reach(), 25);
+}
+
 // A sighting of unknown type must not make every rock within sight of a summit a candidate.
 TEST(BearingReach, WithoutATypeIsTheSmallest) {
   const FeatureScales scales(built_in_types());

@@ -157,6 +157,22 @@ localization::RobotLog read_log(const LocalizeRequest& request, const SensorProf
   return log;
 }
 
+/// Warns if bearings are to be identified and nothing says how far their sensor sees.
+void check_reach(const localization::RobotLog& log, const localization::IdentificationOptions& options,
+                 const LocalizeRequest& request, const Callbacks& callbacks) {
+  if (options.bearing_reach > 0 || options.sensor_range > 0) return;
+  std::size_t bearings = 0, all = 0;
+  for (const localization::LogEvent& event : log.events)
+    if (const auto* seen = std::get_if<localization::SightingSet>(&event.what))
+      for (const localization::SeenLandmark& s : seen->sightings)
+        ++all, bearings += !s.range && !s.elevation && !(options.use_identities && s.identity);
+  if (2 * bearings <= all) return;
+  callbacks.warning(fmt::format(
+      "{} of {} sightings have no range, and how far the sensor sees is not known: many landmarks lie on a "
+      "bearing; give --sensor FILE with coverage.range, or --set bearing_reach=METRES: {}",
+      bearings, all, request.log));
+}
+
 /// Gives the settings the odometry noise that the log states, and the log what the request sets.
 void share_odometry_noise(const LocalizeRequest& request, const DescribeOptions& options,
                           localization::ReplayOptions& play, localization::RobotLog& log) {
@@ -221,6 +237,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   const RobotMap map = opened.map;
   localization::RobotLog log = read_log(request, sensor.get(), map, callbacks);
   share_odometry_noise(request, options, settings.play, log);
+  check_reach(log, settings.identification, request, callbacks);
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);

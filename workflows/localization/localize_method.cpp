@@ -16,9 +16,12 @@
 namespace waymark::workflows {
 namespace {
 
-/// Expects landmarks where the sensor detects them. Without a known range the settings stay.
-void set_coverage(const SensorCoverage& coverage, localization::WeightOptions& weight) {
+/// Expects landmarks, and looks for those seen without range, where the sensor detects them. Without a known
+/// range the settings stay.
+void set_coverage(const SensorCoverage& coverage, LocalizeSettings& settings) {
   if (!(coverage.range > 0)) return;
+  if (!(coverage.range_sd > 0)) settings.identification.sensor_range = coverage.range;
+  localization::WeightOptions& weight = settings.particles.weight;
   weight.view_range = coverage.range;
   weight.view_angle = std::min(coverage.view / 360, 1.0) * 2 * std::numbers::pi;
   weight.detection = coverage.detection;
@@ -69,7 +72,7 @@ std::vector<std::string> set_option(const DescribeOptions& describe, const std::
 LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& method,
                                const SensorProfile* sensor, const Callbacks& callbacks) {
   LocalizeSettings settings;
-  if (sensor) set_coverage(sensor->coverage, settings.particles.weight);
+  if (sensor) set_coverage(sensor->coverage, settings);
   settings.particles.seed = request.seed;
   const DescribeOptions options = [&](OptionVisitor& visitor) {
     settings.describe(visitor);
