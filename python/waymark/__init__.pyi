@@ -24,7 +24,7 @@ class EkfSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -103,7 +103,7 @@ class GlobalSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -182,7 +182,7 @@ class GraphSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -277,7 +277,7 @@ class OdometrySettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -344,7 +344,7 @@ class PfSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -423,7 +423,7 @@ class SlamSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
@@ -514,7 +514,7 @@ class UkfSettings(TypedDict, total=False):
     alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
     clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
     learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type
+    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
     node_limit: float  # Largest number of nodes of a joint search
     quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
