@@ -41,7 +41,7 @@ bool is_covariance(const Eigen::Matrix3d& symmetric);
 /// Returns a symmetric matrix without its negative eigenvalues.
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
-/// Prediction step of an extended Kalman filter.
+/// Predicts a pose as an extended Kalman filter does.
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);
 
 /// Returns lower triangular L with L L' = covariance + tiny, with zero rows where there is no noise.

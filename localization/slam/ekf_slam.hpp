@@ -80,8 +80,8 @@ class EkfSlam final : public Localizer {
 
   /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
   /// it disagrees, is a rival, which a second filter follows; the filter restarts there if the rival explains
-  /// the sightings that come better, and without a trial if its own position is uncertain by a metre. It then
-  /// takes landmarks of the map from the map, and keeps new ones from before it was lost.
+  /// the further sightings better. It restarts without a trial if its own position is uncertain by a metre.
+  /// It then takes landmarks of the map from the map, and keeps new ones from before it was lost.
   void set_pose_finder(PoseFinder finder, PoseCheck check = {});
   int restarts() const { return restarts_; }
   /// Returns the estimate of the sum of Gaussians while this one has a standard deviation above a metre: it

@@ -41,7 +41,7 @@ struct ReconstructResult {
   std::int64_t cells = 0, kept = 0;   ///< of the DEM; with a height
   std::optional<MapResult> map = {};  ///< if a map was requested
 
-  /// Exit code of interface.md.
+  /// Returns the exit code of the program.
   int exit_code() const {
     const int of_map = map ? map->exit_code() : 0;
     return of_map != 0 ? of_map : failed > 0 ? 3 : 0;
