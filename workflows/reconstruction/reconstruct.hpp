@@ -18,9 +18,9 @@ enum class ReconstructUntil {
 
 /// Images and what to make of them.
 struct ReconstructRequest : PosePhotosRequest {
-  /// Camera file with the poses, which names the images if none are given; empty: poses are solved.
-  std::string cameras = {};
-  double cell = 0;  ///< of the DEM, metres; 0: twice the median ground sample distance
+  std::string cameras = {};  ///< camera file with the poses, which names the images if none are given; empty:
+                             ///< they are solved
+  double cell = 0;           ///< of the DEM, metres; 0: twice the median ground sample distance
   ReconstructUntil until = ReconstructUntil::ortho;
   std::string map = {};           ///< GeoPackage of landmarks; empty: none
   std::string command_line = {};  ///< recorded in the map
