@@ -931,7 +931,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         control: surveyed points; empty: none
         marks: table of their marks; empty: `control` is a gcp_list.txt
         dem: coarse DEM, start of heights, and the reference if there is no other; empty: none
-        crs: of the map; empty: that of camera file or references, else the UTM zone of the first
+        crs: of the map; empty: that of camera file or references, else a UTM zone
         cell: of the DEM, metres; 0: twice the median ground sample distance
         map: GeoPackage of landmarks; empty: none
         work: folder that keeps the results of steps for later runs; empty: none

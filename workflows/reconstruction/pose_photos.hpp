@@ -16,8 +16,7 @@ struct PosePhotosRequest {
   std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
   std::string dem =
       {};  ///< coarse DEM, start of heights, and the reference if there is no other; empty: none
-  std::string crs =
-      {};  ///< of the map; empty: that of camera file or references, else the UTM zone of the first
+  std::string crs = {};     ///< of the map; empty: that of camera file or references, else a UTM zone
   double max_pixels = 8e6;  ///< larger images are reduced to find features
   std::string work = {};    ///< folder that keeps the results of steps for later runs; empty: none
   int threads = 0;          ///< 0: one per processor
@@ -26,8 +25,7 @@ struct PosePhotosRequest {
 /// Poses of a set of pictures.
 struct PosedPhotos {
   pipeline::Reconstruction scene = {};  ///< of the largest component
-  std::string crs =
-      {};  ///< of the map; empty: that of camera file or references, else the UTM zone of the first
+  std::string crs = {};                 ///< empty: the frame is arbitrary
   std::size_t posed = 0;
   double gps_rms = 0;                        ///< residuals of the positions in plan, metres; 0: none are used
   std::vector<std::string> messages = {};    ///< about lens and frame
