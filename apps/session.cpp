@@ -35,8 +35,8 @@ std::vector<Argument> global_arguments(Session& session) {
   return {
       {"-h,--help", "", &session.help, "Show what a command does, its options and examples"},
       {"-V,--version", "", &session.version, "Show the version"},
-      {"-q,--quiet", "", &session.quiet, "Say nothing but errors"},
-      {"-v,--verbose", "", &session.verbose, "Say more: every input file with its SHA-256"},
+      {"-q,--quiet", "", &session.quiet, "Print errors only"},
+      {"-v,--verbose", "", &session.verbose, "Print more: every input file with its SHA-256"},
       Argument{"--threads", "N", &session.threads, "Threads to compute with"}.or_else("one per processor"),
       Argument{"--progress", "HOW", &session.progress,
                "Show progress on standard error; auto is a bar on a terminal and a line now and then "
@@ -45,7 +45,7 @@ std::vector<Argument> global_arguments(Session& session) {
           .or_else("auto"),
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
       {"--allow-network", "", &session.allow_network,
-       "Let files name files on the network; an address on the command line allows it, too"},
+       "Permit files to name files on the network; an address on the command line permits it, too"},
   };
 }
 

@@ -19,9 +19,9 @@ class AtomicFile {
   /// Throws Error{output} if the output's folder is missing or not writable, or the output is a folder.
   explicit AtomicFile(const std::filesystem::path& output);
 
-  /// Path to write, with the output's file name; nothing is there yet.
+  /// Returns the path to write, with the output's file name; nothing is there yet.
   const std::filesystem::path& path() const { return path_; }
-  /// Path that is replaced: the output, or the file that it links to.
+  /// Returns the path that is replaced: the output, or the file that it links to.
   const std::filesystem::path& target() const { return target_; }
   /// Flushes the file to the disk, renames it, and flushes the folder. Throws Error{output}.
   void commit();
@@ -36,15 +36,15 @@ class AtomicFile {
 /// Several files, or folders of files, that replace older ones together. Files are renamed one after another,
 /// but the commit is journaled: if the process is killed within, the next output in the folder finishes it.
 /// - Folders are merged with existing ones of the same name, but a folder *.gdb is one data set.
-/// - An older Shapefile or MapInfo file is removed with all its parts first, and its main file comes last, so
-///   that readers never see parts of two data sets.
+/// - An older Shapefile or MapInfo file is removed with all its parts first, and its main file comes last.
+///   Readers never see parts of two data sets.
 class AtomicFileSet {
  public:
   /// `folder`: where the files go. Throws Error{output} if it is missing or not writable; `output` is what
   /// messages name.
   AtomicFileSet(std::filesystem::path folder, std::filesystem::path output);
 
-  /// Empty folder to write to.
+  /// Returns the empty folder to write to.
   const std::filesystem::path& path() const { return path_; }
   /// Flushes all files to the disk and moves them. Returns the new paths, sorted. Throws Error{output},
   /// before anything has changed if one of the files cannot be replaced.

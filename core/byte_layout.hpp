@@ -21,7 +21,8 @@ class ByteLayout {
   void operator()(Values&&... values) {
     (io_(values), ...);
   }
-  /// Matrix of Eigen, of fixed or dynamic size. Throws std::runtime_error for another fixed size.
+  /// Reads or writes a matrix of Eigen, of fixed or dynamic size. Throws std::runtime_error for another fixed
+  /// size.
   void matrix(auto& matrix) {
     std::int64_t rows = matrix.rows(), columns = matrix.cols();
     io_(rows), io_(columns);

@@ -50,8 +50,7 @@ struct WeightedValue {
 /// - Departure from the paper: axes are averaged as doubled angles, so 1 and 179 degrees give 0 and not 90.
 /// - Directions are averaged as unit vectors.
 /// - The merged axis lies in (-pi/2, pi/2], the direction in (-pi, pi]. If the vectors cancel, it is the
-/// first
-///   value.
+///   first value.
 FeatureValue merge(std::span<const WeightedValue> seen, Scale scale);
 
 /// Returns the angle after which values of a scale repeat, radians; 0 for a scale that is no angle.

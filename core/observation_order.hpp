@@ -3,8 +3,8 @@
 #include "core/observation.hpp"
 namespace waymark::inline core {
 
-/// Total order by content: type, source, position, then all other members. Equal only if all members are
-/// equal.
+/// Orders observations totally by content: type, source, position, then all other members. They are equal
+/// only if all members are.
 bool comes_before(const Observation& a, const Observation& b);
 
 }  // namespace waymark::inline core

@@ -9,9 +9,9 @@ namespace waymark::inline core {
 /// there is none.
 std::size_t utf8_length(std::string_view text);
 
-/// Returns a text that is safe on a terminal. Control characters other than line feed and tab, marks that
-/// reverse the direction of writing, and bytes that are not UTF-8 become escapes such as \x1b. A text of more
-/// than `max_bytes` is cut in its middle.
+/// Returns a text that is safe on a terminal. These become escapes such as \x1b: control characters but line
+/// feed and tab, marks of the direction of writing, bytes that are not UTF-8. A text of more than `max_bytes`
+/// is cut in its middle.
 std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
 }  // namespace waymark::inline core

@@ -7,7 +7,7 @@
 #include "geo/terrain.hpp"
 namespace waymark::inline geo {
 
-/// Bilinear height a + b u + c v + d u v of one cell, u and v in [0, 1] in the direction of columns and rows.
+/// Bilinear height of one cell, a + b u + c v + d u v; u and v in [0, 1] count along columns and rows.
 struct Patch {
   double a = 0, b = 0, c = 0, d = 0;
 

@@ -65,8 +65,9 @@ class Database;
 /// Writes layers into an open map, in the caller's transaction: table, registration, extent, column
 /// descriptions, packed RTree, style.
 /// - Replaces a layer of the same name. Rows have ids from 1 in their order.
-/// - Throws Error{input} for a name of a landmark type or another table, rows whose values do not fit the
-///   columns, rings that are too short, and coordinates that are not finite.
+/// - Throws Error{input} for a name of a landmark type or another table, and for rows whose values do not fit
+///   the columns.
+/// - Throws Error{input} for rings that are too short and coordinates that are not finite.
 void write_layers(const sqlite::Database& database, std::span<const ShapeLayer> layers,
                   std::string_view changed);
 

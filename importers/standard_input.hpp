@@ -3,10 +3,11 @@
 #include <string>
 namespace waymark::importers {
 
-/// Returns a path that can be opened any number of times and read in any order. For /vsistdin/ (with options
-/// or not) that is a nameless temporary copy of standard input, made by the first call and shared by all
-/// later ones; it disappears with the process. Other paths are returned unchanged. Thread-safe. Throws
-/// Error{input} if standard input is empty or a terminal, Error{output} if the disk is full.
+/// Returns a path that can be opened any number of times and read in any order. Thread-safe.
+/// - For /vsistdin/ (with options or not) that is a nameless temporary copy of standard input. All calls
+///   share it; it disappears with the process.
+/// - Other paths are returned unchanged.
+/// - Throws Error{input} if standard input is empty or a terminal, Error{output} if the disk is full.
 std::string seekable_path(const std::string& path);
 
 }  // namespace waymark::importers

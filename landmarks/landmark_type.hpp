@@ -54,8 +54,8 @@ struct LandmarkType {
 /// Registry of landmark types by name and id, in order of registration.
 class TypeRegistry {
  public:
-  /// Throws std::logic_error for a name that is taken or not [a-z][a-z0-9_]*, duplicate columns, bad colours,
-  /// a body of an unknown feature, a reach that is not above 0.
+  /// Throws std::logic_error for a name that is taken or not [a-z][a-z0-9_]*, duplicate columns and bad
+  /// colours; for a body of an unknown feature and a reach that is not above 0.
   TypeId add(LandmarkType type);
   std::size_t size() const { return types_.size(); }
   const LandmarkType& operator[](TypeId id) const { return types_.at(id); }

@@ -41,8 +41,8 @@ bool is_covariance(const Eigen::Matrix3d& symmetric);
 /// Returns a symmetric matrix without its negative eigenvalues.
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
-/// Prediction step of an extended Kalman filter. A negative part of the motion's covariance that would undo
-/// more than a fifth of a variance counts as 0.
+/// Predicts a pose as an extended Kalman filter does. A negative part of the motion's covariance that would
+/// undo more than a fifth of a variance counts as 0.
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);
 
 /// Predicts a pose that is not the one whose error the motion may undo: the negative part counts as 0.

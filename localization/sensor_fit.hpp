@@ -23,8 +23,7 @@ struct SensorFit {
 
 /// Estimates range, field of view, noise and detection probability of a sensor.
 /// - A sighting is of the nearest landmark of its type within `max_error` metres (of a bearing: that divided
-/// by
-///   the landmark's range); a landmark has one sighting at most.
+///   by the landmark's range); a landmark has one sighting at most.
 /// - Range and view enclose 99 % of the matched sightings. Standard deviations are those within three of
 ///   them, less the mean variance of the map.
 /// - Detection: logistic regression on range and log diameter, where diameters are known (iterated least

@@ -26,8 +26,8 @@ struct TerrainPose {
   Pose<GridFrame, RobotFrame> grid_from_robot() const;
 };
 
-/// Returns the pose of a vehicle that stands on the terrain at a planar pose, on the least-squares plane
-/// through the heights under its four wheels. `std::nullopt` where the terrain below a wheel is unknown.
+/// Returns the pose of a vehicle on the terrain at a planar pose: on the least-squares plane through the
+/// heights under its four wheels. `std::nullopt` where the terrain below a wheel is unknown.
 std::optional<TerrainPose> pose_on_terrain(const TerrainHeight& ground, const Pose2& plane,
                                            const Wheels& wheels = {});
 

@@ -14,7 +14,8 @@ class LandmarkWatch {
   LandmarkWatch(localization::LandmarkGrid map, LandmarkSensing sensing);
 
   /// Takes the matches of a set of sightings, made at a pose. Poses with an sd of the position over a metre
-  /// are not used, nor are landmarks in the outer third of the range and at the edge of the view.
+  /// are not used. Landmarks in the outer third of the range and at the edge of the view are not used,
+  /// either.
   void add(const localization::PoseEstimate& robot, std::span<const localization::Match> matches);
 
   /// Returns the landmarks that exist with a probability below 0.1, by key, ascending.

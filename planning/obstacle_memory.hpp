@@ -22,8 +22,8 @@ struct SeenObstacle {
   static constexpr double kConfirmed = 1.5;
 };
 
-/// Obstacles that the vehicle's own sensors saw. They are kept in the frame of dead reckoning, in which what
-/// was seen some metres ago does not jump when the localizer corrects its pose.
+/// Obstacles that the vehicle's own sensors saw. They are kept in the frame of dead reckoning: what was seen
+/// some metres ago does not jump when the localizer corrects its pose.
 class ObstacleMemory {
  public:
   /// Adds the objects of a set of sightings that may be hazards (in the robot's axes, probability of at least

@@ -40,8 +40,8 @@ struct Vehicle {
 };
 
 /// Reads a vehicle file (docs/reference/vehicle.md). `source` names the file in messages. Throws Error{usage}
-/// for options that are unknown or out of range, for fewer than three supports, and for one whose mirror
-/// image about the x axis is missing.
+/// for options that are unknown or out of range, fewer than three supports, and supports that are not
+/// symmetric about the x axis.
 Vehicle parse_vehicle(std::string_view json, const std::string& name, const std::string& source);
 
 /// Returns a built-in vehicle by name, or reads the file of that path. Throws Error{usage} with the nearest

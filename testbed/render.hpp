@@ -45,7 +45,7 @@ View camera_view(PosedCamera camera);
 /// Renders an image in [0, 1] (full scale 1), not quantised. Pixels that look past the terrain are NaN.
 /// `noise_seed` affects the noise only. The result does not depend on the number of threads.
 Pixels render_view(const Scene& scene, const View& view, const Exposure& exposure, std::uint64_t noise_seed);
-/// Same for many images under one sun: `ground` was made from this scene and exposure.sun.
+/// Renders one of many images under one sun: `ground` was made from this scene and exposure.sun.
 Pixels render_view(const Scene& scene, const LitTerrain& ground, const View& view, const Exposure& exposure,
                    std::uint64_t noise_seed);
 

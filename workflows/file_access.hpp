@@ -17,9 +17,8 @@ bool names_network(std::span<const std::string> words);
 /// first file is opened.
 void refuse_network();
 
-/// Throws Error{usage} if an option of a stage names a file that is not below the folder of the job, or a
-/// place on the network: the author of the job may not be the person who runs it. Symbolic links are
-/// followed.
+/// Throws Error{usage} if an option of a stage names a file outside the folder of the job, or a place on the
+/// network: the author of the job may not be the person who runs it. Symbolic links are followed.
 void require_files_inside(const pipeline::Pipeline& pipeline, const std::filesystem::path& job);
 
 }  // namespace waymark::workflows

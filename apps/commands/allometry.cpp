@@ -39,7 +39,7 @@ class AllometryCommand final : public Command {
         .examples = {
             {"waymark allometry fit plots.csv -o spruce.csv", "A table for `waymark trees --allometry`"},
             {"waymark allometry fit als.csv -o table.csv --height hmax --diameter DBH",
-             "Diameters from heights as a laser sees them"}}};
+             "Diameters from heights measured by a laser"}}};
   }
 
   int run(const Session& session) override {

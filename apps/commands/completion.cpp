@@ -101,7 +101,7 @@ class Completion final : public Command {
             .examples = {
                 {"source <(waymark completion bash)", "Completion for this shell"},
                 {"waymark completion bash > ~/.local/share/bash-completion/completions/waymark",
-                 "Completion for every shell to come"},
+                 "Completion for every new shell"},
                 {"waymark completion zsh > ~/.zfunc/_waymark", "For zsh; the folder must be in its fpath"},
                 {"waymark completion fish > ~/.config/fish/completions/waymark.fish", "For fish"}}};
   }

@@ -27,7 +27,7 @@ class Craters final : public Shortcut {
                               .offering(Offer::file)},
             .examples = {{"waymark craters --dem gld100.tif -o craters.gpkg", "A map of the Moon's craters"},
                          {"waymark craters --dem ctx_dtm.tif -o craters.gpkg --min-confidence 0.8",
-                          "The surer ones only"},
+                          "Craters of high confidence only"},
                          {"waymark craters --dem mola.tif --print-job > job.json",
                           "The job, to change it and `waymark run` it"}}};
   }

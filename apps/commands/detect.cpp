@@ -66,7 +66,7 @@ class Detect final : public Command {
              "--gsd 0.05",
              "Metres without a georeference"},
             {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
-             "Another method, the surer ones only"},
+             "Another method, detections of high confidence only"},
             {"waymark detect trees naip.tif -o trees.gpkg",
              "Crowns in an RGB or RGB + near infrared image"}}};
   }

@@ -58,7 +58,8 @@ class Edit final : public Command {
                  "0.99"),
              {"--reason", "TEXT", &request_.reason, "Recorded with the run"}},
         .examples = {
-            {"waymark edit site.gpkg reject rock-8v2k1 rock-8v2q7 --reason 'tents'", "These are no rocks"},
+            {"waymark edit site.gpkg reject rock-8v2k1 rock-8v2q7 --reason 'tents'",
+             "Remove two false rocks"},
             {"waymark edit site.gpkg add --type crater --rim 10 0 0 10 -10 0", "A crater by three points"},
             {"waymark edit site.gpkg add --type rock --at 12.5 40 --feature radius=0.4", "A rock"},
             {"waymark edit site.gpkg move rock-8v2k1 --at 12.7 40.1 --position-sd 0.05",

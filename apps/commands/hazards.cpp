@@ -20,7 +20,7 @@ class Hazards final : public Command {
     return {
         .name = "hazards",
         .group = Group::use,
-        .summary = "Map where a vehicle can stand: slope, roughness, steps, rocks, and the unknown",
+        .summary = "Map where a vehicle can stand: slope, roughness, steps, rocks, unknown terrain",
         .about =
             "A cell is judged with the vehicle's middle on it. Relief is that of a plane fitted under the "
             "vehicle's base. Rocks, crater walls and stems are those of the map, with their covariance and "

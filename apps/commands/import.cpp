@@ -40,7 +40,7 @@ class Import final : public Command {
                                "Map to write; an older map of that name is replaced"}
                           .needed()
                           .offering(Offer::file),
-                      Argument{"--type", "T", &request_.options.type, "What the rows are"}
+                      Argument{"--type", "T", &request_.options.type, "Landmark type of the rows"}
                           .offering(workflows::all_types().names())
                           .or_else("the table's column `type`, or the layer's name"),
                       Argument{"--from", "FORMAT", &request_.format, "Kind of table"}

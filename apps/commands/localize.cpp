@@ -58,7 +58,7 @@ class Localize final : public Command {
                  .or_else("recognised by the files"),
              Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
                       "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
-             Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"},
+             Argument{"--robot", "K", &request_.log_format.robot, "Number of the robot in an MRCLAM dataset"},
              Argument{"--ids", "HOW", &ids_, "Whether identities in the log are used for data association"}
                  .one_of({"known", "unknown"})
                  .or_else("known"),
@@ -101,7 +101,8 @@ class Localize final : public Command {
              "-o track.tum",
              "A CSV log in km/h and degrees; a track for other tools"},
             {"waymark localize site.gpkg recording.mcap --start 0,0,0 -o track.csv", "A recording of ROS 2"},
-            {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1", "How well that went"}}};
+            {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1",
+             "The errors of that track"}}};
   }
 
   int run(const Session& session) override {

@@ -41,7 +41,8 @@ class MapDrive final : public Command {
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})
                  .or_else("recognised by the files"),
-             Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"}},
+             Argument{"--robot", "K", &request_.log_format.robot,
+                      "Number of the robot in an MRCLAM dataset"}},
         .examples = {
             {"waymark map intel.clf --poses corrected.csv -o office.gpkg", "Corners and ends of walls"},
             {"waymark map drive.jsonl --scans poles -o street.gpkg",

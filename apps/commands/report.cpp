@@ -15,9 +15,10 @@ class Report final : public Command {
         .group = Group::use,
         .summary = "Write a report of a map as one HTML file",
         .about =
-            "Shaded relief with the landmarks, the most important of each type, histograms, the size-"
-            "frequency distribution of craters, landmark quality, images with their detections, and what "
-            "the run read and did. The page needs no network and no other file. Relief and images come "
+            "The page shows the landmarks on shaded relief, the most important of each type, histograms, the "
+            "size-frequency distribution of craters, landmark quality, images with their detections, and the "
+            "inputs and stages of the run. The page needs no network and no other file. Relief and images "
+            "come "
             "from the map, or from the run's input files if they still exist. In a browser that runs "
             "scripts, the map zooms, landmarks are filtered and tables sorted.",
         .arguments =

@@ -42,12 +42,12 @@ class Run final : public Command {
             "changed.",
         .arguments = all,
         .examples = {
-            {"waymark run job.json -o map.gpkg --work work", "Run, and be able to go on after a stop"},
+            {"waymark run job.json -o map.gpkg --work work", "Run so that an interrupted run can be resumed"},
             {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
              "The same job with another threshold"},
-            {"waymark run job.json --check", "Is the job sound?"},
+            {"waymark run job.json --check", "Check the job without running it"},
             {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"},
-            {"waymark run job.json --work /shared/work --stage find_rocks --shard 3/8",
+            {"waymark run job.json --work /shared/work --stage rocks_from_shadows --shard 3/8",
              "The third of eight shards of one stage"}}};
   }
 

@@ -18,7 +18,7 @@ class Sensors final : public Command {
             "`waymark query --sensor NAME` ranks landmarks by it. `--format json` prints a file to copy and "
             "change; every --sensor also takes such a FILE.json, and `waymark sensors FILE.json` checks it.",
         .arguments = reference_arguments(what_, workflows::all_sensors().names()),
-        .examples = {{"waymark sensors horizontal_laser", "What a horizontal laser makes of each feature"},
+        .examples = {{"waymark sensors horizontal_laser", "Weights and coverage of a horizontal laser"},
                      {"waymark sensors horizontal_laser --format json > mine.json", "A file to change"}}};
   }
 

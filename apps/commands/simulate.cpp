@@ -12,11 +12,11 @@ class Simulate final : public Command {
     return {
         .name = "simulate",
         .group = Group::make,
-        .summary = "Make a landing site, a forest, a street or a hall whose every landmark is known",
+        .summary = "Simulate a landing site, a forest, a street or a hall with known landmarks",
         .about =
-            "Writes into a folder: the DEM, the images, the camera file with the sun, a job that makes a "
-            "map of them, and the truth to evaluate the map with. The same scenario and seed give the "
-            "same bytes for any number of threads.\n\n"
+            "Writes a folder with the DEM, the images, the camera file with the sun, a job that makes a map "
+            "of them, and the truth to evaluate the map with. The same scenario and seed give the same "
+            "bytes for any number of threads.\n\n"
             "With a section `forest` it makes a forest instead, as an airborne laser scanner measures it: "
             "dtm.tif, dsm.tif, chm.tif, points.las, stands.geojson, the job and the truth "
             "(docs/reference/forest_scenario.md).\n\n"
@@ -36,7 +36,7 @@ class Simulate final : public Command {
             {"waymark simulate scenario.json -o landing", "dem.tif, images, cameras.json, truth, job.json"},
             {"waymark run landing/job.json -o landing.gpkg", "The map of it"},
             {"waymark localize landing.gpkg landing/log.jsonl -o track.csv --ids unknown",
-             "Where the rover of the scenario's section drive was"}}};
+             "The track of the rover of the scenario's section drive"}}};
   }
 
   int run(const Session& session) override {

@@ -25,7 +25,7 @@ class Stac final : public Command {
                           "that of the folder"),
                       {"--description", "TEXT", &request_.description, "What the item or the collection is"},
                       Argument{"--datetime", "UTC", &request_.datetime,
-                               "Time of the data of files that do not know theirs"}
+                               "Time of the data of files that state none"}
                           .or_else("when they were made"),
                       Argument{"--href", "URL", &request_.href,
                                "Address of the folder that will serve the files"}

@@ -19,7 +19,7 @@ class Train final : public Command {
         .about =
             "craters: makes scenes with known craters, half of them with the testbed of `waymark "
             "simulate`, detects bowls in them and trains a classifier of craters and a model of their "
-            "rims. No image of other owners is used. With --relief, trains the verifier of what that "
+            "rims. No third-party image is used. With --relief, trains the verifier of what that "
             "classifier finds, on images shaded from measured relief whose craters are catalogued.\n\n"
             "rocks: renders synthetic rocks, most of them with the testbed, detects dark spots and trains a "
             "network "
@@ -42,7 +42,7 @@ class Train final : public Command {
                  .offering(Offer::file),
              Argument{"--map", "MAP", &map_, "sensor: map of the site of the logs"}.offering(Offer::file),
              {"--scenes", "N", &request_.scenes,
-              "Made scenes to train on; 0: 120 of craters, 300 of relief, 240 of rocks, 120 forests of "
+              "Synthetic scenes to train on; 0: 120 of craters, 300 of relief, 240 of rocks, 120 forests of "
               "each type"},
              Argument{"--relief", "DEM,CATALOGUE", &request_.relief,
                       "craters: relief without gaps, and a table of all its craters: lon, lat (degrees), "
@@ -52,7 +52,7 @@ class Train final : public Command {
              {"--rounds", "N", &request_.rounds, "Passes over all examples; 0: the default of the model"},
              {"--seed", "N", &request_.seed, "Another seed gives other initial weights and another order"}},
         .examples = {
-            {"waymark train craters -o pipeline/craters/built_in_model.cpp", "The model we ship"},
+            {"waymark train craters -o pipeline/craters/built_in_model.cpp", "The shipped model"},
             {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
             {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
              "A verifier of craters, from lunar relief"},

@@ -36,13 +36,14 @@ class Validate final : public Command {
             .group = Group::use,
             .summary = "Check a map for errors",
             .about =
-                "RTree against geometry, evidence links, quality ranges and all else a GeoPackage "
-                "validator does not know. Each fault is a line of tab-separated text: code, table, row, "
+                "Compares the RTree with the geometries, and checks evidence links, quality ranges and what "
+                "else a GeoPackage validator does not know. Each fault is a line of tab-separated text: "
+                "code, table, row, "
                 "what is wrong. JSON is an array of the same. The exit code is 1 where there are faults.",
             .arguments = {file_word("MAP.gpkg", &map_, "Map to check; it is not changed"),
                           format_option(&format_)},
-            .examples = {{"waymark validate alps.gpkg", "Nothing on standard output: the map is sound"},
-                         {"waymark validate alps.gpkg --format json", "For a script: [] if it is sound"}}};
+            .examples = {{"waymark validate alps.gpkg", "No output on standard output: the map is valid"},
+                         {"waymark validate alps.gpkg --format json", "For a script: [] if it is valid"}}};
   }
 
   int run(const Session&) override {

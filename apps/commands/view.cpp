@@ -54,7 +54,8 @@ class View final : public Command {
                  .one_of({"waymark", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam", "g2o",
                           "toro", "points"})
                  .or_else("recognised by the files"),
-             Argument{"--robot", "K", &request_.log_format.robot, "Which robot of an MRCLAM dataset"}},
+             Argument{"--robot", "K", &request_.log_format.robot,
+                      "Number of the robot in an MRCLAM dataset"}},
         .examples = {{"waymark view mars.gpkg -o mars.html", "A landing with its images on the terrain"},
                      {"waymark view mission.gpkg --log mission/log.jsonl --track ekf.csv --track "
                       "odometry.csv -o drive.html",

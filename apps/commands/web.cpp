@@ -18,7 +18,7 @@ class Web final : public Command {
             "and a style for MapLibre. Crowded tiles of coarse zooms show the foremost landmarks: the "
             "largest prominence or "
             "radius times confidence, then quality. The finest zoom shows each landmark once.\n\n"
-            "The page needs the libraries MapLibre GL JS and pmtiles in its folder `lib`. They are no part "
+            "The page needs the libraries MapLibre GL JS and pmtiles in its folder `lib`. They are not part "
             "of Waymark: the program `fetch-maplibre` in the folder fetches and checks them, or --assets "
             "copies them. Afterwards the page needs no other server.\n\n"
             "Other bodies than the Earth have a scale bar of their own radius. Maps of a local CRS, and "

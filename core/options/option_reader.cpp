@@ -90,13 +90,8 @@ void check_choice(const OptionRow& row, const std::string& text, const OptionLoc
 }
 
 void check_range(const OptionRow& row, double number, const OptionLocation& location) {
-  if (row.field.min <= number && number <= row.field.max) return;  // false for NaN
-  const std::string range = readable_range(row);
-  const char* relation = range.empty() || range.front() == '[' ? "is outside" : "is not";
-  refuse(location,
-         fmt::format("{}{} = {} {} {}", location.prefix, row.name, number, relation,
-                     range.empty() ? "the numbers" : range),
-         row.field.help);
+  const std::string fault = range_fault(row, number);
+  if (!fault.empty()) refuse(location, location.prefix + fault, row.field.help);
 }
 
 void check_value(const OptionRow& row, const OptionLocation& location) {
@@ -205,6 +200,10 @@ std::vector<std::string> set_option(const DescribeOptions& describe, std::string
 
 void check_options(const DescribeOptions& describe, const OptionLocation& location) {
   for (const OptionRow& row : option_table(describe)) check_value(row, location);
+}
+
+void check_number(const std::string& name, double number, const std::string& unit, const Field& field) {
+  check_range({.name = name, .unit = unit, .value = number, .field = field}, number, {});
 }
 
 }  // namespace waymark::inline core

@@ -38,4 +38,8 @@ void read_and_warn(const DescribeOptions& describe, std::string_view json_object
 /// Error{usage}.
 void check_options(const DescribeOptions& describe, const OptionLocation& location);
 
+/// Checks a number that no option declares, such as one of a command line, by the same message. Throws
+/// Error{usage}.
+void check_number(const std::string& name, double number, const std::string& unit, const Field& field);
+
 }  // namespace waymark::inline core

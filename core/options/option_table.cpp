@@ -92,6 +92,13 @@ std::string readable_range(const OptionRow& row) {
   return {};
 }
 
+std::string range_fault(const OptionRow& row, double number) {
+  if (row.field.min <= number && number <= row.field.max) return {};  // false for NaN
+  const std::string range = readable_range(row);
+  const char* relation = range.empty() || range.front() == '[' ? "is outside" : "is not";
+  return fmt::format("{} = {} {} {}", row.name, number, relation, range.empty() ? "the numbers" : range);
+}
+
 std::string options_as_text(const std::vector<OptionRow>& rows) {
   std::string lines;
   for (const OptionRow& row : rows)

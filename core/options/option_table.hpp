@@ -34,6 +34,10 @@ std::string json_type(const OptionValue& value);
 /// Returns the range as text, "[0, 50] m" or "at least 0 m"; empty if every number is allowed.
 std::string readable_range(const OptionRow& row);
 
+/// Returns what is wrong with a number for an option: "x = 5 is outside [0, 4] m"; empty if it is in the
+/// range.
+std::string range_fault(const OptionRow& row, double number);
+
 /// Returns "name=value  effect (formerly x)", a line each.
 std::string options_as_text(const std::vector<OptionRow>& rows);
 

@@ -24,6 +24,7 @@ void find_in_pixels() {
     for (std::int64_t column = 1; column < 95; ++column)
       image(column, row) += static_cast<float>(0.2 * (bowl(column + 1, row) - bowl(column - 1, row)));
   pipeline::CraterSearch craters;
+  craters.method = pipeline::CraterMethod::bowl;  // the default
   craters.sun_angle = Radians{std::numbers::pi};  // towards the sun, from x (right) towards y (down)
   for (const Detection& crater : pipeline::find_craters(image, craters))
     std::cout << crater.outline.diameter() << " px across at " << crater.outline.x << ", " << crater.outline.y
@@ -31,6 +32,13 @@ void find_in_pixels() {
   for (const Detection& rock : pipeline::find_rocks(image, {.sun_angle = craters.sun_angle}))
     std::cout << rock.outline.x << '\n';
   //! [pixels]
+  //! [light]
+  if (const auto sun = pipeline::estimate_crater_sun_angle(image))  // three clear craters or more
+    std::cout << "light from " << sun->angle.value << " rad\n";
+  const pipeline::RocksFound rocks =
+      pipeline::search_rocks(image, {.method = pipeline::RockMethod::shadow});  // estimates the light as well
+  std::cout << rocks.rocks.size() << " rocks, light " << (rocks.light ? "known" : "unknown") << '\n';
+  //! [light]
 }
 
 void find_in_heights() {

@@ -38,6 +38,7 @@ void find() {
   const pipeline::TreeSearch search{.forest = pipeline::forest_preset(ForestType::conifer)};
   for (const pipeline::DetectedTree& tree : pipeline::find_trees(canopy, Window{0, 0, 40, 20}, search))
     std::cout << tree.height << " m high, crown " << tree.crown_diameter << " m wide\n";
+  std::cout << pipeline::search_halo(search, 1) << " cells around are read\n";  // cells of one metre
   //! [trees]
 }
 
@@ -52,6 +53,7 @@ void count() {
   const pipeline::StandAttributes figures = inventory(trees, hectare);
   std::cout << figures.stems.value << " stems per hectare, " << figures.basal_area.value
             << " m2 per hectare\n";
+  for (const std::size_t tree : trees_in_stand(trees, hectare)) std::cout << trees[tree].height << " m\n";
   //! [stand]
 }
 
@@ -66,6 +68,7 @@ void count_map() {
   workflows::InventoryRequest request{.map =
                                           "trees.gpkg"};  // as `waymark inventory trees.gpkg -o stands.csv`
   request.output = "stands.csv";
+  request.max_trees = workflows::trees_in_memory({.megabytes = 64});
   for (const workflows::StandResult& stand : inventory(request).stands)
     std::cout << stand.stand.name << ": " << stand.figures.volume.value << " m3 per hectare\n";
   //! [inventory]

@@ -42,6 +42,7 @@ void follow(localization::Localizer& filter) {
       localization::twist_motion(0.5, 0, 0.1, 0, {}));  // m/s forward, m/s left, rad/s, s: stands still
   for (const localization::Match& match : filter.update(see_a()))
     std::cout << localization::wording(match.verdict) << '\n';
+  if (filter.status() == localization::LocalizationStatus::lost) std::cout << "lost\n";
   const localization::PoseEstimate now = filter.estimate();
   std::cout << now.pose.at().transpose() << " m, +- " << std::sqrt(now.covariance(0, 0)) << " m\n";
   //! [filter]
@@ -55,7 +56,7 @@ void filters() {
                                          Eigen::Vector3d(0.1, 0.1, 0.01).asDiagonal()};  // m2, m2, rad2
   const localization::LandmarkMatcher matcher(localization::LandmarkWindow(rocks),
                                               localization::FeatureScales(map.types()));
-  localization::ExtendedKalman ekf(start, matcher);
+  localization::ExtendedKalman ekf(start, matcher, localization::KalmanOptions{.lost_after = 20});
   localization::UnscentedKalman ukf(start, matcher);
   localization::ParticleFilter particles(start, matcher);
   localization::DeadReckoning odometry(start);
@@ -66,6 +67,24 @@ void filters() {
     follow(*filter);
 }
 
+void move() {
+  //! [motion]
+  const localization::OdometryNoise noise{.along_per_metre = 0.001};  // m2 per metre driven
+  const localization::Ackermann car{.wheelbase = 2.5};
+  const localization::BodyMotion steered = ackermann_motion(car, 3, 0.1, 0.5, noise);  // m/s, rad, s
+  const localization::BodyMotion measured = step_motion(localization::Pose2(1.5, 0, 0.05), 0.5, noise);
+  //! [motion]
+  //! [step]
+  localization::PoseEstimate robot{{0, 0, 0}, Eigen::Vector3d(0.1, 0.1, 0.01).asDiagonal()};
+  robot = predict_pose(robot, steered);
+  robot = ukf_predict(robot, measured);  // by the unscented transform
+  localization::MapLandmark rock;
+  rock.key = localization::landmark_key("a"), rock.at = {8, 2};                  // metres
+  robot = ekf_update(robot, see_a().sightings[0], localization::Pose2(), rock);  // the sensor is at the robot
+  std::cout << localization::clamp_sd(robot.covariance.diagonal().cwiseSqrt()).transpose() << '\n';
+  //! [step]
+}
+
 void find_anywhere() {
   //! [constellation]
   const SemanticMap map = rock_map();
@@ -74,6 +93,18 @@ void find_anywhere() {
   const localization::ConstellationAnswer answer = index.find(see_a());
   if (!answer.fix) std::cout << "no fix: " << answer.reason << '\n';
   //! [constellation]
+  //! [body]
+  std::vector<localization::LandmarkPosition> positions;  // the same on the Moon, near its north pole
+  for (const Landmark& rock : map.landmarks()) {
+    const Eigen::Vector3d at = Eigen::Vector3d(rock.position.xyz.x(), rock.position.xyz.y(), 1737400);
+    positions.push_back({.at = at, .up = at.normalized()});
+  }
+  localization::ConstellationOptions options;
+  options.false_alarms = 1e-6;
+  const localization::ConstellationIndex around(localization::to_map_landmarks(map), positions,
+                                                localization::FeatureScales(map.types()), options);
+  std::cout << around.triangles() << " triangles\n";
+  //! [body]
 }
 
 void find_by_summits() {
@@ -82,10 +113,26 @@ void find_by_summits() {
     return 50 * std::sin(at.x() / 300);
   };                                                    // metres
   const std::vector<localization::HorizonTop> tops(2);  // bearings and elevations of tops, radians
+  localization::SkylineOptions options;
+  options.eye = 1.5;  // metres above the ground
   const localization::SkylineAnswer answer =
-      localization::find_by_skyline(tops, std::vector<localization::SkylineSummit>(2), ground);
+      localization::find_by_skyline(tops, std::vector<localization::SkylineSummit>(2), ground, options);
   if (!answer.fix) std::cout << "no fix: " << answer.reason << '\n';
   //! [skyline]
+  //! [resection]
+  const std::vector<localization::SkylineSummit> summits{{.at = {9000, 100}, .height = 900},
+                                                         {.at = {100, 8000}, .height = 700},
+                                                         {.at = {-7000, 0}, .height = 800}};
+  std::vector<localization::HorizonTop> seen(3);  // from (100, 100), looking east
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    seen[i].bearing = std::atan2(summits[i].at.y() - 100, summits[i].at.x() - 100);
+  const std::vector<std::optional<std::uint32_t>> matches{0, 1, 2};  // which summit each top is
+  const localization::PoseEstimate near{{150, 80, 0.02}, Eigen::Matrix3d::Identity()};
+  if (const auto pose = localization::resection(seen, summits, matches, near, ground, {}))
+    std::cout << pose->pose.at().transpose() << " m\n";
+  const bool visible = localization::clears_terrain({100, 100, 60}, {9000, 100, 900}, ground, {}, 50, 100);
+  std::cout << (visible ? "in sight\n" : "hidden\n");
+  //! [resection]
 }
 
 void localize_log() {
@@ -109,10 +156,17 @@ void localize_log() {
       workflows::evaluate(workflows::TrackEvaluation{.track = "track.csv", .truth = "site/log.jsonl"});
   std::cout << score.ate_rmse << " m\n";
   //! [localize]
+  //! [methods]
+  for (const std::string& method : workflows::localize_methods()) std::cout << method << ' ';
+  std::cout << workflows::describe_localize_methods() << '\n' << workflows::localize_settings(request);
+  for (const localization::TrackErrorAt& row :
+       workflows::track_errors({.track = "track.csv", .truth = "site/log.jsonl"}))
+    if (row.error > 3 * row.sd) std::cout << row.t << " s: " << row.error << " m\n";
+  //! [methods]
 }
 
 }  // namespace
 
 int main() {
-  for (const auto& step : {filters, find_anywhere, find_by_summits, localize_log}) step();
+  for (const auto& step : {filters, move, find_anywhere, find_by_summits, localize_log}) step();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Excerpts of the reference of waymark/mapping.hpp. The argument is a DEM.
 #include <array>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <waymark/map.hpp>
 #include <waymark/mapping.hpp>
@@ -100,6 +102,51 @@ void read_job_file(const std::string& dem) {
   //! [job]
 }
 
+void load_job_file(const std::string& dem) {
+  std::ofstream("tops.json") << R"({"name": "tops", "stages": [{"stage": "load_dem", "files": [")"
+                             << std::filesystem::absolute(dem).string() << R"("]},
+                                {"stage": "find_mountain_tops"}, {"stage": "join_mountain_tops"}]})";
+  //! [load]
+  const pipeline::Job as_written = pipeline::read_job("tops.json", workflows::all_stages());
+  const pipeline::Job job = workflows::load_job("tops.json", {"find_mountain_tops.min_prominence=300"});
+  workflows::MapRequest request;
+  request.threads = 1;
+  request.work = "tops_work";
+  request.shard = pipeline::Shard{1, 2};  // this process does the first half of each stage
+  std::cout << as_written.name << '\n' << pipeline::run(job.pipeline, workflows::run_options(request)).report;
+  //! [load]
+  //! [schedule]
+  const pipeline::Plan plan = pipeline::plan(job.pipeline, {.work = "tops_work"});
+  pipeline::PlanCommand command{.job = "tops.json", .work = "tops_work"};
+  command.resources[""] = pipeline::CallResources{.processors = 2, .megabytes = 2000, .minutes = 30};
+  std::cout << plan_as_slurm(plan, command) << plan_as_snakemake(plan, command)
+            << plan_as_parallel(plan, command);
+  std::cout << pipeline::hash_plain_file("tops.json").sha256 << '\n';
+  //! [schedule]
+}
+
+void choose_stages(const std::string& dem) {
+  //! [stages]
+  pipeline::Pipeline tops(workflows::all_stages()), craters(workflows::all_stages()),
+      trees(workflows::all_stages());
+  workflows::add_mountain_top_stages(tops, {dem});
+  workflows::add_name_stage(tops, {"gazetteer.gpkg"});  // as `waymark peaks --names gazetteer.gpkg`
+  workflows::add_crater_stages(craters, {dem});         // as `waymark craters --dem`
+  workflows::add_tree_stages(trees, {.chm = {dem}});    // as `waymark trees --chm`
+  std::cout << pipeline::job_as_json("trees", trees) << '\n';
+  //! [stages]
+}
+
+void transform() {
+  //! [crs]
+  const Crs utm = Crs::from_text("EPSG:32633");
+  if (utm.kind() != CrsKind::projected) return;
+  const CrsTransform to_degrees(utm, geographic_crs(utm));
+  const CrsTransform::XY at = to_degrees(500000, 5'500'000);  // easting, northing
+  std::cout << at.x << " east, " << at.y << " north\n";
+  //! [crs]
+}
+
 void measure_prominence() {
   //! [prominence]
   HeightWindow heights(7, 3, kNoHeight);  // one row of cells, and one cell around it
@@ -111,6 +158,7 @@ void measure_prominence() {
       pipeline::build_divide_tree(heights, {0, 0, 5, 1}, grid, {}));
   for (const pipeline::Summit& summit : pipeline::join_divide_trees({{tree}}, 1, pipeline::BasePolicy::sea))
     std::cout << summit.height << " m, prominence " << summit.prominence << " m\n";  // 9 and 9, 7 and 3
+  std::cout << pipeline::prune(*tree, 5).nodes.size() << " summits of more than 5 m\n";
   //! [prominence]
 }
 
@@ -130,6 +178,7 @@ void measure_isolation_of_cells() {
     std::vector<std::string> files() const override { return {}; }
   } ridge;
   const Window all{0, 0, 5, 1};
+  pipeline::check_distance(pipeline::DistanceKind::planar, ridge.grid);  // throws for degrees
   const auto relief = std::make_shared<const pipeline::BlockRelief>(
       pipeline::block_relief(ridge.read({-1, -1, 7, 3}), all, kNoHeight));
   const std::array summits{pipeline::HighPoint{.cell = 4, .height = 7}};
@@ -144,7 +193,9 @@ void measure_isolation_of_cells() {
 
 int main(int argc, char** argv) {
   const std::string dem = argc > 1 ? argv[1] : "sample_data/jacksboro/dem.tif";
-  for (const auto& step : {make, listen, resume, run_own_stage, read_job_file}) step(dem);
+  for (const auto& step : {make, listen, resume, run_own_stage, read_job_file, load_job_file, choose_stages})
+    step(dem);
+  transform();
   measure_prominence();
   measure_isolation_of_cells();
 }

@@ -29,6 +29,11 @@ void compare() {
   const workflows::LandmarkEvaluation request{.result = "site.gpkg", .truth = "site/truth/landmarks.csv"};
   for (const auto& [type, score] : workflows::evaluate(request))
     std::cout << type << ": precision " << score.all.precision() << ", recall " << score.all.recall() << '\n';
+  for (const exporters::QualityCheck& check : workflows::check_quality(request.result, request.truth)) {
+    std::cout << check.type << ' ' << check.claim << " errs by " << check.expected_error << '\n';
+    for (const exporters::ReliabilityBin& bin : check.bins)
+      std::cout << bin.mean << " claimed, " << bin.right << " of " << bin.found << " right\n";
+  }
   //! [evaluate]
 }
 

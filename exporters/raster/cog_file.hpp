@@ -15,9 +15,10 @@ struct RasterBand {
   const Grid<float>* cells = {};  ///< NaN: no data; all bands of one size
 };
 
-/// Writes a cloud-optimized GeoTIFF of 32-bit floats with overviews and NaN as no data. `metadata` becomes
-/// items of the file. The georeference is of cell centres; a local CRS leaves the file without a CRS. Equal
-/// input gives equal bytes. Throws Error{output}.
+/// Writes a cloud-optimized GeoTIFF of 32-bit floats with overviews and NaN as no data. Equal input gives
+/// equal bytes. Throws Error{output}.
+/// - `metadata` becomes items of the file.
+/// - The georeference is of cell centres; a local CRS leaves the file without a CRS.
 void write_cog(const std::filesystem::path& path, const std::vector<RasterBand>& bands,
                const Georeference& where, const std::map<std::string, std::string>& metadata = {});
 

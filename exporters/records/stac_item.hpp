@@ -35,8 +35,8 @@ struct RecordFacts {
   std::vector<RecordAsset> assets = {};
 };
 
-/// Returns a STAC Item 1.1.0 as JSON, with the extensions projection 2.0.0, file 2.1.0, and where they apply
-/// solar system 1.1.0, view 1.1.0 and processing 1.2.0.
+/// Returns a STAC Item 1.1.0 as JSON. Extensions: projection 2.0.0, file 2.1.0, and where they apply solar
+/// system 1.1.0, view 1.1.0 and processing 1.2.0.
 /// - A local CRS has no place on a body: the geometry is null, `proj:bbox` holds the extent.
 /// - `collection` is the id of the collection that lists the item as collection.json beside it; empty: none.
 std::string stac_item(const RecordFacts& facts, const std::string& collection = {});

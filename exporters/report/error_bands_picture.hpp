@@ -5,9 +5,9 @@
 #include "localization/drive_statistics.hpp"
 namespace waymark::exporters {
 
-/// Returns an SVG page without external references: over time, the median position error of several drives,
-/// the bands of half and of 90 % of them, and dashed the standard deviation that they claim. Bands that are
-/// empty give empty axes.
+/// Returns an SVG page without external references: the median position error of several drives over time,
+/// with the bands of half and of 90 % of them. The standard deviation that they claim is dashed. Bands that
+/// are empty give empty axes.
 std::string error_bands_picture(const std::string& title, std::span<const localization::ErrorBand> bands);
 
 }  // namespace waymark::exporters

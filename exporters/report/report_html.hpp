@@ -36,10 +36,13 @@ struct ReportOptions {
 /// - a shaded-relief map with the landmarks, the foremost landmarks of each type, histograms;
 /// - the size-frequency distribution of craters, quality of the landmarks, images with their observations;
 /// - inputs, stages and warnings of the run.
-/// The relief comes from the DEM inside the map, else from the run's input files if they exist and have not
-/// grown, else a graticule is drawn. A DEM is read at the picture's resolution, so its size does not matter.
-/// The same map gives the same bytes. Staged and renamed; an existing report is replaced. Throws Error if the
-/// map cannot be read or the report cannot be written.
+/// Relief and errors:
+/// - The relief comes from the DEM inside the map, else from the run's input files if they have not changed.
+///   Without either, a graticule is drawn.
+/// - A DEM is read at the picture's resolution, so its size does not matter. The same map gives the same
+///   bytes.
+/// - The report is staged and renamed; an existing one is replaced.
+/// - Throws Error if the map cannot be read or the report cannot be written.
 void write_report(const std::filesystem::path& map, const std::filesystem::path& html,
                   const ReportOptions& options = {});
 

@@ -13,8 +13,8 @@ bool is_crater_count(const std::string& out);
 /// degrees of longitude (-180 to 180) and latitude, the counting area in km2.
 /// - The area is that of the options, else counting_area(). The outline is written if it is known.
 /// - Craters without a size and craters whose centre lies outside the outline are left out, with a warning.
-/// Throws Error if the map has no craters, the area is unknown, a .scc is requested for a map on no body, or
-/// the output exists.
+/// Throws Error if the map has no craters, the area is unknown, or the output exists; also for a .scc of a
+/// map on no body.
 ExportSummary export_crater_count(const std::filesystem::path& map, const std::string& out,
                                   const ExportOptions& options);
 

@@ -39,9 +39,9 @@ struct ExportSummary {
 ///   `<stem>_<type>.<ext>` for each of several.
 /// Throws Error for an unknown type, driver or CRS; a format that cannot hold the CRS or points; a CRS of
 /// another body; an output that exists, cannot be written, or does not fit on the disk.
-/// 20 k landmarks/s to GeoJSON, 150 k/s to GeoPackage, 190 k/s to FlatGeobuf, including the check (2-core
-/// machine under load). Memory does not grow with the landmarks, except for GeoPackage and what GDAL needs
-/// for a format.
+/// Writes 20 k landmarks/s to GeoJSON, 150 k/s to GeoPackage, 190 k/s to FlatGeobuf, including the check
+/// (2-core machine under load). Memory does not grow with the landmarks, except for GeoPackage and what GDAL
+/// needs for a format.
 ExportSummary export_map(const std::filesystem::path& map, const std::string& out,
                          const ExportOptions& options = {});
 

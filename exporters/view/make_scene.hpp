@@ -29,8 +29,7 @@ struct ViewRequest {
 
 /// Makes the scene of a map. `frame` is the map frame of tracks and log.
 /// - The terrain is the DEM's, if that is at most four times as wide as landmarks, tracks and images, else
-/// the
-///   part about them.
+///   the part about them.
 /// - On a body, what is farther from the middle than a quarter of its radius is left out, with a note.
 /// Throws Error{input} for a map without landmarks, terrain and tracks, and as make_view_terrain().
 ViewScene make_view_scene(const geodb::MapStore& map, const LocalFrame& frame, const ViewRequest& request);

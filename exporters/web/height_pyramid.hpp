@@ -9,7 +9,7 @@ namespace waymark::exporters {
 /// have no cliffs there.
 class HeightPyramid {
  public:
-  /// At least one height is known.
+  /// Requires that at least one height is known.
   explicit HeightPyramid(Grid<float> heights);
 
   int levels() const { return static_cast<int>(levels_.size()); }

@@ -18,7 +18,7 @@ class TerrainTiles {
   /// `relief` has at least one height.
   TerrainTiles(const Crs& crs, WebPlane plane, const Relief& relief);
 
-  /// Zoom at which a pixel is about a cell of the relief.
+  /// Returns the zoom at which a pixel is about a cell of the relief.
   int max_zoom() const { return max_zoom_; }
   /// Returns the rectangle of the relief; west may be below 0, east above 1.
   const WebBounds& bounds() const { return bounds_; }

@@ -24,8 +24,9 @@ std::vector<ShownLandmark> thin_out(std::span<const WebLandmark> landmarks, int 
 /// Returns all landmarks, none hidden.
 std::vector<ShownLandmark> all_of(std::span<const WebLandmark> landmarks);
 
-/// Returns the coarsest zoom at which tiles have at most kMaxPerTile landmarks, and a step in a tile is at
-/// most a millimetre or 1e-5 of the width of the map; kMaxWebZoom if none is. `world_width`: metres.
+/// Returns the coarsest zoom at which tiles have at most kMaxPerTile landmarks and steps are small;
+/// kMaxWebZoom if none is. A step of a tile is at most a millimetre or 1e-5 of the width of the map.
+/// `world_width`: metres.
 int top_zoom(std::span<const WebLandmark> landmarks, double world_width);
 
 /// Tile, and the landmarks in it as a range of a list of shown ones.

@@ -22,9 +22,9 @@ struct WebStyle {
 /// Names of the archives, relative to the style.
 inline constexpr const char *kLandmarkTiles = "landmarks.pmtiles", *kTerrainTiles = "terrain.pmtiles";
 
-/// Returns the style (MapLibre style specification 8): relief under a layer of circles for each type in its
-/// colour, bowls as outlines, bodies to scale where they are large enough to see, and labels. What the page
-/// shows of types, body and scale is in its `metadata`.
+/// Returns the style (MapLibre style specification 8): relief under a layer of circles and labels for each
+/// type in its colour. Bowls are outlines; bodies are drawn to scale where they are large enough to see. What
+/// the page shows of types, body and scale is in its `metadata`.
 std::string web_style(const WebLandmarks& landmarks, const WebStyle& about);
 
 /// Returns the metadata of an archive of the landmarks: TileJSON's `vector_layers`, for other programs.

@@ -7,8 +7,8 @@
 #include "landmarks/landmark_type.hpp"
 namespace waymark::geodb {
 
-/// The table of type k (from 0) has row ids from k * kRowsPerType + 1, so that ids are unique in the view
-/// over all types, also after other programs have added rows.
+/// The table of type k (from 0) has row ids from k * kRowsPerType + 1. Ids are unique in the view over all
+/// types, also after other programs have added rows.
 inline constexpr std::int64_t kRowsPerType = 1'000'000'000;
 
 /// Column of the table of a landmark type.

@@ -24,7 +24,7 @@ class LargestValues {
     double value = 0;
   };
 
-  /// Each column keeps its `capacity` largest values.
+  /// Keeps the `capacity` largest values of each column.
   explicit LargestValues(std::size_t columns, std::size_t capacity = 10'000)
       : columns_(columns), capacity_(capacity) {}
   /// Adds a value of a column; ignores NaN and infinity.

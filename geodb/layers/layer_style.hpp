@@ -5,8 +5,8 @@
 namespace waymark::geodb {
 
 /// Returns the style of a landmark type for QGIS 3 (QML); sld_style() for OGC (SLD 1.1): marker by `drawn_as`
-/// in `colour`, label by `label_feature`. In QML the size grows with the logarithm of `size_feature`, larger
-/// values win if labels collide, columns have titles, and landmarks a display name and a map tip.
+/// in `colour`, label by `label_feature`. In QML the size grows with the logarithm of `size_feature`, and
+/// larger values win if labels collide. Columns have titles, landmarks a display name and a map tip.
 std::string qml_style(const LandmarkType& type);
 /// Returns the style as SLD, see qml_style().
 std::string sld_style(const LandmarkType& type);

@@ -4,7 +4,7 @@
 #include "geodb/rtree/packed_rtree.hpp"
 namespace waymark::geodb {
 
-/// Sorts boxes by the places of their centres on a Hilbert curve over their common extent, so that near boxes
+/// Sorts boxes by the positions of their centres on a Hilbert curve over their common extent. Near boxes then
 /// share a node of the spatial index.
 void sort_along_curve(std::vector<IndexedBox>& boxes);
 

@@ -30,7 +30,7 @@ class Statement {
   void bind(int parameter, double value);  ///< NaN becomes NULL
   void bind(int parameter, std::int64_t value);
   void bind(int parameter, int value) { bind(parameter, std::int64_t{value}); }
-  /// The bytes must outlive the statement's reset or next binding.
+  /// Binds bytes that must outlive the statement's reset or next binding.
   void bind(int parameter, std::string_view text);
   /// Deleted: a temporary string would not outlive the statement's execution.
   template <std::same_as<std::string> T>
@@ -55,7 +55,7 @@ class Statement {
   bool null(int column) const;
   double real(int column) const;  ///< NULL becomes NaN
   std::int64_t integer(int column) const;
-  /// Valid until the next step or reset.
+  /// Returns a text that is valid until the next step or reset.
   std::string_view text(int column) const;
   std::span<const std::byte> blob(int column) const;
   std::optional<double> optional_real(int column) const;

@@ -50,9 +50,10 @@ std::vector<std::string> camera_formats();
 /// - Scale and curvature of the projection are not applied: GridFrame is treated as Cartesian.
 /// - Heights are those of the file plus `height_offset`; body-fixed ones are above the ellipsoid of the map's
 ///   CRS.
-/// Throws Error{input} with file, location and remedy: a value that is missing or not understood, a lens
-/// whose distortion does not invert anywhere in the image, duplicate image names, a frame without scale and
-/// without a similarity.
+/// Throws Error{input} with file, location and remedy for:
+/// - a value that is missing or not understood, duplicate image names;
+/// - a lens whose distortion does not invert anywhere in the image;
+/// - a frame without scale and without a similarity.
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import);
 
 /// Returns the distinct lenses of a camera file in its order, for images of the same cameras. Poses and their

@@ -35,8 +35,8 @@ struct GroundControl {
 GroundControl read_gcp_list(const std::string& path);
 
 /// Reads surveyed points from a vector layer or a CSV table, and their marks from another table
-/// (docs/reference/control_points.md). Throws Error{input} with file and line for a missing column or number,
-/// two points of one name, a mark of an unknown point, and two marks of a point in one image.
+/// (docs/reference/control_points.md). Throws Error{input} with file and line for a missing column or number
+/// and two points of one name; also for a mark of an unknown point and two marks of a point in one image.
 GroundControl read_control_layer(const std::string& points, const std::string& marks);
 
 /// Reads surveyed points as read_gcp_list does if `marks` is empty, else as read_control_layer. Throws

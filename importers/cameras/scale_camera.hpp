@@ -15,9 +15,9 @@ namespace waymark::importers {
 Camera scale_camera(const Camera& camera, std::int64_t columns, std::int64_t rows, const std::string& path,
                     std::vector<std::string>& warnings);
 
-/// Throws Error{input} for focal lengths of 0 (fx < 0: a mirrored image), numbers that are not finite, and a
-/// distortion that does not invert in a quarter of the image or more. Adds a warning if only the corners have
-/// no rays.
+/// Throws Error{input} for focal lengths of 0 and numbers that are not finite; fx < 0 is a mirrored image.
+/// Throws Error{input} for a distortion that does not invert in a quarter of the image or more. Adds a
+/// warning if only the corners have no rays.
 void check_camera(const Camera& camera, const std::string& file, const std::string& place,
                   std::vector<std::string>& warnings);
 

@@ -42,9 +42,9 @@ class ImportedImage : public ImageSource {
 /// Throws Error{input} for a file that is missing, damaged, complex or no image.
 std::shared_ptr<const ImportedImage> import_image(const std::string& path, const ImageImport& import = {});
 
-/// Returns a transverse Mercator on the body of `crs`, true to scale along the meridian of a position, as a
-/// PROJ string that gdalwarp -t_srs takes. Scale error below 1e-4 within 90 km on Earth, 48 km on Mars.
-/// Degrees are rounded to 1e-4.
+/// Returns a transverse Mercator on the body of `crs` as a PROJ string, which gdalwarp -t_srs takes. It is
+/// true to scale along the meridian of the position. Scale error below 1e-4 within 90 km on Earth, 48 km on
+/// Mars. Degrees are rounded to 1e-4.
 std::string local_projection(const Crs& crs, double lon, double lat);
 
 }  // namespace waymark::importers

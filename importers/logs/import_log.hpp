@@ -64,9 +64,10 @@ localization::RobotLog import_victoria_park(const std::filesystem::path& folder)
 /// ROBOTLASER1. Times are those of the sender. Lines that cannot be read are skipped and counted.
 localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 
-/// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Odometry becomes
-/// steps, scans get their place on the robot from tf and tf_static. Of several topics of a type, the one with
-/// the most messages is read. Messages that cannot be read are skipped and counted. Throws Error{input}.
+/// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Throws Error{input}.
+/// - Odometry becomes steps; scans get their pose on the robot from tf and tf_static.
+/// - Of several topics of a type, the one with the most messages is read.
+/// - Messages that cannot be read are skipped and counted.
 localization::RobotLog import_bag_log(const std::filesystem::path& path);
 
 /// Reads a folder of 3-D scans (point_files.hpp), or its subfolder `velodyne`, in the order of their names:

@@ -33,13 +33,10 @@ class NumberReader final : public OptionVisitor {
   explicit NumberReader(const LogLine& line) : line_(line) {}
 
  private:
-  void number(std::string_view name, double& value, std::string_view, const Field& field) override {
-    const std::string key(name);
-    value = line_.number(key.c_str(), value);
-    if (!(value >= field.min && value <= field.max))
-      line_.fail(field.max < std::numeric_limits<double>::infinity()
-                     ? fmt::format("\"{}\" must be {:g} to {:g}, is {:g}", name, field.min, field.max, value)
-                     : fmt::format("\"{}\" must be at least {:g}, is {:g}", name, field.min, value));
+  void number(std::string_view name, double& value, std::string_view unit, const Field& field) override {
+    const OptionRow row{.name = std::string(name), .unit = std::string(unit), .value = value, .field = field};
+    value = line_.number(row.name.c_str(), value);
+    if (const std::string fault = range_fault(row, value); !fault.empty()) line_.fail(fault);
   }
   void integer(std::string_view, std::int64_t&, const Field&) override {}
   void flag(std::string_view, bool&, const Field&) override {}

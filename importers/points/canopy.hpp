@@ -52,8 +52,8 @@ std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import);
 /// - Feet, horizontal and vertical, follow the units of the CRS.
 /// - If no point is classified as ground, ground points are found by pipeline/forest/ground_filter.hpp, with
 ///   a warning.
-/// Throws Error{input} as read_las_header does, for a CRS in degrees, for files of different CRSs, and if
-/// there are too few points to find the ground.
+/// Throws Error{input} as read_las_header does, for a CRS in degrees, files of different CRSs, and too few
+/// points to find the ground.
 std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import);
 
 }  // namespace waymark::importers

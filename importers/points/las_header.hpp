@@ -32,8 +32,9 @@ struct LasHeader {
 
 /// Reads and checks the header and the records that name the CRS. Counts are 64-bit if the version has them.
 /// LAZ and COPC are recognised by their contents, whatever the name of the file.
-/// Throws Error{input} for a file that is no LAS file, damaged, compressed in an unknown way, a point format
-/// above 10, a record shorter than its format, or fewer points than the header states.
+/// Throws Error{input} for:
+/// - a file that is no LAS file, is damaged, or is compressed in an unknown way;
+/// - a point format above 10, a record shorter than its format, fewer points than the header states.
 LasHeader read_las_header(const std::string& path);
 
 }  // namespace waymark::importers

@@ -13,9 +13,9 @@ struct MosaicLayout {
 };
 
 /// Places the files on the grid of the first one. Files across the antimeridian are shifted by whole turns. A
-/// grid that covers all longitudes wraps, and repeated columns are dropped. Throws Error with both files, the
-/// numbers and the gdalwarp command that corrects them, if CRS, cell size or alignment differ by more than
-/// 1/1000 of a cell.
+/// grid that covers all longitudes wraps, and repeated columns are dropped.
+/// - Throws Error if CRS, cell size or alignment differ by more than 1/1000 of a cell. It names both files,
+///   the numbers and the gdalwarp command that corrects them.
 MosaicLayout lay_out(const std::vector<RasterHeader>& headers);
 
 }  // namespace waymark::importers

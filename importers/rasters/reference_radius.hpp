@@ -13,9 +13,9 @@ struct ReferenceRadius {
 };
 
 /// Detects shape maps of planetary archives, whose heights are distances from the body's centre (PDS3: values
-/// plus OFFSET = 1737400). The evidence is a band offset within 1 km of the body's equatorial radius, or
-/// heights of the first non-empty block within 5 % of it. Reads blocks only if the numbers of the band can
-/// reach that far.
+/// plus OFFSET = 1737400). The evidence is a band offset within 1 km of the equatorial radius, or heights of
+/// the first non-empty block within 5 % of it. Reads blocks only if the numbers of the band can reach that
+/// far.
 ReferenceRadius detect_reference_radius(GDALDataset& dataset, const RasterHeader& header);
 
 }  // namespace waymark::importers

@@ -54,9 +54,8 @@ struct DerivedShapes {
 /// reason is in `omitted`.
 /// - Consecutive vertices within 1 mm are one.
 /// - A direction is the bisector into the open at a corner, else the normal of the seen face.
-/// - `shared` holds, for each part and vertex, whether another outline has the vertex too (a corner there is
-///   hidden or of another angle), and whether another outline has the wall from it to the next vertex. May be
-///   empty.
+/// - `shared` holds for each vertex of each part what other outlines have, too: the vertex (a corner there is
+///   hidden or of another angle), and the wall from it to the next. It may be empty.
 struct SharedVertex {
   bool corner = false, wall = false;
 };

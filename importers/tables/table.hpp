@@ -41,8 +41,8 @@ class TableSource {
 enum class TableFormat { by_name, csv, ogr };
 
 /// Opens a table, `/vsi...` paths included.
-/// - csv: text separated by comma, semicolon, tab, bar or blanks, with or without a header, quotes as in RFC
-///   4180, lines that begin with # are comments.
+/// - csv: text separated by comma, semicolon, tab, bar or blanks, with or without a header. Quotes are those
+///   of RFC 4180; lines that begin with # are comments.
 /// - ogr: every vector layer GDAL reads. `layer` chooses among several layers; empty: the one named `type`,
 ///   else the only one with geometries, else the only one.
 /// - by_name: .csv, .tsv, .txt, .dat and .tab are text, other files ogr.

@@ -39,14 +39,13 @@ struct ImportedTable {
 
 /// Reads all rows and passes the landmarks to `take`, in the order of rows. A landmark without a uid in the
 /// table has none.
-/// - A row is rejected, and counted, if it has no position, lies outside the domain of the map's CRS, has a
-///   feature outside its plausible range, a negative deviation or a confidence outside [0, 1], or is of
-///   another type.
+/// - A row is rejected, and counted, if it has no position, lies outside the domain of the map's CRS, or is
+///   of another type. So is one with a feature outside its plausible range, a negative deviation or a
+///   confidence outside [0, 1].
 /// - Missing features and position deviations are unknown (NaN), a missing height is 0, missing counts are 1.
 ///   A deviation is taken as a spread.
-/// Throws Error for a cell that is no number or a broken row (with its line), an unknown CRS, and a table
-/// without a plausible row (probably in another unit). About 0.15 M rows/s; memory is that of the rejected
-/// rows.
+/// Throws Error for a cell that is no number, a broken row, an unknown CRS, and a table without a plausible
+/// row. About 0.15 M rows/s; memory is that of the rejected rows.
 ImportedTable import_table(TableSource& table, const TypeRegistry& types, const TableImport& how,
                            const std::function<void(Landmark&&)>& take);
 

@@ -13,6 +13,8 @@
 /// \snippet snippets/detection.cpp detect
 /// Detect in pixels with find_craters() and find_rocks():
 /// \snippet snippets/detection.cpp pixels
+/// Estimate the light with estimate_crater_sun_angle() and search_rocks():
+/// \snippet snippets/detection.cpp light
 /// Detect craters in heights with find_craters():
 /// \snippet snippets/detection.cpp heights
 /// Train the models with train():

@@ -26,18 +26,30 @@
 /// \snippet snippets/map.cpp read
 /// Ask as the command does, with query():
 /// \snippet snippets/map.cpp query
+/// Check a request once and run it often with PreparedQuery:
+/// \snippet snippets/map.cpp prepared
 /// Change landmarks in place with MapEditor:
 /// \snippet snippets/map.cpp edit
 /// Keep a map in memory as a SemanticMap:
 /// \snippet snippets/map.cpp memory
 /// Weigh landmarks for a sensor with quality_for(); all_sensors() has the built-in SensorProfile values:
 /// \snippet snippets/map.cpp sensor
+/// Declare a sensor of your own in a SensorRegistry:
+/// \snippet snippets/map.cpp own_sensor
 /// Merge observations with merge(), and rate them with spread_confidence() and multiplicity_confidence():
 /// \snippet snippets/map.cpp merge
+/// Compute the quality of eq. 8 with landmark_quality():
+/// \snippet snippets/map.cpp quality
+/// Convert angles, and compute with units, by Quantity:
+/// \snippet snippets/map.cpp units
 /// Declare a LandmarkType of your own:
 /// \snippet snippets/map.cpp type
+/// Ask types by what they declare, with find_type() and the like:
+/// \snippet snippets/map.cpp types
 /// Turn a table into a map with import_landmarks():
 /// \snippet snippets/map.cpp import
+/// List the rules for GIS layers with ready_rule_names():
+/// \snippet snippets/map.cpp rules
 /// Check, export and report a map with validate_map(), export_map() and write_report():
 /// \snippet snippets/map.cpp deliver
 /// Every function that fails throws an Error with the problem, its place and a remedy:

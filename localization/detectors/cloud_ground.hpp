@@ -9,11 +9,11 @@ namespace waymark::localization {
 class CloudGround {
  public:
   /// Takes per cell the lowest height that a second point confirms within 0.2 m: single points below the
-  /// ground are reflections. A cell has the height of the lowest of its 3 x 3 cells, so that cells under
-  /// parked cars and in hedges have ground, too; on a slope that is up to 1.5 m x slope too low.
+  /// ground are reflections. A cell has the height of the lowest of its 3 x 3 cells, so cells under cars and
+  /// in hedges have ground, too; on a slope that is up to 1.5 m x slope too low.
   CloudGround(std::span<const Eigen::Vector3f> points, double max_range);
 
-  /// Height of the ground at a point within `max_range`; NaN where no point is near.
+  /// Returns the height of the ground at a point within `max_range`; NaN where no point is near.
   float at(float x, float y) const;
 
  private:

@@ -38,8 +38,8 @@ struct DetectorSpec {
 /// Registry of detectors, sorted by name.
 class DetectorTable {
  public:
-  /// Throws std::logic_error for a name that is empty or taken, a record that is neither "laser"
-  /// nor "points", no types, or no function that makes it.
+  /// Throws std::logic_error for a name that is empty or taken, and without types or a function that makes
+  /// it. So it does for a record that is neither "laser" nor "points".
   void add(DetectorSpec detector);
   const DetectorSpec* find(std::string_view name) const;
   std::vector<std::string> names() const;

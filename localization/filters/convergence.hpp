@@ -7,8 +7,8 @@ namespace waymark::localization {
 
 /// Decides whether a filter without a given start has found the robot. Until then its covariance must cover
 /// every position the robot may have.
-/// - Particles gathered at one position are no proof: those elsewhere may have died early, the filter chose
-///   the position at which most fits by chance, and a robot at rest sees the same chance again and again.
+/// - Particles gathered at one position are no proof: those elsewhere may have died early, and the filter
+///   chose where most fits by chance. A robot at rest sees the same chance again and again.
 /// - Found: a PoseFinder is certain of the position. Identified landmarks cannot fit by chance: with them
 ///   one mode for twenty sets, in which the map explains 0.35 of the sightings, is enough.
 /// - No longer found: the map explains less than 0.2.

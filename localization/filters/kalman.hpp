@@ -73,7 +73,7 @@ Eigen::Vector3d clamp_sd(const Eigen::Vector3d& sd);
 PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
                         const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust = 1);
 
-/// Prediction of the unscented filter below, on covariances.
+/// Predicts as the unscented filter below, on covariances.
 PoseEstimate ukf_predict(const PoseEstimate& estimate, const BodyMotion& motion);
 
 /// Unscented filter with the symmetric points of Arasaratnam & Haykin (2009, "cubature"), which have

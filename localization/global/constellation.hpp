@@ -70,14 +70,14 @@ class ConstellationIndex {
   ConstellationIndex(std::vector<MapLandmark> landmarks, std::vector<LandmarkPosition> positions,
                      FeatureScales scales, ConstellationOptions options = {});
 
-  /// Returns the pose from which the sightings were made. Sightings need a range. Departures from the
-  /// textbook: instead of pairwise consistency cliques, the poses with most votes are fitted, and every
-  /// sighting is compared with the map. A fix must be too good for chance (a contrario: Desolneux, Moisan &
-  /// Morel 2000), given the local density of landmarks and the rarity of their features, and better than
-  /// any other pose.
+  /// Returns the pose from which the sightings were made. Sightings need a range.
+  /// - Departures from the textbook: instead of pairwise consistency cliques, the poses with most votes are
+  ///   fitted, and every sighting is compared with the map.
+  /// - A fix must be better than any other pose and too good for chance (a contrario: Desolneux, Moisan &
+  ///   Morel 2000). Chance follows from the local density of landmarks and the rarity of their features.
   ConstellationAnswer find(const SightingSet& seen) const;
-  /// Returns the fix next to an expected pose in the frame of a planar map, if it is too good for chance in
-  /// the whole map. Does not look for other poses.
+  /// Returns the fix next to an expected pose of a planar map, if it is too good for chance in the whole map.
+  /// Does not search for other poses.
   std::optional<ConstellationFix> check(const SightingSet& seen, const Pose2& expected) const;
 
   std::size_t size() const { return landmarks_.size(); }

@@ -11,10 +11,11 @@ struct HorizonEdge {
   float rise = -1e9F, far = 0;
 };
 
-/// Returns the horizon in sectors of equal width, the first from azimuth 0 (east) towards y (north). Each
-/// holds the highest terrain, sampled in blocks about as wide as the sector (cone tracing in a max
-/// pyramid). `nearest` m: terrain nearer than that is ignored. `eye`: m above the datum. Some microseconds
-/// per sector.
+/// Returns the horizon in sectors of equal width, the first from azimuth 0 (east) towards y (north). Takes
+/// some microseconds per sector.
+/// - Each sector holds the highest terrain, sampled in blocks about as wide as the sector (cone tracing in a
+///   max pyramid).
+/// - `nearest` m: terrain nearer than that is ignored. `eye`: m above the datum.
 std::vector<HorizonEdge> horizon_ring(const TerrainGrid& ground, const Eigen::Vector2d& at, double eye,
                                       double nearest, int sectors, const SkylineOptions& options);
 

@@ -11,7 +11,7 @@ class SkylineIndex {
   SkylineIndex(std::vector<SkylineSummit> summits, const TerrainHeight& ground,
                const SkylineOptions& options);
 
-  /// As find_by_skyline. `heading`: that of a compass, instead of the options'.
+  /// Finds as find_by_skyline() does. `heading`: that of a compass, instead of the options'.
   SkylineAnswer find(std::span<const HorizonTop> tops, std::optional<double> heading = {}) const;
   std::size_t viewpoints() const { return viewpoints_.size(); }
 

@@ -16,7 +16,7 @@ class TerrainGrid {
   TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond,
               std::int64_t max_cells = 1400);
 
-  /// Bilinear; NaN if one of the four cells is unknown.
+  /// Returns the bilinear height; NaN if one of the four cells is unknown.
   double height(double x, double y) const {
     const double c = (x - area_.min().x()) / cell_, r = (y - area_.min().y()) / cell_;
     if (!(c >= 0 && r >= 0 && c < columns_ && r < rows_)) return std::nan("");

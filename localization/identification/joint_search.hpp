@@ -8,9 +8,9 @@ namespace waymark::localization {
 /// A joint association: the candidate of each sighting, or -1.
 using JointChoice = std::vector<int>;
 
-/// Joint compatibility branch and bound (Neira & Tardos 2001). Returns the association with the most
-/// pairings that pass the gate together, among those the least joint distance; each landmark at most once.
-/// `std::nullopt` if `node_limit` is reached first.
+/// Searches by joint compatibility branch and bound (Neira & Tardos 2001). Returns the association with the
+/// most pairings that pass the gate together, among those the least joint distance; each landmark at most
+/// once. `std::nullopt` if `node_limit` is reached first.
 std::optional<JointChoice> joint_compatibility(std::span<const Candidates> sets, const Eigen::Matrix3d& pose,
                                                const IdentificationOptions& options);
 

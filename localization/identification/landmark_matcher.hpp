@@ -59,9 +59,9 @@ class LandmarkMatcher {
 
   /// Prepares for a set: estimates the density of sightings without landmark (`learn_clutter`).
   void observe(const SightingSet& seen);
-  /// Learns from the matches of the set, made at a pose, how many of its sightings are not of the map, and
-  /// what part of the landmarks in view is seen. `map`: from landmarks_near. Does nothing if they are
-  /// not the matches of the set.
+  /// Learns from the matches of the set, made at a pose, the fraction of sightings that are not of the map.
+  /// Learns also what part of the landmarks in view is seen. `map`: from landmarks_near. Does nothing if they
+  /// are not the matches of the set.
   void learn(std::span<const Match> matches, const SightingSet& seen, const Pose2& robot,
              const LandmarkGrid& map);
 

@@ -43,8 +43,8 @@ class CircleEvidence {
  public:
   CircleEvidence(std::span<const Circle> map, std::span<const Circle> catalogue);
 
-  /// Returns ln of the probability density of the map at a place over that of clutter alone, averaged over
-  /// fractions of true circles from 0.1 to 0.9.
+  /// Returns ln of the probability density of the map at a place over that of clutter alone. It is averaged
+  /// over fractions of true circles from 0.1 to 0.9.
   double log_ratio(const PlaneSimilarity& place) const;
   /// Returns a quick score of a place known by two matches at distance `base` (metres), for `count` circles.
   double quick_score(const PlaneSimilarity& place, const Eigen::Vector2d& between, double base,

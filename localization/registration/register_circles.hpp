@@ -23,9 +23,9 @@ struct CircleRegistration {
 };
 
 /// Finds the similarity that places circles of a map in a catalogue, without a start. Pairs of the largest
-/// circles, with the ratio of their diameters and their distance, suggest places; each is adjusted. The
-/// probability of being wrong compares the evidence of the best place (Laplace's approximation, MacKay 1992)
-/// with that of the others and of a map that is not in the catalogue.
+/// circles, with the ratio of their diameters and their distance, suggest places; each is adjusted. The best
+/// place is compared with all others, and with a map that is not in the catalogue, by their evidence
+/// (Laplace's approximation, MacKay 1992).
 CircleRegistration register_circles(std::span<const Circle> map, std::span<const Circle> catalogue,
                                     const CircleRules& rules = {});
 

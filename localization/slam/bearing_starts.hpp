@@ -8,8 +8,8 @@ namespace waymark::localization {
 
 /// Keeps bearings without a range until they start a landmark (delayed initialization; Bailey 2003): the
 /// first and the last bearing of an object are intersected once they differ enough.
-/// - Bearings are of one object if they have one identity, or, without identities, if each is the only one of
-///   its type that the other may be after the motion between them. Ambiguous bearings are not used.
+/// - Bearings of one identity are of one object. Without identities each must be the only one of its type
+///   that the other may be after the motion between them. Ambiguous bearings are not used.
 /// - An object starts a landmark after three bearings or more, if those between agree with the position and
 ///   its distance is known to a fifth.
 class BearingStarts {

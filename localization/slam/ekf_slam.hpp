@@ -80,7 +80,7 @@ class EkfSlam final : public Localizer {
 
   /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
   /// it disagrees, is a rival, which a second filter follows; the filter restarts there if the rival explains
-  /// the sightings that come better. It restarts without a trial at the estimate of the sum of Gaussians if
+  /// the further sightings better. It restarts without a trial at the estimate of the sum of Gaussians if
   /// that has a deviation of less than a metre and half of its own. It then takes landmarks of the map from
   /// the map, and keeps new ones from before it was lost.
   void set_pose_finder(PoseFinder finder, PoseCheck check = {});

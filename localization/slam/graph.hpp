@@ -81,7 +81,7 @@ struct SightingError {
 };
 StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to);
 SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark);
-/// The Jacobian with respect to the pose is the root.
+/// Returns the whitened error of a prior; its Jacobian with respect to the pose is the root.
 Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose);
 Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& landmark);
 

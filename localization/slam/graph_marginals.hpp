@@ -11,10 +11,11 @@ struct GraphMarginals {
 };
 
 /// Returns the marginal covariance of each pose and landmark of a solved graph: the diagonal blocks of the
-/// inverse information matrix. Computes them from its sparse Cholesky factor by the recursion of Takahashi
-/// (1973; Kaess & Dellaert 2009), without the inverse. Errors are weighted by `kernel` and its width
-/// (graph_solver.hpp). A fixed pose, and the first one of an unanchored graph, has covariance 0. Throws
-/// Error{input} if the graph is not determined.
+/// inverse information matrix. Throws Error{input} if the graph is not determined.
+/// - Computes them from its sparse Cholesky factor by the recursion of Takahashi (1973; Kaess & Dellaert
+///   2009), without the inverse.
+/// - Errors are weighted by `kernel` and its width (graph_solver.hpp).
+/// - A fixed pose, and the first one of an unanchored graph, has covariance 0.
 GraphMarginals graph_marginals(const PoseGraph& graph, const std::string& kernel = "none",
                                double kernel_width = 2);
 

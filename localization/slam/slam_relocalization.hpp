@@ -35,11 +35,11 @@ struct SetEvidence {
 ///   fifth); and after ten sets without a landmark of the map (returning to the map closes the loop).
 /// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
 ///   trial: they share its errors.
-/// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt, or two fractions
-///   are small and no answer confirms the pose. SLAM finds less than 0.4 of the expected landmarks that it
-///   usually finds; terrain without landmarks does not count. And the map explains less than half of the
-///   usual fraction of its sightings, or less than a fifth beyond chance. Terrain that hides landmarks makes
-///   only the first one small, unmapped objects only the second.
+/// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt.
+/// - Lost also: two fractions are small and no answer confirms the pose. SLAM finds less than 0.4 of the
+///   expected landmarks that it usually finds; terrain without landmarks does not count. And the map explains
+///   less than half of the usual fraction of its sightings, or less than a fifth beyond chance. Terrain that
+///   hides landmarks makes only the first one small, unmapped objects only the second.
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, PoseCheck check = {}, FeatureScales scales = {})

@@ -21,7 +21,7 @@ class SlamState {
   std::size_t landmarks() const { return active_.size() + passive_.size(); }
   std::span<const Slot> active() const { return active_; }
 
-  /// Position of any landmark; that of a passive one dates from when it became passive.
+  /// Returns the position of any landmark; that of a passive one dates from when it became passive.
   const Eigen::Vector2d& at(Slot slot) const { return at_[slot]; }
   Eigen::Matrix2d covariance(Slot slot) const;
   /// Returns the covariance of an active landmark with the robot.
@@ -38,7 +38,7 @@ class SlamState {
   };
   /// Returns the squared Mahalanobis distance of all innovations together; infinite if they have none.
   double joint_squares(std::span<const Correction> corrections) const;
-  /// Kalman update by all corrections at once, Joseph form.
+  /// Updates by all corrections at once, Joseph form.
   void update(std::span<const Correction> corrections);
 
   /// Adds an active landmark measured from the robot. `by_pose`: its Jacobian with respect to the pose;

@@ -22,8 +22,8 @@ struct Rim {
 /// than 30 % of the radius.
 /// - Along 36 azimuths the rim is at the steepest outward change of brightness, to sub-pixel precision:
 ///   dark to bright on the sunward side, bright to dark opposite.
-/// - The radii are fitted by r0 + a cos + b sin + c cos 2 + d sin 2 (to first order an ellipse), reweighted
-///   against outliers (Huber), with a prior at the candidate's circle.
+/// - The radii are fitted by harmonics of the azimuth up to the second (to first order an ellipse). They are
+///   reweighted against outliers (Huber), with a prior at the candidate's circle.
 /// - Two passes, the second about the centre of the first. `image` has no NaN.
 std::optional<Rim> refine_rim(const Pixels& image, const CraterCandidate& candidate, Radians sun_angle);
 

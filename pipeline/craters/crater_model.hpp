@@ -20,8 +20,7 @@ struct CraterPrediction {
 /// outputs (CraterPrediction).
 /// - `layers`: dense network with two hidden layers (leaky rectifier, 0.1) on gradients and a thumbnail.
 /// - `convolution_nets`: convolutional networks on a wider patch, averaged. They differ in initial weights
-/// and order
-///   of examples; averaging reduces the variance of training. May be empty.
+///   and order of examples; averaging reduces the variance of training. May be empty.
 struct CraterModel {
   struct Layer {
     int inputs = 0, outputs = 0;

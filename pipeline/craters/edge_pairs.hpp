@@ -6,8 +6,8 @@ namespace waymark::pipeline {
 
 /// Finds craters from pairs of rim edges (Cheng, Johnson, Matthies & Olson 2003), at octaves from full size
 /// down.
-/// - Edges whose gradient runs along the light are split into those on the sunward rim and those on the far
-///   rim, each convex away from the centre.
+/// - Edges whose gradient runs along the light are split into sunward and far rims, each convex away from the
+///   centre.
 /// - The best pairs along the light are joined by an ellipse (Fitzgibbon, Pilu & Fisher 1999).
 /// - Score: 1 / (1 + cost), higher for edges of similar length at the right distance; not a calibrated
 ///   probability.

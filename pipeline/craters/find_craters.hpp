@@ -71,10 +71,11 @@ struct DemCrater {
   double diameter() const { return std::sqrt(major * minor); }
 };
 
-/// Returns the craters whose centres lie in the window, by descending confidence. Cells without height are
-/// no data. Bowls are correlated over scales, then the rim is compared with the floor along 24 azimuths.
-/// Craters with depth / diameter below 0.02 are not found; lunar maria have them down to 0.003. Throws
-/// Error{usage} for sizes out of order.
+/// Returns the craters whose centres lie in the window, by descending confidence. Throws Error{usage} for
+/// sizes out of order.
+/// - Cells without height are no data.
+/// - Bowls are correlated over scales, then the rim is compared with the floor along 24 azimuths.
+/// - Craters with depth / diameter below 0.02 are not found; lunar maria have them down to 0.003.
 std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCraterSearch& search);
 
 }  // namespace waymark::pipeline

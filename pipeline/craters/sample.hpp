@@ -16,7 +16,7 @@ inline float sample(const Pixels& image, double x, double y) {
          b * ((1 - a) * image(column, below) + a * image(right, below));
 }
 
-/// Same as sample() for a position strictly inside: [0, columns - 1) x [0, rows - 1).
+/// Samples as sample() does, for a position strictly inside: [0, columns - 1) x [0, rows - 1).
 inline float sample_inside(const float* pixels, std::int64_t columns, double x, double y) {
   const auto column = static_cast<int>(x), row = static_cast<int>(y);
   const auto a = static_cast<float>(x - column), b = static_cast<float>(y - row);

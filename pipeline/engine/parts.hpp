@@ -59,7 +59,7 @@ class PartsWriter {
   EncodedParts parts_;
 };
 
-/// All parts in one text: their number, their lengths, then their bytes.
+/// Returns all parts as one text: their number, their lengths, then their bytes.
 std::string encode_parts(const EncodedParts& parts);
 /// Throws std::runtime_error on malformed bytes.
 EncodedParts decode_parts(std::string_view bytes);

@@ -11,10 +11,10 @@ namespace waymark::pipeline {
 std::vector<OptionRow> option_table(const Step& step);
 
 /// Sets options from a JSON object and checks them. `location` is the location of the object: "stages[1]".
-/// Messages read "stages[1] find_mountain_tops has no option 'x'" and "stages[1].min_prominence must be a
-/// number".
-/// Returns a warning for each option given by its former name. Throws Error{usage}; some options of `step`
-/// may then be set already.
+/// Returns a warning for each option given by its former name.
+/// - Messages read "stages[1] find_mountain_tops has no option 'x'", "stages[1].min_prominence must be a
+///   number".
+/// - Throws Error{usage}; some options of `step` may then be set already.
 [[nodiscard]] std::vector<std::string> read_options(Step& step, std::string_view json_object,
                                                     std::string_view location);
 

@@ -21,8 +21,8 @@ struct AllometryFitOptions {
 };
 
 /// Fits one row for all trees ("all") and one per species, sorted by name.
-/// - D = a x^b by least squares in centimetres, x = H - 1.3. If all trees of a species have a crown
-///   diameter, x = H CD is fitted, too, and the form with the smaller cross-validated error is kept.
+/// - D = a x^b by least squares in centimetres, x = H - 1.3. If all trees of a species have a crown diameter,
+///   x = H CD is fitted, too. The form with the smaller cross-validated error is kept.
 /// - Cross-validation is by plot where plots are named, else by tree.
 /// Throws Error{input} if fewer than 5 trees are higher than 1.3 m.
 std::vector<Allometry> fit_allometry(std::span<const MeasuredTree> trees,

@@ -24,8 +24,8 @@ struct CanopyBlock {
 };
 
 /// Computes a pit-free canopy height model (Khosravipour et al. 2014).
-/// - Heights above the ground TIN are triangulated from the highest point of each cell, then from those
-///   above 2, 5, 10, 15 ... metres with short edges only; each cell takes the highest layer.
+/// - Heights above the ground TIN are triangulated from the highest point of each cell. The same follows with
+///   short edges for points above 2, 5, 10, 15 ... metres; each cell takes the highest layer.
 /// - `spacing`: mean distance of first returns, metres.
 /// - Points around the frame are needed for correct edges.
 /// Departure: heights of points are above the ground TIN sampled at the cells, interpolated.

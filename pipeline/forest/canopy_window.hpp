@@ -19,9 +19,9 @@ struct CanopyWindow {
   bool contains(const CanopyCell& c) const { return cells.contains(c.column, c.row); }
 };
 
-/// Smooths with a Gaussian of `sigma` metres along rows, then columns, cut at 3 sigma. Unknown cells have
-/// no weight and stay unknown. A sigma below 0.3 cells changes nothing. A cell depends only on cells within
-/// smoothing_reach(sigma, cell) and is bitwise the same for any window. O(cells x kernel).
+/// Smooths with a Gaussian of `sigma` metres along rows, then columns, cut at 3 sigma. O(cells x kernel).
+/// - Unknown cells have no weight and stay unknown. A sigma below 0.3 cells changes nothing.
+/// - A cell depends only on cells within smoothing_reach(sigma, cell) and is bitwise the same for any window.
 CanopyWindow smooth_canopy(const CanopyWindow& canopy, double sigma);
 
 /// Returns the number of cells on either side that smoothing reads.

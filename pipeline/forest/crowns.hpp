@@ -33,7 +33,7 @@ struct Crown {
 ///   across its highest saddle.
 /// - `tops` are all treetops in `owned` and crown_reach() cells around; `smooth` reaches twice as far.
 /// Departure from flooding with a queue (Meyer 1994): no path leads farther from the top than the maximum
-/// radius, so a crown depends on its neighbourhood alone and is the same in every tiling.
+/// radius. A crown depends on its neighbourhood alone and is the same in every tiling.
 std::vector<Crown> find_crowns(const CanopyWindow& smooth, const Window& owned,
                                const std::vector<Treetop>& tops, const CrownRules& rules);
 

@@ -18,8 +18,8 @@ double area(const StandPolygon& stand);
 /// Returns the box about all rings.
 Eigen::AlignedBox2d bounds(const StandPolygon& stand);
 
-/// Half-open: a point on an edge shared by two polygons (the same two corners) is inside exactly one.
-/// O(corners).
+/// Returns whether a point is inside. A point on an edge that two polygons share (the same two corners) is
+/// inside exactly one. O(corners).
 bool inside(const StandPolygon& stand, const Eigen::Vector2d& place);
 
 /// Returns metres to the nearest edge, for points inside and outside; infinity without rings. O(corners).

@@ -18,7 +18,7 @@ struct VolumeRow {
   std::string source;
 };
 
-/// Returns the default table: f = 0.47 +- 0.04 for every species, the middle of 0.42 to 0.52 for mature
+/// Returns the default table: f = 0.47 +- 0.04 for every species. It is the middle of 0.42 to 0.52 for mature
 /// temperate stands (van Laar & Akca 2007, Forest Mensuration, ch. 7). Replace it where volumes matter.
 const std::vector<VolumeRow>& built_in_volume();
 

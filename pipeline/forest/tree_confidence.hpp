@@ -39,7 +39,7 @@ struct TreeConfidenceModel {
 
 /// Returns the probability that a top is a separate tree, [0.1, 0.99]; `unknown` as mixed.
 double tree_confidence(const TreeConfidenceModel& model, const TopEvidence& evidence, ForestType type);
-/// The same by the shipped model.
+/// Returns the same by the shipped model.
 double tree_confidence(const TopEvidence& evidence, ForestType type);
 
 /// Writes a model as text of kind `treetops` (pipeline/vision/network_text.hpp): one layer of five inputs and

@@ -25,8 +25,8 @@ struct TreeErrors {
 /// docs/evaluation/2026-11-23-feature-deviations.md.
 TreeErrors tree_errors(std::string_view forest_type, bool built_in_allometry);
 
-/// Returns a tree as an observation of the landmark type `tree`, positioned at its top. z is the elevation
-/// of the ground if known, else 0 with variance NaN. `species`: row of the allometry table.
+/// Returns a tree as an observation of the landmark type `tree`, positioned at its top. The elevation of the
+/// ground is z if known, else 0 with variance NaN. `species`: row of the allometry table.
 Observation observation_of(const DetectedTree& tree, const CanopySource& canopy, const LandmarkType& type,
                            TypeId id, std::span<const Allometry> table, std::string_view species,
                            const TreeErrors& errors = {});

@@ -20,8 +20,8 @@ struct ScoredRock {
   BrightSide bright;              ///< of its surroundings; only known for candidates above 0.1
 
   double radius() const;  ///< after correction by the network, pixels of its scale
-  /// Position from the table, shifted by what relief displacement hides of the shadow; the prediction refers
-  /// to it.
+  /// Returns the position from the table, shifted by what relief displacement hides of the shadow; the
+  /// prediction refers to it.
   Eigen::Vector2d position() const;
   Eigen::Vector2d lateral_shift = Eigen::Vector2d::Zero();  ///< that shift, pixels of the scale
 };

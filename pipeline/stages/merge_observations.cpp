@@ -11,10 +11,7 @@ namespace {
 struct MergeObservations {
   struct Options {
     Meters max_distance{0};
-    double position_gate = AssociationRules{}.position_gate;
-    double size_gate = AssociationRules{}.size_gate;
-    double overlap = AssociationRules{}.overlap;
-    double common_fraction = MergeRules{}.common_fraction;
+    MergeRules rules = {};
     std::string weights = "quality";
     void describe(OptionVisitor& option) {
       option("max_distance", max_distance,
@@ -22,23 +19,23 @@ struct MergeObservations {
               .min = 0,
               .max = 1e7});
       option(
-          "position_gate", position_gate,
+          "position_gate", rules.association.position_gate,
           {.help =
                "Gate of the squared Mahalanobis distance between observations of one landmark (chi-square, 2 "
                "degrees of freedom)",
            .min = 0.1,
            .max = 1000});
-      option("size_gate", size_gate,
+      option("size_gate", rules.association.size_gate,
              {.help = "Gate for the logarithm of the size (chi-square, 1 degree of freedom)",
               .min = 0.1,
               .max = 1000});
-      option("overlap", overlap,
+      option("overlap", rules.association.overlap,
              {.help = "Bodies of similar size in different images, nearer than this fraction of their "
                       "radius, are one "
                       "regardless of covariances",
               .min = 0,
               .max = 2});
-      option("common_fraction", common_fraction,
+      option("common_fraction", rules.common_fraction,
              {.help = "Fraction of a position's variance common to all images (shape, light, DEM)",
               .min = 0,
               .max = 1,
@@ -63,12 +60,8 @@ struct MergeObservations {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    MergeRules rules;
-    rules.association.position_gate = options.position_gate;
-    rules.association.size_gate = options.size_gate;
-    rules.association.overlap = options.overlap;
+    MergeRules rules = options.rules;
     if (options.max_distance.value > 0) rules.association.max_distance = options.max_distance.value;
-    rules.common_fraction = options.common_fraction;
     rules.weights = options.weights == "precision" ? FeatureWeights::precision : FeatureWeights::quality;
     const auto readers = unit.readers(observations);
     const ObservationStream stream{[&](const auto& look) {

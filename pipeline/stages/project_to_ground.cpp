@@ -19,10 +19,7 @@ namespace {
 struct ProjectToGround {
   struct Options {
     Meters height_sd{0};
-    double slope_sd = ProjectionRules{}.slope_sd;
-    double outline_edge_fraction = ProjectionRules{}.outline_edge_fraction;
-    double shadow_shape = ProjectionRules{}.shadow_shape;
-    double rim_shape = ProjectionRules{}.rim_shape;
+    ProjectionRules rules = {};
     double min_crater_confidence = 0.5;
     bool register_to_dem = true;
     void describe(OptionVisitor& option) {
@@ -33,23 +30,23 @@ struct ProjectToGround {
                "oblique views",
            .min = 0,
            .max = 1000});
-      option("slope_sd", slope_sd,
+      option("slope_sd", rules.slope_sd,
              {.help = "Standard deviation of the slope under a rock relative to the DEM, metres per metre",
               .min = 0,
               .max = 1});
       option(
-          "outline_edge_fraction", outline_edge_fraction,
+          "outline_edge_fraction", rules.outline_edge_fraction,
           {.help =
                "Position of a crater's outline between crest (0) and visible edge (1), by which outlines are "
                "widened to the crest where the DEM resolves the crater",
            .min = 0,
            .max = 1,
            .formerly = "edge_share"});
-      option("shadow_shape", shadow_shape,
+      option("shadow_shape", rules.shadow_shape,
              {.help = "Standard deviation of a rock's centre along the sun due to its shape, in diameters",
               .min = 0,
               .max = 1});
-      option("rim_shape", rim_shape,
+      option("rim_shape", rules.rim_shape,
              {.help = "Standard deviation of a crater's centre due to its uneven rim, in diameters",
               .min = 0,
               .max = 1});
@@ -97,12 +94,9 @@ struct ProjectToGround {
     if (image.footprint.empty()) unit.warn(why_no_ground(image, terrain));
 
     const TypeRegistry& types = unit.types();
-    const ProjectionRules rules{.height_sd = options.height_sd.value,
-                                .heights_known = !is_assumed_plane(*ground),
-                                .slope_sd = options.slope_sd,
-                                .outline_edge_fraction = options.outline_edge_fraction,
-                                .shadow_shape = options.shadow_shape,
-                                .rim_shape = options.rim_shape};
+    ProjectionRules rules = options.rules;
+    rules.height_sd = options.height_sd.value;
+    rules.heights_known = !is_assumed_plane(*ground);
     std::vector<Observation> all;
     for (const auto& found : unit.read_all(detections))
       for (const Detection& detection : *found) {

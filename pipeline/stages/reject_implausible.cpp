@@ -9,14 +9,13 @@ namespace {
 
 struct RejectImplausible {
   struct Options {
-    double min_depth_ratio = PlausibilityRules{}.min_depth_ratio;
-    double max_height_ratio = PlausibilityRules{}.max_height_ratio;
+    PlausibilityRules rules = {};
     void describe(OptionVisitor& option) {
-      option("min_depth_ratio", min_depth_ratio,
+      option("min_depth_ratio", rules.min_depth_ratio,
              {.help = "Smallest depth / diameter of a crater whose depth the DEM resolves",
               .min = 0,
               .max = 0.5});
-      option("max_height_ratio", max_height_ratio,
+      option("max_height_ratio", rules.max_height_ratio,
              {.help = "Largest height / diameter of a rock; higher ones are cliffs and ridges",
               .min = 0.5,
               .max = 100});
@@ -38,9 +37,7 @@ struct RejectImplausible {
     const TypeRegistry& types = unit.types();
     std::vector<Observation> all = unit.read(placed);
     RejectionCounter count(unit, all);
-    reject_implausible(
-        all, types,
-        {.min_depth_ratio = options.min_depth_ratio, .max_height_ratio = options.max_height_ratio});
+    reject_implausible(all, types, options.rules);
     count.close(all);
     unit.write(plausible, std::move(all));
   }

@@ -12,25 +12,23 @@ namespace {
 // Map scope: a crater in a coarse image explains shadows in a fine one that shows only its rim.
 struct RejectRimShadows {
   struct Options {
-    double inner = RimShadowRules{}.inner, outer = RimShadowRules{}.outer;
+    RimShadowRules rules = {};  // but for the angle, in degrees for people
     Degrees half_angle = to_degrees(Radians{RimShadowRules{}.half_angle});
-    double min_fraction = RimShadowRules{}.min_fraction;
-    double min_confidence = RimShadowRules{}.min_confidence;
     void describe(OptionVisitor& option) {
-      option("inner", inner,
+      option("inner", rules.inner,
              {.help = "Inner limit of the rim band, in radii of the crater", .min = 0, .max = 1});
-      option("outer", outer,
+      option("outer", rules.outer,
              {.help = "Outer limit of the rim band, in radii of the crater", .min = 1, .max = 5});
       option("half_angle", half_angle,
              {.help = "Half angle around the sun's direction in which a rim faces the light",
               .min = 0,
               .max = 180});
-      option("min_fraction", min_fraction,
+      option("min_fraction", rules.min_fraction,
              {.help = "Smallest size, as a fraction of the crater's, of a rock that is rejected",
               .min = 0,
               .max = 1,
               .formerly = "min_share"});
-      option("min_confidence", min_confidence,
+      option("min_confidence", rules.min_confidence,
              {.help = "Smallest confidence of a crater whose rim rejects rocks", .min = 0, .max = 1});
     }
   };
@@ -56,12 +54,9 @@ struct RejectRimShadows {
     std::vector<Observation> all;
     for (const auto& part : unit.read_all(lit)) all.insert(all.end(), part->begin(), part->end());
     RejectionCounter count(unit, all);
-    reject_rim_shadows(all, all, types, suns, unit.read(dem)->geometry().where.crs,
-                       {.inner = options.inner,
-                        .outer = options.outer,
-                        .half_angle = to_radians(options.half_angle).value,
-                        .min_fraction = options.min_fraction,
-                        .min_confidence = options.min_confidence});
+    RimShadowRules rules = options.rules;
+    rules.half_angle = to_radians(options.half_angle).value;
+    reject_rim_shadows(all, all, types, suns, unit.read(dem)->geometry().where.crs, rules);
     count.close(all);
     unit.write(cleaned, std::move(all));
   }

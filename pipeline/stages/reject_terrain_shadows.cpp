@@ -11,9 +11,9 @@ namespace {
 
 struct RejectTerrainShadows {
   struct Options {
-    double min_distance_cells = TerrainShadowRules{}.min_distance_cells;
+    TerrainShadowRules rules = {};
     void describe(OptionVisitor& option) {
-      option("min_distance_cells", min_distance_cells,
+      option("min_distance_cells", rules.min_distance_cells,
              {.help = "Smallest distance of shadow-casting terrain, in cells of the DEM",
               .min = 0,
               .max = 1000});
@@ -39,8 +39,7 @@ struct RejectTerrainShadows {
     RejectionCounter count(unit, all);
     const DemHandle& ground = unit.read(dem);
     reject_terrain_shadows(all, types, unit.read(image_view), load_terrain(ground),
-                           ground->geometry().where.crs.metres_per_unit(),
-                           {.min_distance_cells = options.min_distance_cells});
+                           ground->geometry().where.crs.metres_per_unit(), options.rules);
     count.close(all);
     unit.write(lit, std::move(all));
   }

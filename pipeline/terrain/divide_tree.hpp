@@ -66,10 +66,10 @@ struct DivideTreeOptions {
   double hidden_above = std::numeric_limits<double>::infinity();
 };
 
-/// Builds the divide tree of the cells `owned`. `heights` is that window grown by one cell on each side.
-/// Critical cells are local maxima and saddles, whose higher neighbours form two or more connected parts
-/// (8-connectivity). Other cells cost one comparison with their neighbours.
-/// O(cells) time, 4 bytes per cell of the tile.
+/// Builds the divide tree of the cells `owned`. O(cells) time, 4 bytes per cell of the tile.
+/// - `heights` is that window grown by one cell on each side.
+/// - Critical cells are local maxima and saddles, whose higher neighbours form two or more connected parts
+///   (8-connectivity). Other cells cost one comparison with their neighbours.
 DivideTree build_divide_tree(const HeightWindow& heights, const Window& owned, const GridGeometry& grid,
                              const DivideTreeOptions& options);
 

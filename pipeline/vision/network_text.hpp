@@ -47,8 +47,8 @@ std::string network_as_text(const StoredNetwork& network, NumberFormat format);
 /// Returns what is wrong with the sizes of a layer that follows the layers `before`; empty: nothing.
 using LayerCheck = std::function<std::string(std::span<const StoredLayer> before, const StoredLayer& layer)>;
 
-/// Returns a check that each dense layer has as many inputs as the one before it has outputs, the first
-/// `inputs`, and that there are no convolutions.
+/// Returns a check that there are only dense layers, each with as many inputs as the one before has outputs;
+/// the first has `inputs`.
 LayerCheck dense_layers_of(int inputs);
 
 /// Reads version 2 and the two formats of version 1: `waymark crater model 1` and `dense_network 1`, which

@@ -926,15 +926,15 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
     Raises UnitsFailed if some images have no pose or some units of the map failed; what could be made is there.
 
     Keywords:
-        cameras: camera file with the poses; empty: they are solved
-        lens: camera file whose lens holds for poses to be solved
-        control: surveyed points for poses to be solved; empty: none
+        cameras: camera file with the poses, which names the images if none are given; empty: they are solved
+        lens: camera file whose lens is kept fixed; empty: self-calibration
+        control: surveyed points; empty: none
         marks: table of their marks; empty: `control` is a gcp_list.txt
-        dem: coarse DEM, start of the heights, and reference of poses without another; empty: none
-        crs: of the map; empty: that of the camera file
+        dem: coarse DEM, start of heights, and the reference if there is no other; empty: none
+        crs: of the map; empty: that of camera file or references, else a UTM zone
         cell: of the DEM, metres; 0: twice the median ground sample distance
         map: GeoPackage of landmarks; empty: none
-        work: folder that keeps finished steps for later runs; empty: none
+        work: folder that keeps the results of steps for later runs; empty: none
         threads: 0: one per processor"""
     ...
 

@@ -11,9 +11,9 @@ struct OdometryErrors {
   localization::OdometryDrift drift;
 };
 
-/// Returns what the maker of the vehicle knows of its odometry on such ground: the errors of the model, with
-/// slip and sideways drift for the root mean square of pitch and roll over the poses of `steps`, driven or
-/// planned (none: level ground). The mean slip counts as unknown, as part of `scale_sd`.
+/// Returns what the maker of the vehicle knows of its odometry on such ground: the errors of the model. Slip
+/// and sideways drift are those for the root mean square of pitch and roll over the poses of `steps` (none:
+/// level ground). The mean slip counts as unknown, as part of `scale_sd`.
 OdometryErrors odometry_errors(const DriveSettings& settings, std::span<const DriveStep> steps);
 
 }  // namespace waymark::testbed

@@ -22,7 +22,7 @@ class RayFan {
   /// `random` draws where a beam ends in a thicket; without it thickets are transparent.
   std::optional<FanHit> cast(const Eigen::Vector3d& along, Random* random = nullptr) const;
 
-  /// Same as cast() without sorting; the reference in tests.
+  /// Casts as cast() does, without sorting; the reference in tests.
   std::optional<FanHit> cast_exhaustively(const Eigen::Vector3d& along, Random* random = nullptr) const;
 
   const Eigen::Vector3d& origin() const { return origin_; }

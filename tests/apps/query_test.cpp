@@ -83,7 +83,7 @@ TEST_F(Query, ByConfidenceQualityAndCounts) {
   EXPECT_THAT(elevations({"--min-confidence", "0.01"}).size(), 2);
   EXPECT_THAT(elevations({"--min", "confidence=1.01"}), IsEmpty());
   EXPECT_THAT(elevations({"--min", "prominence_low=500"}), ElementsAre(900));
-  EXPECT_THAT(query({"--min-confidence", "50"}).err, HasSubstr("--min-confidence must be 0 to 1, is 50"));
+  EXPECT_THAT(query({"--min-confidence", "50"}).err, HasSubstr("--min-confidence = 50 is outside [0, 1]"));
   EXPECT_THAT(query({"--min", "confidense=1"}).err, HasSubstr("did you mean 'confidence'?"));
 }
 

@@ -12,10 +12,10 @@ namespace waymark::workflows {
 using ScoredTables = std::map<std::string, std::vector<testbed::EvaluatedObject>>;
 
 /// Reads a map (*.gpkg made by Waymark: all types, covariances, quality), a CSV or any layer of points.
-/// Columns are found by name, see `waymark evaluate --help`; a table without a header has x, y, diameter.
-/// `type` empty: all. `sensor` weighs the quality of a map; null: equal weights. Rows with `images` 0 or
-/// `pixels` below `min_pixels` are marked as ignored. Throws Error{input} naming the file for a table without
-/// positions or a cell that is no number.
+/// Throws Error{input} naming the file for a table without positions or a cell that is no number.
+/// - Columns are found by name, see `waymark evaluate --help`; a table without a header has x, y, diameter.
+/// - `type` empty: all. `sensor` weighs the quality of a map; null: equal weights.
+/// - Rows with `images` 0 or `pixels` below `min_pixels` are marked as ignored.
 ScoredTables read_scored_things(const std::string& path, const std::string& type, double min_pixels,
                                 const SensorProfile* sensor = nullptr);
 

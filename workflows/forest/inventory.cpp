@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "core/text_file.hpp"
 #include "exporters/report/inventory_report.hpp"
 #include "exporters/vector/shape_csv.hpp"
@@ -29,13 +30,10 @@ void check_request(const InventoryRequest& request) {
     throw Error(ErrorCode::usage, "the output is a .csv or a .gpkg", request.output, "e.g. -o stands.csv");
   if (!request.stands.empty() && request.grid != 0)
     throw Error(ErrorCode::usage, "--stands and --grid exclude each other", "", "give one of them");
-  if (request.grid != 0 && !(request.grid >= 1 && request.grid <= 1e5))
-    throw Error(ErrorCode::usage, fmt::format("--grid = {} is outside [1, 100000] m", request.grid));
+  if (request.grid != 0) check_number("--grid", request.grid, "m", {.help = "", .min = 1, .max = 1e5});
   if (request.max_trees < 1)
     throw Error(ErrorCode::usage, fmt::format("--trees-at-once = {} is below 1", request.max_trees));
-  if (!(request.class_width >= 0.5 && request.class_width <= 100))
-    throw Error(ErrorCode::usage,
-                fmt::format("--class-width = {} is outside [0.5, 100] cm", request.class_width));
+  check_number("--class-width", request.class_width, "cm", {.help = "", .min = 0.5, .max = 100});
 }
 
 StandTables read_tables(const InventoryRequest& request) {

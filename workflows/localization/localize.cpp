@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "exporters/vector/track_formats.hpp"
 #include "geodb/validate_map.hpp"
@@ -227,9 +228,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
     settings.describe(visitor);
     method.describe(visitor);
   };
-  if (!(request.min_confidence >= 0 && request.min_confidence <= 1))
-    throw Error(ErrorCode::usage,
-                fmt::format("--min-confidence must be 0 to 1, is {:g}", request.min_confidence));
+  check_number("--min-confidence", request.min_confidence, "", {.help = "", .min = 0, .max = 1});
   OpenedMap opened =
       request.map == "none" && !method.requires_map()
           ? make_empty_robot_map()

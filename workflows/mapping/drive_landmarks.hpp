@@ -43,9 +43,8 @@ struct DriveLandmarks {
 
 /// Merges the sightings of looks into landmarks and values them (Rossmann et al. 3.2 and 3.3, a look in place
 /// of an image). Metres of a local or projected CRS; heights are unknown.
-/// - A look covers a landmark if it detected it, or if it is no farther than the farthest look that did (eq.
-/// 4)
-///   and the beam towards it reaches it from the open side.
+/// - A look covers a landmark if it detected it. So does one no farther than the farthest look that did (eq.
+///   4), if the beam towards the landmark reaches it from the open side.
 DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types, const Crs& crs,
                                   const DriveMappingOptions& options = {});
 

@@ -54,14 +54,15 @@ struct MapResult {
   std::map<std::string, std::int64_t> landmarks;  ///< written, by type
   bool written = false;                           ///< false for a check, a shard or missing units
 
-  /// Exit code of interface.md.
+  /// Returns the exit code of the program.
   int exit_code() const { return report.exit_code(); }
 };
 
-/// Runs the job and writes the map. Where single images failed the map is made of the others. A map that
-/// cannot be made is not written, and an older one is kept. Throws Error{usage} or Error{output} before any
-/// work is done for an output that cannot be written.
-/// Messages: a detail per input file, the table of the run and its failures, a summary of the map.
+/// Runs the job and writes the map. Throws Error{usage} or Error{output} before any work is done for an
+/// output that cannot be written.
+/// - Where single images failed the map is made of the others.
+/// - A map that cannot be made is not written, and an older one is kept.
+/// - Messages: a detail per input file, the table of the run and its failures, a summary of the map.
 MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Callbacks& callbacks = {});
 
 /// Returns the engine's options for a request: threads, progress, hashes of any GDAL path, work folder.

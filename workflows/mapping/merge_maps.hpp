@@ -20,12 +20,10 @@ struct MergeResult {
 
 /// Merges maps by join_maps() into one, which does not depend on their order.
 /// - Maps are taken in the order of their file names, of equal names in that of their hashes. The record of
-/// the
-///   run has the time of the latest run of the maps. So equal maps give equal bytes.
+///   the run has the time of the latest run of the maps. So equal maps give equal bytes.
 /// - Elevation tiles are left out, with a warning.
 /// - Throws Error{usage} for fewer than two maps, maps of different CRSs, or a result that is one of the
-/// maps;
-///   Error{input} for maps with errors or types that differ.
+///   maps; Error{input} for maps with errors or types that differ.
 MergeResult merge_maps(const MergeRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

@@ -5,7 +5,7 @@ namespace waymark::workflows {
 
 /// Returns the types of both maps: those of `a` in their order, then the others. A type of both has the
 /// features and attributes of `a`, then those that only `b` has. Throws Error{input} with a hint if a feature
-/// or an attribute of one name differs in unit, scale or kind, or a type in its evidence model or body.
+/// or attribute differs in unit, scale or kind, or a type in its evidence model or body.
 TypeRegistry merge_types(const TypeRegistry& a, const TypeRegistry& b);
 
 /// Gives the landmarks and observations of a map other types, which have all of its features and attributes.

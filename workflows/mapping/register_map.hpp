@@ -30,11 +30,10 @@ struct MapPlace {
   std::string disagreed = {};  ///< why the others do not
 };
 
-/// Registers a map by its craters, or by its heights if the catalogue is a raster, and writes it with
-/// everything moved, and with all runs.
-/// Throws Error{usage} for a request in conflict, Error{input} for a place that is not certain, Error{output}
-/// before any work is done for a map that cannot be written.
-/// Messages: the similarity with standard deviations, what is left out.
+/// Registers a map by its craters, or by its heights if the catalogue is a raster. Writes it with everything
+/// moved, and with all runs. Throws Error{usage} for a request in conflict, Error{input} for a place that is
+/// not certain, Error{output} before any work is done for a map that cannot be written. Messages: the
+/// similarity with standard deviations, what is left out.
 MapPlace register_map(const RegisterRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

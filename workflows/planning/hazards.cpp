@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "exporters/raster/cog_stream.hpp"
 #include "exporters/raster/occupancy_map.hpp"
 #include "exporters/report/counting_area.hpp"
@@ -141,8 +142,8 @@ void check(const HazardMapRequest& request) {
   if (!(request.rock_cover <= 1))
     refuse(fmt::format("--rock-cover {:g} is no fraction of the terrain", request.rock_cover),
            "0.01 is smooth, 0.07 typical of landing sites, 0.3 very rocky");
-  if (request.tile_cells < 16 || request.tile_cells > 8192)
-    refuse(fmt::format("--tile-cells {} is outside [16, 8192]", request.tile_cells), "");
+  check_number("--tile-cells", static_cast<double>(request.tile_cells), "",
+               {.help = "", .min = 16, .max = 8192});
 }
 
 }  // namespace

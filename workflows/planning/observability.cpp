@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "planning/observability.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/planning_sensor.hpp"
@@ -30,12 +31,11 @@ void check(const ObservabilityRequest& request) {
   };
   if (fs::path(request.output).extension() != ".tif")
     refuse(fmt::format("the raster '{}' does not end in .tif", request.output), "it is a GeoTIFF");
-  if (!(request.cell >= 0.1 && request.cell <= 1000))
-    refuse(fmt::format("--cell {:g} is outside [0.1, 1000] m", request.cell), "");
+  check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.drive > 0 && request.drive <= 1e5))
     refuse(fmt::format("--drive {:g} is outside (0, 100000] m", request.drive), "");
-  if (request.tile_cells < 16 || request.tile_cells > 8192)
-    refuse(fmt::format("--tile-cells {} is outside [16, 8192]", request.tile_cells), "");
+  check_number("--tile-cells", static_cast<double>(request.tile_cells), "",
+               {.help = "", .min = 16, .max = 8192});
 }
 
 /// Cells of the map's CRS about all landmarks and the range around them, aligned to multiples of a cell.

@@ -13,6 +13,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "core/random.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
@@ -34,8 +35,7 @@ void check(const RouteRequest& request) {
   if (objectives != 1)
     refuse(objectives ? "more than one objective is given" : "the route has no objective",
            "pass one of --limit-sigma M, --keep-landmarks N, --weight W");
-  if (!(request.cell >= 0.1 && request.cell <= 1000))
-    refuse(fmt::format("--cell {:g} is outside [0.1, 1000] m", request.cell), "");
+  check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.start_sd > 0)) refuse(fmt::format("--start-sd {:g} is not above 0 m", request.start_sd), "");
   if (request.limit_sigma > 0 && request.limit_sigma < request.start_sd)
     refuse(fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", request.start_sd,

@@ -54,7 +54,8 @@ struct RouteResult {
 };
 
 /// Plans a route and writes it. Throws Error{input} for a start or goal in a hazard, on unknown terrain or
-/// outside, for no route, and for a limit that no route keeps, with the least one that was found.
+/// outside, and if there is no route. If no route keeps the limit, the message has the smallest one that was
+/// reached.
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

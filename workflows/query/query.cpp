@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "exporters/vector/vector_format.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/query/query_area.hpp"
@@ -22,8 +23,7 @@ double check_not_negative(const std::string& what, double value) {
 }
 
 double check_fraction(const std::string& what, double value) {
-  if (!(value >= 0 && value <= 1))
-    throw Error(ErrorCode::usage, fmt::format("{} must be 0 to 1, is {:g}", what, value));
+  check_number(what, value, "", {.help = "", .min = 0, .max = 1});
   return value;
 }
 

@@ -22,8 +22,9 @@ struct PhotoControl {
 
 /// Reads surveyed points and converts them to observations. Heights are taken as they are.
 /// - Marks in images that are not there, or outside them, are left out with a warning.
-/// - Throws Error{input} for points without CRS, marks without any known image, latitudes beyond 90 degrees,
-///   and coordinates that fit the positions of the pictures only if they are exchanged.
+/// - Throws Error{input} for points without CRS, marks without any known image, and latitudes beyond 90
+///   degrees.
+/// - Throws Error{input} for coordinates that fit the positions of the pictures only if they are exchanged.
 /// - Throws Error{usage} for a map in degrees.
 PhotoControl photo_control(const PhotoControlRequest& request, const Photos& photos);
 

@@ -25,8 +25,7 @@ struct PriorAccuracy {
 
 /// Converts positions and gimbal angles to observations.
 /// - Heights are those above take-off plus the mean altitude of the take-off, else the altitudes. Both have
-/// one
-///   bias for all images.
+///   one bias for all images.
 /// - `crs` empty: the UTM zone of the first position. Yaw is turned by the meridian convergence.
 /// - Pictures without a position give the vertical by their gimbals and heights above take-off.
 /// - EXIF orientations that turn the picture turn the attitude, too; mirrored pictures give none.

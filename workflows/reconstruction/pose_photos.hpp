@@ -10,12 +10,13 @@ namespace waymark::workflows {
 
 struct PosePhotosRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders
-  std::string folder = {};               ///< for the products; exists
+  std::string folder = {};               ///< for the products
   std::string lens = {};                 ///< camera file whose lens is kept fixed; empty: self-calibration
   std::string control = {};              ///< surveyed points; empty: none
   std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
-  std::string dem = {};                  ///< coarse DEM, the reference if there is no other; empty: none
-  std::string crs = {};     ///< of the poses; empty: that of the references, or the UTM zone of the first
+  std::string dem =
+      {};  ///< coarse DEM, start of heights, and the reference if there is no other; empty: none
+  std::string crs = {};     ///< of the map; empty: that of camera file or references, else a UTM zone
   double max_pixels = 8e6;  ///< larger images are reduced to find features
   std::string work = {};    ///< folder that keeps the results of steps for later runs; empty: none
   int threads = 0;          ///< 0: one per processor

@@ -163,16 +163,7 @@ void write_report_page(const fs::path& folder, const exporters::ReconstructionRe
 }
 
 PosedPhotos solve_poses_of(const ReconstructRequest& request, const Callbacks& callbacks) {
-  PosedPhotos made = pose_photos({.images = request.images,
-                                  .folder = request.folder,
-                                  .lens = request.lens,
-                                  .control = request.control,
-                                  .marks = request.marks,
-                                  .dem = request.dem,
-                                  .crs = request.crs,
-                                  .work = request.work,
-                                  .threads = request.threads},
-                                 callbacks);
+  PosedPhotos made = pose_photos(request, callbacks);
   write_report_page(request.folder, report_of_poses(made));
   const std::string cameras = (fs::path(request.folder) / "cameras.json").string();
   if (made.crs.empty() && !request.control.empty())

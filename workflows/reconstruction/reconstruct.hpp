@@ -6,6 +6,7 @@
 #include <vector>
 #include "workflows/callbacks.hpp"
 #include "workflows/mapping/make_map.hpp"
+#include "workflows/reconstruction/pose_photos.hpp"
 namespace waymark::workflows {
 
 /// Last product of a reconstruction; each needs those before it.
@@ -16,21 +17,12 @@ enum class ReconstructUntil {
 };
 
 /// Images and what to make of them.
-struct ReconstructRequest {
-  std::vector<std::string> images = {};  ///< files, patterns or folders; empty: those the camera file names
-  std::string folder = {};               ///< for the products; may exist
-  std::string cameras = {};              ///< camera file with the poses; empty: they are solved
-  std::string lens = {};                 ///< camera file whose lens holds for poses to be solved
-  std::string control = {};              ///< surveyed points for poses to be solved; empty: none
-  std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
-  std::string dem = {};                  ///< coarse DEM, start of the heights, and reference of poses without
-                                         ///< another; empty: none
-  std::string crs = {};                  ///< of the map; empty: that of the camera file
-  double cell = 0;                       ///< of the DEM, metres; 0: twice the median ground sample distance
+struct ReconstructRequest : PosePhotosRequest {
+  std::string cameras = {};  ///< camera file with the poses, which names the images if none are given; empty:
+                             ///< they are solved
+  double cell = 0;           ///< of the DEM, metres; 0: twice the median ground sample distance
   ReconstructUntil until = ReconstructUntil::ortho;
   std::string map = {};           ///< GeoPackage of landmarks; empty: none
-  std::string work = {};          ///< folder that keeps finished steps for later runs; empty: none
-  int threads = 0;                ///< 0: one per processor
   std::string command_line = {};  ///< recorded in the map
 };
 
@@ -41,7 +33,7 @@ struct ReconstructResult {
   std::int64_t cells = 0, kept = 0;   ///< of the DEM; with a height
   std::optional<MapResult> map = {};  ///< if a map was requested
 
-  /// Exit code of interface.md.
+  /// Returns the exit code of the program.
   int exit_code() const {
     const int of_map = map ? map->exit_code() : 0;
     return of_map != 0 ? of_map : failed > 0 ? 3 : 0;

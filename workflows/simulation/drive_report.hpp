@@ -38,8 +38,8 @@ struct DriveReport {
 };
 
 /// Fills the figures about errors from the rows of the track and the true poses, both in the map frame.
-/// - A row is wrong and sure if it is not lost, and its position errs by over a metre and beyond the 99.9 %
-///   ellipse of its covariance.
+/// - A row that is not lost is wrong and sure if its position errs by over a metre and beyond its 99.9 %
+///   ellipse.
 void score_drive(DriveReport& report, const localization::Track& track,
                  const std::vector<localization::StampedPose>& truth);
 

@@ -17,8 +17,8 @@ struct RouteDrive {
 
 /// Drives the vehicle along a route by its estimated pose. Everything that it knows comes from the log, the
 /// map and the route; the truth only moves it and scores it.
-/// - It plans again when its sd exceeds the plan, when landmarks of the map turn out to be gone, and when its
-///   sensors see an obstacle on its path. It stands and looks again before an obstacle it saw only once.
+/// - It plans again when its sd exceeds the plan, landmarks turn out to be gone, or its sensors see an
+///   obstacle on its path. It stands and looks again before an obstacle it saw only once.
 /// - `scenario_folder`: files of the section `navigation` are relative to it.
 /// - Deterministic for a seed and any number of threads.
 /// Throws Error{input} for a route that cannot be read or begins outside the site.

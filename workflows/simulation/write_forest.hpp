@@ -18,8 +18,8 @@ struct WrittenForest {
   std::string summary;  ///< for people, without \n
 };
 
-/// Plants the scenario's forest on the terrain, scans it from the air, and writes dtm.tif, dsm.tif, chm.tif,
-/// points.las, stands.geojson, job.json and the truth tables into an existing folder.
+/// Plants the scenario's forest on the terrain, scans it from the air, and writes files into an existing
+/// folder: dtm.tif, dsm.tif, chm.tif, points.las, stands.geojson, job.json and the truth tables.
 WrittenForest write_forest(const std::filesystem::path& folder, const testbed::Scenario& scenario,
                            const testbed::Scene& scene, const Crs& crs);
 

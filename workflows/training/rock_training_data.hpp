@@ -36,8 +36,8 @@ inline constexpr int kRockViews = 240;  ///< vertical testbed views that the shi
 /// About two CPU seconds per view.
 RockTrainingSets make_rock_examples(int views, int threads, const pipeline::ProgressListener& progress);
 
-/// Returns the dark spots of a view with the sun elevation known in six of ten cases and the sun direction
-/// off by a few degrees in half of them, seeded by `number`. At most `max_count`, chosen at random, so that
+/// Returns the dark spots of a view, seeded by `number`. The sun elevation is known in six of ten cases; the
+/// sun direction is off by a few degrees in half of them. At most `max_count`, chosen at random, so that
 /// scenes have equal weight.
 std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int number,
                                                  std::size_t max_count);

@@ -14,14 +14,14 @@ struct SyntheticView {
   std::optional<pipeline::ReliefDisplacement> displacement = {};  ///< unset: vertical view
 };
 
-/// Renders terrain with craters, dunes, slopes up to about 12 degrees and rocks by Golombek's law, 0.3 m
-/// per pixel, sun incidence 30 to 75 degrees; all parameters are random. Numbers below 1000 are for
+/// Renders terrain with craters, dunes, slopes up to about 12 degrees and rocks by Golombek's law. It has 0.3
+/// m per pixel and a sun incidence of 30 to 75 degrees; all parameters are random. Numbers below 1000 are for
 /// fitting, those from 1000 on for testing.
 SyntheticView synthetic_view(int number);
 
-/// The same through a camera of 8 to 50 degrees that looks up to 22 degrees off the vertical, on ground of
-/// finer pixels (0.05 to 0.4 m), half of it without rocks smaller than 1.5 to 6 px, and sun elevations from
-/// 14 degrees: large rocks, low light and rocks that displacement.
+/// Renders the same through a camera of 8 to 50 degrees that looks up to 22 degrees off the vertical. Pixels
+/// are finer (0.05 to 0.4 m), half of the ground has no rocks smaller than 1.5 to 6 px, and sun elevations
+/// begin at 14 degrees.
 SyntheticView leaning_view(int number);
 
 }  // namespace waymark::workflows

@@ -37,11 +37,9 @@ struct Alignment {
 /// - The six corrections of each pose are solved by weighted least squares, with the pose covariances as
 ///   prior and Cauchy weights against wrong pairs.
 /// - ImageView::dem_constraint enters as a further observation, divided by the number of images that share
-/// that
-///   ground.
+///   that ground.
 /// - The uncertainty common to all images goes to ImageView::common_covariance; the rest stays in the
-/// covariances of
-///   observations.
+///   covariances of observations.
 /// Images without pose, or with a pose of zero covariance, do not move. Deterministic. `observations` in any
 /// order; `terrain` gives slopes.
 Alignment align_images(std::vector<Observation> observations, std::vector<ImageView> images,

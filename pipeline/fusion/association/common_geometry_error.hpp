@@ -43,11 +43,10 @@ CorrectedGeometry correct_geometry(const std::vector<Observation>& observations,
                                    const Crs& crs, CommonGeometryError::Kind kind, double amount);
 
 /// Returns for each kind of error the amount with which most objects are found again in other images, the
-/// best first.
-/// The logarithm of a focal length or distance is searched on three grids, each four times finer than the one
-/// before, the last with steps of 0.00125; errors of single poses limit the amount to some percent. Images at
-/// one distance from level ground do not separate a focal length from a height: with both as many are found
-/// again. Deterministic.
+/// best first. The logarithm of a focal length or distance is searched on three grids, each four times finer,
+/// down to steps of 0.00125; errors of single poses limit the amount to some percent. Images at one distance
+/// from level ground do not separate a focal length from a height: with both as many are found again.
+/// Deterministic.
 std::vector<CommonGeometryError> find_common_errors(const std::vector<Observation>& observations,
                                                     const std::vector<ImageView>& images,
                                                     const Terrain& terrain, const TypeRegistry& types,

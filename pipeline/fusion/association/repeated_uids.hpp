@@ -13,8 +13,8 @@
 #include "pipeline/fusion/association/landmark_codec.hpp"
 namespace waymark::pipeline {
 
-/// Finds landmarks of different parts that share a uid, which have nearly the same position, and numbers them
-/// as assign_uids() does for all landmarks at once. Eight bytes per landmark on disk.
+/// Finds landmarks of different parts that share a uid, which have nearly the same position. Numbers them as
+/// assign_uids() does for all landmarks at once. Eight bytes per landmark on disk.
 class RepeatedUids {
  public:
   /// The types must outlive it.

@@ -26,7 +26,7 @@ struct Repetition {
   std::size_t expected = 0;  ///< views of an object in which it should be seen again
   double raw = 0;            ///< fraction of these with an object of similar size inside the gates
   double chance = 0;         ///< the same for positions beside the object: matches by chance
-  /// Fraction found again, without matches by chance; 0 if nothing is expected.
+  /// Returns the fraction found again, without matches by chance; 0 if nothing is expected.
   double found() const { return chance < 1 ? (raw - chance) / (1 - chance) : 0; }
 };
 

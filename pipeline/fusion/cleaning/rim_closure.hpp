@@ -14,11 +14,11 @@ namespace waymark::pipeline {
 /// Returns `std::nullopt` below three cells of the terrain or if heights are unknown.
 std::optional<double> rim_closure(const Terrain& terrain, const GroundOutline& outline);
 
-/// Updates the confidences of crater observations of one image by their heights.
-/// The weight of the heights is estimated from the same observations: separation of the rims of probable
-/// craters and probable false detections against their spread.
-/// Prior means count as five observations. If heights do not separate the two kinds, nothing changes.
-/// Positions in units of `metres_per_unit`.
+/// Updates the confidences of crater observations of one image by their heights. Positions are in units of
+/// `metres_per_unit`.
+/// - The weight of the heights is estimated from the same observations: separation of the rims of probable
+///   craters and probable false detections against their spread.
+/// - Prior means count as five observations. If heights do not separate the two kinds, nothing changes.
 void update_crater_confidences(std::span<Observation> observations, const TypeRegistry& types,
                                const Terrain& terrain, double metres_per_unit);
 

@@ -23,7 +23,7 @@ struct DemRegistrationRules {
 /// - Gauss-Newton on the six pose corrections, with the pose covariance as prior.
 /// - Brightness at the DEM's cells is explained by light, its square and height (dark dunes), all high-pass
 ///   filtered.
-/// - The score uses the gradients of the prediction, the Hessian those of prediction and image, so structure
+/// - The score uses the gradients of the prediction, the Hessian those of prediction and image. Structure
 ///   visible in only one of them neither biases the result nor narrows its covariance.
 /// - The covariance is estimated from the scatter of the score between blocks.
 /// `std::nullopt` for images without pose, sun or uncertainty, if the correlation is too low, or if the

@@ -16,8 +16,7 @@ namespace waymark::pipeline {
 /// oblique views.
 /// - `slope_sd` is the standard deviation of g.
 /// - `slope_response`, f, is the response of the detected reach to the slope: 1 if measured, less if the
-/// detector
-///   relies on the expected shape of rocks.
+///   detector relies on the expected shape of rocks.
 /// `std::nullopt` if the sun is below the ground's own horizon (tan e + g <= 0.02) or the shadow's direction
 /// is not visible.
 std::optional<MeasuredValue> height_from_shadow(const MeasuredValue& reach_px, const ImageView& image,

@@ -19,9 +19,9 @@ struct CoverageRules {
 };
 
 /// Returns the ground sample distance at an object that the image shows completely and unoccluded, metres.
-/// `std::nullopt` if the outline leaves the image, is too small or too large, or terrain occludes its centre
-/// by more than a cell and two standard deviations.
-/// `terrain` may be null: nothing is occluded then.
+/// `std::nullopt` if the outline leaves the image, is too small or too large, or is occluded. Terrain
+/// occludes its centre by more than a cell and two standard deviations. `terrain` may be null: nothing is
+/// occluded then.
 std::optional<double> visible_gsd(const ImageView& image, const Terrain* terrain,
                                   const VisibilityTarget& thing, const CoverageRules& rules = {});
 

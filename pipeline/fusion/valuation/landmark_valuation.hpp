@@ -35,8 +35,8 @@ struct ValuationRules {
 
 /// Computes the quality of landmarks (Rossmann et al. 3.3): number of images that detected and that cover
 /// each (eqs. 4-5), q_f per feature (eqs. 6-7) and the probability of existence.
-/// - i_0 is chosen from the images that *detected* L, since the paper expects L "in other images showing the
-///   same region with the same or better resolution". An image that detected L covers it.
+/// - i_0 is chosen from the images that *detected* L. The paper expects L "in other images showing the same
+///   region with the same or better resolution". An image that detected L covers it.
 /// - A source without an ImageView (a DEM, a table) is a survey that detected L and could have.
 /// - ImageView::common_covariance is added to the covariances.
 /// - With SpreadRule::sound, errors that all images share are added to the features of landmarks of images

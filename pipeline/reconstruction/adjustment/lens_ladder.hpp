@@ -35,9 +35,9 @@ struct CalibratedAdjustment {
   std::vector<LensPrior> priors = {};  ///< used: those given, and defaults for the other parameters
 };
 
-/// Adjusts, with self-calibration: f, k1, k2, (cx, cy), (p1, p2) in this order; no p1, p2 for a fisheye. A
-/// group enters only if the data determine it, do not contradict what is known of it (LadderOptions), and the
-/// residuals of left-out tie points fall.
+/// Adjusts, with self-calibration: f, k1, k2, (cx, cy), (p1, p2) in this order; no p1, p2 for a fisheye.
+/// - A group enters only if the data determine it and do not contradict what is known of it (LadderOptions).
+/// - The residuals of left-out tie points must fall.
 /// Otherwise its parameters keep their values. `options.free_lens_parameters` are free from the start.
 CalibratedAdjustment adjust_with_ladder(Reconstruction& scene, const Observations& observations,
                                         AdjustmentOptions options = {}, const LadderOptions& ladder = {});
@@ -45,8 +45,8 @@ CalibratedAdjustment adjust_with_ladder(Reconstruction& scene, const Observation
 /// Returns the number of groups that are tried for a camera if none is tried again.
 std::size_t ladder_groups(const Camera& camera);
 
-/// Returns the prior of a parameter when nothing is known: its value, with a standard deviation of 10 % for
-/// f, 2 % of the width for cx and cy, 0.2 for k1 to k4, 0.005 for p1 and p2.
+/// Returns the prior of a parameter when nothing is known: its value with a standard deviation. That is 10 %
+/// for f, 2 % of the width for cx and cy, 0.2 for k1 to k4, 0.005 for p1 and p2.
 LensPrior default_prior(const Camera& camera, std::size_t lens, const std::string& parameter, double value);
 
 }  // namespace waymark::pipeline

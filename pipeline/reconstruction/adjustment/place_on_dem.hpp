@@ -43,8 +43,8 @@ struct DemPlacementRules {
 };
 
 /// Finds seven parameters that bring a relief onto a DEM, without a start: shift, rotation, scale.
-/// - Levels the points, then compares them at all shifts, yaws of 5 degrees and scales of 6 % with the DEM,
-///   each about its own plane, by the coefficient of agreement 2 ab / (aa + bb).
+/// - Levels the points, then compares them with the DEM at all shifts, yaws of 5 degrees and scales of 6 %.
+///   Each is taken about its own plane; the coefficient of agreement is 2 ab / (aa + bb).
 /// - Refines the best by robust least squares of the vertical distances.
 /// - Refuses reliefs that are flat against their residuals, so simple that chance explains the agreement, or
 ///   that fit another place nearly as well.

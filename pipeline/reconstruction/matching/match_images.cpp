@@ -44,9 +44,9 @@ void vote_for_lenses(std::span<const ImageToMatch> images, std::span<const Image
                                                         centred_pixels(b.camera, features[j]), threshold,
                                                         pair_seed(images[i], images[j]));
     if (images[i].lens == images[j].lens && !geometry.planar &&
-        geometry.inliers.size() >= 2 * settings.min_inliers)
+        geometry.inliers.size() >= 2 * settings.pair.min_inliers)
       evidence[p] = {geometry.matrix, double(geometry.inliers.size())};
-    if (geometry.inliers.size() >= settings.min_inliers) matches[p] = std::move(geometry.inliers);
+    if (geometry.inliers.size() >= settings.pair.min_inliers) matches[p] = std::move(geometry.inliers);
   });
   for (std::size_t lens = 0; lens < out.lenses.size(); ++lens) {
     if (out.lenses[lens].is_calibrated()) continue;
@@ -104,8 +104,8 @@ ImageMatches match_images(std::span<const ImageToMatch> images, std::span<const 
   std::atomic<std::size_t> done = 0;
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
     const auto [i, j] = pairs[p];
-    matches[p] = without_static(match_features(features[i], features[j], {.ratio = settings.ratio}),
-                                features[i], features[j]);
+    matches[p] =
+        without_static(match_features(features[i], features[j], settings.match), features[i], features[j]);
     if (settings.progress) settings.progress(++done, pairs.size());
   });
   vote_for_lenses(images, features, pairs, settings, matches, out);
@@ -117,11 +117,10 @@ ImageMatches match_images(std::span<const ImageToMatch> images, std::span<const 
   tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t p) {
     const auto [i, j] = pairs[p];
     const Camera &a = out.lenses[images[i].lens].camera, &b = out.lenses[images[j].lens].camera;
-    geometries[p] = pair_geometry(
-        matches[p], rays[i], rays[j],
-        {.threshold = std::max(threshold_of(a, settings) / a.fx, threshold_of(b, settings) / b.fx),
-         .min_inliers = settings.min_inliers,
-         .seed = pair_seed(images[i], images[j])});
+    PairSettings pair = settings.pair;
+    pair.threshold = std::max(threshold_of(a, settings) / a.fx, threshold_of(b, settings) / b.fx);
+    pair.seed = pair_seed(images[i], images[j]);
+    geometries[p] = pair_geometry(matches[p], rays[i], rays[j], pair);
   });
   for (std::size_t p = 0; p < pairs.size(); ++p)
     if (geometries[p].kind != PairKind::none) out.pairs.push_back({pairs[p], std::move(geometries[p])});

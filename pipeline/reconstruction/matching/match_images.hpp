@@ -41,11 +41,11 @@ struct ImageMatches {
 
 struct ImageMatching {
   PairChoice choice = {};
-  double ratio = 0.8;
+  MatchSettings match = {};
   double pixels = 1.5;  ///< smallest threshold of agreement, pixels
   double of_diagonal =
-      8e-4;  ///< threshold as a fraction of the image diagonal, for lenses not yet calibrated
-  std::size_t min_inliers = 16;
+      8e-4;                ///< threshold as a fraction of the image diagonal, for lenses not yet calibrated
+  PairSettings pair = {};  ///< but threshold and seed, which follow from the images
   std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 

@@ -19,122 +19,12 @@ constexpr double kExplains = 0.8;    // COLMAP's limit for planar and panoramic 
 constexpr double kForward = 0.95;    // cosine
 constexpr double kMinForward = 0.2;  // rays closer to the image plane than 78 degrees from the axis
 
-struct RayPair {
-  Eigen::Vector3d first, second;
-};
-
 std::vector<RayPair> ray_pairs(std::span<const Match> matches, std::span<const Eigen::Vector3d> first,
                                std::span<const Eigen::Vector3d> second) {
   std::vector<RayPair> pairs;
   pairs.reserve(matches.size());
   for (const Match& m : matches) pairs.push_back({first[m.first], second[m.second]});
   return pairs;
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& t) {
-  Eigen::Matrix3d m;
-  m << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
-  return m;
-}
-
-// Sampson's approximation of the angle between the rays and the nearest pair of rays that meet.
-double epipolar_angle(const Eigen::Matrix3d& essential, const RayPair& rays) {
-  const Eigen::Vector3d line = essential * rays.first, back = essential.transpose() * rays.second;
-  const double miss = rays.second.dot(line);
-  const double slope = line.squaredNorm() + back.squaredNorm() - 2 * miss * miss;
-  return slope > 0 ? miss / std::sqrt(slope) : 0;
-}
-
-// Points nearer to infinity than the threshold resolves count as before both cameras.
-bool is_before_both(const RelativePose& pose, const RayPair& rays, double threshold) {
-  const Eigen::Vector3d a = pose.rotation * rays.first;
-  const double c = a.dot(rays.second), resolved = 1 - c * c;
-  if (resolved < 4 * threshold * threshold) return c > 0;
-  const double ta = pose.direction.dot(a), tb = pose.direction.dot(rays.second);
-  return tb * c - ta > 0 && tb - c * ta > 0;
-}
-
-struct PoseScore {
-  double score = 0;
-  std::vector<std::size_t> inliers = {};
-};
-
-PoseScore score_of(const RelativePose& pose, const std::vector<RayPair>& pairs, double threshold) {
-  const Eigen::Matrix3d essential = cross_matrix(pose.direction) * pose.rotation;
-  PoseScore out;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const double angle = epipolar_angle(essential, pairs[i]) / threshold;
-    if (!(std::abs(angle) < 1) || !is_before_both(pose, pairs[i], threshold)) continue;
-    out.score += 1 - angle * angle;
-    out.inliers.push_back(i);
-  }
-  return out;
-}
-
-Eigen::Matrix3d turn_by(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix()
-                   : Eigen::Matrix3d::Identity();
-}
-
-RelativePose moved(const RelativePose& pose, const Eigen::Matrix<double, 5, 1>& step) {
-  const Eigen::Vector3d u = pose.direction.unitOrthogonal(), v = pose.direction.cross(u);
-  return {turn_by(step.head<3>()) * pose.rotation, (pose.direction + step[3] * u + step[4] * v).normalized()};
-}
-
-// Gauss-Newton over the five parameters, with the inliers of each round.
-RelativePose refine(RelativePose pose, const std::vector<RayPair>& pairs, double threshold) {
-  constexpr double kStep = 1e-6;
-  PoseScore best = score_of(pose, pairs, threshold);
-  for (int round = 0; round < 10 && best.inliers.size() >= 6; ++round) {
-    std::array<Eigen::Matrix3d, 5> essentials;
-    for (int k = 0; k < 5; ++k) {
-      const RelativePose there = moved(pose, kStep * Eigen::Matrix<double, 5, 1>::Unit(k));
-      essentials[static_cast<std::size_t>(k)] = cross_matrix(there.direction) * there.rotation;
-    }
-    const Eigen::Matrix3d essential = cross_matrix(pose.direction) * pose.rotation;
-    Eigen::Matrix<double, 5, 5> normal = 1e-12 * Eigen::Matrix<double, 5, 5>::Identity();
-    Eigen::Matrix<double, 5, 1> right = Eigen::Matrix<double, 5, 1>::Zero();
-    for (const std::size_t i : best.inliers) {
-      const double r = epipolar_angle(essential, pairs[i]);
-      Eigen::Matrix<double, 5, 1> slope;
-      for (int k = 0; k < 5; ++k)
-        slope[k] = (epipolar_angle(essentials[static_cast<std::size_t>(k)], pairs[i]) - r) / kStep;
-      const double weight = 1 / (1 + 4 * r * r / (threshold * threshold));
-      normal += weight * slope * slope.transpose();
-      right -= weight * r * slope;
-    }
-    const RelativePose next = moved(pose, normal.ldlt().solve(right));
-    PoseScore there = score_of(next, pairs, threshold);
-    if (!(there.score > best.score)) break;
-    const bool done = there.score < best.score * (1 + 1e-6);
-    pose = next;
-    best = std::move(there);
-    if (done) break;
-  }
-  return pose;
-}
-
-// Rotation that turns the first rays onto the second (Kabsch), reweighted.
-std::size_t rotation_inliers(const std::vector<RayPair>& pairs, double threshold, Eigen::Matrix3d& rotation) {
-  std::size_t count = 0;
-  for (int round = 0; round < 15; ++round) {
-    const double width = threshold * std::pow(2.0, std::max(0, 6 - round));
-    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-    count = 0;
-    for (const RayPair& rays : pairs) {
-      const double angle = (rotation * rays.first - rays.second).norm();
-      if (angle < threshold) ++count;
-      if (angle < 3 * width)
-        sum += rays.second * rays.first.transpose() / (1 + angle * angle / (width * width));
-    }
-    if (round == 14 || sum.isZero()) break;
-    const SingularValues3 svd = singular_values(sum);
-    Eigen::Matrix3d flip = Eigen::Matrix3d::Identity();
-    flip(2, 2) = (svd.u * svd.v.transpose()).determinant();
-    rotation = svd.u * flip * svd.v.transpose();
-  }
-  return count;
 }
 
 cv::UsacParams magsac(double threshold, std::uint64_t seed) {
@@ -276,13 +166,13 @@ std::vector<ScoredPose> best_poses(const std::vector<RelativePose>& candidates,
   std::vector<ScoredPose> all;
   double best = 0;
   for (const RelativePose& pose : candidates) {
-    all.push_back({pose, score_of(pose, pairs, threshold)});
+    all.push_back({pose, score_pose(pose, pairs, threshold)});
     best = std::max(best, all.back().score.score);
   }
   std::erase_if(all, [&](const ScoredPose& p) { return p.score.score < 0.5 * best; });
   for (ScoredPose& one : all) {
-    one.pose = refine(one.pose, pairs, threshold);
-    one.score = score_of(one.pose, pairs, threshold);
+    one.pose = refine_pose(one.pose, pairs, threshold);
+    one.score = score_pose(one.pose, pairs, threshold);
   }
   std::ranges::stable_sort(
       all, [](const ScoredPose& a, const ScoredPose& b) { return a.score.score > b.score.score; });
@@ -313,7 +203,9 @@ PairGeometry pair_geometry(std::span<const Match> matches, std::span<const Eigen
     turn = svd.u * svd.v.transpose();
     if (turn.determinant() < 0) turn.setIdentity();
   }
-  const std::size_t turned = rotation_inliers(pairs, settings.threshold, turn);
+  const FittedRotation fitted = fit_rotation(pairs, settings.threshold, turn);
+  const std::size_t turned = fitted.inliers;
+  turn = fitted.rotation;
   const std::vector<ScoredPose> best = best_poses(candidates, pairs, settings.threshold);
   const std::size_t agree = best.empty() ? 0 : best[0].score.inliers.size();
   if (std::max(turned, agree) < settings.min_inliers) return out;

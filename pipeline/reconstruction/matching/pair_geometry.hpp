@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 #include "pipeline/reconstruction/matching/match_features.hpp"
+#include "pipeline/reconstruction/matching/relative_pose.hpp"
 namespace waymark::pipeline {
 
 /// How two images are related, which decides what they can give.
@@ -15,12 +16,6 @@ enum class PairKind {
   planar,    ///< a homography explains the matches: the motion may be ambiguous
   rotation,  ///< no parallax: a turn on the spot, or a far scene
   forward,   ///< motion along the view, as in a vertical descent
-};
-
-/// Motion between two cameras: x_second = rotation x_first + distance direction.
-struct RelativePose {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit vector; zero for a rotation
 };
 
 struct PairGeometry {
