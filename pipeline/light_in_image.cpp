@@ -5,10 +5,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "pipeline/craters/find_craters.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 
 namespace waymark::pipeline {
+namespace {
+
+constexpr int kManyCraters = 40;   // boulders of one image are fewer
+constexpr double kClearLead = 3;   // objects by which one direction has to lead
+constexpr double kMinCrater = 16;  // pixels
+
+double count_craters(const Pixels& image, Radians sun_angle) {
+  double sum = 0;
+  for (const Detection& crater : find_craters(image, {.sun_angle = sun_angle,
+                                                     .min_diameter = kMinCrater,
+                                                     .min_confidence = 0.3,
+                                                     .second_opinion = false}))
+    sum += crater.confidence;
+  return sum;
+}
+
+// Returns whether the bowls lit from `angle` are boulders lit from the opposite side. A fresh crater and a
+// boulder are each other's image under the opposite sun; worn craters are craters under the true one only, so
+// the direction that explains more objects is taken.
+bool are_boulders(const Pixels& image, Radians angle) {
+  const Radians opposite{angle.value + std::numbers::pi};
+  const double boulders = count_boulders(image, opposite) - count_boulders(image, angle);
+  return boulders >= kClearLead &&
+         boulders + count_craters(image, opposite) - count_craters(image, angle) >= kClearLead;
+}
+
+}  // namespace
 
 std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
   constexpr std::int64_t kSide = 1024;   // a second of work
@@ -21,7 +50,16 @@ std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
   const auto seen = estimate_crater_sun_angle(middle);
   if (!seen || !seen->sure) return std::nullopt;
   const double of_mean = seen->sd.value / std::sqrt(std::max(1, seen->craters));
-  return SunAngle{seen->angle, {std::hypot(of_mean, kSystematic)}, seen->craters};
+  const bool turned = seen->craters < kManyCraters && are_boulders(middle, seen->angle);
+  return SunAngle{{std::remainder(seen->angle.value + (turned ? std::numbers::pi : 0), 2 * std::numbers::pi)},
+                  {std::hypot(of_mean, kSystematic)},
+                  seen->craters};
+}
+
+std::optional<Radians> sun_angle_of_ground(const Pixels& image) {
+  const auto craters = crater_sun_angle(image);
+  if (const auto seen = estimate_rock_sun_angle(image, craters)) return seen->angle;
+  return craters ? std::optional(craters->angle) : std::nullopt;
 }
 
 std::string unusual_ground_warning(const LightCoherence& seen) {

@@ -9,9 +9,13 @@
 namespace waymark::pipeline {
 
 /// Returns the direction towards the sun that the craters of the central 1024 x 1024 pixels show;
-/// `std::nullopt` if there are hardly any, or if they may be rocks. The standard deviation is that of their
-/// mean.
+/// `std::nullopt` if there are hardly any, or if they may be rocks. Fewer than 40 that are rather boulders
+/// under the opposite sun give that one. The standard deviation is that of their mean.
 std::optional<SunAngle> crater_sun_angle(const Pixels& image);
+
+/// Returns the direction towards the sun that rocks and craters show together (estimate_rock_sun_angle), else
+/// that of the craters alone; `std::nullopt` if neither is clear.
+std::optional<Radians> sun_angle_of_ground(const Pixels& image);
 
 /// Returns the warning about ground on which the detector of rocks cannot be trusted.
 std::string unusual_ground_warning(const LightCoherence& seen);

@@ -14,7 +14,7 @@ BrightSide bright_side(const ShadowMap& map, const SpotDisc& spot) {
        static_cast<double>(y) <= spot.y + reach; ++y)
     for (auto x = static_cast<std::int64_t>(std::ceil(spot.x - reach));
          static_cast<double>(x) <= spot.x + reach; ++x) {
-      if (!map.alpha.contains(x, y)) continue;
+      if (!map.alpha.contains(x, y) || map.alpha(x, y) >= 0) continue;
       const double dx = static_cast<double>(x) - spot.x, dy = static_cast<double>(y) - spot.y;
       const double distance = std::hypot(dx, dy);
       if (distance > reach || distance < 0.5) continue;

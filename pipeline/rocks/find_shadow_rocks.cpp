@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "pipeline/rocks/position_bias.hpp"
@@ -17,6 +18,8 @@ constexpr Radians kDefaultElevation = to_radians(Degrees{40});
 // One scale detects rocks up to half a tile; a coarser scale takes over below that.
 constexpr int kTile = 32;
 constexpr double kMaxAtOneScale = 16, kMinAtCoarse = 5;  // pixels of the scale, diameter
+constexpr double kSureAtOneScale = 8;  // the same: confidences of rocks are highest up to here
+constexpr std::int64_t kMinTiles = 2;  // across an image that is halved once more
 
 // Relief displacement across the light hides one side of the root of the shadow, so the rock is farther to
 // that side than the visible centroid: by this fraction of the displacement of its top for a sun above 45
@@ -36,16 +39,18 @@ constexpr double kDiameterSlopeResponse = 0.2;
 constexpr double kPriorWeight = 0.6;
 
 // Terrain without small rocks has as many dark spots as gravel, so the prior of rocks is estimated from the
-// image.
-void adapt_to_prior(std::vector<ScoredRock>& all) {
+// image. Each scale has its own: texture of the ground is most of the small spots and says nothing about
+// boulders.
+void adapt_to_prior(std::span<ScoredRock> of_scale) {
   std::vector<double> log_odds;
-  for (const ScoredRock& one : all) {
+  for (const ScoredRock& one : of_scale) {
     const double p = std::clamp(one.confidence, 1e-9, 1 - 1e-9);
     log_odds.push_back(std::log(p / (1 - p)));
   }
   const double shift =
       kPriorWeight * prior_shift(log_odds, static_cast<double>(built_in_rock_network().rock_prior));
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + shift)));
+  for (std::size_t i = 0; i < of_scale.size(); ++i)
+    of_scale[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + shift)));
 }
 
 LightCoherence light_coherence(const std::vector<ScoredRock>& all, const LightFrame& light) {
@@ -252,16 +257,17 @@ std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& sear
       displacement = ReliefDisplacement{displacement->at(0.5 * (scale - 1), 0.5 * (scale - 1)),
                                         scale * displacement->per_pixel};
     if (scale <= 2) table = RockTable(elevation, search.sun_elevation.has_value(), blur);
+    const std::size_t first = all.size();
     for (ScoredRock& one : score_shadows(*map, light, *table, displacement)) {
       const double diameter = 2 * one.rock.size.radius;
       one.scale = scale;
       if (scale == 1 || diameter > kMinAtCoarse) all.push_back(std::move(one));
     }
-    if (scale * kMaxAtOneScale >= search.max_diameter ||
-        std::min(pixels.columns(), pixels.rows()) < 3 * kTile)
+    adapt_to_prior(std::span(all).subspan(first));
+    if (scale * kSureAtOneScale >= search.max_diameter ||
+        std::min(pixels.columns(), pixels.rows()) < kMinTiles * kTile)
       break;
   }
-  adapt_to_prior(all);
   return all;
 }
 

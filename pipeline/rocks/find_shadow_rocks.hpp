@@ -33,8 +33,8 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
 
 /// Applies score_shadows at every scale of the image. Each is half as fine as the one before, until
 /// `max_diameter` or the size of the image is reached; larger rocks are compared with a wider background.
-/// Positions remain in pixels of each scale. Confidences are adapted to the image's own fraction of rocks
-/// (prior_shift).
+/// Positions remain in pixels of each scale. Confidences are adapted to the fraction of rocks among the spots
+/// of the same scale (prior_shift).
 std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
 /// Finds rocks by the method `shadow` for a known direction of light, and checks whether they are lit from

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/rocks/bright_side.hpp"
+#include "pipeline/rocks/find_shadow_rocks.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -20,19 +21,25 @@ constexpr double kMinSpots = 8;
 constexpr double kBeside = 0.8;  // radians about a direction
 constexpr int kFewCraters = 10, kManyCraters = 40;
 constexpr double kClear = 3, kVeryClear = 4;  // standard deviations of the difference of both sides
+constexpr double kBoulder = 20;               // pixels, diameter
+constexpr double kClearBoulders = 3;          // by which one side has to lead
 
 struct Spot {
   BrightSide side;
   float peak = 0;
 };
 
-std::vector<Spot> clear_spots(const Pixels& image) {
+Pixels middle_of(const Pixels& image) {
   constexpr std::int64_t kSide = 1000;
   const std::int64_t columns = std::min(kSide, image.columns()), rows = std::min(kSide, image.rows());
   const std::int64_t x0 = (image.columns() - columns) / 2, y0 = (image.rows() - rows) / 2;
   Pixels middle(columns, rows);
   for (std::int64_t y = 0; y < rows; ++y)
     for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
+  return middle;
+}
+
+std::vector<Spot> clear_spots(const Pixels& middle) {
   const auto map = map_shadows(middle, 32);
   std::vector<Spot> spots;
   if (!map) return spots;
@@ -40,6 +47,7 @@ std::vector<Spot> clear_spots(const Pixels& image) {
                              .seed = std::max(0.06F, 2.25F * map->noise),
                              .merge = 0.88F,
                              .max_cells = 4096};
+  const std::int64_t columns = middle.columns();
   for (const ShadowSegment& segment : find_segments(*map, limits)) {
     const auto cells = static_cast<double>(segment.cells.size());
     if (cells < 3) continue;
@@ -94,6 +102,14 @@ int side_of(const std::vector<Spot>& spots, double angle) {
   return std::abs(deep) >= kClear ? (deep > 0 ? 1 : -1) : (dark > 0 ? 1 : -1);
 }
 
+/// Returns the direction along the axis under which the largest dark spots are boulders; 0 if it is not
+/// clear. A few boulders have too few spots for their bright sides to count, and resemble inverted craters.
+int side_of_boulders(const Pixels& middle, double angle) {
+  const double lead =
+      count_boulders(middle, Radians{angle}) - count_boulders(middle, Radians{angle + kTurn / 2});
+  return std::abs(lead) < kClearBoulders ? 0 : lead > 0 ? 1 : -1;
+}
+
 SunAngle refine(const std::vector<Spot>& spots, double angle) {
   double sum = 0, moment = 0, squares = 0;
   int count = 0;
@@ -114,8 +130,16 @@ SunAngle refine(const std::vector<Spot>& spots, double angle) {
 
 }  // namespace
 
+double count_boulders(const Pixels& image, Radians sun_angle) {
+  double sum = 0;
+  for (const Detection& rock : find_shadow_rocks(image, {.min_diameter = kBoulder}, sun_angle).rocks)
+    sum += rock.confidence;
+  return sum;
+}
+
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters) {
-  const std::vector<Spot> spots = clear_spots(image);
+  const Pixels middle = middle_of(image);
+  const std::vector<Spot> spots = clear_spots(middle);
   Axis axis = axis_of(spots, 0);
   if (axis.length < kMinAxis) {
     axis = axis_of(spots, kDeep);
@@ -131,7 +155,8 @@ std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::option
       return craters;
     }
   }
-  const int side = side_of(spots, axis.angle);
+  int side = side_of(spots, axis.angle);
+  if (side == 0) side = side_of_boulders(middle, axis.angle);
   if (side == 0) return std::nullopt;
   return refine(spots, side > 0 ? axis.angle : axis.angle + kTurn / 2);
 }

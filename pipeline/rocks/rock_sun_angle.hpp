@@ -10,8 +10,13 @@ namespace waymark::pipeline {
 /// - Axis: dark spots of bare ground have their bright side along the light, whether rock, slope or hollow.
 ///   Leaves and buildings have no such axis.
 /// - Side: `craters` (estimate_crater_sun_angle, its count as `shadows`) where ten or more agree with the
-///   axis, else the side on which dark spots are bright. Contradictions give `std::nullopt`.
+///   axis, else the side on which dark spots are bright, else that under which the largest ones are boulders.
+///   Contradictions give `std::nullopt`.
 /// Uses the central 1000 x 1000 pixels.
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters = {});
+
+/// Returns the number of boulders, rocks of 20 pixels or more, that light from `sun_angle` shows in the
+/// image: the sum of their confidences.
+double count_boulders(const Pixels& image, Radians sun_angle);
 
 }  // namespace waymark::pipeline

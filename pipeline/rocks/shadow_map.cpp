@@ -44,18 +44,20 @@ struct Floor {
 // neighbours and well below the ground.
 std::optional<float> umbra_of(const Pixels& image, const LocalBackground& ground, float noise) {
   const auto columns = image.columns();
-  std::vector<float> level(static_cast<std::size_t>(columns)), spread(level.size());
+  std::vector<float> level(static_cast<std::size_t>(columns));
   std::vector<Floor> floors, flat;
   for (std::int64_t y = 1; y + 1 < image.rows(); ++y) {
-    ground.read_row(y, level, spread);
+    ground.read_row(y, level, {});
     const auto above = image.row(y - 1), here = image.row(y), below = image.row(y + 1);
     for (std::size_t x = 1; x + 1 < level.size(); ++x) {
       const float value = here[x];
-      if (!(value < level[x] - 4 * std::max(noise, spread[x]))) continue;
+      if (!(value < level[x] - 4 * noise)) continue;
       const float sides = std::min(std::min(here[x - 1], here[x + 1]), std::min(above[x], below[x]));
       const float corners =
           std::min(std::min(above[x - 1], above[x + 1]), std::min(below[x - 1], below[x + 1]));
       if (!(value <= std::min(sides, corners))) continue;
+      const float spread = ground.spread_at(static_cast<std::int64_t>(x), y);
+      if (!(value < level[x] - 4 * std::max(noise, spread))) continue;
       // Mean of the floor and its darkest side, so that single dead pixels do not count.
       floors.push_back({0.5F * (value + sides), level[x]});
       const float around = 0.25F * (here[x - 1] + here[x + 1] + above[x] + below[x]);

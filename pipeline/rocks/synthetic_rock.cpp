@@ -35,21 +35,36 @@ double cylinder_alpha(const SyntheticRock& rock, double s, double t) {
   return t > 0 && t < rock.reach + chord ? 1 : 0;
 }
 
-void blur_lines(std::vector<float>& cells, std::int64_t count, std::int64_t step, std::int64_t lines,
-                std::int64_t line_step, const std::vector<float>& mask) {
-  std::vector<float> line(static_cast<std::size_t>(count));
+// Cells beyond the border count as 0. Weights are in the outer loop, so that the inner one vectorises; the
+// order of each sum is that of the weights.
+void blur_rows(std::vector<float>& cells, std::int64_t w, const std::vector<float>& mask) {
   const auto half = static_cast<std::int64_t>(mask.size() / 2);
-  for (std::int64_t l = 0; l < lines; ++l) {
-    for (std::int64_t i = 0; i < count; ++i)
-      line[static_cast<std::size_t>(i)] = cells[static_cast<std::size_t>(l * line_step + i * step)];
-    for (std::int64_t i = 0; i < count; ++i) {
-      float sum = 0;
-      const std::int64_t from = std::max<std::int64_t>(-half, -i), to = std::min(half, count - 1 - i);
-      for (std::int64_t k = from; k <= to; ++k)
-        sum += mask[static_cast<std::size_t>(k + half)] * line[static_cast<std::size_t>(i + k)];
-      cells[static_cast<std::size_t>(l * line_step + i * step)] = sum;
+  const auto h = static_cast<std::int64_t>(cells.size()) / w;
+  std::vector<float> line(static_cast<std::size_t>(w + 2 * half), 0.0F);
+  for (std::int64_t y = 0; y < h; ++y) {
+    float* const row = &cells[static_cast<std::size_t>(y * w)];
+    std::copy_n(row, w, line.begin() + half);
+    std::fill_n(row, w, 0.0F);
+    for (std::size_t k = 0; k < mask.size(); ++k) {
+      const float weight = mask[k];
+      const float* const from = line.data() + k;
+      for (std::int64_t x = 0; x < w; ++x) row[x] += weight * from[x];
     }
   }
+}
+
+void blur_columns(std::vector<float>& cells, std::int64_t w, const std::vector<float>& mask) {
+  const auto half = static_cast<std::int64_t>(mask.size() / 2);
+  const auto h = static_cast<std::int64_t>(cells.size()) / w;
+  const std::vector<float> source = cells;
+  std::fill(cells.begin(), cells.end(), 0.0F);
+  for (std::int64_t y = 0; y < h; ++y)
+    for (std::int64_t v = std::max<std::int64_t>(0, y - half); v <= std::min(h - 1, y + half); ++v) {
+      const float weight = mask[static_cast<std::size_t>(v - y + half)];
+      const float* const from = &source[static_cast<std::size_t>(v * w)];
+      float* const to = &cells[static_cast<std::size_t>(y * w)];
+      for (std::int64_t x = 0; x < w; ++x) to[x] += weight * from[x];
+    }
 }
 
 std::vector<float> gaussian(double sd) {
@@ -86,8 +101,8 @@ Grid<float> render_rock_shadow(const SyntheticRock& rock, std::int64_t columns, 
       cells[static_cast<std::size_t>(v * w + u)] = static_cast<float>(std::max(-1.5, alpha));
     }
   const std::vector<float> mask = gaussian(rock.blur * fine);
-  blur_lines(cells, w, 1, h, w, mask);
-  blur_lines(cells, h, w, w, 1, mask);
+  blur_rows(cells, w, mask);
+  blur_columns(cells, w, mask);
   Grid<float> picture(columns, rows);
   for (std::int64_t v = 0; v < h; ++v)
     for (std::int64_t u = 0; u < w; ++u)

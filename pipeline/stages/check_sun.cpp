@@ -43,7 +43,7 @@ struct CheckSun {
   static StageSpec spec() {
     return {.name = "check_sun",
             .summary = "Compares the given sun with the shadows in each image and warns where they disagree",
-            .version = 2,
+            .version = 3,
             .scope = Scope::image,
             .inputs = {image_set}};
   }

@@ -7,7 +7,7 @@ namespace {
 struct CratersFromBowls : CratersInImage<CraterMethod::bowl> {
   static StageSpec spec() {
     return make_spec("craters_from_bowls",
-                     "Finds craters in an image by shaded bowls, refined rims and a trained model", 4);
+                     "Finds craters in an image by shaded bowls, refined rims and a trained model", 5);
   }
 };
 

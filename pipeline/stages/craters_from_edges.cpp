@@ -7,7 +7,7 @@ namespace {
 struct CratersFromEdges : CratersInImage<CraterMethod::edges> {
   static StageSpec spec() {
     return make_spec("craters_from_edges",
-                     "Finds craters in an image by pairing lit and shaded rim edges along the light", 2);
+                     "Finds craters in an image by pairing lit and shaded rim edges along the light", 3);
   }
 };
 

@@ -6,7 +6,6 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/light_in_image.hpp"
-#include "pipeline/rocks/rock_sun_angle.hpp"
 #include "pipeline/vision/image_faults.hpp"
 #include "pipeline/vision/sun_angle_in_image.hpp"
 namespace waymark::pipeline {
@@ -45,9 +44,7 @@ struct CratersInImage {
   // Of an unknown sun: craters of many sizes show it, else the shadows of rocks.
   static std::optional<Radians> sun_angle(const ImageInfo& image, const Pixels& pixels) {
     if (const auto given = sun_angle_in_image(image)) return given;
-    const auto craters = crater_sun_angle(pixels);
-    if (const auto seen = estimate_rock_sun_angle(pixels, craters)) return seen->angle;
-    return craters ? std::optional(craters->angle) : std::nullopt;
+    return sun_angle_of_ground(pixels);
   }
 
   static void run(const Options& options, StageContext& unit) {

@@ -41,7 +41,7 @@ struct RocksFromShadows {
   static StageSpec spec() {
     return {.name = "rocks_from_shadows",
             .summary = "Finds rocks in an image by their shadows, with widths, heights and confidence",
-            .version = 8,
+            .version = 9,
             .scope = Scope::image,
             .inputs = {image_set},
             .outputs = {detections}};

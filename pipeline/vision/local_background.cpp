@@ -11,7 +11,42 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kSigmaPerMad = 1.4826F;  // of a normal distribution
 
+// Returns the element that sorting would put at `rank`; reorders. Partitions without branches on the values,
+// which are as good as random. Quadratic at worst, so for few values only.
+float select(std::span<float> values, std::size_t rank) {
+  while (values.size() > 8) {
+    const float a = values.front(), b = values[values.size() / 2], c = values.back();
+    const float pivot = std::max(std::min(a, b), std::min(std::max(a, b), c));
+    std::size_t below = 0, same = 0;
+    for (float& value : values) {
+      const float moved = value;
+      value = values[below];
+      values[below] = moved;
+      below += moved < pivot;
+    }
+    if (rank < below) {
+      values = values.first(below);
+      continue;
+    }
+    values = values.subspan(below);
+    rank -= below;
+    for (float& value : values) {
+      const float moved = value;
+      value = values[same];
+      values[same] = moved;
+      same += moved == pivot;
+    }
+    if (rank < same) return pivot;
+    values = values.subspan(same);
+    rank -= same;
+  }
+  std::sort(values.begin(), values.end());
+  return values[rank];
+}
+
 float median_in_place(std::vector<float>& values) {
+  constexpr std::size_t kFew = 1024;
+  if (values.size() <= kFew) return select(values, values.size() / 2);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -54,6 +89,36 @@ void fill_unknown(Grid<float>& level, Grid<float>& spread) {
   }
 }
 
+void find_runs(LocalBackground& ground) {
+  const float half = 0.5F * static_cast<float>(ground.tile - 1), step = static_cast<float>(ground.tile);
+  const auto last = static_cast<float>(ground.level.columns() - 1);
+  for (std::int64_t x = 0; x < ground.columns; ++x) {
+    const float place = std::clamp((static_cast<float>(x) - half) / step, 0.0F, last);
+    const auto left = static_cast<std::int64_t>(place);
+    if (ground.runs.empty() || ground.runs.back().tile != left) ground.runs.push_back({left, x, x});
+    ground.runs.back().end = x + 1;
+    ground.fraction.push_back(place - static_cast<float>(left));
+  }
+}
+
+// Four values of a grid between whose centres a run of a row lies.
+struct Corners {
+  float a, b, c, d;
+  float fv;  // position between the rows of centres, [0, 1]
+
+  float blend(float fu) const { return (1 - fv) * ((1 - fu) * a + fu * b) + fv * ((1 - fu) * c + fu * d); }
+};
+
+Corners corners_of(const LocalBackground& ground, const Grid<float>& grid, std::int64_t tile,
+                   std::int64_t row) {
+  const float half = 0.5F * static_cast<float>(ground.tile - 1), step = static_cast<float>(ground.tile);
+  const float v =
+      std::clamp((static_cast<float>(row) - half) / step, 0.0F, static_cast<float>(grid.rows() - 1));
+  const auto r0 = static_cast<std::int64_t>(v);
+  const auto r1 = std::min(r0 + 1, grid.rows() - 1), c1 = std::min(tile + 1, grid.columns() - 1);
+  return {grid(tile, r0), grid(c1, r0), grid(tile, r1), grid(c1, r1), v - static_cast<float>(r0)};
+}
+
 }  // namespace
 
 LocalBackground local_background(const Pixels& image, int tile) {
@@ -78,48 +143,27 @@ LocalBackground local_background(const Pixels& image, int tile) {
       ground.spread(c, r) = kSigmaPerMad * median_in_place(samples);
     }
   fill_unknown(ground.level, ground.spread);
+  find_runs(ground);
   return ground;
 }
 
 void LocalBackground::read_row(std::int64_t row, std::span<float> level_out,
                                std::span<float> spread_out) const {
-  const float half = 0.5F * static_cast<float>(tile - 1), step = static_cast<float>(tile);
-  const float v =
-      std::clamp((static_cast<float>(row) - half) / step, 0.0F, static_cast<float>(level.rows() - 1));
-  const auto r0 = static_cast<std::int64_t>(v);
-  const auto r1 = std::min(r0 + 1, level.rows() - 1);
-  const float fv = v - static_cast<float>(r0);
-  const auto last = static_cast<float>(level.columns() - 1);
-  const auto place = [&](std::int64_t x) {
-    return std::clamp((static_cast<float>(x) - half) / step, 0.0F, last);
+  const auto read = [&](const Grid<float>& grid, std::span<float> out) {
+    for (const Run& run : runs) {
+      const Corners corners = corners_of(*this, grid, run.tile, row);
+      const float* const from = fraction.data();
+      float* const to = out.data();
+      for (std::int64_t x = run.begin; x < run.end; ++x) to[x] = corners.blend(from[x]);
+    }
   };
-  constexpr std::int64_t kAtOnce = 8;
-  // Processes runs of pixels between the same two tile centres, several at a time, so that they vectorise.
-  for (std::int64_t x = 0; x < columns;) {
-    const auto c0 = static_cast<std::int64_t>(place(x));
-    const auto c1 = std::min(c0 + 1, level.columns() - 1);
-    std::int64_t end = std::min(columns, x + 1);
-    while (end < columns && static_cast<std::int64_t>(place(end)) == c0) ++end;
-    const auto mix = [&](const Grid<float>& g, std::span<float> out) {
-      const float a = g(c0, r0), b = g(c1, r0), c = g(c0, r1), d = g(c1, r1);
-      const auto from = static_cast<float>(c0);
-      float* to = out.data();
-      const auto blend = [=](float fu) {
-        return (1 - fv) * ((1 - fu) * a + fu * b) + fv * ((1 - fu) * c + fu * d);
-      };
-      std::int64_t k = x;
-      for (; k + kAtOnce <= end; k += kAtOnce) {
-        float at[kAtOnce];
-        for (std::int64_t i = 0; i < kAtOnce; ++i)
-          at[i] = std::min(std::max((static_cast<float>(k + i) - half) / step, 0.0F), last) - from;
-        for (std::int64_t i = 0; i < kAtOnce; ++i) to[k + i] = blend(at[i]);
-      }
-      for (; k < end; ++k) to[k] = blend(place(k) - from);
-    };
-    mix(level, level_out);
-    if (!spread_out.empty()) mix(spread, spread_out);
-    x = end;
-  }
+  read(level, level_out);
+  if (!spread_out.empty()) read(spread, spread_out);
+}
+
+float LocalBackground::spread_at(std::int64_t column, std::int64_t row) const {
+  const auto run = std::ranges::upper_bound(runs, column, {}, &Run::end);
+  return corners_of(*this, spread, run->tile, row).blend(fraction[static_cast<std::size_t>(column)]);
 }
 
 float noise_sd(const Pixels& image) {

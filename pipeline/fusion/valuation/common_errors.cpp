@@ -45,6 +45,19 @@ void add_common_errors(Landmark& landmark, const LandmarkType& type, double fine
   }
 }
 
+void add_slope_error(Landmark& landmark, const LandmarkType& type, double tan_sun_elevation) {
+  constexpr double kUnknownSlope = 0.1;  // tangent; RMS of the testbed's ground over 1 m is 0.09 to 0.12
+  constexpr double kResponse = 0.4;
+  if (type.evidence != EvidenceModel::shadow_caster || !(tan_sun_elevation > 0)) return;
+  for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i) {
+    FeatureValue& height = landmark.features[i];
+    const bool has_variance = height.observations > 1 || height.variance > 0;
+    if (type.features[i].name != "height" || !height.known() || !has_variance) continue;
+    const double error = kResponse * kUnknownSlope / tan_sun_elevation * height.value;
+    height.variance += error * error;
+  }
+}
+
 VarianceParts split_variance(const FeatureValue& mapped, const FeatureSpec& spec,
                              std::optional<double> confidence) {
   const double unit = spec.scale == Scale::ratio ? std::abs(mapped.value) : spec.reference;

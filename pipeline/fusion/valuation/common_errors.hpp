@@ -21,6 +21,11 @@ std::optional<CommonError> common_error(EvidenceModel evidence, std::string_view
 /// metres; not finite: only the fraction counts.
 void add_common_errors(Landmark& landmark, const LandmarkType& type, double finest_gsd);
 
+/// Adds what an unknown slope of the ground contributes to the variance of heights from shadows, which all
+/// images of a sun share: 0.1 (m/m, standard deviation along the light) x 0.4 (response of heights to slopes,
+/// docs/methods/rocks.md) / tan(elevation of the sun) of the height. For maps without a DEM.
+void add_slope_error(Landmark& landmark, const LandmarkType& type, double tan_sun_elevation);
+
 /// A feature's variance in a map: spread of the observations, and what all images of a sun have in common.
 struct VarianceParts {
   double spread = 0, common = 0;

@@ -80,6 +80,14 @@ double finest_gsd(std::span<const ImageView> images, const std::set<std::size_t>
   return finest;
 }
 
+// Tangent of the lowest sun under which it was detected; 0 if none is known.
+double tan_sun_elevation(std::span<const ImageView> images, const std::set<std::size_t>& detected) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const std::size_t i : detected)
+    if (images[i].sun) lowest = std::min(lowest, std::tan(to_radians(images[i].sun->elevation).value));
+  return std::isfinite(lowest) ? lowest : 0;
+}
+
 ImageCounts count_by_paper(const Images& images, const std::set<std::size_t>& detected,
                            const Eigen::Vector2d& at) {
   double largest = 0;
@@ -174,8 +182,11 @@ void value_landmarks(std::span<Landmark> landmarks, std::span<const Observation>
     for (std::size_t f = 0; f < type.features.size() && f < landmark.features.size(); ++f)
       landmark.quality.feature_confidences[f] = spread_confidence(
           landmark.features[f], type.features[f].scale, type.features[f].reference, rules.spread);
-    if (!detected.empty() && rules.spread == SpreadRule::sound)
+    if (!detected.empty() && rules.spread == SpreadRule::sound) {
       add_common_errors(landmark, type, finest_gsd(images, detected));
+      if (std::isnan(landmark.covariance(2, 2)))  // the ground's height is unknown, so its slope is
+        add_slope_error(landmark, type, tan_sun_elevation(images, detected));
+    }
     landmark.confidence = existence_probability(confidences, landmark.quality.visible - landmark.quality.seen,
                                                 rules.existence.value_or(type.existence));
   });

@@ -40,6 +40,29 @@ TEST(CommonErrors, DoNotShrinkWithObservations) {
   EXPECT_EQ(radius_variance(1, 0, 0.1), 0) << "unknown stays unknown";
 }
 
+// Shadows on ground of unknown slope; the lower the sun, the more they depend on it.
+TEST(CommonErrors, HeightsOnGroundOfUnknownSlopeAreLessCertain) {
+  ImageView image;
+  image.name = "a";
+  image.gsd = 0.1;
+  const auto height_variance = [&](double elevation, double height_of_ground_variance) {
+    image.sun = Sun{Degrees{90}, Degrees{elevation}, Degrees{0.5}};
+    Landmark l = rock_seen(2, 0.04);
+    l.features[1] = {3, 0.09, 2};
+    l.covariance(2, 2) = height_of_ground_variance;
+    std::vector<Observation> evidence(1);
+    evidence[0].type = l.type;
+    evidence[0].source = "a";
+    evidence[0].landmark_uid = l.uid;
+    value_landmarks({&l, 1}, evidence, {&image, 1}, nullptr, kTypes, 1);
+    return l.features[1].variance;
+  };
+  const double known = height_variance(20, 0.01), slope = 0.04 * 3 / std::tan(to_radians(Degrees{20}).value);
+  EXPECT_NEAR(height_variance(60, 0.01), known, 1e-12);
+  EXPECT_NEAR(height_variance(20, std::nan("")), known + slope * slope, 1e-12);
+  EXPECT_LT(height_variance(60, std::nan("")), known + 0.2 * slope * slope);
+}
+
 TEST(CommonErrors, OthersStayAsTheyAre) {
   EXPECT_FALSE(common_error(EvidenceModel::canopy, "height"));
   EXPECT_FALSE(common_error(EvidenceModel::bowl, "orientation"));

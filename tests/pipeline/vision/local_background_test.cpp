@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -52,6 +53,27 @@ TEST(LocalBackground, FillsTilesWithoutDataFromTheirNeighbours) {
   for (std::int64_t y = 0; y < 64; ++y)
     for (std::int64_t x = 0; x < 100; ++x) image(x, y) = kNan;
   EXPECT_NEAR(level_at(local_background(image, 32), 0, 0), 100, 1);
+}
+
+// Whole numbers, so that many samples are equal.
+TEST(LocalBackground, LevelIsTheMedianOfTheSamples) {
+  Pixels image = noisy(128, 128, 20, 3);
+  for (float& value : image.cells()) value = std::round(value);
+  std::vector<float> samples;  // every fourth of the 64 pixels about the tile (1, 1)
+  for (std::int64_t y = 16; y < 80; y += 4)
+    for (std::int64_t x = 16; x < 80; x += 4) samples.push_back(image(x, y));
+  std::sort(samples.begin(), samples.end());
+  EXPECT_EQ(local_background(image, 32).level(1, 1), samples[samples.size() / 2]);
+}
+
+TEST(LocalBackground, SpreadAtAPixelIsThatOfItsRow) {
+  const LocalBackground ground = local_background(noisy(100, 70, 100, 5), 32);
+  std::vector<float> level(100), spread(100);
+  for (const std::int64_t y : {0, 20, 69}) {
+    ground.read_row(y, level, spread);
+    for (std::int64_t x = 0; x < 100; ++x)
+      EXPECT_EQ(ground.spread_at(x, y), spread[static_cast<std::size_t>(x)]) << x << ", " << y;
+  }
 }
 
 TEST(LocalBackground, OfNothingButNoDataIsNoData) {

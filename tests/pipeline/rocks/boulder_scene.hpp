@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <vector>
+
+#include "core/detection.hpp"
+#include "workflows/training/rock_views.hpp"
+namespace waymark::test {
+
+/// Vertical view from a drone: few boulders of 42 to 110 px between craters of 30 to 250 px, in a picture of
+/// 640 x 640 pixels of 15 to 60 mm. All else is random: slopes, dunes, sun 18 to 62 degrees high, haze, blur.
+struct BoulderScene {
+  workflows::SyntheticView view;      ///< boulders that are wholly in the picture
+  std::vector<PixelEllipse> craters;  ///< the same
+};
+BoulderScene boulder_scene(int number);
+
+}  // namespace waymark::test
