@@ -79,6 +79,7 @@ CPLStringList layer_options(const VectorFormat& format, const Crs& crs) {
   }
   if (format.driver == "CSV")
     options.SetNameValue("STRING_QUOTING", "IF_NEEDED");  // otherwise integers are quoted
+  if (!format.has_index) options.SetNameValue("SPATIAL_INDEX", "NO");
   if (format.driver == "ESRI Shapefile") options.SetNameValue("ENCODING", "UTF-8");
   return options;
 }
