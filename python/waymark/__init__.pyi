@@ -17,6 +17,7 @@ class EkfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -35,7 +36,7 @@ class EkfSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -58,6 +59,11 @@ class EkfSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -90,6 +96,7 @@ class GlobalSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -108,7 +115,7 @@ class GlobalSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -131,6 +138,11 @@ class GlobalSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -163,6 +175,7 @@ class GraphSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -181,7 +194,7 @@ class GraphSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -204,6 +217,11 @@ class GraphSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -252,6 +270,7 @@ class OdometrySettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -270,7 +289,7 @@ class OdometrySettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -293,6 +312,11 @@ class OdometrySettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -313,6 +337,7 @@ class PfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -331,7 +356,7 @@ class PfSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -354,6 +379,11 @@ class PfSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -386,6 +416,7 @@ class SlamSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -404,7 +435,7 @@ class SlamSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -427,6 +458,11 @@ class SlamSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -471,6 +507,7 @@ class UkfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
+    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -489,7 +526,7 @@ class UkfSettings(TypedDict, total=False):
     min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the error of a landmark on the map counts as new; 0: at once (formerly same_error)
+    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -512,6 +549,11 @@ class UkfSettings(TypedDict, total=False):
     yaw_per_radian: float  # Variance of yaw per radian turned, rad^2/rad
     position_per_second: float  # Variance of each coordinate per second, m^2/s
     yaw_per_second: float  # Variance of yaw per second, rad^2/s
+    scale_sd: float  # Standard deviation of the relative error of distances that lasts the drive
+    slip_sd: float  # Standard deviation of the relative error of distances that lasts drift_distance
+    sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
+    drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
+    yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
