@@ -20,8 +20,10 @@ namespace {
 // Formats defined in WGS 84. GDAL has no flag for it.
 constexpr std::array kOnlyWgs84 = {"KML", "LIBKML", "GPX", "GeoRSS", "GPSBabel", "GeoJSONSeq"};  // RFC 8142
 constexpr std::array kOneLayer = {"DXF", "DGN"};  // GDAL reports that they hold several
-constexpr std::size_t kDbfName = 10;              // dBASE III field names
-constexpr std::int64_t kSheetRows = 1'048'576;    // of Excel and LibreOffice, the first with the names
+constexpr std::array kSilent = {"KML", "GML",    "MapInfo File", "ODS",    "XLSX",
+                                "DXF", "GeoRSS", "GPX",          "OGR_GMT"};  // on writes that fail
+constexpr std::size_t kDbfName = 10;                                          // dBASE III field names
+constexpr std::int64_t kSheetRows = 1'048'576;  // of Excel and LibreOffice, the first with the names
 
 bool has(GDALDriver& driver, const char* key) {
   return driver.GetMetadataItem(key) != nullptr;
@@ -116,6 +118,7 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   format.can_be_read = has(driver, GDAL_DCAP_OPEN) && format.driver != "MVT";  // a tree of tiles
   format.is_table = has(driver, GDAL_DCAP_NONSPATIAL) || format.driver == "CSV";
   format.only_wgs84 = is_in(kOnlyWgs84);
+  format.reports_writes = !is_in(kSilent);
   format.earth_only = format.only_wgs84 || format.driver == "GeoJSON";
   if (format.driver.ends_with("KML")) format.name_field = "Name", format.description_field = "Description";
   if (format.driver == "GPX") format.name_field = "name", format.description_field = "desc";

@@ -20,6 +20,7 @@ struct VectorFormat {
   std::int64_t bytes_per_landmark = 0;             ///< that GDAL holds until the file is closed
   std::int64_t max_landmarks = 0;                  ///< in a layer; 0: no limit
   std::size_t max_name_length = 0;                 ///< letters of a column name; 0: no limit
+  bool reports_writes = true;                      ///< GDAL reports every write that fails
   bool has_index = true;                           ///< false: FlatGeobuf's spatial index is left out
   std::vector<std::string> creation_options = {};  ///< of GDAL, "NAME=VALUE", besides the usual ones
 };
