@@ -30,7 +30,7 @@ void describe(VSIFilesystemPluginCallbacksStruct& calls) {
   calls.rename = [](void*, const char* from, const char* to) { return counted(VSIRename(from, to)); };
   calls.mkdir = [](void*, const char* name, long mode) { return VSIMkdir(name, mode); };
   calls.rmdir = [](void*, const char* name) { return VSIRmdir(name); };
-  calls.read_dir = [](void*, const char* name, int most) { return VSIReadDirEx(name, most); };
+  calls.read_dir = [](void*, const char* name, int count) { return VSIReadDirEx(name, count); };
   calls.open = [](void*, const char* name, const char* access) -> void* { return VSIFOpenL(name, access); };
   calls.tell = [](void* file) { return VSIFTellL(file_of(file)); };
   calls.seek = [](void* file, vsi_l_offset to, int from) { return VSIFSeekL(file_of(file), to, from); };

@@ -84,15 +84,15 @@ class TypeReader {
 /// landmarks for the format.
 void bound_memory(Export& job, const std::vector<std::string>& types, const std::string& out,
                   std::int64_t max_megabytes) {
-  std::int64_t landmarks = 0, most = 0;
+  std::int64_t landmarks = 0, in_layer = 0;
   for (const std::string& type : types) {
     landmarks += job.map.count(type);
-    most = std::max(most, job.map.count(type));
+    in_layer = std::max(in_layer, job.map.count(type));
   }
-  if (job.format.max_landmarks > 0 && most > job.format.max_landmarks)
+  if (job.format.max_landmarks > 0 && in_layer > job.format.max_landmarks)
     throw Error(ErrorCode::usage,
                 fmt::format("a sheet of {} holds {} landmarks, the map has {}", job.format.driver,
-                            job.format.max_landmarks, most),
+                            job.format.max_landmarks, in_layer),
                 out, "write .csv, .gpkg or .fgb, which have no limit");
   const std::int64_t megabytes = landmarks * job.format.bytes_per_landmark / 1'000'000;
   job.format.has_index = megabytes <= max_megabytes;
