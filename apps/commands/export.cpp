@@ -46,6 +46,10 @@ class Export final : public Command {
                           .or_else("the map's footprints, or its DEM"),
                       {"--label", "NAME=VALUE", &options_.label,
                        "Value of a PDS4 label, LOGICAL_IDENTIFIER for example; may be repeated"},
+                      Argument{"--memory", "MEGABYTES", &options_.max_megabytes,
+                               "Memory for the spatial index of FlatGeobuf, 220 bytes a landmark; one that "
+                               "would take more is left out"}
+                          .or_else(std::to_string(exporters::ExportOptions{}.max_megabytes)),
                       {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
         .examples = {
             {"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},

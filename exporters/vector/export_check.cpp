@@ -11,23 +11,57 @@
 #include "core/error.hpp"
 #include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "exporters/vector/count_rows.hpp"
 
 namespace waymark::exporters {
+namespace {
+
+void require_all(std::int64_t found, std::int64_t landmarks, const std::string& output_name,
+                 const GdalMessages& messages) {
+  if (found < landmarks)
+    fail_output(output_name,
+                messages.cause(fmt::format("only {} of {} landmarks arrived", found, landmarks)));
+}
+
+/// Returns whether SpatiaLite's index of a layer and the three triggers that maintain it exist.
+bool has_spatial_index(GDALDataset& dataset, const std::string& layer) {
+  const std::string sql = fmt::format(
+      "SELECT count(*) FROM sqlite_master WHERE lower(name) IN ('idx_{0}_geometry', "
+      "'gii_{0}_geometry', 'giu_{0}_geometry', 'gid_{0}_geometry')",
+      layer);
+  OGRLayer* found = dataset.ExecuteSQL(sql.c_str(), nullptr, nullptr);
+  if (found == nullptr) return false;
+  const OGRFeatureUniquePtr row(found->GetNextFeature());
+  const bool all = row && row->GetFieldAsInteger(0) == 4;
+  dataset.ReleaseResultSet(found);
+  return all;
+}
+
+}  // namespace
 
 std::vector<std::string> check_export(const VectorFormat& format, const std::string& path,
                                       const std::string& output_name, const Crs& crs,
                                       std::int64_t landmarks) {
   if (!format.can_be_read) return {};
   GdalMessages messages;
+  if (has_rows_of_text(format.driver)) {
+    const auto rows = count_rows(format.driver, path);
+    if (!rows) fail_output(output_name, messages.cause("parts of it are missing"));
+    require_all(*rows, landmarks, output_name, messages);
+    return {};
+  }
   const char* only[] = {format.driver.c_str(), nullptr};
   const std::unique_ptr<GDALDataset> dataset(
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, only, nullptr, nullptr));
   if (!dataset) fail_output(output_name, messages.cause("it cannot be read again"));
   std::int64_t found = 0;
   for (OGRLayer* layer : dataset->GetLayers()) found += layer->GetFeatureCount();
-  if (found < landmarks)
-    fail_output(output_name,
-                messages.cause(fmt::format("only {} of {} landmarks arrived", found, landmarks)));
+  require_all(found, landmarks, output_name, messages);
+  // GDAL does not report an index that SpatiaLite could not make.
+  if (format.driver == "SQLite" && !format.creation_options.empty())
+    for (OGRLayer* layer : dataset->GetLayers())
+      if (!has_spatial_index(*dataset, layer->GetName()))
+        fail_output(output_name, "its spatial index is missing");
   if (format.is_table || crs.kind() == CrsKind::local || dataset->GetLayerCount() == 0) return {};
 
   const OGRSpatialReference* kept = dataset->GetLayer(0)->GetSpatialRef();

@@ -80,6 +80,33 @@ class TypeReader {
   const LandmarkType* type_;
 };
 
+/// Bounds what GDAL holds of a format until the file is closed. Throws Error{usage} if a layer has too many
+/// landmarks for the format.
+void bound_memory(Export& job, const std::vector<std::string>& types, const std::string& out,
+                  std::int64_t max_megabytes) {
+  std::int64_t landmarks = 0, in_layer = 0;
+  for (const std::string& type : types) {
+    landmarks += job.map.count(type);
+    in_layer = std::max(in_layer, job.map.count(type));
+  }
+  if (job.format.max_landmarks > 0 && in_layer > job.format.max_landmarks)
+    throw Error(ErrorCode::usage,
+                fmt::format("a sheet of {} holds {} landmarks, the map has {}", job.format.driver,
+                            job.format.max_landmarks, in_layer),
+                out, "write .csv, .gpkg or .fgb, which have no limit");
+  const std::int64_t megabytes = landmarks * job.format.bytes_per_landmark / 1'000'000;
+  job.format.has_index = megabytes <= max_megabytes;
+  if (job.format.has_index) return;
+  job.warn(
+      {job.format.driver == "FlatGeobuf"
+           ? fmt::format("FlatGeobuf: no spatial index, for which GDAL would take {} MB; --memory allows "
+                         "more, .gpkg has an index",
+                         megabytes)
+           : fmt::format("{}: GDAL holds the whole file, about {} MB; .csv, .gpkg and .geojson are "
+                         "written in pieces",
+                         job.format.driver, megabytes)});
+}
+
 void write_layers(Export& job, const std::vector<std::string>& types, const std::string& path,
                   const std::string& out) {
   OgrOutput output(job.format, path, out);
@@ -180,6 +207,7 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
   if (format.is_file)
     for (const OutputFile& file : files) refuse_existing(file.path, options.overwrite);
   for (const OutputFile& file : files) {
+    bound_memory(job, file.types, file.path, options.max_megabytes);
     if (format.driver == kPds4)
       job.format.creation_options = pds4_label(options.label, label_title(file.types, map_path), job.crs,
                                                files.size() > 1 ? "_" + file.types.front() : "");

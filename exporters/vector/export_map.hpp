@@ -14,7 +14,10 @@ struct ExportOptions {
       {};  ///< any text Crs understands; empty: the map's, or EPSG:4326 if the format requires it
   bool overwrite = false;               ///< false: an existing output is an error
   std::vector<std::string> label = {};  ///< values of a PDS4 label, "NAME=VALUE"
-  double area_km2 = 0;                  ///< counting area of a crater count (.scc, .diam); 0: that of the map
+  /// That GDAL may take for a format it does not write in pieces: a FlatGeobuf that would take more has no
+  /// spatial index, others give a warning.
+  std::int64_t max_megabytes = 300;
+  double area_km2 = 0;  ///< counting area of a crater count (.scc, .diam); 0: that of the map
 };
 
 /// Landmarks written of one type.
@@ -40,8 +43,8 @@ struct ExportSummary {
 /// Throws Error for an unknown type, driver or CRS; a format that cannot hold the CRS or points; a CRS of
 /// another body; an output that exists, cannot be written, or does not fit on the disk.
 /// Writes 20 k landmarks/s to GeoJSON, 150 k/s to GeoPackage, 190 k/s to FlatGeobuf, including the check
-/// (2-core machine under load). Memory does not grow with the landmarks, except for GeoPackage and what GDAL
-/// needs for a format.
+/// (2-core machine under load). Memory does not grow with the landmarks, except for GeoPackage and where GDAL
+/// holds a format whole: 220 bytes a landmark for FlatGeobuf's index, 500 to 670 for ODS and XLSX.
 ExportSummary export_map(const std::filesystem::path& map, const std::string& out,
                          const ExportOptions& options = {});
 

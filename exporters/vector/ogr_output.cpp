@@ -12,6 +12,7 @@
 #include "core/output_error.hpp"
 #include "exporters/formatting.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "exporters/vector/checked_writes.hpp"
 #include "exporters/vector/export_columns.hpp"
 #include "exporters/vector/placemark_text.hpp"
 
@@ -79,6 +80,7 @@ CPLStringList layer_options(const VectorFormat& format, const Crs& crs) {
   }
   if (format.driver == "CSV")
     options.SetNameValue("STRING_QUOTING", "IF_NEEDED");  // otherwise integers are quoted
+  if (!format.has_index) options.SetNameValue("SPATIAL_INDEX", "NO");
   if (format.driver == "ESRI Shapefile") options.SetNameValue("ENCODING", "UTF-8");
   return options;
 }
@@ -121,6 +123,7 @@ struct OgrOutput::File {
   GdalMessages messages;
   std::unique_ptr<GDALDataset> dataset;
   std::vector<std::string> warnings;
+  std::int64_t failed_before = failed_writes();
 
   [[noreturn]] void fail(const std::string& otherwise) {
     fail_output(output_name, messages.cause(otherwise),
@@ -158,7 +161,8 @@ OgrOutput::OgrOutput(const VectorFormat& format, const std::string& path, std::s
   file_->output_name = std::move(output_name);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(format.driver.c_str());
   CPLStringList options = file_options(format);
-  file_->dataset.reset(format.is_file ? driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, options.List())
+  const std::string name = format.reports_writes ? path : with_checked_writes(path);
+  file_->dataset.reset(format.is_file ? driver->Create(name.c_str(), 0, 0, 0, GDT_Unknown, options.List())
                                       : GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_UPDATE,
                                                           nullptr, nullptr, nullptr));
   if (!file_->dataset) file_->fail(format.driver + " could not create it");
@@ -199,6 +203,7 @@ std::vector<std::string> OgrOutput::close() {
   file.dataset.reset();
   if (!file.messages.failures().empty() && full) fail_full_disk(file.output_name);
   if (!file.messages.failures().empty()) file.fail("closing it failed");
+  if (failed_writes() != file.failed_before) file.fail("a write failed");
   std::vector<std::string> warnings = file.warnings;
   for (const std::string& said : file.messages.warnings())
     warnings.push_back(file.format.driver + ": " + said);

@@ -20,7 +20,10 @@ namespace {
 // Formats defined in WGS 84. GDAL has no flag for it.
 constexpr std::array kOnlyWgs84 = {"KML", "LIBKML", "GPX", "GeoRSS", "GPSBabel", "GeoJSONSeq"};  // RFC 8142
 constexpr std::array kOneLayer = {"DXF", "DGN"};  // GDAL reports that they hold several
-constexpr std::size_t kDbfName = 10;              // dBASE III field names
+constexpr std::array kSilent = {"KML", "GML",    "MapInfo File", "ODS",    "XLSX",
+                                "DXF", "GeoRSS", "GPX",          "OGR_GMT"};  // on writes that fail
+constexpr std::size_t kDbfName = 10;                                          // dBASE III field names
+constexpr std::int64_t kSheetRows = 1'048'576;  // of Excel and LibreOffice, the first with the names
 
 bool has(GDALDriver& driver, const char* key) {
   return driver.GetMetadataItem(key) != nullptr;
@@ -115,6 +118,7 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   format.can_be_read = has(driver, GDAL_DCAP_OPEN) && format.driver != "MVT";  // a tree of tiles
   format.is_table = has(driver, GDAL_DCAP_NONSPATIAL) || format.driver == "CSV";
   format.only_wgs84 = is_in(kOnlyWgs84);
+  format.reports_writes = !is_in(kSilent);
   format.earth_only = format.only_wgs84 || format.driver == "GeoJSON";
   if (format.driver.ends_with("KML")) format.name_field = "Name", format.description_field = "Description";
   if (format.driver == "GPX") format.name_field = "name", format.description_field = "desc";
@@ -124,6 +128,11 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   if (format.driver == "SQLite" && offered != nullptr &&
       std::string_view(offered).find("'SPATIALITE'") != std::string_view::npos)
     format.creation_options = {"SPATIALITE=YES", "INIT_WITH_EPSG=NO"};
+  // Measured with 1,000,000 rocks (GDAL 3.6): of FlatGeobuf the index alone.
+  if (format.driver == "FlatGeobuf") format.bytes_per_landmark = 220;
+  if (format.driver == "ODS") format.bytes_per_landmark = 500;
+  if (format.driver == "XLSX") format.bytes_per_landmark = 670;
+  if (format.driver == "ODS" || format.driver == "XLSX") format.max_landmarks = kSheetRows - 1;
   format.max_name_length = format.driver == "ESRI Shapefile" ? kDbfName : 0;
   return format;
 }

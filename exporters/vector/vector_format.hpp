@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
@@ -16,7 +17,11 @@ struct VectorFormat {
   bool only_wgs84 = false;      ///< and cannot hold another CRS
   std::string name_field = {};  ///< field for the name of a placemark; empty: none
   std::string description_field = {};              ///< field for its description
+  std::int64_t bytes_per_landmark = 0;             ///< that GDAL holds until the file is closed
+  std::int64_t max_landmarks = 0;                  ///< in a layer; 0: no limit
   std::size_t max_name_length = 0;                 ///< letters of a column name; 0: no limit
+  bool reports_writes = true;                      ///< GDAL reports every write that fails
+  bool has_index = true;                           ///< false: FlatGeobuf's spatial index is left out
   std::vector<std::string> creation_options = {};  ///< of GDAL, "NAME=VALUE", besides the usual ones
 };
 

@@ -54,6 +54,16 @@ TEST_F(BadInput, TruncatedFile) {
   EXPECT_THAT(refusal(dem), HasSubstr("truncated or damaged"));
 }
 
+TEST_F(BadInput, GdalSaysNothingBesideOurMessage) {
+  const std::string dem = made(hills(300, 300));
+  std::filesystem::resize_file(dem, 200'000);
+  write_text(dem + ".aux.xml", "<PAMDataset><no end");
+  const std::string said = peaks({dem}).err;
+  EXPECT_THAT(said, HasSubstr("error: "));
+  for (const char* gdal : {"ERROR ", "Warning ", "proj_"}) EXPECT_THAT(said, testing::Not(HasSubstr(gdal)));
+  EXPECT_LT(std::ranges::count(said, '\n'), 8) << said;
+}
+
 TEST_F(BadInput, DamagedInTheMiddleOtherTilesGoOn) {
   MadeDem dem = hills(1300, 1300);
   dem.compressed_blocks = true;

@@ -164,6 +164,8 @@ TEST(Memory, OfMapsDoesNotGrowWithTheirLandmarks) {
         {"-q", "import", rock_table(folder, count), "-o", map, "--type", "rock", "--map-crs", "EPSG:32632"});
     peak["export to a map"] = peak_of({"-q", "export", map, folder / "out.gpkg", "--overwrite"});
     peak["export to FlatGeobuf"] = peak_of({"-q", "export", map, folder / "out.fgb", "--overwrite"});
+    // GDAL's reader of KML would hold 1.8 kB a landmark.
+    peak["export to KML"] = peak_of({"-q", "export", map, folder / "out.kml", "--overwrite"});
     peak["report"] = peak_of({"-q", "report", map, "-o", folder / "out.html"});
     return peak;
   };

@@ -77,6 +77,31 @@ TEST_F(RouteCommand, LandmarksAreKeptInSight) {
   EXPECT_GT(largest("y"), 30);
 }
 
+// 300 m of Taveuni across 180 degrees: one line would go round the Earth.
+TEST_F(RouteCommand, LineIsDividedAtTheAntimeridian) {
+  std::string rocks = "x,y,radius,height\n";
+  for (int i = 0; i < 30; ++i)
+    rocks +=
+        (i < 15 ? "179.998" + std::to_string(500 + 100 * i) : "-179.999" + std::to_string(900 - 20 * i)) +
+        ",-17.0001,0.5,0.6\n";
+  write_text(folder_ / "taveuni.csv", rocks);
+  const std::string map = folder_ / "taveuni.gpkg";
+  const Outcome made =
+      waymark({"import", folder_ / "taveuni.csv", "-o", map, "--type", "rock", "--map-crs", "EPSG:4326"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome done = waymark({"route", map, "--from=179.9986,-17", "--to=-179.9986,-17", "--sensor",
+                                "horizontal_laser", "--weight", "1", "-o", folder_ / "r.geojson"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto lines =
+      nlohmann::json::parse(text_of(folder_ / "r.geojson"))["features"][0]["geometry"]["coordinates"];
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].back()[0], 180.0);
+  EXPECT_EQ(lines[1].front()[0], -180.0);
+  EXPECT_EQ(lines[0].back()[1], lines[1].front()[1]);
+  for (const auto& at : lines[0]) EXPECT_GT(at[0], 179.99);
+  for (const auto& at : lines[1]) EXPECT_LT(at[0], -179.99);
+}
+
 TEST_F(RouteCommand, LimitThatCannotBeKeptNamesTheLeastFound) {
   const Outcome none = route({"--limit-sigma", "0.11"});
   EXPECT_EQ(none.code, 1);

@@ -8,6 +8,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "exporters/vector/count_rows.hpp"
+#include "exporters/vector/vector_format.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
@@ -34,6 +36,18 @@ class ExportMap : public ::testing::Test {
   std::unique_ptr<GDALDataset> open(const std::string& name) const {
     GDALAllRegister();
     return std::unique_ptr<GDALDataset>(GDALDataset::Open(out(name).c_str(), GDAL_OF_VECTOR));
+  }
+
+  /// Writes a map of `count` summits at one place, many.gpkg.
+  void write_many(int count) const {
+    geodb::MapContents many = test::three_summits("EPSG:4326", -70.01, -32.65, 0.1);
+    const Landmark first = many.landmarks.front();
+    many.landmarks.clear();
+    for (int i = 0; i < count; ++i) {
+      many.landmarks.push_back(first);
+      many.landmarks.back().uid = "mt-" + std::to_string(i);
+    }
+    geodb::write_map(folder / "many.gpkg", many);
   }
 
   void SetUp() override {
@@ -261,6 +275,45 @@ TEST_F(ExportMap, PositionsOutsideTheCrsAreCounted) {
   const ExportSummary summary = export_map(folder / "odd.gpkg", out("tops.csv"), {.crs = "EPSG:32719"});
   EXPECT_THAT(summary.warnings,
               ElementsAre("1 of 3 mountain_top landmarks have no position in EPSG:32719 and are left out"));
+}
+
+// GDAL's readers hold these formats whole, so that they are counted as text.
+TEST_F(ExportMap, LandmarksInTextAreCounted) {
+  for (const std::string name : {"all.kml", "all.ods", "all.xlsx"}) {
+    export_map(two, out(name));
+    const std::string driver = vector_format(name, "").driver;
+    EXPECT_EQ(count_rows(driver, out(name)), 5) << name;
+    std::filesystem::resize_file(out(name), std::filesystem::file_size(out(name)) - 30);
+    EXPECT_EQ(count_rows(driver, out(name)), std::nullopt) << name;
+  }
+}
+
+// A piece of the reader is 1 MB: 3000 placemarks take 3 MB.
+TEST_F(ExportMap, LandmarksAcrossPiecesOfTextAreCountedOnce) {
+  write_many(3000);
+  for (const std::string name : {"many.kml", "many.ods", "many.xlsx"}) {
+    export_map(folder / "many.gpkg", out(name));
+    EXPECT_EQ(count_rows(vector_format(name, "").driver, out(name)), 3000) << name;
+  }
+}
+
+TEST_F(ExportMap, FlatGeobufHasAnIndexOnlyIfItFitsIntoTheMemory) {
+  const auto is_fast = [&](const std::string& name, std::int64_t megabytes) {
+    const auto done = export_map(folder / "many.gpkg", out(name), {.max_megabytes = megabytes});
+    EXPECT_EQ(done.warnings.size(), megabytes == 0 ? 1u : 0u);
+    if (megabytes == 0) {
+      EXPECT_THAT(done.warnings.front(),
+                  HasSubstr("no spatial index, for which GDAL would take 1 MB; --memory allows more"));
+    }
+    return open(name)->GetLayer(0)->TestCapability(OLCFastSpatialFilter) != 0;
+  };
+  write_many(6000);
+  EXPECT_TRUE(is_fast("indexed.fgb", 1));
+  EXPECT_FALSE(is_fast("plain.fgb", 0));
+  EXPECT_EQ(open("plain.fgb")->GetLayer(0)->GetFeatureCount(), 6000);
+  EXPECT_THAT(export_map(folder / "many.gpkg", out("many.xlsx"), {.max_megabytes = 0}).warnings,
+              ElementsAre("XLSX: GDAL holds the whole file, about 4 MB; .csv, .gpkg and .geojson are written "
+                          "in pieces"));
 }
 
 TEST_F(ExportMap, EveryFormatOfThisGdalGivesAFileOrAClearError) {

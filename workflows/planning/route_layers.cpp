@@ -35,7 +35,27 @@ std::string joined(const std::vector<std::string>& uids) {
   return fmt::format("{}", fmt::join(uids, " "));
 }
 
-geodb::ShapeLayer route_layer(const RouteResult& result) {
+/// Returns the line of a route; where it crosses the antimeridian, parts that end there.
+std::vector<geodb::ShapePart> line_of(const PlannedRoute& route, bool is_geographic) {
+  std::vector<geodb::ShapePart> parts(1);
+  for (const RouteStation& station : route.stations) {
+    auto& line = parts.back().outer;
+    const bool crosses = is_geographic && !line.empty() && std::abs(station.at.x() - line.back().x()) > 180;
+    if (!crosses) {
+      line.push_back(station.at);
+      continue;
+    }
+    const Eigen::Vector2d last = line.back();
+    const double edge = std::copysign(180, last.x()), x = station.at.x() + 2 * edge;
+    const double y = last.y() + (station.at.y() - last.y()) * (edge - last.x()) / (x - last.x());
+    line.emplace_back(edge, y);
+    parts.push_back({.outer = {Eigen::Vector2d(-edge, y), station.at}});
+  }
+  if (parts[0].outer.size() == 1) parts[0].outer.push_back(parts[0].outer[0]);
+  return parts;
+}
+
+geodb::ShapeLayer route_layer(const RouteResult& result, bool is_geographic) {
   geodb::ShapeLayer layer{
       .name = "route",
       .summary = "Planned routes, the first one as requested, the others alternatives",
@@ -50,9 +70,7 @@ geodb::ShapeLayer route_layer(const RouteResult& result) {
       .style = {.colour = "#1565c0", .width = 0.8}};
   for (const PlannedRoute& route : result.routes) {
     geodb::Shape shape;
-    auto& line = shape.parts.emplace_back().outer;
-    for (const RouteStation& station : route.stations) line.push_back(station.at);
-    if (line.size() == 1) line.push_back(line[0]);
+    shape.parts = line_of(route, is_geographic);
     shape.values = {route.length,  route.worst_sd,    route.final_sd,          route.without_landmarks,
                     route.outside, route.worlds_mean, route.worlds_worst_tenth};
     layer.rows.push_back(std::move(shape));
@@ -119,17 +137,23 @@ Json value_of(const AttributeValue& value) {
       value);
 }
 
+Json geometry_of(const geodb::Shape& shape, bool is_line) {
+  Json lines = Json::array();
+  for (const geodb::ShapePart& part : shape.parts) {
+    Json& line = lines.emplace_back(Json::array());
+    for (const Eigen::Vector2d& at : part.outer) line.push_back({at.x(), at.y()});
+  }
+  if (!is_line) return {{"type", "Point"}, {"coordinates", lines[0][0]}};
+  if (lines.size() == 1) return {{"type", "LineString"}, {"coordinates", lines[0]}};
+  return {{"type", "MultiLineString"}, {"coordinates", lines}};
+}
+
 std::string as_geojson(const std::vector<geodb::ShapeLayer>& layers, const Crs& crs) {
   Json features = Json::array();
   for (const geodb::ShapeLayer& layer : layers)
     for (const geodb::Shape& shape : layer.rows) {
-      Json coordinates = Json::array();
-      for (const Eigen::Vector2d& at : shape.parts[0].outer) coordinates.push_back({at.x(), at.y()});
-      const bool is_line = layer.kind == geodb::ShapeKind::line;
       Json feature{{"type", "Feature"},
-                   {"geometry",
-                    {{"type", is_line ? "LineString" : "Point"},
-                     {"coordinates", is_line ? coordinates : coordinates[0]}}},
+                   {"geometry", geometry_of(shape, layer.kind == geodb::ShapeKind::line)},
                    {"properties", {{"layer", layer.name}}}};
       for (std::size_t i = 0; i < layer.columns.size(); ++i)
         feature["properties"][layer.columns[i].name] = value_of(shape.values[i]);
@@ -144,7 +168,8 @@ std::string as_geojson(const std::vector<geodb::ShapeLayer>& layers, const Crs& 
 void write_routes(const RouteRequest& request, const Crs& crs, const RouteResult& result) {
   const std::string extension = std::filesystem::path(request.output).extension();
   if (extension == ".csv") return write_file(request.output, as_csv(result.routes.front()));
-  const std::vector<geodb::ShapeLayer> layers{route_layer(result), station_layer(result)};
+  const std::vector<geodb::ShapeLayer> layers{route_layer(result, crs.kind() == CrsKind::geographic),
+                                              station_layer(result)};
   if (extension == ".geojson") return write_file(request.output, as_geojson(layers, crs));
   geodb::MapContents contents;
   contents.crs = crs;
