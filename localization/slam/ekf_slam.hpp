@@ -80,9 +80,9 @@ class EkfSlam final : public Localizer {
 
   /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
   /// it disagrees, is a rival, which a second filter follows; the filter restarts there if the rival explains
-  /// the further sightings better. It restarts without a trial at the estimate of the sum of Gaussians if
-  /// that has a deviation of less than a metre and half of its own. It then takes landmarks of the map from
-  /// the map, and keeps new ones from before it was lost.
+  /// the further sightings better. It restarts without a trial at the sum of Gaussians where that has less
+  /// than half of its deviation. It then takes landmarks of the map from the map, and keeps new ones from
+  /// before it was lost.
   void set_pose_finder(PoseFinder finder, PoseCheck check = {});
   int restarts() const { return restarts_; }
   /// Returns the estimate of the sum of Gaussians while this one has a standard deviation above a metre: it

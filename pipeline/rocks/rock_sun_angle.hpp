@@ -9,9 +9,9 @@ namespace waymark::pipeline {
 /// Estimates the direction towards the sun for the detection of rocks; `std::nullopt` if it is not clear.
 /// - Axis: dark spots of bare ground have their bright side along the light, whether rock, slope or hollow.
 ///   Leaves and buildings have no such axis.
-/// - Side: `craters` (estimate_crater_sun_angle, its count as `shadows`) where ten or more agree with the
-///   axis, else the side on which dark spots are bright, else that under which the largest ones are boulders.
-///   Contradictions give `std::nullopt`.
+/// - Side: that of `craters` (estimate_crater_sun_angle, its count as `shadows`) where ten or more agree with
+///   the axis. Otherwise the side on which dark spots are bright, then that of boulders. Contradictions give
+///   `std::nullopt`.
 /// Uses the central 1000 x 1000 pixels.
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters = {});
 

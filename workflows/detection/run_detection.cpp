@@ -22,7 +22,6 @@ constexpr std::int64_t kRockSample = 1000;  // the same for rocks
 constexpr std::int64_t kMinSide = 16;       // detectors see nothing in smaller images
 constexpr double kMaxSaturated = 0.05;      // fraction of saturated pixels worth a warning
 constexpr double kMaxSunDifference = 15;    // degrees between the given and the estimated sun
-constexpr int kFewCraters = 20;             // so few may be boulders under the opposite sun
 
 struct Light {
   double angle = 0, sd = 0;  ///< degrees
@@ -32,13 +31,8 @@ struct Light {
 std::optional<Light> estimate_light(const Pixels& pixels, const std::string& type) {
   if (type == "crater") {
     const auto seen = pipeline::estimate_crater_sun_angle(pixels);
-    if (!seen) return {};
-    Radians angle = seen->angle;
-    if (seen->craters < kFewCraters)
-      if (const auto ground = pipeline::sun_angle_of_ground(pixels);
-          ground && std::cos(ground->value - angle.value) < 0)
-        angle = *ground;
-    return Light{to_degrees(angle).value, to_degrees(seen->sd).value, seen->craters};
+    if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->craters};
+    return {};
   }
   const auto seen = pipeline::estimate_rock_sun_angle(pixels, pipeline::crater_sun_angle(pixels));
   if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
