@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/body_motion.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
+
+#include "core/covariance.hpp"
 
 namespace waymark::localization {
 
@@ -32,26 +33,13 @@ PoseEstimate predict_linearly(const PoseEstimate& estimate, const BodyMotion& mo
 
 }  // namespace
 
-bool is_covariance(const Eigen::Matrix3d& m) {
-  if (m(0, 1) == 0 && m(0, 2) == 0 && m(1, 2) == 0) return m.diagonal().minCoeff() >= 0;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(m, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().minCoeff() >= -1e-12 * solver.eigenvalues().maxCoeff();
-}
-
-Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
-  if (is_covariance(symmetric)) return symmetric;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(symmetric);
-  const Eigen::Vector3d values = solver.eigenvalues().cwiseMax(0);
-  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
-}
-
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion) {
   const PoseEstimate after = predict_linearly(estimate, motion);
   if (is_covariance(motion.covariance)) return after;
   // One motion undoes little of an error. More is undone of another pose's error, which was larger.
   const Eigen::Matrix3d before =
       predict_linearly(estimate, {motion.step, Eigen::Matrix3d::Zero()}).covariance;
-  if (is_covariance(after.covariance - kMinKept * before)) return after;
+  if (is_covariance(Eigen::Matrix3d(after.covariance - kMinKept * before))) return after;
   return predict_other_pose(estimate, motion);
 }
 

@@ -36,11 +36,6 @@ class MotionCompensation {
   Eigen::Matrix2d back_;
 };
 
-/// Returns whether a symmetric matrix has no negative eigenvalue, but for rounding.
-bool is_covariance(const Eigen::Matrix3d& symmetric);
-/// Returns a symmetric matrix without its negative eigenvalues.
-Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
-
 /// Predicts a pose as an extended Kalman filter does. A negative part of the motion's covariance that would
 /// undo more than a fifth of a variance counts as 0.
 PoseEstimate predict_pose(const PoseEstimate& estimate, const BodyMotion& motion);

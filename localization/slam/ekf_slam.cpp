@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "core/covariance.hpp"
 #include "localization/chi_square.hpp"
 #include "localization/filters/measurement.hpp"
 #include "localization/slam/existence_log_odds.hpp"

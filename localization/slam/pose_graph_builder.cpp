@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/covariance.hpp"
 #include "localization/filters/measurement.hpp"
 
 namespace waymark::localization {

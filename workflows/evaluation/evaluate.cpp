@@ -76,8 +76,13 @@ void draw(const TrackEvaluation& request, const localization::Track& track, cons
           OpenedMap* opened) {
   if (!request.picture.ends_with(".svg"))
     throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", request.picture);
-  exporters::TrackPicture picture{
-      .title = "Estimated tracks and the truth", .map = {}, .truth = truth.poses, .tracks = {}, .mapped = {}};
+  exporters::TrackPicture picture{.title = request.align == "none"
+                                               ? "Estimated tracks and the truth"
+                                               : "Estimated tracks and the truth, not aligned",
+                                  .map = {},
+                                  .truth = truth.poses,
+                                  .tracks = {},
+                                  .mapped = {}};
   if (opened) picture.map = map_dots(*opened);
   for (const std::string& more : request.also) {
     const std::size_t equals = more.find('=');

@@ -14,7 +14,7 @@ namespace waymark::pipeline {
 namespace {
 
 bool has_covariance(const Landmark& landmark) {
-  return is_covariance(landmark.covariance.topLeftCorner<2, 2>());
+  return is_covariance(Eigen::Matrix2d(landmark.covariance.topLeftCorner<2, 2>()));
 }
 
 void fuse_positions(const Landmark& a, const Landmark& b, const CommonEvidence& common,
