@@ -9,6 +9,8 @@ target_compile_options(waymark_build_rules INTERFACE
 set(waymark_shareable_code -fPIC -fvisibility=hidden -fvisibility-inlines-hidden)
 # Memory instead of time: a unit of two dozen sources spends a twelfth of its time collecting garbage otherwise.
 set(waymark_compiler_memory $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-expand=200$<SEMICOLON>--param=ggc-min-heapsize=262144>)
+# Folders that read, call and print rather than compute: at -O1 g++ compiles them in three quarters of the time.
+set(waymark_plain_code $<$<CONFIG:Release>:-O1>)
 find_program(CCACHE ccache)
 if(CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})

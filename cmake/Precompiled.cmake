@@ -1,4 +1,4 @@
-# One precompiled header for the folders, one for the tests: what nearly every file of ours includes, parsed once.
+# Precompiled headers for the folders that compute, for the plain ones and for the tests: what nearly every file of ours includes, parsed once.
 # Our own headers are not in it, so editing one rebuilds no more than its users. Each file still includes all it
 # uses: -DWAYMARK_PRECOMPILED=OFF (as the asan preset has it) builds without.
 option(WAYMARK_PRECOMPILED "Build with precompiled headers" ON)
@@ -24,6 +24,14 @@ function(waymark_use_precompiled TARGET FROM)
 endfunction()
 
 waymark_precompile(waymark_precompiled HEADERS <Eigen/Dense> <fmt/format.h> USES Eigen3::Eigen fmt::fmt)
-if(TARGET waymark_precompiled)
+waymark_precompile(waymark_plain_precompiled HEADERS <Eigen/Dense> <fmt/format.h> <nlohmann/json.hpp>
+                   USES Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json)
+if(WAYMARK_PRECOMPILED)
   target_compile_options(waymark_precompiled PRIVATE ${waymark_shareable_code})
+  target_compile_options(waymark_plain_precompiled PRIVATE ${waymark_shareable_code} ${waymark_plain_code})
 endif()
+
+function(waymark_plain TARGET)
+  target_compile_options(${TARGET} PRIVATE ${waymark_plain_code})
+  waymark_use_precompiled(${TARGET} waymark_plain_precompiled)
+endfunction()

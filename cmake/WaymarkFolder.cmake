@@ -1,8 +1,9 @@
 # One static library per folder of docs/layers.txt: waymark_<name>, from the folder's own *.cpp and *.hpp.
 #   waymark_folder(NAME geo FOLDERS . USES waymark_core PRIVATE GeographicLib::GeographicLib)
 # FOLDERS: subfolders whose sources belong to it, relative to the caller. USES: public; PRIVATE: in .cpp only.
+# PLAIN: it holds no computation worth -O2.
 function(waymark_folder)
-  cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "FOLDERS;USES;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 0 arg "PLAIN" "NAME" "FOLDERS;USES;PRIVATE")
   foreach(folder IN LISTS arg_FOLDERS)
     cmake_path(ABSOLUTE_PATH folder BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} NORMALIZE)
     string(REGEX REPLACE "/$" "" folder ${folder})
@@ -34,7 +35,9 @@ function(waymark_folder)
   # proves); a header without one is compiled by itself.
   waymark_verify_headers(${target} ${PROJECT_SOURCE_DIR} ${lone_headers})
   waymark_unity(${target})
-  if(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
+  if(arg_PLAIN)
+    waymark_plain(${target})
+  elseif(fmt::fmt IN_LIST arg_PRIVATE)  # what the precompiled header was made with
     waymark_use_precompiled(${target} waymark_precompiled)
   endif()
   set_property(GLOBAL APPEND PROPERTY WAYMARK_LIBRARIES ${target})  # for pkg-config
