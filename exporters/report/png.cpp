@@ -56,7 +56,7 @@ std::string encoded(const Grid<Colour>& picture, const char* driver, int bands, 
 }  // namespace
 
 std::string encode_png(const Grid<Colour>& picture) {
-  return encoded(picture, "PNG", 4, "ZLEVEL=9");
+  return encoded(picture, "PNG", 4, "ZLEVEL=6");
 }
 
 std::string encode_rgb_png(const Grid<Colour>& picture) {
