@@ -33,6 +33,12 @@ void PrintTo(const Fault& fault, std::ostream* out) {
 const Fault kFaults[] = {
     {"file.foreign_key", "UPDATE gpkg_contents SET srs_id = 77 WHERE table_name = 'lamp_post'"},
     {"view.missing", "DROP VIEW landmark"},
+    {"view.recursive",
+     "DROP VIEW landmark; CREATE VIEW landmark AS WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 "
+     "FROM c) SELECT n AS id FROM c"},
+    {"view.recursive",
+     "CREATE VIEW mine AS SELECT n FROM (WITH\r\nRECURSIVE c(n) AS (SELECT 1 UNION SELECT n + 1 FROM c) "
+     "SELECT n FROM c)"},
     {"layer.unregistered", "DELETE FROM gpkg_contents WHERE table_name = 'lamp_post'"},
     {"layer.unregistered", "DELETE FROM gpkg_geometry_columns WHERE table_name = 'lamp_post'"},
     {"style.missing", "DELETE FROM layer_styles"},

@@ -46,7 +46,7 @@ std::vector<RoutePoint> read_route(const std::string& file, const RobotMap& map)
       throw Error(ErrorCode::input,
                   fmt::format("the route jumps {:.0f} km", (point.at - points.back().at).norm() / 1000),
                   table->row_location(row),
-                  "a route cannot cross the antimeridian or a pole of its CRS: use another CRS");
+                  "stations are missing or out of order, or the route is not of this map");
     points.push_back(point);
   }
   if (points.size() < 2)
