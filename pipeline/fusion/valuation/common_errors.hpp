@@ -16,9 +16,15 @@ struct CommonError {
 /// one. Figures: docs/evaluation/2026-11-23-feature-deviations.md.
 std::optional<CommonError> common_error(EvidenceModel evidence, std::string_view feature);
 
+/// Returns the standard deviation of the orientation of a rim with these full axes that all images share,
+/// radians: near that of an unknown direction, pi / sqrt(12), unless the axes differ by more than a tenth.
+/// Figures: docs/evaluation/2026-11-25-orientations-of-craters.md.
+double orientation_error(double major_axis, double minor_axis);
+
 /// Turns the spread of each feature into the variance of its value: spread / observations + common variance.
-/// Unknown values and variances stay unknown, and so do features without a common error. `finest_gsd` in
-/// metres; not finite: only the fraction counts.
+/// Unknown values and variances stay unknown, and features without a common error stay as they are. The
+/// orientation of a bowl gets orientation_error(). `finest_gsd` in metres; not finite: only the fraction
+/// counts.
 void add_common_errors(Landmark& landmark, const LandmarkType& type, double finest_gsd);
 
 /// Adds what an unknown slope of the ground contributes to the variance of heights from shadows, which all

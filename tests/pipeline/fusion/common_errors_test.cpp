@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 #include "tests/pipeline/fusion/own_types.hpp"
@@ -67,6 +68,24 @@ TEST(CommonErrors, OthersStayAsTheyAre) {
   EXPECT_FALSE(common_error(EvidenceModel::canopy, "height"));
   EXPECT_FALSE(common_error(EvidenceModel::bowl, "orientation"));
   EXPECT_TRUE(common_error(EvidenceModel::bowl, "depth"));
+}
+
+Landmark crater_with_axes(double major, double minor, double variance) {
+  Landmark l;
+  l.type = kTypes.id("crater");
+  l.features = {{(major + minor) / 4, 0.01, 4}, {}, {major, 0.01, 4}, {minor, 0.01, 4}, {0.3, variance, 4}};
+  add_common_errors(l, kTypes[l.type], 0.1);
+  return l;
+}
+
+// Observations agree on the direction of a rim that is round: they share one sun.
+TEST(CommonErrors, OrientationsOfRoundRimsAreUnknown) {
+  const double unknown = std::numbers::pi * std::numbers::pi / 12;
+  EXPECT_NEAR(crater_with_axes(10, 10, 0.01).features[4].variance, unknown, 1e-9);
+  EXPECT_GT(crater_with_axes(10.5, 10, 0.01).features[4].variance, 0.8 * unknown);
+  EXPECT_NEAR(std::sqrt(crater_with_axes(20, 10, 0.01).features[4].variance), 0.16, 0.02);
+  EXPECT_LE(crater_with_axes(11, 10, 9).features[4].variance, unknown + 1e-9) << "no direction is less known";
+  EXPECT_EQ(crater_with_axes(std::nan(""), 10, 0.04).features[4].variance, 0.04) << "without axes as stated";
 }
 
 TEST(CommonErrors, AreThoseOfTheFinestImageAndLeaveQualityAsItIs) {
