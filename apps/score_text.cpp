@@ -39,8 +39,8 @@ std::string as_text(const testbed::Score& s) {
                       number(s.position_median), number(s.position_p90), number(s.position_rmse),
                       percent(s.relative_position_median));
   if (s.with_covariance)
-    text += fmt::format("inside the 90 % ellipse {} of {}; NEES {} (2 is honest)\n", percent(s.inside_90),
-                        s.with_covariance, number(s.nees, 2));
+    text += fmt::format("inside the 90 % ellipse {} of {}; NEES {}, median {} (consistent: 2, 1.39)\n",
+                        percent(s.inside_90), s.with_covariance, number(s.nees, 2), number(s.nees_median, 2));
   for (const auto& [name, e] : s.features) {
     text += std::isfinite(e.relative_bias)
                 ? fmt::format("{}: bias {} ({}), spread {}, median error {}, n = {}\n", name, number(e.bias),
@@ -90,6 +90,7 @@ json as_json(const testbed::Score& s) {
   object["position_median_of_diameter"] = finite(s.relative_position_median);
   object["inside_90"] = finite(s.inside_90);
   object["nees"] = finite(s.nees);
+  object["nees_median"] = finite(s.nees_median);
   object["by_size"] = json::array();
   for (const testbed::ScoreCounts& bin : s.by_size) {
     json one = as_json(bin);

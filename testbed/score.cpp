@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "testbed/score_match.hpp"
 
@@ -118,8 +119,8 @@ void count(Score& s, std::span<const EvaluatedObject> found, std::span<const Eva
 
 void measure_positions(Score& s, std::span<const EvaluatedObject> found,
                        std::span<const EvaluatedObject> truth) {
-  std::vector<double> errors, shares;
-  double squares = 0, nees = 0;
+  std::vector<double> errors, shares, distances;
+  double squares = 0;
   int inside = 0;
   for (std::size_t f = 0; f < found.size(); ++f) {
     if (s.match[f] < 0) continue;
@@ -131,14 +132,16 @@ void measure_positions(Score& s, std::span<const EvaluatedObject> found,
     if (!found[f].covariance || !(found[f].covariance->determinant() > 0)) continue;
     const double distance = error.dot(found[f].covariance->inverse() * error);
     ++s.with_covariance;
-    nees += distance;
+    distances.push_back(distance);
     inside += distance <= kChiSquare90;
   }
   s.position_median = quantile(errors, 0.5), s.position_p90 = quantile(errors, 0.9);
   s.position_rmse = errors.empty() ? kNan : std::sqrt(squares / static_cast<double>(errors.size()));
   s.relative_position_median = quantile(shares, 0.5);
   s.inside_90 = s.with_covariance ? static_cast<double>(inside) / s.with_covariance : kNan;
-  s.nees = s.with_covariance ? nees / s.with_covariance : kNan;
+  s.nees =
+      s.with_covariance ? std::accumulate(distances.begin(), distances.end(), 0.0) / s.with_covariance : kNan;
+  s.nees_median = quantile(distances, 0.5);
 }
 
 void measure_features(Score& s, std::span<const EvaluatedObject> found,

@@ -79,8 +79,9 @@ struct Score {
   double position_median = 0, position_p90 = 0, position_rmse = 0;
   double relative_position_median = std::numeric_limits<double>::quiet_NaN();
   int with_covariance = 0;
-  double inside_90 = 0;  ///< fraction of errors inside the 90 % ellipse of the reported covariance
-  double nees = 0;       ///< mean squared Mahalanobis distance; 2 for consistent covariances
+  double inside_90 = 0;    ///< fraction of errors inside the 90 % ellipse of the reported covariance
+  double nees = 0;         ///< mean squared Mahalanobis distance; 2 for consistent covariances
+  double nees_median = 0;  ///< 1.39 for consistent covariances; a few wrong pairs hardly change it
   int duplicates =
       0;  ///< false detections within the matching radius of an already matched object of similar size
   std::map<std::string, ErrorSummary> features;  ///< "diameter": the feature, else that of the circle

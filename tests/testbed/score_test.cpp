@@ -91,6 +91,7 @@ TEST(Score, EllipsesAndCalibration) {
   EXPECT_EQ(s.with_covariance, 9);
   EXPECT_NEAR(s.inside_90, 8.0 / 9, 1e-12);  // 3 sd is outside
   EXPECT_NEAR(s.nees, (8 * 1 + 9) / 9.0, 1e-12);
+  EXPECT_NEAR(s.nees_median, 1, 1e-12) << "one wrong pair does not change it";
   EXPECT_NEAR(s.confidence_error, std::abs(0.85 - 0.9), 1e-12);
 }
 
