@@ -172,7 +172,7 @@ TEST(CameraFrames, HeightsOfMarsNeedTheAreoid) {
                                  radius * std::cos(lat) * std::sin(lon), radius * std::sin(lat)};
   const std::string sphere = "+proj=tmerc +lat_0=18.44 +lon_0=77.45 +a=3396190 +b=3396190 +units=m +no_defs";
   const auto height = [&](double offset) {
-    return read(file, {.crs = sphere, .height_offset = offset}).images[0].view->centre().xyz.z();
+    return read(file, {.crs = sphere, .height_offset = Meters{offset}}).images[0].view->centre().xyz.z();
   };
   EXPECT_NEAR(height(0), -4252.8, 0.1);
   EXPECT_NEAR(height(3396190 - 3394507.1), -2569.9, 0.1);

@@ -274,8 +274,9 @@ TEST(ImportDem, KeepsFeetOfTheGroundInTheCrs) {
 }
 
 TEST(ImportDem, KeepsItsImportOptions) {
-  const auto dem = import_dem(
-      {.files = {write_raster({.cells = kHills})}, .nodata = NodataPolicy::unknown, .height_sd = 2.5});
+  const auto dem = import_dem({.files = {write_raster({.cells = kHills})},
+                               .nodata = NodataPolicy::unknown,
+                               .height_sd = Meters{2.5}});
   EXPECT_EQ(dem->nodata_policy(), NodataPolicy::unknown);
   EXPECT_EQ(dem->height_sd(), 2.5);
   EXPECT_THAT(dem->files(), ElementsAre("/vsimem/dem.tif"));
