@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/error.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 namespace {
@@ -22,13 +23,8 @@ std::string written(const std::string& text) {
   return path.string();
 }
 
-std::string message_of(const std::string& text) {
-  try {
-    read_gcp_list(written(text));
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
+std::string refusal(const std::string& text) {
+  return message_of([&] { read_gcp_list(written(text)); });
 }
 
 TEST(GroundControl, ReadsOpenDroneMapsList) {
@@ -54,12 +50,12 @@ TEST(GroundControl, ReadsOpenDroneMapsList) {
 }
 
 TEST(GroundControl, RefusesWithTheLine) {
-  EXPECT_THAT(message_of("EPSG:32632\n"), HasSubstr("there are no control points"));
-  EXPECT_THAT(message_of("EPSG:32632\n1 2 3 4 5\n"), HasSubstr("the line has 5 words, not 6 or more"));
-  EXPECT_THAT(message_of("EPSG:32632\n1 2 3 4 five a.jpg\n"), HasSubstr("row"));
-  EXPECT_THAT(message_of("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 4 4 5 b.jpg P\n"),
+  EXPECT_THAT(refusal("EPSG:32632\n"), HasSubstr("there are no control points"));
+  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5\n"), HasSubstr("the line has 5 words, not 6 or more"));
+  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 five a.jpg\n"), HasSubstr("row"));
+  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 4 4 5 b.jpg P\n"),
               HasSubstr("'P' has another position on an earlier line"));
-  EXPECT_THAT(message_of("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 3 4 6 a.jpg P\n"),
+  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 3 4 6 a.jpg P\n"),
               HasSubstr("'P' has two marks in the image 'a.jpg'"));
 }
 
@@ -71,12 +67,7 @@ std::string table(const std::string& what, const std::string& text) {
 }
 
 std::string layer_message(const std::string& points, const std::string& marks) {
-  try {
-    read_control_layer(table("points", points), table("marks", marks));
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
+  return message_of([&] { read_control_layer(table("points", points), table("marks", marks)); });
 }
 
 TEST(ControlLayer, ReadsPointsAndMarks) {

@@ -13,6 +13,7 @@
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
 #include "tests/importers/made_bag.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -36,12 +37,7 @@ class Bag : public ::testing::Test {
     return importers::import_log(file("made.db3"), {});
   }
   static std::string refusal(const fs::path& path) {
-    try {
-      importers::import_log(path, {});
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "none";
+    return message_of([&] { importers::import_log(path, {}); });
   }
   fs::path folder_ = fs::temp_directory_path() / ("waymark_bag_" + std::to_string(getpid()));
 };

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -23,12 +24,7 @@ class CarmenLog : public ::testing::Test {
     return importers::import_log(file_, {});
   }
   std::string refusal(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "none";
+    return message_of([&] { read(text); });
   }
   void TearDown() override { std::filesystem::remove(file_); }
   std::filesystem::path file_ =

@@ -11,6 +11,7 @@
 #include "localization/robot_log.hpp"
 #include "localization/slam/graph_solver.hpp"
 #include "tests/localization/made_graph.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -30,15 +31,12 @@ class GraphFile : public ::testing::Test {
     return importers::import_graph(file_, importers::graph_format(file_));
   }
   std::string refusal(const std::string& text, const std::string& format = {}) {
-    try {
+    return message_of([&] {
       std::ofstream(file_) << text;
       const importers::ImportedGraph g =
           importers::import_graph(file_, format.empty() ? importers::graph_format(file_) : format);
       optimise(g.graph);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "accepted";
+    });
   }
 };
 

@@ -17,6 +17,7 @@
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/track_score.hpp"
 #include "tests/localization/mrclam_robots.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -40,12 +41,7 @@ class WaymarkLog : public ::testing::Test {
     return importers::import_log(file_, all_types());
   }
   std::string refusal(const std::string& text) {
-    try {
-      read(text);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "none";
+    return message_of([&] { read(text); });
   }
   void TearDown() override { fs::remove(file_); }
   fs::path file_ = fs::temp_directory_path() / ("waymark_log_" + std::to_string(getpid()) + ".jsonl");

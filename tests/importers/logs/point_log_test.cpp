@@ -11,6 +11,7 @@
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/point_files.hpp"
 #include "localization/robot_log.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace importers;
@@ -32,12 +33,7 @@ class PointLog : public testing::Test {
     return folder_ / name;
   }
   static std::string refusal(const std::function<void()>& call) {
-    try {
-      call();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "nothing was refused";
+    return message_of([&] { call(); });
   }
 
   fs::path folder_;

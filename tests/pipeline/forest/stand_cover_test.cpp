@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "pipeline/forest/stand_cover.hpp"
+#include "tests/support/message_of.hpp"
 #include "workflows/forest/stand_figures.hpp"
 
 namespace waymark::test {
@@ -73,12 +74,7 @@ TEST(StandCover, MatchesCountingPlaces) {
 
 TEST(StandTables, SayWhatIsWrong) {
   const auto refused = [](const char* csv) -> std::string {
-    try {
-      pipeline::parse_volume(csv, "v.csv");
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return message_of([&] { pipeline::parse_volume(csv, "v.csv"); });
   };
   const auto rows = pipeline::parse_volume(
       "species,form_factor,form_factor_sd,mass_per_volume\nSpruce,0.45,0.03,600\nall,0.5,,\n", "v");

@@ -3,20 +3,11 @@
 
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
+#include "tests/support/round_trip.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
 namespace {
-
-// Encoding, decoding and encoding again must give the same bytes, and every truncation must be detected.
-template <class T>
-void expect_round_trip(const T& value) {
-  const std::string bytes = Codec<T>::encode(value);
-  EXPECT_EQ(Codec<T>::encode(Codec<T>::decode(bytes)), bytes);
-  for (std::size_t size = 0; size < bytes.size(); ++size)
-    EXPECT_THROW(Codec<T>::decode(std::string_view(bytes).substr(0, size)), std::runtime_error) << size;
-  EXPECT_THROW(Codec<T>::decode(bytes + "x"), std::runtime_error);
-}
 
 TEST(FusionCodecs, Detections) {
   Detection d;

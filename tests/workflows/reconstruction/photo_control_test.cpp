@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "core/error.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 namespace {
@@ -35,12 +36,7 @@ Photos pictures(double lon = 9, double lat = 48) {
 }
 
 std::string refusal(const std::string& text, const std::string& crs = "") {
-  try {
-    photo_control({.points = list_file(text), .crs = crs}, pictures());
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return message_of([&] { photo_control({.points = list_file(text), .crs = crs}, pictures()); });
 }
 
 TEST(PhotoControl, ConvertsToTheMap) {

@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "core/text_file.hpp"
+#include "tests/support/message_of.hpp"
 #include "workflows/reconstruction/photo_priors.hpp"
 #include "workflows/reconstruction/pose_summary.hpp"
 
@@ -50,12 +51,8 @@ std::vector<unsigned char> blocks(int columns, int rows, std::uint64_t seed) {
 }
 
 std::string refusal(const fs::path& folder) {
-  try {
-    pose_photos({.images = {(folder / "images").string()}, .folder = (folder / "out").string()});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return message_of(
+      [&] { pose_photos({.images = {(folder / "images").string()}, .folder = (folder / "out").string()}); });
 }
 
 TEST(PosePhotos, OneImageIsTooFew) {

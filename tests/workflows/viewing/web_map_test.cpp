@@ -20,6 +20,7 @@
 #include "exporters/vector/export_columns.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/slow_pmtiles.hpp"
 #include "workflows/registries.hpp"
 
@@ -30,16 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 using Json = nlohmann::json;
-
-template <class Action>
-std::string error_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 /// Some hundred landmarks of three types about a place: clusters, unknown values, equal positions.
 geodb::MapContents made_map(const std::string& crs, double x, double y, double spread, int count) {
@@ -278,7 +269,7 @@ TEST_F(WebMap, PolarLandmarksOfAGeographicMapAreCounted) {
 
 TEST_F(WebMap, AMapWithoutLandmarksIsNamed) {
   const std::string map = write(made_map("local", 0, 0, 1, 0));
-  EXPECT_THAT(error_of([&] { make_web_map({.map = map, .output = site()}); }),
+  EXPECT_THAT(message_of([&] { make_web_map({.map = map, .output = site()}); }),
               HasSubstr("the map has no landmarks to show"));
   EXPECT_FALSE(fs::exists(site()));
 }
@@ -288,29 +279,31 @@ TEST_F(WebMap, OtherPeoplesFilesAreKept) {
   make_web_map({.map = map, .output = site()});
   make_web_map({.map = map, .output = site()});  // a web map is replaced
   fs::copy_file(map, fs::path(site()) / "thesis.gpkg");
-  EXPECT_THAT(error_of([&] { make_web_map({.map = map, .output = site()}); }),
+  EXPECT_THAT(message_of([&] { make_web_map({.map = map, .output = site()}); }),
               HasSubstr("the folder holds files that are no part of a web map, such as thesis.gpkg"));
-  EXPECT_THAT(error_of([&] { make_web_map({.map = map, .output = map}); }),
+  EXPECT_THAT(message_of([&] { make_web_map({.map = map, .output = map}); }),
               HasSubstr("the output is a file, and a web map is a folder"));
 }
 
 TEST_F(WebMap, ALibraryOfAnotherVersionIsRefused) {
   const std::string map = write(made_map("local", 0, 0, 1, 9));
   fs::create_directories(folder() / "lib");
-  EXPECT_THAT(
-      error_of([&] { make_web_map({.map = map, .output = site(), .assets = (folder() / "lib").string()}); }),
-      HasSubstr("maplibre-gl.js"));
+  EXPECT_THAT(message_of([&] {
+                make_web_map({.map = map, .output = site(), .assets = (folder() / "lib").string()});
+              }),
+              HasSubstr("maplibre-gl.js"));
   fs::copy_file(map, folder() / "lib/maplibre-gl.js");
-  EXPECT_THAT(
-      error_of([&] { make_web_map({.map = map, .output = site(), .assets = (folder() / "lib").string()}); }),
-      HasSubstr("maplibre-gl.js is not the version that the page is made for"));
+  EXPECT_THAT(message_of([&] {
+                make_web_map({.map = map, .output = site(), .assets = (folder() / "lib").string()});
+              }),
+              HasSubstr("maplibre-gl.js is not the version that the page is made for"));
 }
 
 TEST_F(WebMap, ATerrainThatIsNoDemAndAZoomBeyondAllAreNamed) {
   const std::string map = write(made_map("local", 0, 0, 1, 9));
-  EXPECT_THAT(error_of([&] { make_web_map({.map = map, .output = site(), .dem = {map}}); }),
+  EXPECT_THAT(message_of([&] { make_web_map({.map = map, .output = site(), .dem = {map}}); }),
               HasSubstr("no elevation model of this map's body and kind of CRS could be read"));
-  EXPECT_THAT(error_of([&] { make_web_map({.map = map, .output = site(), .max_zoom = 23}); }),
+  EXPECT_THAT(message_of([&] { make_web_map({.map = map, .output = site(), .max_zoom = 23}); }),
               HasSubstr("zoom 23 is finer than any map tile"));
 }
 
@@ -323,7 +316,7 @@ TEST_F(WebMap, AFullDiskLeavesTheOlderMap) {
   make_web_map({.map = small, .output = target});
   const std::string before = read_text(disk / "site/landmarks.pmtiles", "a file");
   const std::string large = write(made_map("local", 0, 0, 100, 5000));
-  const std::string message = error_of([&] { make_web_map({.map = large, .output = target}); });
+  const std::string message = message_of([&] { make_web_map({.map = large, .output = target}); });
   EXPECT_THAT(message, HasSubstr("the disk is full"));
   EXPECT_EQ(read_text(disk / "site/landmarks.pmtiles", "a file"), before);
   ::umount2(disk.c_str(), MNT_DETACH);
