@@ -248,10 +248,11 @@ TEST_F(Detect, WrongOptionsAreRefused) {
               AllOf(HasSubstr("no georeference"), HasSubstr("--image-sun-angle")));
   EXPECT_THAT(refused({"--sun-azimuth", "90", "--image-sun-angle", "0"}), HasSubstr("both say"));
   EXPECT_THAT(refused({"--sun-elevation", "-3"}, "rocks"), HasSubstr("the sun is not above the ground"));
-  EXPECT_THAT(refused({"--sun-elevation", "95"}, "rocks"), HasSubstr("outside 0 to 90"));
+  EXPECT_THAT(refused({"--sun-elevation", "95"}, "rocks"),
+              HasSubstr("--sun-elevation = 95 is outside [0, 90] deg"));
   EXPECT_THAT(refused({"--gsd", "0"}), HasSubstr("a pixel measures more than nothing"));
   EXPECT_THAT(refused({"--min-diameter", "50", "--max-diameter", "20"}), HasSubstr("is not below"));
-  EXPECT_THAT(refused({"--min-confidence", "2"}), HasSubstr("outside 0 to 1"));
+  EXPECT_THAT(refused({"--min-confidence", "2"}), HasSubstr("--min-confidence = 2 is outside [0, 1]"));
 }
 
 TEST_F(Detect, MissingFilesAndFolders) {

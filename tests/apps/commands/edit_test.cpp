@@ -100,14 +100,15 @@ TEST_F(EditCommand, RefusesWhatCannotBe) {
   for (const auto& [words, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"accept"}, "no landmark is named"},
            {{"accept", "crater-nowhere"}, "no landmark 'crater-nowhere'"},
-           {{"accept", uid, "--confidence", "0"}, "not in (0, 1]"},
+           {{"accept", uid, "--confidence", "0"}, "--confidence = 0 is outside [1e-06, 1]"},
            {{"move", uid}, "a position is needed"},
            {{"move", uid, "--at", "1"}, "--at takes 2 values"},
            {{"add", "--at", "1", "2"}, "--type"},
            {{"add", "--type", "yeti", "--at", "1", "2"}, "no landmarks of type 'yeti'"},
            {{"add", "--type", "crater", "--rim", "0", "0", "1", "1", "2", "2"}, "lie on a line"},
            {{"add", "--type", "crater", "--at", "1", "2", "--feature", "radios=2"}, "did you mean 'radius'"},
-           {{"add", "--type", "crater", "--at", "1", "2", "--feature", "radius=-2"}, "is outside"}}) {
+           {{"add", "--type", "crater", "--at", "1", "2", "--feature", "radius=-2"},
+            "radius of a crater = -2 is outside ["}}) {
     const Outcome said = edit(words);
     EXPECT_EQ(said.code, 2) << why << said.err;
     EXPECT_THAT(said.err, HasSubstr(why));

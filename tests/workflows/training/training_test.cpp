@@ -8,8 +8,10 @@
 #include <limits>
 #include <vector>
 
+#include "core/error.hpp"
 #include "pipeline/forest/tree_confidence.hpp"
 #include "pipeline/rocks/rock_network.hpp"
+#include "tests/support/message_of.hpp"
 #include "workflows/training/train.hpp"
 
 namespace waymark::test {
@@ -19,6 +21,16 @@ namespace {
 // About ten CPU seconds.
 TEST(Train, TreesGiveTheShippedModel) {
   EXPECT_EQ(train({.what = "trees"}).model, as_text(pipeline::built_in_tree_confidence()));
+}
+
+TEST(Train, RefusesNegativeCounts) {
+  const auto refusal = [](const TrainRequest& request) -> std::string {
+    return message_of([&] { train(request); });
+  };
+  EXPECT_THAT(refusal({.what = "rocks", .scenes = -3}),
+              testing::HasSubstr("--scenes = -3 is not at least 0"));
+  EXPECT_THAT(refusal({.what = "trees", .rounds = -1}),
+              testing::HasSubstr("--rounds = -1 is not at least 0"));
 }
 
 TEST(Train, RocksDoNotDependOnThreads) {
