@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/points/laz/symbol_model.hpp"
+#include "importers/points/laz/arithmetic_decoder.hpp"
 
 #include <algorithm>
 #include <bit>
