@@ -13,6 +13,7 @@
 #include "pipeline/reconstruction/surface/orthophoto.hpp"
 #include "pipeline/reconstruction/surface/pose_uncertainty.hpp"
 #include "pipeline/reconstruction/surface/surface_grid.hpp"
+#include "pipeline/vision/half_image.hpp"
 #include "tests/pipeline/reconstruction/made_views.hpp"
 
 namespace waymark::test {
