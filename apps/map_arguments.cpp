@@ -35,10 +35,10 @@ std::vector<Argument> map_arguments(MapCommand& asked) {
                "Map to write. An older map of that name is replaced when the new one is complete; any other "
                "file is kept"}
           .offering(Offer::file),
-      Argument{"--work", "DIR", &request.work,
+      Argument{"--work", "DIR", &asked.work,
                "Keep finished work here, so that a killed or changed run does only what is missing"}
           .offering(Offer::folder),
-      Argument{"--rerun-from", "STAGE", &request.rerun_from,
+      Argument{"--rerun-from", "STAGE", &request.run.rerun_from,
                "Re-run this stage and its dependents, even if --work has their results"}
           .offering(workflows::all_stages().names()),
       {"--with-dem", "", &request.with_dem, "Store the DEM in the map as a gridded coverage"},
@@ -52,7 +52,8 @@ std::vector<Argument> map_arguments(MapCommand& asked) {
 
 int make_map_command(const pipeline::Job& job, const MapCommand& asked, const Session& session) {
   workflows::MapRequest request = asked.request;
-  request.threads = static_cast<int>(session.threads);
+  request.run.work = asked.work;
+  request.run.threads = static_cast<int>(session.threads);
   request.command_line = session.command_line;
   const workflows::MapResult result = workflows::make_map(job, request, console_callbacks(session));
   if (asked.format == "json") std::cout << result_as_json(result, request.map);

@@ -10,6 +10,7 @@ namespace waymark::apps {
 /// What `waymark run` and the shortcuts were asked for.
 struct MapCommand {
   workflows::MapRequest request = {};
+  std::string work = {};        ///< work folder of the run
   std::string format = "text";  ///< of standard output: "json" prints what was done
 };
 

@@ -8,7 +8,6 @@
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/synthetic_rock.hpp"
 #include "pipeline/vision/local_background.hpp"
-#include "pipeline/vision/sun_angle.hpp"
 namespace waymark::bench {
 namespace {
 
@@ -53,13 +52,6 @@ void background(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 4096 * 4096);
 }
 BENCHMARK(background)->Unit(benchmark::kMillisecond);
-
-void sun_angle(benchmark::State& state) {
-  const Pixels image = field(2048, 500);
-  for (auto _ : state) benchmark::DoNotOptimize(pipeline::estimate_sun_angle(image));
-  state.SetItemsProcessed(state.iterations() * 2048 * 2048);
-}
-BENCHMARK(sun_angle)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench

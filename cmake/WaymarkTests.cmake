@@ -6,11 +6,15 @@ function(waymark_patience variable seconds)
   set(${variable} ${seconds} PARENT_SCOPE)
 endfunction()
 
-# tests/<folder>/*_test.cpp become one executable <folder>_tests whose cases ctest lists one by one.
+# tests/<folder>/*.cpp and, at any depth, *_test.cpp become one executable <folder>_tests whose cases ctest lists one by
+# one: a target for each library, however many folders it has.
 #   waymark_tests(NAME geo USES waymark_geo)
 function(waymark_tests)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "NAME" "USES")
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp)
+  list(APPEND sources ${tests})
+  list(REMOVE_DUPLICATES sources)
   if(NOT sources)
     return()
   endif()

@@ -66,16 +66,20 @@ std::vector<FeatureWeight> read_weights(const SensorJson& weights, const std::st
   for (const auto& [type, features] : weights.items()) {
     check_object(features, "weights." + type, source, R"(write {"FEATURE": 1})");
     const LandmarkType* known = all_types().find(type);  // types of plug-ins are not known here
-    double sum = 0;
+    std::vector<FeatureWeight> of_type;
     for (const auto& [feature, weight] : features.items()) {
       if (known) check_feature(*known, feature, source);
-      const double value = weight.is_number() ? weight.get<double>() : -1;
-      if (!(value >= 0 && value <= 1))
-        throw Error(ErrorCode::usage, fmt::format("the weight of {}.{} is outside [0, 1]", type, feature),
-                    source, "weights of a type sum to 1");
-      all.push_back({type, feature, value});
-      sum += value;
+      of_type.push_back({type, feature, 0});
     }
+    const auto describe = [&](OptionVisitor& option) {
+      for (FeatureWeight& one : of_type)
+        option(one.feature, one.weight, {.help = "weights of a type sum to 1", .min = 0, .max = 1});
+    };
+    read_and_warn(describe, features.dump(),
+                  {.owner = "weights." + type, .prefix = "weights." + type + ".", .where = source}, {});
+    double sum = 0;
+    for (const FeatureWeight& one : of_type) sum += one.weight;
+    all.insert(all.end(), of_type.begin(), of_type.end());
     if (!(std::abs(sum - 1) <= kSumTolerance))
       throw Error(ErrorCode::usage, fmt::format("the weights of {} sum to {:g}, not to 1", type, sum), source,
                   "divide each by that sum (eq. 8)");

@@ -71,7 +71,7 @@ class PlanJob final : public Command {
                   "--sensor " + sensor_, "pass -o MAP.gpkg");
     if (!map_.empty()) workflows::check_map_output(map_);
     const pipeline::Job job = workflows::load_job(job_, settings_, confined_);
-    const workflows::MapRequest request{.work = work_, .threads = static_cast<int>(session.threads)};
+    const workflows::MapRequest request{.run = {.work = work_, .threads = static_cast<int>(session.threads)}};
     const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
     const pipeline::Plan units = pipeline::plan(job.pipeline, workflows::run_options(request, callbacks));

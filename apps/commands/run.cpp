@@ -27,10 +27,10 @@ class Run final : public Command {
         {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"});
     all.push_back(
         {"--shard", "I/N", &shard_, "Run the I-th of N shards; all shards use the same --work folder"});
-    all.push_back({"--stage", "NAME", &asked_.request.stage,
+    all.push_back({"--stage", "NAME", &asked_.request.run.stage,
                    "Run this stage only, or with --shard its units of the shard; other results are reused"});
     all.push_back(
-        {"--unit", "ID", &asked_.request.unit, "Run this unit of work only; `waymark plan` lists them"});
+        {"--unit", "ID", &asked_.request.run.unit, "Run this unit of work only; `waymark plan` lists them"});
     all.push_back({"--confined", "", &confined_, "Refuse a job that names files outside its folder"});
     return {
         .name = "run",
@@ -53,7 +53,7 @@ class Run final : public Command {
 
   int run(const Session& session) override {
     const pipeline::Job job = workflows::load_job(job_, settings_, confined_);
-    if (!shard_.empty()) asked_.request.shard = parse_shard(shard_);
+    if (!shard_.empty()) asked_.request.run.shard = parse_shard(shard_);
     return make_map_command(job, asked_, session);
   }
 

@@ -110,9 +110,9 @@ void load_job_file(const std::string& dem) {
   const pipeline::Job as_written = pipeline::read_job("tops.json", workflows::all_stages());
   const pipeline::Job job = workflows::load_job("tops.json", {"find_mountain_tops.min_prominence=300"});
   workflows::MapRequest request;
-  request.threads = 1;
-  request.work = "tops_work";
-  request.shard = pipeline::Shard{1, 2};  // this process does the first half of each stage
+  request.run.threads = 1;
+  request.run.work = "tops_work";
+  request.run.shard = pipeline::Shard{1, 2};  // this process does the first half of each stage
   std::cout << as_written.name << '\n' << pipeline::run(job.pipeline, workflows::run_options(request)).report;
   //! [load]
   //! [schedule]

@@ -8,8 +8,15 @@
 #include <string_view>
 #include <unordered_map>
 #include <vector>
-#include "exporters/web/pmtiles_directory.hpp"
 namespace waymark::exporters {
+
+/// Consecutive tiles of equal content, or a leaf directory if `run` is 0.
+struct PmtilesEntry {
+  std::uint64_t id = 0;      ///< of the first tile
+  std::uint64_t offset = 0;  ///< in the section of tiles, or of leaf directories
+  std::uint32_t length = 0;  ///< bytes, > 0
+  std::uint32_t run = 1;     ///< number of tiles
+};
 
 /// What the header of an archive says of its tiles.
 struct PmtilesHeader {

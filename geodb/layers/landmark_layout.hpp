@@ -27,7 +27,6 @@ class LandmarkLayout {
   LandmarkLayout(const LandmarkType& type, TypeId id);
 
   const LandmarkType& type() const { return *type_; }
-  TypeId type_id() const { return id_; }
   std::span<const LandmarkColumn> columns() const { return columns_; }
 
   std::string create_table() const;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "core/units.hpp"
 #include "geo/camera.hpp"
 #include "geo/crs.hpp"
 #include "geo/similarity.hpp"
@@ -15,14 +16,14 @@ struct CameraImport {
   /// CRS of the positions if the file names none; empty: the map's. For a frame that the file leaves
   /// arbitrary: a projected CRS, or EPSG:4978 for body-fixed axes.
   std::string camera_crs = {};
-  /// Added to every camera height to give heights of the DEM, metres: minus the height of the DEM's zero
-  /// (geoid, areoid) above the cameras' (ellipsoid, sphere).
-  double height_offset = 0;
+  /// Added to every camera height to give heights of the DEM: minus the height of the DEM's zero (geoid,
+  /// areoid) above the cameras' (ellipsoid, sphere).
+  Meters height_offset{0};
   std::string interior = {};  ///< file with the interior orientation, for formats that store it separately
   std::string control_points = {};                ///< CSV, see docs/how_to/tie_cameras_to_the_map.md
   std::optional<Similarity> map_from_frame = {};  ///< instead of control points
-  double rotation_sd = 0;                         ///< radians about each camera axis, if the file gives none
-  double position_sd = 0;                         ///< metres along each grid axis, if the file gives none
+  Degrees rotation_sd{0};                         ///< about each camera axis, if the file gives none
+  Meters position_sd{0};                          ///< along each grid axis, if the file gives none
 };
 
 /// One image of a camera file.

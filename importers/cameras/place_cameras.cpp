@@ -50,8 +50,9 @@ Covariance covariance_of(const CameraRecord& record, const CameraImport& import,
     return change * *record.covariance * change.transpose();
   }
   Covariance made = Covariance::Zero();
-  made.diagonal().head<3>().setConstant(import.rotation_sd * import.rotation_sd);
-  made.diagonal().tail<3>().setConstant(import.position_sd * import.position_sd);
+  const double rotation_sd = to_radians(import.rotation_sd).value, position_sd = import.position_sd.value;
+  made.diagonal().head<3>().setConstant(rotation_sd * rotation_sd);
+  made.diagonal().tail<3>().setConstant(position_sd * position_sd);
   return made;
 }
 
@@ -63,7 +64,7 @@ class Placer {
     if (file.world.axes == Axes::arbitrary)
       similarity_ = find_similarity(file);
     else
-      to_grid_ = world_to_grid(file.world, import.camera_crs, set.crs, import.height_offset, path);
+      to_grid_ = world_to_grid(file.world, import.camera_crs, set.crs, import.height_offset.value, path);
   }
 
   void place(const CameraRecord& record) {

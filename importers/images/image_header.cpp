@@ -86,11 +86,8 @@ ImageHeader read_image_header(GDALDataset& dataset, const std::string& path, int
     refuse(fmt::format("the pixels are complex numbers ({})", GDALGetDataTypeName(one.GetRasterDataType())),
            path,
            "make an intensity image: gdal_translate -ot Float32 DERIVED_SUBDATASET:INTENSITY:FILE out.tif");
-  GeoTransform t{};
-  return {.columns = dataset.GetRasterXSize(),
-          .rows = dataset.GetRasterYSize(),
-          .has_georeference = dataset.GetGeoTransform(t.data()) == CE_None,
-          .saturated = full_scale(one)};
+  return {
+      .columns = dataset.GetRasterXSize(), .rows = dataset.GetRasterYSize(), .saturated = full_scale(one)};
 }
 
 std::optional<Georeference> orthophoto_georeference(GDALDataset& dataset, const std::string& path,

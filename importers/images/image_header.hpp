@@ -11,7 +11,6 @@ namespace waymark::importers {
 /// Size and properties of an image file.
 struct ImageHeader {
   std::int64_t columns = 0, rows = 0;
-  bool has_georeference = false;  ///< has a georeference of any kind
   double saturated = 0;
 };
 

@@ -91,7 +91,7 @@ class Lister {
   void read_file(const FoundImage& found, ImageInfo& image) {
     const GdalDataset dataset = open_raster(found.path);
     const GdalListener quiet;
-    const ImageHeader header = read_image_header(*dataset, found.path, listing_.band);
+    const ImageHeader header = read_image_header(*dataset, found.path, static_cast<int>(listing_.band));
     image.columns = header.columns;
     image.rows = header.rows;
     image.saturated = listing_.saturated > 0 ? listing_.saturated : header.saturated;

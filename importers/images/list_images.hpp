@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ struct ImageListing {
   std::string time_zone = {};  ///< of EXIF times without offset: "+08:00"
   std::optional<Meters> gsd = {};
   double saturated = 0;
-  int band = 0;
+  std::int64_t band = 0;
 };
 
 struct ListedImages {

@@ -56,10 +56,6 @@ class CdrReader {
     return all;
   }
 
-  void skip_doubles(std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) number<double>();
-  }
-
  private:
   void align(std::size_t size) { take((size - at_ % size) % size); }
   const char* take(std::size_t size) {

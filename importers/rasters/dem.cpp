@@ -23,8 +23,9 @@ std::vector<RasterHeader> read_headers(const DemImport& import) {
     throw Error(ErrorCode::usage, "no DEM is given", "", "name one or more raster files");
   std::vector<RasterHeader> headers;
   for (const std::string& path : import.files)
-    headers.push_back(read_header(*open_raster(path), path,
-                                  {import.crs, import.band, import.height_unit, import.height_scale}));
+    headers.push_back(
+        read_header(*open_raster(path), path,
+                    {import.crs, static_cast<int>(import.band), import.height_unit, import.height_scale}));
   return headers;
 }
 
@@ -46,8 +47,9 @@ class MosaicDem : public ImportedDem {
   const GridGeometry& geometry() const override { return mosaic_.grid(); }
   NodataPolicy nodata_policy() const override { return import_.nodata; }
   HeightWindow read(const Window& window) const override {
-    return import_.nodata == NodataPolicy::fill ? read_filled(mosaic_, window, import_.fill_distance)
-                                                : mosaic_.read(window);
+    return import_.nodata == NodataPolicy::fill
+               ? read_filled(mosaic_, window, static_cast<int>(import_.fill_distance))
+               : mosaic_.read(window);
   }
   bool in_area(double x, double y) const override { return !area_ || area_->contains(x, y); }
   CellFaults faults(const Window& window) const override {
@@ -58,7 +60,7 @@ class MosaicDem : public ImportedDem {
     if (voids > 0) found.filled = voids - std::ranges::count(read(window).cells(), kNoHeight);
     return found;
   }
-  double height_sd() const override { return import_.height_sd; }
+  double height_sd() const override { return import_.height_sd.value; }
   std::vector<std::string> files() const override { return import_.files; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
   const DemImport& import() const override { return import_; }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <vector>
+#include "core/units.hpp"
 #include "geo/dem_source.hpp"
 namespace waymark::importers {
 
@@ -12,15 +13,15 @@ struct DemImport {
   std::vector<std::string> files =
       {};  ///< any path GDAL opens, `/vsi...` included; the first file has priority
   NodataPolicy nodata = NodataPolicy::ocean;
-  std::string crs = {};  ///< replaces the files' own; "local": metres on no body; empty: the files' own
-  int band = 0;          ///< of the heights, from 1; 0: the only one
-  std::string height_unit = {};   ///< replaces that of the band; empty: the band's
-  double height_scale = 1;        ///< factor of all heights
-  std::string area = {};          ///< file of polygons: the area of interest (DemSource::in_area); empty: all
-  int fill_distance = 100;        ///< cells; NodataPolicy::fill interpolates voids up to here from data
-  std::int64_t memory_bytes = 0;  ///< for decoded blocks, all threads together; 0: dem_memory()
-  double height_sd = 0;           ///< of a height, metres; 0: unknown
-  bool metric = false;            ///< project a DEM in degrees to a plane in metres (metric_dem.hpp)
+  std::string crs = {};   ///< replaces the files' own; "local": metres on no body; empty: the files' own
+  std::int64_t band = 0;  ///< of the heights, from 1; 0: the only one
+  std::string height_unit = {};  ///< replaces that of the band; empty: the band's
+  double height_scale = 1;       ///< factor of all heights
+  std::string area = {};         ///< file of polygons: the area of interest (DemSource::in_area); empty: all
+  std::int64_t fill_distance = 100;  ///< cells; NodataPolicy::fill interpolates voids up to here from data
+  std::int64_t memory_bytes = 0;     ///< for decoded blocks, all threads together; 0: dem_memory()
+  Meters height_sd{0};               ///< of a height; 0: unknown
+  bool metric = false;               ///< project a DEM in degrees to a plane in metres (metric_dem.hpp)
   bool inspect = true;  ///< compare seams, refuse a DEM without heights; false: open the headers only
 };
 

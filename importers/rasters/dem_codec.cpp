@@ -31,7 +31,7 @@ std::string encode_dem(const DemHandle& dem) {
                         {"fill_distance", import.fill_distance},
                         {"area", import.area},
                         {"memory_bytes", import.memory_bytes},
-                        {"height_sd", import.height_sd},
+                        {"height_sd", import.height_sd.value},
                         {"metric", import.metric}}
       .dump();
 }
@@ -52,7 +52,7 @@ DemHandle decode_dem(std::string_view bytes) {
                      .area = json.value("area", ""),
                      .fill_distance = json.value("fill_distance", 100),
                      .memory_bytes = json.at("memory_bytes"),
-                     .height_sd = json.at("height_sd"),
+                     .height_sd = Meters{json.at("height_sd")},
                      .metric = json.value("metric", false),
                      .inspect = false});
 }

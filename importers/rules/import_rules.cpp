@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/options/option_table.hpp"
 #include "core/units.hpp"
 #include "importers/json_value.hpp"
 #include "importers/rules/ready_rules.hpp"
@@ -45,10 +46,12 @@ std::map<std::string, std::string> read_expressions(const JsonValue& object) {
   return all;
 }
 
-double positive(const JsonValue& value, double highest) {
-  const double number = value.number();
-  if (!(number >= 0 && number <= highest))
-    value.refuse(fmt::format("{:g} is outside 0 to {:g}", number, highest), "lengths are metres");
+/// Returns the value of a key from 0 to `highest`.
+double positive(const JsonValue& rule, const std::string& key, const std::string& unit, double highest) {
+  const double number = rule[key].number();
+  const std::string fault = range_fault(
+      {.name = key, .unit = unit, .value = number, .field = {.help = "", .min = 0, .max = highest}}, number);
+  if (!fault.empty()) rule[key].refuse(fault);
   return number;
 }
 
@@ -81,9 +84,10 @@ ImportRule read_rule(const JsonValue& rule, const ImportRule& common) {
     read.shape.open = choose<OpenSide>(
         rule["open"],
         {{"outside", OpenSide::outside}, {"inside", OpenSide::inside}, {"both", OpenSide::both}});
-  if (rule.has("min_turn_deg")) read.shape.min_turn = positive(rule["min_turn_deg"], 170) * kRadiansPerDegree;
-  if (rule.has("min_length")) read.shape.min_length = positive(rule["min_length"], 1e6);
-  if (rule.has("max_length")) read.shape.max_length = positive(rule["max_length"], 1e6);
+  if (rule.has("min_turn_deg"))
+    read.shape.min_turn = positive(rule, "min_turn_deg", "deg", 170) * kRadiansPerDegree;
+  if (rule.has("min_length")) read.shape.min_length = positive(rule, "min_length", "m", 1e6);
+  if (rule.has("max_length")) read.shape.max_length = positive(rule, "max_length", "m", 1e6);
   if (rule.has("features")) read.features = read_expressions(rule["features"]);
   if (rule.has("attributes")) read.attributes = read_expressions(rule["attributes"]);
   if (rule.has("uid")) read.uid = rule["uid"].text();

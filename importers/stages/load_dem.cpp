@@ -10,21 +10,13 @@ namespace {
 
 struct LoadDem {
   struct Options {
-    std::vector<std::string> files;
+    DemImport import;
     std::string nodata = to_string(NodataPolicy::ocean);
-    std::string crs;
-    Meters height_sd{0};
-    std::int64_t band = 0;
-    std::string height_unit;
-    double height_scale = 1;
-    std::int64_t fill_distance = 100;
-    std::string aoi;
-    bool metric = false;
     std::int64_t tile_cells = 512;
     std::int64_t memory = 0;
 
     void describe(OptionVisitor& option) {
-      option("files", files,
+      option("files", import.files,
              {.help = "Rasters of the DEM; where they overlap the first one has priority. Distances from the "
                       "body's centre become elevations above its equatorial radius"});
       option("nodata", nodata,
@@ -32,25 +24,26 @@ struct LoadDem {
                   "Meaning of cells without a height: ocean (nothing hidden, but beside ground above 100 m), "
                   "unknown (terrain of any height may be hidden), fill (interpolated, then unknown)",
               .choices = nodata_policy_names()});
-      option("crs", crs,
+      option("crs", import.crs,
              {.help = "Coordinate reference system instead of the files' own; local: metres on no body"});
-      option("height_sd", height_sd,
+      option("height_sd", import.height_sd,
              {.help = "Standard deviation of a height; 0: not known", .min = 0, .max = 1000});
-      option("band", band, {.help = "Band that holds the heights; 0: the only one", .min = 0, .max = 65536});
-      option("height_unit", height_unit,
+      option("band", import.band,
+             {.help = "Band that holds the heights; 0: the only one", .min = 0, .max = 65536});
+      option("height_unit", import.height_unit,
              {.help = "Unit of the heights instead of the band's: m, km, dm, cm, mm, ft, us-ft"});
-      option("height_scale", height_scale,
+      option("height_scale", import.height_scale,
              {.help = "Factor of all heights, e.g. 0.1 for decimetres", .min = 1e-6, .max = 1e6});
-      option("fill_distance", fill_distance,
+      option("fill_distance", import.fill_distance,
              {.help = "nodata fill: voids are filled up to this many cells from data; the rest stays unknown",
               .min = 1,
               .max = 1000});
       option(
-          "aoi", aoi,
+          "aoi", import.area,
           {.help =
                "Polygons of the area of interest: landmarks outside are left out, but measured on the whole "
                "DEM"});
-      option("metric", metric,
+      option("metric", import.metric,
              {.help = "true: project a DEM in degrees to metres about its middle, as images need "
                       "it; jobs that load images set it themselves"});
       option("tile_cells", tile_cells,
@@ -79,23 +72,17 @@ struct LoadDem {
   }
 
   static std::vector<std::string> input_files(const Options& options) {
-    std::vector<std::string> files = options.files;
-    if (!options.aoi.empty()) files.push_back(options.aoi);
+    std::vector<std::string> files = options.import.files;
+    if (!options.import.area.empty()) files.push_back(options.import.area);
     return files;
   }
 
   static void run(const Options& options, pipeline::StageContext& unit) {
-    DemImport import{.nodata = nodata_policy(options.nodata),
-                     .crs = options.crs,
-                     .band = static_cast<int>(options.band),
-                     .height_unit = options.height_unit,
-                     .height_scale = options.height_scale,
-                     .area = options.aoi.empty() ? "" : unit.path(options.aoi),
-                     .fill_distance = static_cast<int>(options.fill_distance),
-                     .memory_bytes = options.memory << 20,
-                     .height_sd = options.height_sd.value,
-                     .metric = options.metric};
-    for (const std::string& file : options.files) import.files.push_back(unit.path(file));
+    DemImport import = options.import;
+    import.nodata = nodata_policy(options.nodata);
+    import.memory_bytes = options.memory << 20;
+    for (std::string& file : import.files) file = unit.path(file);
+    if (!import.area.empty()) import.area = unit.path(import.area);
     const auto opened = import_dem(import);
     for (const std::string& warning : opened->warnings()) unit.warn(warning);
     const GridGeometry& grid = opened->geometry();

@@ -24,44 +24,42 @@ std::vector<std::string> format_names() {
 
 struct LoadImages {
   struct Options {
-    std::vector<std::string> files;
-    std::string cameras, camera_format = "auto", interior, crs, camera_crs, control_points, similarity;
-    Meters height_offset{0}, position_sd{0}, gsd{0};
-    Degrees rotation_sd{0}, sun_azimuth{0}, sun_elevation{0}, sun_sd{Sun{}.sd};
-    std::string sun = "auto", image_sun_angle, time_zone;
-    double saturated = 0;
-    std::int64_t band = 0;
+    ImageListing listing;
+    std::string camera_format = "auto", similarity, sun = "auto", image_sun_angle;
+    Meters gsd{0};
+    Degrees sun_azimuth{0}, sun_elevation{0}, sun_sd{Sun{}.sd};
 
     void describe(OptionVisitor& option) {
-      option("files", files,
+      CameraImport& import = listing.import;
+      option("files", listing.files,
              {.help = "Images, patterns (*.png) or folders of images; empty: those named in the camera file, "
                       "near it"});
-      option("cameras", cameras,
+      option("cameras", listing.cameras,
              {.help = "Camera file, or a pattern for several of one format; empty: orthophotos"});
       option("camera_format", camera_format,
              {.help = "Format of the camera files", .choices = format_names()});
-      option("interior", interior,
+      option("interior", import.interior,
              {.help = "File with the interior orientation, for formats that store it separately"});
-      option("crs", crs, {.help = "CRS of the map; empty: that of the DEM"});
-      option("camera_crs", camera_crs,
+      option("crs", import.crs, {.help = "CRS of the map; empty: that of the DEM"});
+      option("camera_crs", import.camera_crs,
              {.help = "CRS of camera positions if their file names none; empty: the map's"});
       option(
-          "height_offset", height_offset,
+          "height_offset", import.height_offset,
           {.help =
                "Added to every camera height: minus the height of the DEM's zero (geoid, areoid) above the "
                "cameras' (ellipsoid, sphere)",
            .min = -1e5,
            .max = 1e5});
-      option("control_points", control_points,
+      option("control_points", import.control_points,
              {.help = "CSV file of control points that georeference an arbitrary camera frame"});
       option("similarity", similarity,
              {.help = "Instead of control points: scale,qw,qx,qy,qz,x,y,z with map = scale * rotation * "
                       "frame + shift"});
-      option("rotation_sd", rotation_sd,
+      option("rotation_sd", import.rotation_sd,
              {.help = "Standard deviation of camera angles if the camera file gives none",
               .min = 0,
               .max = 180});
-      option("position_sd", position_sd,
+      option("position_sd", import.position_sd,
              {.help = "Standard deviation of camera positions if the camera file gives none",
               .min = 0,
               .max = 1e6});
@@ -79,17 +77,17 @@ struct LoadImages {
       option("image_sun_angle", image_sun_angle,
              {.help = "Direction towards the sun in the images, degrees from x (right) towards y (down); "
                       "empty: unknown"});
-      option("time_zone", time_zone,
+      option("time_zone", listing.time_zone,
              {.help = "UTC offset for EXIF times without one: Z, +08:00; empty: unknown"});
       option("gsd", gsd,
              {.help = "Ground size of a pixel, for images without georeference; 0: unknown",
               .min = 0,
               .max = 1e5});
-      option("saturated", saturated,
+      option("saturated", listing.saturated,
              {.help = "Pixel value from which pixels are saturated; 0: the largest 8 or 16 bit number",
               .min = 0,
               .max = 1e12});
-      option("band", band, {.help = "Band to use, from 1; 0: brightness", .min = 0, .max = 10000});
+      option("band", listing.band, {.help = "Band to use, from 1; 0: brightness", .min = 0, .max = 10000});
     }
   };
 
@@ -111,32 +109,26 @@ struct LoadImages {
   static std::vector<std::string> input_files(const Options& options) {
     namespace fs = std::filesystem;
     std::vector<std::string> files;
-    for (const std::string& file : {options.cameras, options.interior, options.control_points})
+    const ImageListing& listing = options.listing;
+    for (const std::string& file : {listing.cameras, listing.import.interior, listing.import.control_points})
       if (!file.empty()) files.push_back(file);
     std::set<std::string> folders;
-    for (const std::string& file : options.files)
+    for (const std::string& file : listing.files)
       folders.insert((is_image_name(file) ? fs::path(file).parent_path() / "." : fs::path(file)).string() +
                      "/");
-    if (options.files.empty())
+    if (listing.files.empty())
       for (const char* place : {"./", "images/", "../images/", "../../images/"})
-        folders.insert((fs::path(options.cameras).parent_path() / place).string());
+        folders.insert((fs::path(listing.cameras).parent_path() / place).string());
     files.insert(files.end(), folders.begin(), folders.end());
     return files;
   }
 
   static ImageListing listing_of(const Options& options, const pipeline::StageContext& unit) {
-    const auto path = [&](const std::string& file) { return file.empty() ? file : unit.path(file); };
-    ImageListing listing;
-    for (const std::string& file : options.files) listing.files.push_back(path(file));
-    listing.cameras = path(options.cameras);
+    ImageListing listing = options.listing;
+    for (std::string& file : listing.files) file = unit.path(file);
+    for (std::string* file : {&listing.cameras, &listing.import.interior, &listing.import.control_points})
+      if (!file->empty()) *file = unit.path(*file);
     if (options.camera_format != "auto") listing.format = options.camera_format;
-    listing.import = {.crs = options.crs,
-                      .camera_crs = options.camera_crs,
-                      .height_offset = options.height_offset.value,
-                      .interior = path(options.interior),
-                      .control_points = path(options.control_points),
-                      .rotation_sd = to_radians(options.rotation_sd).value,
-                      .position_sd = options.position_sd.value};
     if (!options.similarity.empty()) listing.import.map_from_frame = similarity_from_text(options.similarity);
     using From = ImageListing::SunFrom;
     listing.sun_from = options.sun == "time" ? From::time : options.sun == "none" ? From::nothing : From::all;
@@ -145,10 +137,7 @@ struct LoadImages {
                         .elevation = options.sun_elevation,
                         .sd = options.sun_sd};
     if (!options.image_sun_angle.empty()) listing.image_sun_angle = angle_of(options.image_sun_angle);
-    listing.time_zone = options.time_zone;
     if (options.gsd.value > 0) listing.gsd = options.gsd;
-    listing.saturated = options.saturated;
-    listing.band = static_cast<int>(options.band);
     return listing;
   }
 
@@ -171,7 +160,7 @@ struct LoadImages {
       list.push_back({static_cast<std::int64_t>(list.size()), info.name, path, to_json(info)});
     }
     unit.count_out(static_cast<std::int64_t>(list.size()));
-    unit.write(images, image_set(listed.images, static_cast<int>(options.band)));
+    unit.write(images, image_set(listed.images, static_cast<int>(listing.band)));
     unit.write(items, std::move(list));
   }
 };

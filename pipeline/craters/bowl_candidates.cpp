@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/craters/bowl_candidates.hpp"
 
-#include "pipeline/craters/bowl_template.hpp"
-#include "pipeline/craters/shape_search.hpp"
-
 namespace waymark::pipeline {
 
 std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSearch& search) {
@@ -16,11 +13,8 @@ std::vector<CraterCandidate> bowl_candidates(const Pixels& image, const BowlSear
   };
   std::vector<BowlLight> large = search.lights;
   large.insert(large.end(), search.filled.begin(), search.filled.end());
-  return shape_candidates(image, {.min_diameter = search.min_diameter,
-                                  .max_diameter = search.max_diameter,
-                                  .min_correlation = search.min_correlation,
-                                  .shapes = shapes_of(search.lights),
-                                  .large_shapes = shapes_of(large)});
+  return shape_candidates(
+      image, {.limits = search.limits, .shapes = shapes_of(search.lights), .large_shapes = shapes_of(large)});
 }
 
 }  // namespace waymark::pipeline

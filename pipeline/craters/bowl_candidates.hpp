@@ -5,12 +5,12 @@
 #include "geo/image_source.hpp"
 #include "pipeline/craters/bowl_template.hpp"
 #include "pipeline/craters/crater_candidate.hpp"
+#include "pipeline/craters/shape_search.hpp"
 namespace waymark::pipeline {
 
 struct BowlSearch {
-  Radians sun_angle;                            ///< towards the sun, from x towards y
-  double min_diameter = 8, max_diameter = 300;  ///< pixels
-  double min_correlation = 0.45;                ///< of a candidate, (0, 1)
+  Radians sun_angle;  ///< towards the sun, from x towards y
+  CandidateLimits limits = {};
   /// Deep shadows are left out: they made no difference on real images.
   std::vector<BowlLight> lights{BowlLight::slope, BowlLight::low_shadow};
   /// Searched as well from 24 px on, where a level floor can be distinguished.

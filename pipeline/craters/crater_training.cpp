@@ -101,11 +101,11 @@ MatchedCrater match_crater(const LabelledScene& scene, const CraterCandidate& ci
 std::vector<CraterExample> make_crater_examples(const LabelledScene& scene, std::uint64_t seed) {
   Random random(seed, "crater examples");
   const double side = double(std::min(scene.image.columns(), scene.image.rows()));
-  const auto found = suppress_overlaps(bowl_candidates(scene.image, {.sun_angle = scene.sun_angle,
-                                                                     .min_diameter = 7,
-                                                                     .max_diameter = 0.6 * side,
-                                                                     .min_correlation = 0.5}),
-                                       0.5);
+  const auto found = suppress_overlaps(
+      bowl_candidates(scene.image,
+                      {.sun_angle = scene.sun_angle,
+                       .limits = {.min_diameter = 7, .max_diameter = 0.6 * side, .min_correlation = 0.5}}),
+      0.5);
   const PatchSource source(scene.image, scene.sun_angle);
   std::vector<CraterExample> examples;
   for (CraterCandidate c : found) {

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "geo/body.hpp"
-#include "pipeline/craters/find_craters.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -70,13 +69,10 @@ std::vector<Observation> survey_craters(const DemSource& dem, const Window& wind
       seen.row = std::max<std::int64_t>(0, seen.row);
       seen.columns = right - seen.column, seen.rows = bottom - seen.row;
       const CellSize cell = cell_size(grid.where, double(seen.row) + double(seen.rows) / 2);
-      const double longer = std::max(cell.width, cell.height) / std::sqrt(cell.width * cell.height);
-      for (const DemCrater& crater :
-           find_craters(dem.read(seen), {.cell_width = cell.width,
-                                        .cell_height = cell.height,
-                                        .min_diameter = survey.min_diameter,
-                                        .max_diameter = survey.max_diameter / longer,
-                                        .min_confidence = survey.min_confidence})) {
+      DemCraterSearch search = survey.search;
+      search.cell_width = cell.width, search.cell_height = cell.height;
+      search.max_diameter /= std::max(cell.width, cell.height) / std::sqrt(cell.width * cell.height);
+      for (const DemCrater& crater : find_craters(dem.read(seen), search)) {
         const double at_column = crater.column + double(seen.column), at_row = crater.row + double(seen.row);
         const auto c = static_cast<std::int64_t>(std::lround(at_column)),
                    r = static_cast<std::int64_t>(std::lround(at_row));

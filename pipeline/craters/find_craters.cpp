@@ -55,9 +55,9 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                    const Sizes& sizes) {
   const auto candidates =
       suppress_overlaps(bowl_candidates(image.pixels, {.sun_angle = sun,
-                                                       .min_diameter = 0.9 * sizes.smallest,
-                                                       .max_diameter = sizes.largest,
-                                                       .min_correlation = kMinCorrelation}),
+                                                       .limits = {.min_diameter = 0.9 * sizes.smallest,
+                                                                  .max_diameter = sizes.largest,
+                                                                  .min_correlation = kMinCorrelation}}),
                         0.5);
   BowlJudges judges;
   if (search.verify)

@@ -100,12 +100,13 @@ std::vector<DemCrater> find_craters(const HeightWindow& heights, const DemCrater
   const double side = double(std::min(square.columns(), square.rows()));
   const double smallest = search.min_diameter * to_square,
                largest = search.max_diameter > 0 ? search.max_diameter * to_square : 0.6 * side;
-  auto candidates = suppress_overlaps(shape_candidates(whole.pixels, {.min_diameter = 0.8 * smallest,
-                                                                      .max_diameter = largest,
-                                                                      .min_correlation = kMinCorrelation,
-                                                                      .shapes = dish,
-                                                                      .level_mean = 16}),
-                                      0.5);
+  auto candidates =
+      suppress_overlaps(shape_candidates(whole.pixels, {.limits = {.min_diameter = 0.8 * smallest,
+                                                                   .max_diameter = largest,
+                                                                   .min_correlation = kMinCorrelation},
+                                                        .shapes = dish,
+                                                        .level_mean = 16}),
+                        0.5);
   std::vector<CraterCandidate> circles;
   std::vector<DemRim> rims;
   for (const CraterCandidate& c : candidates) {

@@ -176,8 +176,9 @@ std::vector<WidePatchExample> make_patch_examples(const LabelledScene& scene, st
   augment_image(image, seed);
   const double side = double(std::min(image.columns(), image.rows()));
   const auto found = suppress_overlaps(
-      bowl_candidates(
-          image, {.sun_angle = sun, .min_diameter = 7, .max_diameter = 0.6 * side, .min_correlation = 0.5}),
+      bowl_candidates(image,
+                      {.sun_angle = sun,
+                       .limits = {.min_diameter = 7, .max_diameter = 0.6 * side, .min_correlation = 0.5}}),
       0.5);
   const PatchSource source(image, sun);
   const double cosine = std::cos(sun.value), sine = std::sin(sun.value);

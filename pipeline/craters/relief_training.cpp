@@ -28,9 +28,9 @@ std::vector<CraterExample> make_relief_examples(LabelledScene scene, std::uint64
   const FilledImage whole = fill_holes(scene.image);
   const double side = double(std::min(scene.image.columns(), scene.image.rows()));
   const auto candidates = suppress_overlaps(
-      bowl_candidates(
-          whole.pixels,
-          {.sun_angle = sun, .min_diameter = 11, .max_diameter = 0.6 * side, .min_correlation = 0.5}),
+      bowl_candidates(whole.pixels,
+                      {.sun_angle = sun,
+                       .limits = {.min_diameter = 11, .max_diameter = 0.6 * side, .min_correlation = 0.5}}),
       0.5);
   const PatchSource patches(whole.pixels, sun);
   const double cosine = std::cos(sun.value), sine = std::sin(sun.value);

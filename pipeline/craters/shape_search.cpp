@@ -109,7 +109,8 @@ std::vector<const Bowl*> bowls_of_level(int level, const ShapeSearch& search, st
   // The finest level also holds diameters below the first octave.
   for (int i = level == 0 ? -kSizesPerOctave : 0; i < kSizesPerOctave; ++i) {
     const double diameter = kMaxBowl / 2 * std::exp2(static_cast<double>(i) / kSizesPerOctave);
-    if (diameter * shrink < search.min_diameter * 0.95 || diameter * shrink > search.max_diameter * 1.05)
+    if (diameter * shrink < search.limits.min_diameter * 0.95 ||
+        diameter * shrink > search.limits.max_diameter * 1.05)
       continue;
     auto known = made.find(i);
     if (known == made.end()) known = made.emplace(i, make_bowl(diameter, shapes(diameter))).first;
@@ -162,7 +163,8 @@ std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSe
   std::map<int, Bowl> made, made_large;
   cv::Mat1f at_level = as_matrix(image);
   for (int level = 0;; ++level) {
-    if (std::min(at_level.cols, at_level.rows) < 8 || kMaxBowl / 2 * std::exp2(level) > search.max_diameter)
+    if (std::min(at_level.cols, at_level.rows) < 8 ||
+        kMaxBowl / 2 * std::exp2(level) > search.limits.max_diameter)
       break;
     const auto bowls = bowls_of_level(level, search, level > 0 ? made_large : made);
     cv::Mat1f searched = at_level, mean;
@@ -172,7 +174,7 @@ std::vector<CraterCandidate> shape_candidates(const Pixels& image, const ShapeSe
     }
     if (!bowls.empty())
       search_level(searched, static_cast<double>(image.columns()) / at_level.cols,
-                   static_cast<double>(image.rows()) / at_level.rows, bowls, search.min_correlation,
+                   static_cast<double>(image.rows()) / at_level.rows, bowls, search.limits.min_correlation,
                    candidates);
     cv::Mat1f half;
     cv::resize(at_level, half, {(at_level.cols + 1) / 2, (at_level.rows + 1) / 2}, 0, 0, cv::INTER_AREA);

@@ -6,10 +6,15 @@
 #include "pipeline/craters/crater_candidate.hpp"
 namespace waymark::pipeline {
 
-/// Templates to correlate with a grid over a range of sizes.
-struct ShapeSearch {
+/// Which candidates are searched.
+struct CandidateLimits {
   double min_diameter = 8, max_diameter = 300;  ///< pixels
   double min_correlation = 0.45;                ///< of a candidate, (0, 1)
+};
+
+/// Templates to correlate with a grid over a range of sizes.
+struct ShapeSearch {
+  CandidateLimits limits = {};
   /// Returns the templates for a diameter of 8 to 16 px: odd squares of equal size, zero mean, unit norm.
   std::function<std::vector<Pixels>(double diameter)> shapes;
   /// Templates for diameters of 24 px and more, as `shapes`; empty: the same.

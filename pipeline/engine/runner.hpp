@@ -97,13 +97,13 @@ struct Shard {
 
 /// How a pipeline is run.
 struct RunOptions {
-  /// Folder that keeps results for later runs; empty: results stay in memory and nothing is written.
-  std::filesystem::path work = {};
-  int threads = 0;  ///< 0: all of the machine
-  std::optional<Shard> shard = {};
-  std::string unit = {};        ///< run only this unit: "find_mountain_tops/tile_000003"
-  std::string stage = {};       ///< run only this stage; with `shard`: its units of the shard
-  std::string rerun_from = {};  ///< re-run this stage and its dependents
+  /// Later runs do what is missing there.
+  std::filesystem::path work = {};  ///< folder of finished work; empty: everything in memory
+  int threads = 0;                  ///< 0: one per processor
+  std::optional<Shard> shard = {};  ///< part of the job to run; needs `work`
+  std::string unit = {};            ///< single unit of work to run; needs `work`
+  std::string stage = {};           ///< single stage to run, or its part in `shard`; needs `work`
+  std::string rerun_from = {};      ///< stage to re-run with its dependents; empty: finished work is kept
   /// Map-scope artifacts that the caller will read. The others are released after their last reader; empty:
   /// all are kept.
   std::vector<std::string> results = {};

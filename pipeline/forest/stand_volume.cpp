@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/lower_case.hpp"
+#include "core/options/option_table.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -67,8 +68,9 @@ class SmallTable {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc{} || end != word.data() + word.size())
       refuse(lines_[row], fmt::format("{} is no number: '{}'", name, word), "use a point for decimals");
-    if (!(low <= value && value <= high))
-      refuse(lines_[row], fmt::format("{} = {} is outside [{}, {}]", name, value, low, high), "");
+    const std::string fault = range_fault(
+        {.name = name, .unit = "", .value = value, .field = {.help = "", .min = low, .max = high}}, value);
+    if (!fault.empty()) refuse(lines_[row], fault, "");
     return value;
   }
   [[noreturn]] void refuse(int line, const std::string& problem, const std::string& hint) const {

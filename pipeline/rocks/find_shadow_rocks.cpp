@@ -10,6 +10,7 @@
 #include "pipeline/rocks/rock_network.hpp"
 #include "pipeline/rocks/spot_context.hpp"
 #include "pipeline/vision/class_prior.hpp"
+#include "pipeline/vision/half_image.hpp"
 namespace waymark::pipeline {
 namespace {
 
@@ -82,15 +83,6 @@ void lower_to_fraction(std::vector<ScoredRock>& all, double fraction) {
     (sum > target ? high : low) = shift;
   }
   for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + high)));
-}
-
-Pixels half_size(const Pixels& image) {
-  Pixels half(image.columns() / 2, image.rows() / 2);
-  for (std::int64_t y = 0; y < half.rows(); ++y)
-    for (std::int64_t x = 0; x < half.columns(); ++x)
-      half(x, y) = 0.25F * (image(2 * x, 2 * y) + image(2 * x + 1, 2 * y) + image(2 * x, 2 * y + 1) +
-                            image(2 * x + 1, 2 * y + 1));
-  return half;
 }
 
 Detection detection_of(const ScoredRock& judged, const RockSearch& search, const LightFrame& light) {
@@ -244,7 +236,7 @@ std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& sear
   double blur = search.blur > 0 ? search.blur : 0.6;
   for (double scale = 1;; scale *= 2) {
     if (scale > 1) {
-      coarse = half_size(scale > 2 ? coarse : image);
+      coarse = half_image(scale > 2 ? coarse : image);
       blur = std::max(0.25, blur / 2);  // coarser pixels are sharp: one table serves all of them
     }
     const Pixels& pixels = scale > 1 ? coarse : image;

@@ -10,17 +10,15 @@ namespace {
 
 struct CratersFromDem {
   struct Options {
-    double min_diameter = DemSurvey{}.min_diameter;
-    double max_diameter = DemSurvey{}.max_diameter;
-    double min_confidence = DemSurvey{}.min_confidence;
+    DemSurvey survey;
     void describe(OptionVisitor& option) {
-      option("min_diameter", min_diameter,
+      option("min_diameter", survey.search.min_diameter,
              {.help = "Smallest crater kept, in cells of the DEM", .min = 6, .max = kMaxDemDiameter});
-      option("max_diameter", max_diameter,
+      option("max_diameter", survey.search.max_diameter,
              {.help = "Largest crater kept, in cells; larger ones need a coarser DEM",
               .min = 6,
               .max = kMaxDemDiameter});
-      option("min_confidence", min_confidence,
+      option("min_confidence", survey.search.min_confidence,
              {.help = "Craters less probable than this are left out", .min = 0, .max = 1});
     }
   };
@@ -38,12 +36,9 @@ struct CratersFromDem {
   }
 
   static void run(const Options& options, StageContext& unit) {
-    const TypeRegistry& types = unit.types();
-    auto found = survey_craters(*unit.read(dem), unit.tile().cells,
-                                {.type = types.id("crater"),
-                                 .min_diameter = options.min_diameter,
-                                 .max_diameter = options.max_diameter,
-                                 .min_confidence = options.min_confidence});
+    DemSurvey survey = options.survey;
+    survey.type = unit.types().id("crater");
+    auto found = survey_craters(*unit.read(dem), unit.tile().cells, survey);
     for (Observation& o : found) o.pixel.reset();  // only images of the map have pixels
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.write(observations, std::move(found));

@@ -14,18 +14,21 @@ namespace waymark::pipeline {
 template <CraterMethod kMethod>
 struct CratersInImage {
   struct Options {
-    double min_diameter = CraterSearch{}.min_diameter;
-    double max_diameter = 0;
-    /// Doubtful bowls are kept, since project_to_ground decides on them where heights are known.
-    double min_confidence = kMethod == CraterMethod::bowl ? 0.1 : CraterSearch{}.min_confidence;
+    /// - Doubtful bowls are kept, since project_to_ground decides on them where heights are known.
+    /// - In maps the heights give the second opinion; with the verifier, too, maps of landings lost recall
+    ///   (docs/evaluation/2026-11-25-craters-of-measured-relief.md).
+    CraterSearch search = {
+        .method = kMethod,
+        .min_confidence = kMethod == CraterMethod::bowl ? 0.1 : CraterSearch{}.min_confidence,
+        .second_opinion = false};
     void describe(OptionVisitor& option) {
-      option("min_diameter", min_diameter,
+      option("min_diameter", search.min_diameter,
              {.help = "Smallest crater kept, in pixels of the image", .min = 6, .max = 1e5});
-      option("max_diameter", max_diameter,
+      option("max_diameter", search.max_diameter,
              {.help = "Largest crater kept, in pixels; 0: 0.6 of the image's shorter side",
               .min = 0,
               .max = 1e6});
-      option("min_confidence", min_confidence,
+      option("min_confidence", search.min_confidence,
              {.help = "Craters less probable than this are left out", .min = 0, .max = 1});
     }
   };
@@ -49,7 +52,6 @@ struct CratersInImage {
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    const TypeRegistry& types = unit.types();
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});
     if (const auto fault = image_fault(pixels, image.info().saturated)) unit.warn(*fault);
     const std::optional<Radians> sun = sun_angle(image.info(), pixels);
@@ -60,15 +62,10 @@ struct CratersInImage {
       unit.write(detections, std::vector<Detection>{});
       return;
     }
-    // In maps the heights give the second opinion; with the verifier, too, maps of landings lost recall
-    // (docs/evaluation/2026-11-25-craters-of-measured-relief.md).
-    auto found = find_craters(pixels, {.method = kMethod,
-                                       .type = types.id("crater"),
-                                       .sun_angle = sun,
-                                       .min_diameter = options.min_diameter,
-                                       .max_diameter = options.max_diameter,
-                                       .min_confidence = options.min_confidence,
-                                       .second_opinion = false});
+    CraterSearch search = options.search;
+    search.type = unit.types().id("crater");
+    search.sun_angle = sun;
+    auto found = find_craters(pixels, search);
     unit.count_out(static_cast<std::int64_t>(found.size()));
     unit.write(detections, std::move(found));
   }

@@ -13,12 +13,11 @@ namespace waymark::pipeline {
 /// What the stages that convert summits to landmarks share: all of the map at once, or those of a tile.
 struct MountainTopsStage {
   struct Options {
-    Meters min_isolation{0};
-    Meters visible_range{10000};
+    MountainTopOptions tops;
     void describe(OptionVisitor& option) {
-      option("min_isolation", min_isolation,
+      option("min_isolation", tops.min_isolation,
              {.help = "Smallest isolation of a summit that is kept", .min = 0, .max = 4e7});
-      option("visible_range", visible_range,
+      option("visible_range", tops.visible_range,
              {.help = "Radius around a summit over which its expected visibility is averaged",
               .min = 1,
               .max = 1e6});
@@ -40,10 +39,8 @@ struct MountainTopsStage {
   }
 
   static void write_landmarks(const Options& options, const Window& window, StageContext& unit) {
-    const TypeRegistry& types = unit.types();
-    MountainTops tops = mountain_tops(
-        unit.read(summits), unit.read(isolation), *unit.read(dem), types,
-        {.min_isolation = options.min_isolation, .visible_range = options.visible_range}, window);
+    MountainTops tops = mountain_tops(unit.read(summits), unit.read(isolation), *unit.read(dem), unit.types(),
+                                      options.tops, window);
     auto count = static_cast<std::int64_t>(tops.landmarks.size());
     unit.count_out(count);
     for (const auto& [reason, rejected] : tops.rejected) {

@@ -14,22 +14,19 @@ namespace {
 struct RocksFromShadows {
   struct Options {
     std::string method = "shadow";
-    double min_diameter = RockSearch{}.min_diameter;
-    double max_diameter = RockSearch{}.max_diameter;
-    double min_confidence = RockSearch{}.min_confidence;
-    double blur = 0;
+    RockSearch search;
     void describe(OptionVisitor& option) {
       option("method", method,
              {.help = "Segmentation of shadows: shadow (against the ground around each), classic (one "
                       "threshold, as published)",
               .choices = {"shadow", "classic"}});
-      option("min_diameter", min_diameter,
+      option("min_diameter", search.min_diameter,
              {.help = "Smallest rock kept, in pixels of the image", .min = 0.5, .max = 1e4});
-      option("max_diameter", max_diameter,
+      option("max_diameter", search.max_diameter,
              {.help = "Largest rock kept, in pixels of the image", .min = 1, .max = 1e5});
-      option("min_confidence", min_confidence,
+      option("min_confidence", search.min_confidence,
              {.help = "Rocks less probable than this are left out", .min = 0, .max = 1});
-      option("blur", blur,
+      option("blur", search.blur,
              {.help = "Standard deviation of the camera's point spread, in pixels; 0: unknown, uses 0.6",
               .min = 0,
               .max = 5});
@@ -49,14 +46,10 @@ struct RocksFromShadows {
 
   static void run(const Options& options, StageContext& unit) {
     const ImageSource& image = *unit.read(image_set).at(static_cast<std::size_t>(unit.image().index));
-    const TypeRegistry& types = unit.types();
-    RockSearch search{.method = options.method == "classic" ? RockMethod::classic : RockMethod::shadow,
-                      .type = types.id("rock"),
-                      .sun_angle = sun_angle_in_image(image.info()),
-                      .blur = options.blur,
-                      .min_diameter = options.min_diameter,
-                      .max_diameter = options.max_diameter,
-                      .min_confidence = options.min_confidence};
+    RockSearch search = options.search;
+    search.method = options.method == "classic" ? RockMethod::classic : RockMethod::shadow;
+    search.type = unit.types().id("rock");
+    search.sun_angle = sun_angle_in_image(image.info());
     if (image.info().view) search.displacement = relief_displacement_of(*image.info().view);
     if (image.info().sun) search.sun_elevation = to_radians(image.info().sun->elevation);
     const Pixels pixels = image.read({0, 0, image.info().columns, image.info().rows});

@@ -1,15 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_names.hpp"
-#include "pipeline/forest/drawn_crowns.hpp"
+#include "pipeline/forest/crown_table.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 #include "pipeline/stages/valued_parts.hpp"
 
 namespace waymark::pipeline {
 namespace {
+
+// Crown tables of tiles, which are read where they are needed.
+class DrawnCrowns {
+ public:
+  using Reader = std::function<std::shared_ptr<const CrownTable>()>;
+
+  // Reads each table once, for its extent.
+  explicit DrawnCrowns(std::vector<Reader> tables) : tables_(std::move(tables)) {
+    for (const Reader& read : tables_) {
+      const auto table = read();
+      Eigen::AlignedBox2d& extent = extents_.emplace_back();
+      for (std::size_t row = 0; row < table->size(); ++row) extent.extend(table->top(row));
+    }
+  }
+
+  // Returns the tables that may have crowns of these observations.
+  std::vector<CrownTable> near(std::span<const Observation> observations) const {
+    Eigen::AlignedBox2d wanted;
+    for (const Observation& o : observations) wanted.extend(o.position.xyz.head<2>().eval());
+    std::vector<CrownTable> tables;
+    for (std::size_t i = 0; i < tables_.size(); ++i)
+      if (extents_[i].intersects(wanted)) tables.push_back(*tables_[i]());
+    return tables;
+  }
+
+ private:
+  std::vector<Reader> tables_;
+  std::vector<Eigen::AlignedBox2d> extents_;  // of the tops of each table
+};
 
 // A canopy model is a survey that could have shown a tree wherever the canopy's height is known.
 struct ValueFlights {

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -24,7 +25,7 @@ class Keywords {
     all_.push_back(
         {std::move(name),
          [member](Request& request, py::handle given) { set<Value>(std::invoke(member, request), given); },
-         [member](Request& request) -> py::object { return py::cast(std::invoke(member, request)); }});
+         [member](Request& request) -> py::object { return object_of(std::invoke(member, request)); }});
     return *this;
   }
 
@@ -50,12 +51,22 @@ class Keywords {
     std::function<py::object(Request&)> get;
   };
 
+  // A path is a text in Python.
+  template <class Value>
+  static py::object object_of(const Value& member) {
+    if constexpr (std::is_same_v<Value, std::filesystem::path>)
+      return py::cast(member.string());
+    else
+      return py::cast(member);
+  }
+
   template <class Value>
   static void set(Value& member, py::handle given) {
     if constexpr (std::is_same_v<Value, std::vector<std::string>>) {
       if (py::isinstance<py::str>(given)) return member.assign(1, py::cast<std::string>(given));
     }
-    member = py::cast<Value>(given);
+    using Given = std::conditional_t<std::is_same_v<Value, std::filesystem::path>, std::string, Value>;
+    member = py::cast<Given>(given);
   }
 
   void set_one(Request& made, const std::string& name, py::handle value) const {

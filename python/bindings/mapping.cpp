@@ -19,18 +19,25 @@
 namespace waymark::python {
 namespace {
 
+// The options of the engine in a request.
+template <auto kMember>
+auto& engine(workflows::MapRequest& request) {
+  return request.run.*kMember;
+}
+
 const Keywords<workflows::MapRequest>& run_keywords() {
   using R = workflows::MapRequest;
+  using E = pipeline::RunOptions;
   static const auto all = Keywords<R>()
                               .add("output", &R::map)
-                              .add("work", &R::work)
-                              .add("stage", &R::stage)
-                              .add("rerun_from", &R::rerun_from)
-                              .add("unit", &R::unit)
+                              .add("work", &engine<&E::work>)
+                              .add("stage", &engine<&E::stage>)
+                              .add("rerun_from", &engine<&E::rerun_from>)
+                              .add("unit", &engine<&E::unit>)
                               .add("check", &R::check)
                               .add("with_dem", &R::with_dem)
                               .add("sensor", &R::sensor)
-                              .add("threads", &R::threads);
+                              .add("threads", &engine<&E::threads>);
   return all;
 }
 

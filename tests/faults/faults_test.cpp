@@ -7,9 +7,9 @@
 #include <random>
 #include <sstream>
 
-#include "made_dem.hpp"
-#include "made_drive.hpp"
-#include "program.hpp"
+#include "tests/apps/made_dem.hpp"
+#include "tests/apps/made_drive.hpp"
+#include "tests/apps/program.hpp"
 
 namespace waymark::test {
 namespace {

@@ -7,21 +7,12 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 namespace {
 
 using ::testing::HasSubstr;
-
-template <class Action>
-std::string message_of(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
 
 TEST(Crs, ReadsCodesOfEarthAndMars) {
   const Crs earth_crs = Crs::from_text("EPSG:4326");

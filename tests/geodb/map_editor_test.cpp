@@ -10,6 +10,7 @@
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace geodb;
@@ -104,12 +105,7 @@ TEST(MapEditor, ManyRandomEditsLeaveThePackedIndexValid) {
 }
 
 std::string message(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+  return message_of([&] { action(); });
 }
 
 TEST(MapEditor, ReportsWhatItCannotDo) {

@@ -10,6 +10,7 @@
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/geodb/map_scenes.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace geodb;
@@ -133,12 +134,7 @@ TEST(ShapeLayer, RejectsInvalidLayers) {
   write_map(folder / "map.gpkg", scattered({}));
   const std::string before = file_bytes(folder / "map.gpkg");
   const auto refused = [&](const ShapeLayer& layer) -> std::string {
-    try {
-      write_layers(folder / "map.gpkg", std::span(&layer, 1));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return message_of([&] { write_layers(folder / "map.gpkg", std::span(&layer, 1)); });
   };
   ShapeLayer layer = squares(2);
   layer.name = "lamp_post";

@@ -85,13 +85,4 @@ std::string write_text(const std::string& name, const std::string& content) {
   return (folder / name).string();
 }
 
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
-}
-
 }  // namespace waymark::test

@@ -3,12 +3,12 @@
 #include <gdal.h>
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/grid.hpp"
+#include "tests/support/message_of.hpp"
 namespace waymark::test {
 
 using GeoTransform = std::array<double, 6>;  ///< as in GDAL: about the corner of the first cell
@@ -40,8 +40,5 @@ std::optional<std::string> shared_dem(const std::string& name);
 
 /// Writes a plain file with this content in a folder of this test.
 std::string write_text(const std::string& name, const std::string& content);
-
-/// Returns the message of the Error that `action` throws.
-std::string message_of(const std::function<void()>& action);
 
 }  // namespace waymark::test

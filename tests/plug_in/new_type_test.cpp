@@ -64,7 +64,7 @@ class NewType : public testing::Test {
       {"stage": "merge_observations"}, {"stage": "value_landmarks"}]})",
                                             stages);
     job.pipeline.base_folder = folder;
-    workflows::make_map(job, {.map = map(), .types = &types});
+    workflows::make_map(job, {.map = map(), .run = {.types = &types}});
   }
   static void TearDownTestSuite() { std::filesystem::remove_all(folder); }
   static std::string map() { return folder / "map.gpkg"; }

@@ -57,7 +57,7 @@ TEST(MakeMap, NeedsANameOrACheck) {
 
 TEST(MakeMap, PartOfAJobNeedsAWorkFolder) {
   EXPECT_THAT(usage_error([] {
-                make_map(mountain_top_job(), {.shard = pipeline::Shard{1, 2}});
+                make_map(mountain_top_job(), {.run = {.shard = pipeline::Shard{1, 2}}});
               }),
               HasSubstr("needs --work DIR"));
 }

@@ -64,7 +64,7 @@ TEST(SensorFile, BuiltInProfilesAreFiles) {
 TEST(SensorFile, SaysWhatIsWrong) {
   EXPECT_THAT(refusal("0.7", "0.5"),
               AllOf(HasSubstr("mine.json"), HasSubstr("the weights of rock sum to 0.8")));
-  EXPECT_THAT(refusal("0.7", "-0.7"), HasSubstr("the weight of rock.radius is outside [0, 1]"));
+  EXPECT_THAT(refusal("0.7", "-0.7"), HasSubstr("weights.rock.radius = -0.7 is outside [0, 1]"));
   EXPECT_THAT(refusal("\"radius\"", "\"raduis\""), HasSubstr("did you mean 'radius'?"));
   EXPECT_THAT(refusal("\"view\": 90", "\"view\": 500"), HasSubstr("coverage.view"));
   EXPECT_THAT(refusal("\"range_sd\"", "\"rangesd\""), HasSubstr("did you mean 'range_sd'?"));

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "importers/images/image.hpp"
 
 namespace waymark::workflows {
@@ -57,9 +58,9 @@ bool given(double value) {
 }
 
 void check_range(const char* option, double value, double lowest, double highest, const char* unit) {
-  if (given(value) && !(value >= lowest && value <= highest))
-    throw_usage(fmt::format("{} is {:g}, outside {:g} to {:g} {}", option, value, lowest, highest, unit),
-                "`waymark detect --help` says what it means");
+  if (given(value))
+    check_number(option, value, unit,
+                 {.help = "`waymark detect --help` says what it means", .min = lowest, .max = highest});
 }
 
 void check_numbers(const DetectRequest& request, const SearchKind& kind) {
@@ -67,13 +68,13 @@ void check_numbers(const DetectRequest& request, const SearchKind& kind) {
     throw_usage(fmt::format("the sun is not above the ground: --sun-elevation is {:g} degrees",
                             request.sun_elevation),
                 "elevation counts from the horizon; it is 90 degrees less the incidence angle");
-  check_range("--sun-elevation", request.sun_elevation, 0, 90, "degrees");
-  check_range("--sun-azimuth", request.sun_azimuth, -360, 720, "degrees");
-  check_range("--image-sun-angle", request.image_sun_angle, -360, 720, "degrees");
+  check_range("--sun-elevation", request.sun_elevation, 0, 90, "deg");
+  check_range("--sun-azimuth", request.sun_azimuth, -360, 720, "deg");
+  check_range("--image-sun-angle", request.image_sun_angle, -360, 720, "deg");
   check_range("--min-confidence", request.min_confidence, 0, 1, "");
-  check_range("--min-diameter", request.min_diameter, kind.smallest, 1e6, "pixels");
-  check_range("--max-diameter", request.max_diameter, kind.smallest, 1e6, "pixels");
-  check_range("--tile-pixels", static_cast<double>(request.piece), 256, 65536, "pixels");
+  check_range("--min-diameter", request.min_diameter, kind.smallest, 1e6, "px");
+  check_range("--max-diameter", request.max_diameter, kind.smallest, 1e6, "px");
+  check_range("--tile-pixels", static_cast<double>(request.piece), 256, 65536, "px");
   if (given(request.gsd) && !(request.gsd > 0 && request.gsd < 1e6))
     throw_usage(fmt::format("--gsd is {:g} m: a pixel measures more than nothing", request.gsd),
                 "give the size of a pixel on the ground in metres");

@@ -60,9 +60,12 @@ void check_edit(const EditRequest& request) {
   if (rim && (moves || request.rim.size() != 6))
     refuse("--rim takes the x and y of three points of a new landmark", "e.g. --rim 10 0 0 10 -10 0");
   if (!request.at.empty() && request.at.size() != 2) refuse("--at takes X Y", "e.g. --at 431.5 -20.25");
-  if (!(request.confidence > 0 && request.confidence <= 1))
-    refuse(fmt::format("--confidence {:g} is not in (0, 1]", request.confidence), "");
-  if (!(request.position_sd >= 0)) refuse("--position-sd is negative", "");
+  check_number("--confidence", request.confidence, "",
+               {.help = "Of accepted and new landmarks; `reject` takes back what does not exist",
+                .min = 1e-6,
+                .max = 1});
+  check_number("--position-sd", request.position_sd, "m",
+               {.help = "Standard deviation of the position; 0: not known", .min = 0});
 }
 
 Eigen::Matrix3d stated_covariance(double sd) {
@@ -81,10 +84,8 @@ void set_feature(Landmark& landmark, const LandmarkType& type, const std::string
                 nearest.empty() ? fmt::format("`waymark types {}` lists them", type.name)
                                 : fmt::format("did you mean '{}'?", nearest));
   }
-  if (!(value >= feature->min_value && value <= feature->max_value))
-    throw Error(ErrorCode::usage,
-                fmt::format("{} {:g} {} of a {} is outside {:g} to {:g}", name, value, feature->unit,
-                            type.name, feature->min_value, feature->max_value));
+  check_number(fmt::format("{} of a {}", name, type.name), value, feature->unit,
+               {.help = "", .min = feature->min_value, .max = feature->max_value});
   landmark.features[static_cast<std::size_t>(feature - type.features.begin())] = {value, 0, 1};
 }
 

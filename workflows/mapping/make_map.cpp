@@ -41,8 +41,9 @@ void check_files(const CanopyFiles& canopy) {
 }
 
 void check_request(const pipeline::Job& job, const MapRequest& request) {
-  const bool partial = request.shard || !request.stage.empty() || !request.unit.empty();
-  if (partial && request.work.empty())
+  const pipeline::RunOptions& asked = request.run;
+  const bool partial = asked.shard || !asked.stage.empty() || !asked.unit.empty();
+  if (partial && asked.work.empty())
     throw Error(ErrorCode::usage, "a part of a job needs --work DIR, which all parts use");
   if (request.map.empty() && !partial && !request.check)
     throw Error(ErrorCode::usage, "the map needs a name: -o MAP.gpkg", "",
@@ -126,17 +127,11 @@ void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy) {
 }
 
 pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {
-  pipeline::RunOptions options;
-  options.threads = request.threads;
+  pipeline::RunOptions options = request.run;
   options.progress = callbacks.progress;
   options.hash_file = importers::hash_file;
-  options.shard = request.shard;
-  options.stage = request.stage;
-  options.unit = request.unit;
-  options.work = request.work;
   options.max_bytes_in_memory = kScratchInMemory;
-  options.rerun_from = request.rerun_from;
-  options.types = request.types ? request.types : &all_types();
+  if (!options.types) options.types = &all_types();
   return options;
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 #include "pipeline/engine/job.hpp"
@@ -33,18 +32,12 @@ void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy);
 
 /// How a job is run and where its map is written.
 struct MapRequest {
-  std::string map = {};         ///< output; empty: none, only the work folder grows
-  std::string work = {};        ///< folder of finished work; empty: everything in memory
-  std::string rerun_from = {};  ///< stage to re-run with its dependents; empty: finished work is kept
-  std::optional<pipeline::Shard> shard = {};  ///< part of the job to run; needs `work`
-  std::string stage = {};                     ///< single stage to run, or its part in `shard`; needs `work`
-  std::string unit = {};                      ///< single unit of work to run; needs `work`
-  bool check = false;                         ///< check options, wiring and files only
-  bool with_dem = false;                      ///< store the DEM in the map
-  int threads = 0;                            ///< 0: one per processor
-  std::string command_line = {};              ///< recorded in the map
-  std::string sensor = {};                    ///< profile recorded in the map; empty: none
-  const TypeRegistry* types = nullptr;        ///< landmark types; null: the built-in types
+  std::string map = {};           ///< output; empty: none, only the work folder grows
+  pipeline::RunOptions run = {};  ///< work folder, its part to do, threads, types; see run_options()
+  bool check = false;             ///< check options, wiring and files only
+  bool with_dem = false;          ///< store the DEM in the map
+  std::string command_line = {};  ///< recorded in the map
+  std::string sensor = {};        ///< profile recorded in the map; empty: none
 };
 
 /// What a job did.
@@ -65,7 +58,7 @@ struct MapResult {
 /// - Messages: a detail per input file, the table of the run and its failures, a summary of the map.
 MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Callbacks& callbacks = {});
 
-/// Returns the engine's options for a request: threads, progress, hashes of any GDAL path, work folder.
+/// Returns the engine's options of a request, with progress from `callbacks` and hashes of any GDAL path.
 pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks = {});
 
 /// Reads a job file with all built-in stages and applies `settings` (STAGE.OPTION=VALUE). A DEM that images

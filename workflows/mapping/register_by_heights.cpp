@@ -63,7 +63,7 @@ MapPlace register_by_heights(const RegisterRequest& request, const geodb::MapSto
   const pipeline::CoarseHeights heights = own.sample_all(kNodes);
   const pipeline::HeightRegistrationResult placed = pipeline::register_heights(
       heights, reference_heights(request, reference, heights.grid),
-      {.max_scale = request.rules.max_scale, .max_chance = request.rules.max_wrong});
+      {.max_scale = request.rules.max_scale, .placement = {.max_chance = request.rules.max_wrong}});
   if (!placed.found)
     throw Error(ErrorCode::input, "the map is not registered: " + placed.message, request.map,
                 "pass a smaller --max-scale, or --within, if they are known; or a finer DEM");

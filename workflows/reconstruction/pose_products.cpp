@@ -8,6 +8,7 @@
 #include "core/output_error.hpp"
 #include "exporters/las_file.hpp"
 #include "geo/crs.hpp"
+#include "workflows/reconstruction/pose_summary.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -48,12 +49,9 @@ std::vector<exporters::SparsePoint> sparse_points(const pipeline::Reconstruction
     exporters::SparsePoint point{.position = *tie.position};
     double squares = 0;
     for (const pipeline::Mark& m : tie.marks) {
-      const pipeline::AdjustedImage& image = scene.images[m.image];
-      if (!image.world_from_camera) continue;
-      const auto seen = project(scene.lenses[image.lens].camera,
-                                Point<CameraFrame>{image.world_from_camera->inverse() * *tie.position});
-      if (!seen) continue;
-      squares += (*seen - m.pixel).squaredNorm();
+      const auto residual = residual_of(scene, tie, m);
+      if (!residual) continue;
+      squares += residual->squaredNorm();
       point.marks.push_back({m.image, m.pixel});
     }
     if (point.marks.size() < 2) continue;

@@ -57,20 +57,24 @@ std::string control_text(const PosedPhotos& posed) {
 
 }  // namespace
 
+std::optional<Eigen::Vector2d> residual_of(const pipeline::Reconstruction& scene,
+                                           const pipeline::TiePoint& tie, const pipeline::Mark& mark) {
+  const pipeline::AdjustedImage& image = scene.images[mark.image];
+  if (!tie.position || !image.world_from_camera) return std::nullopt;
+  const auto seen = project(scene.lenses[image.lens].camera,
+                            Point<CameraFrame>{image.world_from_camera->inverse() * *tie.position});
+  if (!seen) return std::nullopt;
+  return *seen - mark.pixel;
+}
+
 std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene) {
   std::vector<PoseFigures> out(scene.images.size());
-  for (const pipeline::TiePoint& tie : scene.points) {
-    if (!tie.position) continue;
-    for (const pipeline::Mark& m : tie.marks) {
-      const pipeline::AdjustedImage& image = scene.images[m.image];
-      if (!image.world_from_camera) continue;
-      const auto seen = project(scene.lenses[image.lens].camera,
-                                Point<CameraFrame>{image.world_from_camera->inverse() * *tie.position});
-      if (!seen) continue;
-      ++out[m.image].points;
-      out[m.image].rms += (*seen - m.pixel).squaredNorm();
-    }
-  }
+  for (const pipeline::TiePoint& tie : scene.points)
+    for (const pipeline::Mark& m : tie.marks)
+      if (const auto residual = residual_of(scene, tie, m)) {
+        ++out[m.image].points;
+        out[m.image].rms += residual->squaredNorm();
+      }
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out[i].points > 0) out[i].rms = std::sqrt(out[i].rms / double(2 * out[i].points));
     if (const auto& covariance = scene.images[i].covariance) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,11 @@ struct PoseFigures {
   double position_sd = 0;  ///< largest axis of the error ellipsoid of the centre, metres; 0: unknown
   double attitude_sd = 0;  ///< largest, about any axis, degrees; 0: unknown
 };
+
+/// Returns the projection of a tie point less its mark, pixels; `std::nullopt` if the image or the point has
+/// no position, or the image cannot show it.
+std::optional<Eigen::Vector2d> residual_of(const pipeline::Reconstruction& scene,
+                                           const pipeline::TiePoint& tie, const pipeline::Mark& mark);
 
 /// Returns the figures of all images; those without a pose have zeros.
 std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene);

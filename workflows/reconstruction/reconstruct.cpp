@@ -271,8 +271,7 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   if (request.map.empty()) return result;
   result.map = make_map(load_job(folder / "job.json"),
                         {.map = request.map,
-                         .work = request.work,
-                         .threads = request.threads,
+                         .run = {.work = request.work, .threads = request.threads},
                          .command_line = request.command_line},
                         callbacks);
   return result;

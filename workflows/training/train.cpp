@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "pipeline/craters/crater_training.hpp"
 #include "pipeline/craters/patch_network_training.hpp"
 #include "pipeline/craters/relief_training.hpp"
@@ -249,9 +250,10 @@ TrainResult train_rocks(const TrainRequest& request, const Callbacks& callbacks)
 }  // namespace
 
 TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
-  if (request.scenes < 0 || request.rounds < 0)
-    throw Error(ErrorCode::usage, "there must be at least one scene and one round", "",
-                "leave out --scenes and --rounds for the usual");
+  check_number("--scenes", static_cast<double>(request.scenes), "",
+               {.help = "Scenes or views to train on; 0: the usual number", .min = 0});
+  check_number("--rounds", static_cast<double>(request.rounds), "",
+               {.help = "Passes over the examples; 0: the usual number", .min = 0});
   if (!request.relief.empty() && request.what != "craters")
     throw Error(ErrorCode::usage, "--relief is for craters", "train " + request.what);
   if (request.what == "trees")

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
 #include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 
 namespace waymark::pipeline {
@@ -208,12 +207,12 @@ HeightRegistrationResult register_heights(const CoarseHeights& map, const Coarse
   const std::vector<Eigen::Vector3d> nodes = points_of(coarsened(map, extent.side() / kCellsOfSearch));
   Eigen::Vector3d above(0, 0, -std::numeric_limits<double>::infinity());
   for (const Eigen::Vector3d& p : nodes) above.z() = std::max(above.z(), p.z() + extent.side());
+  DemPlacementRules placement = rules.placement;
+  placement.smallest = extent.side() / rules.max_scale;
+  placement.largest = extent.side() * rules.max_scale;
   const DemPlacementResult start =
       place_on_dem({.points = nodes, .centres = {&above, 1}, .up = Eigen::Vector3d::UnitZ()},
-                   coarsened(reference, extent.side() / rules.max_scale / kCellsOfSearch),
-                   {.max_chance = rules.max_chance,
-                    .smallest = extent.side() / rules.max_scale,
-                    .largest = extent.side() * rules.max_scale});
+                   coarsened(reference, extent.side() / rules.max_scale / kCellsOfSearch), placement);
   if (!start.found) return {.message = start.message};
 
   LevelSimilarity place = level_part(start.found->map_from_frame);

@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
 #include "pipeline/reconstruction/surface/coarse_heights.hpp"
 namespace waymark::pipeline {
 
@@ -35,8 +36,8 @@ struct HeightRegistrationResult {
 };
 
 struct HeightRules {
-  double max_scale = 2;      ///< of the map, or its inverse; > 1
-  double max_chance = 0.01;  ///< places expected to fit as well by chance
+  double max_scale = 2;              ///< of the map, or its inverse; > 1
+  DemPlacementRules placement = {};  ///< of the start; its sizes are those of the map by `max_scale`
 };
 
 /// Finds the place of a level DEM in a reference that contains it, without a start: `place_on_dem` on means

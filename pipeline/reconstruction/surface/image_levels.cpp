@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pipeline/vision/half_image.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -13,15 +15,6 @@ std::size_t bytes_of(const ImageLevel& level) {
 }
 
 }  // namespace
-
-Pixels half_image(const Pixels& image) {
-  Pixels half(image.columns() / 2, image.rows() / 2);
-  for (std::int64_t r = 0; r < half.rows(); ++r)
-    for (std::int64_t c = 0; c < half.columns(); ++c)
-      half(c, r) = 0.25f * (image(2 * c, 2 * r) + image(2 * c + 1, 2 * r) + image(2 * c, 2 * r + 1) +
-                            image(2 * c + 1, 2 * r + 1));
-  return half;
-}
 
 double noise_of(const Pixels& image, int level) {
   constexpr std::int64_t kBlock = 16;

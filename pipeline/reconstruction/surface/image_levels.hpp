@@ -15,10 +15,6 @@ struct ImageLevel {
   double noise = 0;  ///< standard deviation of the noise of a pixel
 };
 
-/// Halves an image by the means of 2 x 2 pixels; NaN where one of them is. An odd last row or column is
-/// dropped.
-Pixels half_image(const Pixels& image);
-
 /// Returns the standard deviation of pixel noise: the lower decile over blocks of 16 x 16 of the robust
 /// second mixed difference (Immerkaer 1996). At least 0.3, the rounding of integers, reduced by 2^level.
 double noise_of(const Pixels& image, int level);

@@ -55,8 +55,7 @@ struct SweepPass {
   SurfaceGrid grid;         ///< of the nodes
   const Grid<float>& base;  ///< heights at the nodes about which heights are searched
   HiddenTest hidden = {};
-  double half_range = 0;     ///< metres on each side of the base; 0: `refine_steps`
-  double typical_angle = 0;  ///< radians; of a chunk without its own
+  double half_range = 0;  ///< metres on each side of the base; 0: `refine_steps`
 };
 
 /// Heights of the nodes of a chunk, row by row.

@@ -126,7 +126,7 @@ TEST(ShapeSearch, AgreesWithTheDefinition) {
     return std::vector{bowl_template(diameter, Radians{sun}, BowlLight::slope)};
   };
   const auto found = shape_candidates(
-      image, {.min_diameter = 12, .max_diameter = 23, .min_correlation = 0.6, .shapes = shapes});
+      image, {.limits = {.min_diameter = 12, .max_diameter = 23, .min_correlation = 0.6}, .shapes = shapes});
   ASSERT_FALSE(found.empty());
   CraterCandidate best;
   for (const CraterCandidate& c : found)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/pipeline/engine/toy_stages.hpp"
+#include "tests/support/message_of.hpp"
 namespace waymark::test {
 using namespace pipeline;
 
@@ -31,17 +32,5 @@ class ToyTest : public testing::Test {
     toy::watch().in_square = {};
   }
 };
-
-/// Returns the message of the Error that `action` throws; fails the test if it throws none.
-template <class Expected = Error>
-std::string message_of(auto action) {
-  try {
-    action();
-  } catch (const Expected& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
-}
 
 }  // namespace waymark::test

@@ -11,7 +11,7 @@
 #include "core/text_file.hpp"
 #include "importers/images/image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
-#include "pipeline/vision/sun_angle.hpp"
+#include "pipeline/rocks/rock_sun_angle.hpp"
 namespace waymark::test {
 using namespace pipeline;
 namespace {
@@ -78,7 +78,7 @@ TEST(HiriseScene, AnnotatedRocks) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not on this machine";
   const ImageHandle image = importers::import_image(path.string(), {});
   const Pixels pixels = image->read({0, 0, image->info().columns, image->info().rows});
-  const auto sun = estimate_sun_angle(pixels);
+  const auto sun = estimate_rock_sun_angle(pixels);
   ASSERT_TRUE(sun);
   EXPECT_NEAR(to_degrees(sun->angle).value, 167, 10);  // shadows point to +x and a little up
   for (const RockMethod method : {RockMethod::shadow, RockMethod::classic}) {

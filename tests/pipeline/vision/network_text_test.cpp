@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "core/error.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
@@ -22,12 +23,7 @@ StoredNetwork small_network() {
 }
 
 std::string problem_with(const std::string& text, const std::string& kind = "rocks") {
-  try {
-    parse_network(text, kind, "model.txt", dense_layers_of(2));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "none";
+  return message_of([&] { parse_network(text, kind, "model.txt", dense_layers_of(2)); });
 }
 
 TEST(NetworkText, IsLinesThatPeopleCanRead) {

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/apps/program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+// Two houses of a row, a lamp, a tree, a garage whose outline is not closed, a way without tags.
+constexpr const char* kTown = R"(<?xml version='1.0' encoding='UTF-8'?>
+<osm version='0.6'>
+ <node id='1' lat='49.0000000' lon='8.4000000'/> <node id='2' lat='49.0000000' lon='8.4001367'/>
+ <node id='3' lat='49.0000900' lon='8.4001367'/> <node id='4' lat='49.0000900' lon='8.4000000'/>
+ <node id='5' lat='49.0000000' lon='8.4002734'/> <node id='6' lat='49.0000900' lon='8.4002734'/>
+ <node id='7' lat='49.0010000' lon='8.4000000'><tag k='highway' v='street_lamp'/><tag k='height' v='6 m'/></node>
+ <node id='8' lat='49.0020000' lon='8.4010000'><tag k='natural' v='tree'/><tag k='height' v='tall'/>
+  <tag k='circumference' v='1,57'/></node>
+ <way id='20'><nd ref='1'/><nd ref='2'/><nd ref='3'/><nd ref='4'/><nd ref='1'/><tag k='building' v='yes'/></way>
+ <way id='21'><nd ref='2'/><nd ref='5'/><nd ref='6'/><nd ref='3'/><nd ref='2'/><tag k='building' v='house'/></way>
+ <way id='22'><nd ref='7'/><nd ref='8'/><nd ref='6'/><tag k='building' v='garage'/></way>
+ <way id='23'><nd ref='7'/><nd ref='8'/></way>
+</osm>
+)";
+
+/// The program on files of GIS written here.
+class ImportRules : public testing::Test {
+ protected:
+  Outcome import(const std::string& text, const std::string& name, std::vector<std::string> words) {
+    write_text(folder_.path() / name, text);
+    words.insert(words.begin(), {"import", folder_ / name, "-o", map_});
+    return waymark(words);
+  }
+  std::string rules(const std::string& text) {
+    write_text(folder_.path() / "rules.json", R"({"waymark_rules": 1, "rules": [)" + text + "]}");
+    return folder_ / "rules.json";
+  }
+  json landmarks(const std::string& type) {
+    const Outcome said = waymark({"query", map_, "--type", type, "--format", "json"});
+    return said.code == 0 ? json::parse(said.out) : json::array();
+  }
+
+  TempFolder folder_;
+  std::string map_ = folder_ / "map.gpkg";
+};
+
+TEST_F(ImportRules, ATownOfOpenStreetMap) {
+  const Outcome said = import(kTown, "town.osm", {"--rules", "osm"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("pole (highway = street_lamp): 1 elements, 1 landmarks"));
+  const json lamps = landmarks("pole"), trees = landmarks("tree");
+  ASSERT_EQ(lamps.size(), 1U);
+  EXPECT_EQ(lamps[0]["height"], 6.0);
+  EXPECT_EQ(lamps[0]["kind"], "street_lamp");
+  EXPECT_NEAR(lamps[0]["x"], 8.4, 1e-9);
+  ASSERT_EQ(trees.size(), 1U);
+  EXPECT_TRUE(trees[0]["height"].is_null());  // "tall" is no number
+  EXPECT_NEAR(trees[0]["diameter"], 0.5, 0.001);
+
+  // Two corners each: those between the houses are shared, as is the wall between them.
+  EXPECT_EQ(landmarks("building").size(), 2U);
+  EXPECT_THAT(said.err, HasSubstr("1 outline that is not closed"));
+  EXPECT_EQ(landmarks("wall_corner").size(), 4U);
+  EXPECT_EQ(landmarks("wall").size(), 6U);
+  EXPECT_THAT(said.err, HasSubstr("4 corner shared with another outline"));
+  for (const json& corner : landmarks("wall_corner")) {
+    EXPECT_NEAR(corner["opening_angle"], 1.5 * std::numbers::pi, 0.01);
+    const double direction = corner["direction"];
+    EXPECT_EQ(direction < 0, double(corner["x"]) < 8.4001) << direction;  // the west corners look west
+  }
+  EXPECT_EQ(waymark({"validate", map_}).code, 0);
+}
+
+TEST_F(ImportRules, AnOutlineThatIsNotClosedIsNoBuilding) {
+  const Outcome said = import(
+      kTown, "town.osm", {"--rules", rules(R"({"type": "building", "geometry": "centroid", "layer": "lines",
+                                                    "where": {"building": "*"},
+                                                    "features": {"diameter": "geom_diameter"}})")});
+  ASSERT_EQ(said.code, 0) << said.err;  // its centroid is known, its diameter is not
+  EXPECT_TRUE(landmarks("building")[0]["diameter"].is_null());
+  const Outcome outline = import(
+      kTown, "town.osm",
+      {"--rules", rules(R"({"type": "building", "geometry": "outline", "where": {"building": "*"}})")});
+  ASSERT_EQ(outline.code, 0) << outline.err;
+  EXPECT_EQ(landmarks("building").size(), 2U);
+  EXPECT_THAT(outline.err, HasSubstr("1 outline that is not closed"));
+  EXPECT_THAT(outline.err, HasSubstr("osm_id 22"));
+}
+
+TEST_F(ImportRules, FilesWithoutTagsAreRefused) {
+  const Outcome said = import(R"(<osm version='0.6'>
+ <node id='1' lat='49' lon='8.4'/><node id='2' lat='49.1' lon='8.4'/><way id='3'><nd ref='1'/><nd ref='2'/></way>
+</osm>)",
+                              "plain.osm", {"--rules", "osm"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, HasSubstr("the file has no elements with tags or columns"));
+  EXPECT_THAT(said.err, HasSubstr("plain.osm"));
+}
+
+TEST_F(ImportRules, WallsOfZeroLengthAndDegreesWithoutCrs) {
+  const char* layer =
+      R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"Layer": "WALL"},
+      "geometry": {"type": "LineString", "coordinates": [[8.4, 49], [8.4, 49], [8.4001, 49]]}}]})";
+  const Outcome metres = import(layer, "hall.geojson", {"--rules", "floor_plan", "--crs", "local"});
+  EXPECT_EQ(metres.code, 1);
+  EXPECT_THAT(metres.err, HasSubstr("none of the"));
+  EXPECT_THAT(metres.err, HasSubstr("wall of zero length"));
+  EXPECT_THAT(metres.err, HasSubstr("--crs EPSG:4326"));
+  const Outcome degrees = import(layer, "hall.geojson", {"--rules", "floor_plan"});
+  ASSERT_EQ(degrees.code, 0) << degrees.err;
+  EXPECT_THAT(degrees.err, HasSubstr("1 wall of zero length"));
+  EXPECT_NEAR(landmarks("wall")[0]["length"], 7.3, 0.1);  // 1e-4 degrees at 49 degrees north
+}
+
+TEST_F(ImportRules, ADrawingInMetresNeedsACrs) {
+  const std::string dxf =
+      "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\nWALLS\n10\n0\n20\n0\n11\n6\n21\n0\n0\nLINE\n8\nWALLS\n10\n0\n20\n"
+      "2\n"
+      "11\n6\n21\n2\n0\nCIRCLE\n8\nCOLUMNS\n10\n3\n20\n1\n40\n0.3\n0\nENDSEC\n0\nEOF\n";
+  const Outcome nowhere = import(dxf, "plan.dxf", {"--rules", "floor_plan"});
+  EXPECT_EQ(nowhere.code, 2);
+  EXPECT_THAT(nowhere.err, HasSubstr("does not name its CRS"));
+  const Outcome said = import(dxf, "plan.dxf", {"--rules", "floor_plan", "--map-crs", "local"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_EQ(landmarks("wall").size(), 4U);      // two lines with two faces
+  EXPECT_EQ(landmarks("wall_end").size(), 8U);  // of which each end has two, too
+  ASSERT_EQ(landmarks("pillar").size(), 1U);
+  EXPECT_NEAR(landmarks("pillar")[0]["x"], 3, 0.01);
+}
+
+TEST_F(ImportRules, BuildingsOfACityModelStandOnTheirGround) {
+  const Outcome said = import(R"({"type": "CityJSON", "version": "1.1",
+    "transform": {"scale": [0.01, 0.01, 0.01], "translate": [85000, 447000, 0]},
+    "metadata": {"referenceSystem": "https://www.opengis.net/def/crs/EPSG/0/7415"},
+    "CityObjects": {"b1": {"type": "Building", "attributes": {"measuredHeight": 9.5}, "geometry": [
+      {"type": "Solid", "lod": "1.2", "boundaries": [[[[0, 3, 2, 1]], [[4, 5, 6, 7]], [[0, 1, 5, 4]],
+       [[1, 2, 6, 5]], [[2, 3, 7, 6]], [[3, 0, 4, 7]]]],
+       "semantics": {"surfaces": [{"type": "GroundSurface"}, {"type": "RoofSurface"}, {"type": "WallSurface"}],
+                     "values": [[0, 1, 2, 2, 2, 2]]}}]}},
+    "vertices": [[0, 0, 100], [1000, 0, 100], [1000, 500, 100], [0, 500, 100],
+                 [0, 0, 1050], [1000, 0, 1050], [1000, 500, 1050], [0, 500, 1050]]})",
+                              "city.json", {"--rules", "cityjson"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json buildings = landmarks("building");
+  ASSERT_EQ(buildings.size(), 1U);
+  EXPECT_NEAR(buildings[0]["x"], 85005, 0.01);
+  EXPECT_NEAR(buildings[0]["y"], 447002.5, 0.01);
+  EXPECT_NEAR(buildings[0]["z"], 1, 0.01);
+  EXPECT_EQ(buildings[0]["height"], 9.5);
+  EXPECT_EQ(landmarks("wall_corner").size(), 4U);
+}
+
+TEST_F(ImportRules, FaultsOfRulesAreNamed) {
+  const auto fault = [&](const std::string& text) {
+    const Outcome said = import(kTown, "town.osm", {"--rules", rules(text)});
+    EXPECT_NE(said.code, 0);
+    return said.err;
+  };
+  EXPECT_THAT(fault(R"({"type": "lamp"})"), HasSubstr("lamp"));
+  EXPECT_THAT(fault(R"({"type": "pole", "wher": {}})"), HasSubstr("wher"));
+  EXPECT_THAT(fault(R"({"type": "pole", "features": {"hight": "height"}})"),
+              HasSubstr("pole has no feature 'hight'"));
+  EXPECT_THAT(fault(R"({"type": "pole", "features": {"height": "2*("}})"),
+              HasSubstr("the expression ends too early"));
+  EXPECT_THAT(fault(R"({"type": "pole", "geometry": "middle"})"), HasSubstr("it is one of"));
+  const std::string none = fault(R"({"type": "pole", "where": {"highway": "lamp"}})");
+  EXPECT_THAT(none, HasSubstr("none of the 5 elements matches a rule"));
+  EXPECT_THAT(none, HasSubstr("building (3), height (2)"));
+  const Outcome unknown = import(kTown, "town.osm", {"--rules", "osn"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("there are no ready rules 'osn'"));
+  const Outcome both = import(kTown, "town.osm", {"--rules", "osm", "--type", "pole"});
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--type is for tables"));
+}
+
+TEST_F(ImportRules, ReadyRulesCanBePrintedAndReadAgain) {
+  for (const char* name : {"osm", "lanelet2", "trees", "lamps", "cityjson", "floor_plan"}) {
+    const Outcome printed = waymark({"import", "--rules", name, "--print-rules"});
+    ASSERT_EQ(printed.code, 0) << printed.err;
+    EXPECT_TRUE(json::accept(printed.out)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace waymark::test

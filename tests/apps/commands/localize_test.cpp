@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/apps/localize_fixture.hpp"
+#include "tests/apps/made_dem.hpp"
+
+namespace waymark::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST_F(Localize, EveryMethodFollowsAWaymarkLog) {
+  for (const bool named : {true, false}) {
+    const std::string log = drive_log({.named = named});
+    for (const std::string method : {"ekf", "ukf", "pf", "global"}) {
+      const Outcome said = localize(log, {"--method", method, "--ids", named ? "known" : "unknown"});
+      ASSERT_EQ(said.code, 0) << method << said.err;
+      EXPECT_EQ(rows_, 240) << method;  // one per reading
+      const auto s = score();
+      EXPECT_LT(s["ate_rmse"], method == "global" ? 0.5 : 0.12) << method << " named " << named;
+      EXPECT_LT(s["ate_median"], 0.12) << method << " named " << named;
+      EXPECT_LT(s["heading_rmse_deg"], 5) << method << " named " << named;
+    }
+  }
+  ASSERT_EQ(localize(drive_log({}), {"--method", "odometry"}).code, 0);
+  EXPECT_GT(score()["ate_rmse"], 0.12);
+}
+
+// A camera of 25 m among rocks to 100 m: what it cannot see is no candidate.
+TEST_F(Localize, BearingsAskForTheRangeOfTheirSensor) {
+  const std::string camera = folder_ / "camera.json";
+  std::ofstream(camera) << R"({"waymark_sensor":1,"coverage":{"range":25,"bearing_sd":1}})";
+  const auto said = [&](std::vector<std::string> options) {
+    options.insert(options.end(), {"--ids", "unknown"});
+    const Outcome done = localize(R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0}}
+{"kind":"odometry","t":0,"v":1,"omega":0}
+{"kind":"sightings","t":1,"items":[{"type":"rock","bearing":0.1}]}
+)",
+                                  options);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return done.err;
+  };
+  EXPECT_THAT(said({}), HasSubstr("1 of 1 sightings have no range"));
+  EXPECT_THAT(said({"--sensor", camera}), Not(HasSubstr("have no range")));
+  EXPECT_THAT(said({"--set", "bearing_reach=25"}), Not(HasSubstr("have no range")));
+}
+
+TEST_F(Localize, EveryMethodFollowsAnMrclamDataset) {
+  const std::string data = folder_ / "MRCLAM", map = folder_ / "beacons.gpkg";
+  write_mrclam(data);
+  ASSERT_EQ(waymark({"import", data + "/Landmark_Groundtruth.dat", "--from", "mrclam", "-o", map}).code, 0);
+  for (const std::string ids : {"known", "unknown"})
+    for (const std::string method : {"ekf", "ukf", "pf", "global"}) {
+      const Outcome said =
+          waymark({"localize", map, data, "--robot", "1", "--method", method, "--ids", ids, "-o", track_});
+      ASSERT_EQ(said.code, 0) << said.err;
+      expect_finite();
+      EXPECT_THAT(said.err, HasSubstr("no such landmark in the map"));  // the other robot
+      EXPECT_LT(score(data, {"--robot", "1"})["ate_median"], 0.25) << method << ' ' << ids;
+    }
+  EXPECT_THAT(waymark({"localize", map, data, "-o", track_}).err, HasSubstr("add --robot 1"));
+}
+
+TEST_F(Localize, TheLogStatesItsOdometryNoiseAndSettingsReplaceIt) {
+  const auto track = [&](const std::string& header, const std::vector<std::string>& settings) {
+    std::vector<std::string> options{"--method", "odometry", "--start", "0,0,0"};
+    for (const std::string& s : settings) options.insert(options.end(), {"--set", s});
+    const Outcome said = localize(header + "\n" + R"({"kind":"odometry","t":0,"v":1,"omega":0.1}
+{"kind":"odometry","t":1,"v":1,"omega":-0.1}
+{"kind":"odometry","t":2,"v":0,"omega":0}
+)",
+                                  options);
+    EXPECT_EQ(said.code, 0) << said.err;
+    return text_of(track_);
+  };
+  const std::string none = R"({"kind":"header","version":1})";
+  const std::string noisy =
+      R"({"kind":"header","version":1,"odometry_noise":{"yaw_per_metre":0.3,"scale_sd":0.1}})";
+  const std::string stated = track(noisy, {});
+  EXPECT_NE(stated, track(none, {}));
+  EXPECT_EQ(stated, track(none, {"yaw_per_metre=0.3", "scale_sd=0.1"}));
+  EXPECT_EQ(track(noisy, {"yaw_per_metre=0.002", "scale_sd=0"}), track(none, {}));
+  EXPECT_EQ(track(noisy, {"yaw_per_metre=0.002"}), track(none, {"scale_sd=0.1"}));
+}
+
+TEST_F(Localize, SettingsNeedNeitherMapNorLog) {
+  const Outcome said = waymark({"localize", "--settings", "--method", "pf", "--set", "particles=777"});
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("particles=777  "));
+  std::set<std::string> names;
+  std::istringstream lines(said.out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(names.insert(line.substr(0, line.find('='))).second) << "twice: " << line;
+  EXPECT_GT(names.size(), 20u);
+  EXPECT_THAT(waymark({"localize", "--method", "pf"}).err, HasSubstr("needs MAP.gpkg"));
+}
+
+TEST_F(Localize, WrongMatchesAreNotKnownWithoutIdentities) {
+  ASSERT_EQ(localize(drive_log({.named = false}), {"--method", "ekf", "--ids", "unknown"}).code, 0);
+  EXPECT_GT(score()["matches"], 0);
+  EXPECT_TRUE(score()["wrong_matches"].is_null());
+  ASSERT_EQ(localize(drive_log({.named = true}), {"--method", "ekf", "--ids", "unknown"}).code, 0);
+  EXPECT_EQ(score()["wrong_matches"], 0);
+}
+
+TEST_F(Localize, ImprobableLandmarksCanBeLeftOut) {
+  const Outcome none = localize(drive_log({}), {"--method", "ekf", "--min-confidence", "1"});
+  EXPECT_EQ(none.code, 0) << none.err;  // imported rocks have confidence 1
+  ASSERT_EQ(bash("ogrinfo -q " + map_ + " -sql 'UPDATE rock SET confidence = 0.4'").code, 0);
+  const Outcome said = localize(drive_log({}), {"--method", "ekf", "--min-confidence", "0.5"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err,
+              AllOf(HasSubstr("no landmark of confidence 0.5 or more"), HasSubstr("lower --min-confidence")));
+  EXPECT_EQ(localize(drive_log({}), {"--method", "ekf", "--min-confidence", "0.3"}).code, 0);
+}
+
+TEST_F(Localize, ATruthTooCoarseToInterpolateIsNamed) {
+  write_text(track_, "t,x,y,yaw\n0.5,1,0,0\n1.5,2,0,0\n");
+  write_text(folder_.path() / "truth.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0\n2,0,0,0\n");
+  const std::vector<std::string> words{"evaluate", "track", track_, "--truth", folder_ / "truth.csv"};
+  EXPECT_THAT(waymark(words).err,
+              AllOf(HasSubstr("the true poses are up to 1 s apart"), HasSubstr("--max-gap 1.01")));
+  write_text(track_, "t,x,y,yaw\n70.5,1,0,0\n");
+  EXPECT_THAT(waymark(words).err, HasSubstr("no time in common: 70.500 to 70.500 s and 0.000 to 2.000 s"));
+}
+
+TEST_F(Localize, ASightingNeedsABearing) {
+  std::string log = drive_log({});
+  for (std::size_t at; (at = log.find("\"bearing\"")) != std::string::npos;) log.replace(at, 9, "\"angle\"");
+  const Outcome said = localize(log, {"--method", "ekf"});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, AllOf(HasSubstr("a sighting without \"bearing\""), HasSubstr("a range alone")));
+}
+
+TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {
+  ASSERT_EQ(localize(drive_log({}), {"--method", "ekf"}).code, 0);
+  EXPECT_THAT(text_of(track_), HasSubstr(",lost,cov_x_yaw,cov_y_yaw,nis,nis_rows\n"));
+  write_text(track_,
+             "t,x,y,yaw,var_x,var_y,var_yaw,cov_x_yaw\n0,1,0,1,1,1,1,0.9\n1,2,0,1,1,1,1,0.9\n"
+             "2,1,0,1,1,1,1,0.9\n");
+  write_text(folder_.path() / "truth.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0\n2,0,0,0\n");
+  // e' P^-1 e = (1 - 2 * 0.9 + 1) / (1 - 0.9^2), over 3.
+  const nlohmann::json said = score(folder_ / "truth.csv");
+  EXPECT_NEAR(said["anees"], 0.2 / 0.19 / 3, 1e-9);
+  EXPECT_EQ(said["anees_independent"], 1);
+  EXPECT_LT(said["anees_band"][0], said["anees"]);
+  EXPECT_GT(said["anees_band"][1], 3);
+}
+
+TEST_F(Localize, EvaluateTellsInnovationsAndTimes) {
+  const std::string log = drive_log({});
+  ASSERT_EQ(localize(log, {"--method", "ekf", "--timing"}).code, 0);
+  EXPECT_THAT(text_of(track_), HasSubstr(",nis_rows,seconds_used\n"));
+  const nlohmann::json said = score();
+  EXPECT_GT(said["anis"], 0.1);
+  EXPECT_LT(said["anis"], 3);
+  EXPECT_LT(said["anis_band"][0], said["anis_band"][1]);
+  EXPECT_GT(said["time_per_update_us"], 0);
+  for (const std::string method : {"odometry", "pf"}) {  // particles are identified after the update
+    ASSERT_EQ(localize(log, {"--method", method}).code, 0);
+    EXPECT_TRUE(score()["anis"].is_null()) << method;
+  }
+  EXPECT_TRUE(score()["time_per_update_us"].is_null());
+}
+
+TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
+  const std::string log = drive_log({.start = false});
+  EXPECT_EQ(localize(log, {"--method", "global", "--ids", "unknown"}).code, 0);
+  EXPECT_LT(score()["ate_median"], 0.12);
+  EXPECT_EQ(localize(log, {"--method", "pf", "--start", "none", "--ids", "unknown"}).code, 0);
+  EXPECT_LT(score()["ate_median"], 0.12);
+  for (const char* method : {"ekf", "ukf"}) {
+    EXPECT_EQ(localize(log, {"--method", method, "--start", "none", "--ids", "unknown"}).code, 0) << method;
+    EXPECT_LT(score()["ate_median"], 0.12) << method;
+  }
+  EXPECT_THAT(refusal(log, 2, {"--method", "odometry", "--start", "none"}),
+              HasSubstr("must know where the robot starts"));
+  EXPECT_THAT(refusal(drive_log({.truth = false, .start = false})), HasSubstr("give --start X,Y,YAW"));
+  EXPECT_EQ(localize(log, {"--start", "0,-6,0"}).code, 0);
+  EXPECT_THAT(refusal(log, 2, {"--start", "0,-6"}), HasSubstr("--start takes X,Y,YAW"));
+}
+
+TEST_F(Localize, SettingsOutsideTheirRangeOrWithWrongNamesAreRefused) {
+  const std::string log = drive_log({.steps = 4});
+  EXPECT_THAT(refusal(log, 2, {"--set", "gat=0.9"}), HasSubstr("did you mean 'gate'?"));
+  EXPECT_THAT(refusal(log, 2, {"--set", "gate=2"}), HasSubstr("gate = 2 is outside ["));
+  EXPECT_THAT(refusal(log, 2, {"--set", "gate=nan"}), HasSubstr("gate"));
+  EXPECT_THAT(refusal(log, 2, {"--method", "kalman"}), HasSubstr("--method must be one of"));
+  EXPECT_THAT(refusal(log, 2, {"--sensor", "sonarr"}), HasSubstr("sonarr"));
+}
+
+TEST_F(Localize, FormerNamesOfSettingsAreReadWithAWarning) {
+  const std::string log = drive_log({.steps = 4});
+  const Outcome renamed = localize(log, {"--set", "longest_hold=2"});
+  EXPECT_EQ(renamed.code, 0);
+  EXPECT_THAT(renamed.err, HasSubstr("longest_hold was renamed: use max_hold (--set longest_hold=2)"));
+  EXPECT_THAT(localize(log, {"--settings", "--set", "max_hold=2"}).out, HasSubstr("max_hold=2  "));
+}
+
+TEST_F(Localize, GnssAndCompassHelpWhereNothingIsSeen) {
+  const auto blind = [](bool fixes) {
+    return drive_log({.change = [fixes](int step, const std::string& kind, const std::string& line) {
+      if (kind == "sightings") return std::string();
+      if (kind != "truth" || !fixes) return line;
+      const auto truth = nlohmann::json::parse(line);
+      const double off = step % 2 ? 0.2 : -0.2;
+      const nlohmann::json gnss{{"kind", "gnss"},
+                                {"t", truth["t"]},
+                                {"x", truth["x"].get<double>() + off},
+                                {"y", truth["y"].get<double>() - off},
+                                {"sd", 0.3}};
+      const nlohmann::json wild{{"kind", "gnss"}, {"t", truth["t"]}, {"x", 900}, {"y", 0}, {"sd", 0.3}};
+      const nlohmann::json compass{
+          {"kind", "compass"}, {"t", truth["t"]}, {"yaw", truth["yaw"]}, {"sd", 0.05}};
+      return line + "\n" + (step % 20 == 7 ? wild : gnss).dump() + "\n" + compass.dump();
+    }});
+  };
+  for (const std::string method : {"ekf", "ukf", "pf"}) {
+    ASSERT_EQ(localize(blind(false), {"--method", method, "--start", "truth"}).code, 0);
+    const double without = score()["ate_rmse"];
+    const Outcome said = localize(blind(true), {"--method", method, "--start", "truth"});
+    ASSERT_EQ(said.code, 0);
+    EXPECT_THAT(said.err, HasSubstr("GNSS and compass readings: 240, 6 of them not used"));
+    EXPECT_LT(score()["ate_rmse"], 0.25) << method;
+    EXPECT_LT(score()["ate_rmse"], 0.7 * without) << method;
+    EXPECT_EQ(localize(blind(true), {"--method", method, "--set", "use_fixes=false"}).code, 0);
+    EXPECT_NEAR(score()["ate_rmse"], without, 1e-6) << method;
+  }
+}
+
+TEST_F(Localize, TheDemGivesHeightRollAndPitch) {
+  MadeDem dem;
+  dem.columns = dem.rows = 121;
+  dem.height = [](int column, int) { return 100 + 0.1 * (column - 60); };  // rises to the east
+  dem.crs = "";
+  dem.geotransform = {-60.5, 1, 0, 60.5, 0, -1};
+  const std::string file = make_dem(folder_ / "dem.tif", dem);
+  ASSERT_EQ(localize(drive_log({.named = true}), {"--dem", file}).code, 0);
+  std::istringstream rows(text_of(track_));
+  std::string row;
+  std::getline(rows, row);
+  while (std::getline(rows, row)) {
+    std::istringstream cells(row);
+    std::vector<double> v;
+    for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
+    EXPECT_NEAR(v[3], 100 + 0.1 * v[1], 0.01);
+    EXPECT_NEAR(v[5], std::atan(-0.1 * std::cos(v[6])), 1e-3);
+    EXPECT_NEAR(v[4], std::atan(-0.1 * std::sin(v[6])), 1e-3);
+  }
+}
+
+TEST_F(Localize, TheTrackIsTheSameForAnyNumberOfThreads) {
+  const std::string log = drive_log({.steps = 60});
+  for (const std::vector<std::string>& how : {std::vector<std::string>{"--method", "pf", "--start", "none"},
+                                              {"--method", "global"},
+                                              {"--method", "pf", "--set", "particles=5000"},
+                                              {"--method", "ekf"}}) {
+    std::string first;
+    for (const char* threads : {"1", "2", "3"}) {
+      std::vector<std::string> words = how;
+      words.insert(words.end(), {"--ids", "unknown", "--threads", threads});
+      ASSERT_EQ(localize(log, words).code, 0) << how[1];
+      if (first.empty()) first = text_of(track_);
+      EXPECT_TRUE(text_of(track_) == first) << how[1] << " on " << threads;
+    }
+  }
+}
+
+TEST_F(Localize, TheDemSaysWhatCouldNotBeSeen) {
+  MadeDem dem;
+  dem.columns = dem.rows = 121;
+  dem.height = [](int column, int) { return column == 64 ? 4.0 : 0.0; };  // a wall at x = 4
+  dem.crs = "";
+  dem.geotransform = {-60.5, 1, 0, 60.5, 0, -1};
+  const std::string file = make_dem(folder_ / "dem.tif", dem);
+  // Nothing beyond the wall is seen, until the robot comes near it.
+  const auto behind = [&](int step, const std::string& kind, const std::string& line) {
+    if (kind != "sightings") return line;
+    auto json = nlohmann::json::parse(line);
+    nlohmann::json kept = nlohmann::json::array();
+    for (const auto& item : json["items"])
+      if (item["range"].get<double>() < 6) kept.push_back(item);
+    json["items"] = kept;
+    (void)step;
+    return json.dump();
+  };
+  const std::string log = drive_log({.steps = 60, .change = behind});
+  for (const std::string method : {"ekf", "ukf", "pf"}) {
+    const std::vector<std::string> expects{"--method",           method,  "--ids",       "unknown", "--set",
+                                           "expect_unseen=true", "--set", "view_range=9"};
+    ASSERT_EQ(localize(log, expects).code, 0) << method;
+    const std::string without = text_of(track_);
+    std::vector<std::string> words = expects;
+    words.insert(words.end(), {"--dem", file});
+    ASSERT_EQ(localize(log, words).code, 0) << method;
+    EXPECT_LT(score()["ate_rmse"], 0.25) << method;
+    if (method == "pf") {
+      EXPECT_NE(text_of(track_), without) << "the DEM was not asked";
+    }
+  }
+}
+
+TEST_F(Localize, ATrueYawMayGoOnTurning) {
+  double yaw = 0, last = 0;
+  const std::string log =
+      drive_log({.steps = 400, .change = [&](int, const std::string& kind, const std::string& line) {
+                   if (kind != "truth") return line;
+                   auto json = nlohmann::json::parse(line);
+                   const double now = json["yaw"];
+                   yaw += std::remainder(now - last, 2 * M_PI);
+                   last = now;
+                   json["yaw"] = yaw;
+                   return json.dump();
+                 }});
+  ASSERT_GT(yaw, 13) << "more than two turns";
+  ASSERT_EQ(localize(log, {"--ids", "unknown"}).code, 0);
+  EXPECT_LT(score()["heading_rmse_deg"], 3);
+}
+
+}  // namespace
+}  // namespace waymark::test

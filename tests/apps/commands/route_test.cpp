@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/apps/made_dem.hpp"
+#include "tests/apps/program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A desert of 200 m between start and goal, and rocks along a bow 50 m north of it.
+class RouteCommand : public testing::Test {
+ protected:
+  RouteCommand() {
+    std::string rocks = "x,y,radius,height\n";
+    for (int x = -100; x <= 100; x += 8) {
+      const double y = 50 - 0.005 * x * x;
+      rocks += std::to_string(x) + "," + std::to_string(y) + ",0.5,0.6\n";
+    }
+    write_text(folder_ / "rocks.csv", rocks);
+    const Outcome made =
+        waymark({"import", folder_ / "rocks.csv", "-o", map_, "--type", "rock", "--map-crs", "local"});
+    EXPECT_EQ(made.code, 0) << made.err;
+  }
+  Outcome route(const std::vector<std::string>& more, const std::string& out = "r.csv") {
+    std::vector<std::string> words{
+        "route",  map_,  "--from=-100,0", "--to", "100,0", "--sensor",   "horizontal_laser",
+        "--view", "360", "--range",       "15",   "-o",    folder_ / out};
+    words.insert(words.end(), more.begin(), more.end());
+    return waymark(words);
+  }
+  /// Largest value of a column of the stations.
+  double largest(const std::string& column) {
+    std::istringstream lines(text_of(folder_ / "r.csv"));
+    std::string line, cell;
+    std::getline(lines, line);
+    std::istringstream names(line);
+    int index = 0;
+    while (std::getline(names, cell, ',') && cell != column) ++index;
+    double value = -1e9;
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      for (int i = 0; i <= index; ++i) std::getline(cells, cell, ',');
+      value = std::max(value, std::stod(cell));
+    }
+    return value;
+  }
+
+  TempFolder folder_;
+  const std::string map_ = folder_ / "m.gpkg";
+};
+
+TEST_F(RouteCommand, LimitLeadsAlongTheLandmarks) {
+  const Outcome shortest = route({"--weight", "1e-9"});
+  ASSERT_EQ(shortest.code, 0) << shortest.err;
+  EXPECT_NEAR(largest("distance"), 200, 1e-6);
+  const double without = largest("sd");
+  EXPECT_GT(without, 3);  // 200 m on odometry
+  const Outcome limited = route({"--limit-sigma", "1.5"});
+  ASSERT_EQ(limited.code, 0) << limited.err;
+  EXPECT_LE(largest("sd"), 1.5);
+  EXPECT_GT(largest("y"), 15);
+  EXPECT_GT(largest("distance"), 205);
+  EXPECT_THAT(limited.err, AllOf(HasSubstr("shortest route: 200.0 m"), HasSubstr("over 32 worlds"),
+                                 HasSubstr("no route that keeps the limit is shorter than")));
+}
+
+TEST_F(RouteCommand, LandmarksAreKeptInSight) {
+  const Outcome kept = route({"--keep-landmarks", "1"});
+  ASSERT_EQ(kept.code, 0) << kept.err;
+  EXPECT_THAT(kept.err, HasSubstr(" 0.0 m with fewer than 1 landmarks in sight"));
+  EXPECT_GT(largest("y"), 30);
+}
+
+// 300 m of Taveuni across 180 degrees: one line would go round the Earth.
+TEST_F(RouteCommand, LineIsDividedAtTheAntimeridian) {
+  std::string rocks = "x,y,radius,height\n";
+  for (int i = 0; i < 30; ++i)
+    rocks +=
+        (i < 15 ? "179.998" + std::to_string(500 + 100 * i) : "-179.999" + std::to_string(900 - 20 * i)) +
+        ",-17.0001,0.5,0.6\n";
+  write_text(folder_ / "taveuni.csv", rocks);
+  const std::string map = folder_ / "taveuni.gpkg";
+  const Outcome made =
+      waymark({"import", folder_ / "taveuni.csv", "-o", map, "--type", "rock", "--map-crs", "EPSG:4326"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome done = waymark({"route", map, "--from=179.9986,-17", "--to=-179.9986,-17", "--sensor",
+                                "horizontal_laser", "--weight", "1", "-o", folder_ / "r.geojson"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto lines =
+      nlohmann::json::parse(text_of(folder_ / "r.geojson"))["features"][0]["geometry"]["coordinates"];
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].back()[0], 180.0);
+  EXPECT_EQ(lines[1].front()[0], -180.0);
+  EXPECT_EQ(lines[0].back()[1], lines[1].front()[1]);
+  for (const auto& at : lines[0]) EXPECT_GT(at[0], 179.99);
+  for (const auto& at : lines[1]) EXPECT_LT(at[0], -179.99);
+}
+
+TEST_F(RouteCommand, LimitThatCannotBeKeptNamesTheLeastFound) {
+  const Outcome none = route({"--limit-sigma", "0.11"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("no route keeps the sd of the position below 0.11 m"),
+                              HasSubstr("the least worst sd that was found is")));
+}
+
+TEST_F(RouteCommand, OutputsHoldRouteAndStations) {
+  ASSERT_EQ(route({"--limit-sigma", "1.5", "--alternatives", "2"}, "r.geojson").code, 0);
+  const auto json = nlohmann::json::parse(text_of(folder_ / "r.geojson"));
+  EXPECT_EQ(json["features"][0]["geometry"]["type"], "LineString");
+  EXPECT_EQ(json["features"][0]["properties"]["layer"], "route");
+  EXPECT_EQ(json["features"].back()["properties"]["layer"], "route_station");
+  ASSERT_EQ(route({"--limit-sigma", "1.5"}, "r.gpkg").code, 0);
+  const Outcome valid = waymark({"validate", folder_ / "r.gpkg"});
+  EXPECT_EQ(valid.code, 0) << valid.out << valid.err;
+}
+
+TEST_F(RouteCommand, HazardsAreAvoidedOrNamed) {
+  MadeDem dem{.columns = 260, .rows = 140};
+  dem.geotransform = {-130, 1, 0, 90, 0, -1};
+  // A wall along x = 0 from y = -20 to the north, and a pit about the point -60, 0.
+  dem.height = [](int column, int row) {
+    if (column >= 66 && column <= 74 && row >= 86 && row <= 94) return 5.0;
+    return column >= 128 && column <= 132 && row <= 110 ? 4.0 : 0.0;
+  };
+  ASSERT_EQ(waymark({"hazards", make_dem(folder_ / "d.tif", dem), "-o", folder_ / "h.tif"}).code, 0);
+  const Outcome around = route({"--weight", "1e-9", "--hazards", folder_ / "h.tif"});
+  ASSERT_EQ(around.code, 0) << around.err;
+  EXPECT_GT(largest("distance"), 205);
+  const auto refused = [&](const std::string& from) {
+    const Outcome made =
+        waymark({"route", map_, "--from=" + from, "--to", "100,0", "--sensor", "horizontal_laser", "--weight",
+                 "1", "--hazards", folder_ / "h.tif", "-o", folder_ / "x.csv"});
+    EXPECT_EQ(made.code, 1);
+    return made.err;
+  };
+  EXPECT_THAT(refused("-2,0"), HasSubstr("--from -2,0 is in a hazard"));
+  EXPECT_THAT(refused("-500,0"), HasSubstr("unknown terrain or outside the hazard map"));
+}
+
+TEST_F(RouteCommand, BadRequestsAreRefused) {
+  EXPECT_THAT(route({}).err, HasSubstr("the route has no objective"));
+  EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the route would replace the map"));
+  EXPECT_THAT(route({"--weight", "1", "--limit-sigma", "1"}).err, HasSubstr("more than one objective"));
+  EXPECT_THAT(route({"--limit-sigma", "0.01"}).err, HasSubstr("the sd at the start, 0.1 m, exceeds"));
+  EXPECT_THAT(route({"--weight", "1"}, "r.txt").err, HasSubstr("does not end in"));
+  EXPECT_THAT(route({"--weight", "1", "--via", "7"}).err, HasSubstr("--via 7 is no position"));
+  EXPECT_THAT(route({"--weight", "1", "--via", "700000,0"}).err,
+              HasSubstr("700 km from the middle of the map"));
+  EXPECT_THAT(waymark({"route", map_, "--from=0,0", "--to", "9,0", "--sensor", "descent_camera", "--weight",
+                       "1", "-o", folder_ / "r.csv"})
+                  .err,
+              HasSubstr("has no range"));
+}
+
+}  // namespace
+}  // namespace waymark::test

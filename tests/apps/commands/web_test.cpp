@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of a web map in a browser. Its libraries come from the folder that WAYMARK_MAPLIBRE names
+// (scripts/fetch-maplibre): no test needs the network.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/apps/made_dem.hpp"
+#include "tests/apps/program.hpp"
+
+namespace waymark::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr int kNoBrowser = 77;
+
+/// 200 rocks on a plane of 100 m, one of them alone in the middle.
+class WebCommand : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string table = "uid,x,y,z,radius,height\nmiddle,50,50,0,2.5,1.25\n";
+    for (int i = 0; i < 200; ++i)
+      table += fmt::format("rock-{},{},{},0,{},0.3\n", i, i % 20 < 10 ? 3 * (i % 10) : 100 - 3 * (i % 10),
+                           i / 2.0, 0.2 + 0.001 * i);
+    write_text(folder_ / "rocks.csv", table);
+    const Outcome made =
+        waymark({"import", folder_ / "rocks.csv", "--type", "rock", "--map-crs", "local", "-o", map_});
+    ASSERT_EQ(made.code, 0) << made.err;
+    MadeDem dem{.columns = 120, .rows = 120};
+    dem.crs = "";
+    dem.geotransform = {-10, 1, 0, 110, 0, -1};
+    dem.height = [](int column, int row) { return 3 * std::sin(0.2 * column) * std::cos(0.15 * row); };
+    make_dem(folder_ / "dem.tif", dem);
+  }
+
+  static std::string library() {
+    const char* folder = std::getenv("WAYMARK_MAPLIBRE");
+    return folder == nullptr ? "" : folder;
+  }
+
+  /// Returns the values of the steps of view_browser.py, then the list of the server; none without Chromium.
+  std::vector<Json> browse(const std::vector<std::string>& steps, const std::string& server_option = "") {
+    std::string line = fmt::format(
+        "timeout 200 /usr/bin/python3 '{0}/tests/apps/serve_folder.py' {1} '{2}' /usr/bin/python3 "
+        "'{0}/tests/apps/view_browser.py' '{{url}}/index.html'",
+        WAYMARK_SOURCE_DIR, server_option, site_);
+    for (const std::string& step : steps) line += " '" + step + "'";
+    const Outcome outcome = bash(line);
+    if (outcome.code == kNoBrowser || outcome.code == 127) return {};
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    std::vector<Json> values;
+    std::istringstream lines(outcome.out);
+    for (std::string text; std::getline(lines, text);) values.push_back(Json::parse(text));
+    EXPECT_EQ(values.size(), steps.size() + 1);
+    values.resize(steps.size() + 1);
+    return values;
+  }
+
+  TempFolder folder_;
+  std::string map_ = folder_ / "rocks.gpkg", site_ = folder_ / "site";
+};
+
+TEST_F(WebCommand, WritesAFolderAndSaysWhatIsMissing) {
+  const Outcome outcome = waymark({"web", map_, "-o", site_, "--dem", folder_ / "dem.tif"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("201 landmarks in "));
+  EXPECT_THAT(outcome.err, HasSubstr("Terrain, 1 m per pixel"));
+  EXPECT_THAT(outcome.err, HasSubstr("sh fetch-maplibre lib"));
+  for (const char* name : {"index.html", "site.js", "site.css", "style.json", "fetch-maplibre",
+                           "landmarks.pmtiles", "terrain.pmtiles"})
+    EXPECT_TRUE(fs::exists(fs::path(site_) / name)) << name;
+  ASSERT_EQ(waymark({"web", map_, "-o", site_, "--terrain-pixels", "0"}).code, 0);
+  EXPECT_FALSE(fs::exists(fs::path(site_) / "terrain.pmtiles"));
+}
+
+TEST_F(WebCommand, WithoutItsLibraryThePageSaysHowToGetIt) {
+  ASSERT_EQ(waymark({"web", map_, "-o", site_}).code, 0);
+  const auto values = browse({"eval:document.querySelector(\".problem\").textContent"});
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_THAT(values[0].get<std::string>(), HasSubstr("sh fetch-maplibre lib"));
+}
+
+TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
+  if (library().empty()) GTEST_SKIP() << "WAYMARK_MAPLIBRE names no folder of scripts/fetch-maplibre";
+  ASSERT_EQ(waymark({"web", map_, "-o", site_, "--dem", folder_ / "dem.tif", "--assets", library()}).code, 0);
+  const std::vector<std::string> steps{
+      "eval:waymark.about.crs",
+      "eval:new Set(waymark.map.queryRenderedFeatures({layers: [\"rock\"]}).map(f => f.properties.uid)).size",
+      "clickon:waymark.map.project([50 / 6371008.8 * 180 / Math.PI, 50 / 6371008.8 * 180 / Math.PI])",
+      "eval:document.querySelector(\".maplibregl-popup\").innerText",
+      // The bar against positions that are known: 100 m of x in pixels, and the bar in metres.
+      "eval:(() => { const d = 180 / Math.PI / 6371008.8, p = x => waymark.map.project([x * d, 50 * d]).x;"
+      " const bar = document.querySelector(\"#scale span\").getBoundingClientRect().width;"
+      " return [parseFloat(document.getElementById(\"scale\").innerText), bar / (p(100) - p(0)) * 100]; })()",
+      // A height of the terrain tiles is read back through the style's decoding.
+      "eval:(waymark.map.setTerrain({source: \"terrain_mesh\"}), 1)",
+      "eval:waymark.map.queryTerrainElevation([50.5 / 6371008.8 * 180 / Math.PI, 50.5 / 6371008.8 * 180 / "
+      "Math.PI])",
+      "eval:(() => { const s = document.getElementById(\"confidence\"); s.value = 1; s.oninput(); "
+      "document.querySelector(\"#panel input\").click(); return 1; })()",
+      "eval:waymark.map.queryRenderedFeatures({layers: [\"rock\"]}).length", "errors", "requests",
+      // The relief is seen in the middle, and nothing beyond its edge at x = -10.
+      "eval:[50, -9, -11].map(x => waymark.map.queryRenderedFeatures(waymark.map.project([x / 6371008.8 * "
+      "180 / "
+      "Math.PI, 50 / 6371008.8 * 180 / Math.PI]), {layers: [\"beyond_terrain\"]}).length)"};
+  const auto values = browse(steps);
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_EQ(values[0], "local");
+  EXPECT_EQ(values[1], 201);
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("middle"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("2.50\u00a0m"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("not assessed"));
+  EXPECT_GE(values[4][0].get<double>(), 5);
+  EXPECT_NEAR(values[4][1].get<double>() / values[4][0].get<double>(), 1, 0.01);
+  // Cell (60, 59) of the DEM, the middle of the map.
+  EXPECT_NEAR(values[6].get<double>(), 3 * std::sin(0.2 * 60) * std::cos(0.15 * 59), 0.25);
+  EXPECT_EQ(values[8], 0);
+  EXPECT_THAT(values[9], IsEmpty());
+  for (const Json& url : values[10])
+    EXPECT_TRUE(url.get<std::string>().starts_with("http://127.0.0.1") ||
+                url.get<std::string>().starts_with("blob:"))
+        << url;
+  EXPECT_EQ(values[11], Json({0, 0, 1}));
+  for (const Json& range : values.back()) EXPECT_NE(range[1], "whole");
+}
+
+TEST_F(WebCommand, AServerWithoutRangesServesTheMapToo) {
+  if (library().empty()) GTEST_SKIP() << "WAYMARK_MAPLIBRE names no folder of scripts/fetch-maplibre";
+  ASSERT_EQ(waymark({"web", map_, "-o", site_, "--assets", library()}).code, 0);
+  const auto values =
+      browse({"eval:waymark.map.queryRenderedFeatures({layers: [\"rock\"]}).length > 0"}, "--no-ranges");
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_EQ(values[0], true);
+}
+
+}  // namespace
+}  // namespace waymark::test

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "core/text_file.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/robot_log.hpp"
+#include "tests/importers/made_bag.hpp"
+#include "tests/support/message_of.hpp"
+
+namespace waymark::test {
+using namespace localization;
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class Bag : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directory(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path file(const std::string& name) const { return folder_ / name; }
+  fs::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+    return file(name);
+  }
+  RobotLog read_rosbag2(const MadeBag& bag) const {
+    write_rosbag2(file("made.db3"), bag);
+    return importers::import_log(file("made.db3"), {});
+  }
+  static std::string refusal(const fs::path& path) {
+    return message_of([&] { importers::import_log(path, {}); });
+  }
+  fs::path folder_ = fs::temp_directory_path() / ("waymark_bag_" + std::to_string(getpid()));
+};
+
+struct MadeDrive {
+  MadeBag bag;
+  std::string native;  // the same drive in Waymark's own format
+};
+
+// An arc with a scan at each pose, by a scanner that is mounted through two frames.
+MadeDrive made_drive(bool big) {
+  MadeDrive drive{.bag = {made_frame(big, "base_link", "mast", 0.5, 0, std::numbers::pi / 2),
+                          made_frame(big, "mast", "laser", 0.2, 0, 0)},
+                  .native = {}};
+  Pose2 last;
+  std::mt19937 random(11);
+  for (int i = 0; i < 50; ++i) {
+    const double t = 100 + 0.25 * i;
+    const Pose2 pose{3 * std::sin(0.1 * i), 3 - 3 * std::cos(0.1 * i), 0.1 * i};
+    std::vector<float> ranges;
+    for (int beam = 0; beam < 5; ++beam) ranges.push_back(1 + float(random() % 1000) / 128);
+    drive.bag.push_back(made_odometry(big, t, pose.x, pose.y, pose.yaw));
+    drive.bag.push_back(made_scan(big, t, -0.5, 0.25, ranges));
+    std::ostringstream line;
+    line.precision(17);
+    const Pose2 step = inverse(last) * pose;
+    if (i > 0)
+      line << R"({"kind":"step","t":)" << t << R"(,"dx":)" << step.x << R"(,"dy":)" << step.y << R"(,"dyaw":)"
+           << step.yaw << "}\n";
+    line << R"({"kind":"laser","t":)" << t
+         << R"(,"first_angle":-0.5,"angle_step":0.25,"most_range":30,"mount":{"x":0.5,"y":0.2,"yaw":)"
+         << std::numbers::pi / 2 << R"(},"ranges":[)";
+    for (std::size_t k = 0; k < ranges.size(); ++k) line << (k ? "," : "") << ranges[k];
+    drive.native += line.str() + "]}\n";
+    last = pose;
+  }
+  return drive;
+}
+
+void expect_same(const RobotLog& a, const RobotLog& b) {
+  constexpr double kRounding = 1e-12;  // of quaternions and two chained transforms
+  const auto near = [](const Pose2& p, const Pose2& q) {
+    EXPECT_NEAR(p.x, q.x, kRounding);
+    EXPECT_NEAR(p.y, q.y, kRounding);
+    EXPECT_NEAR(p.yaw, q.yaw, kRounding);
+  };
+  ASSERT_EQ(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < a.events.size(); ++i) {
+    EXPECT_EQ(a.events[i].t, b.events[i].t);
+    ASSERT_EQ(a.events[i].what.index(), b.events[i].what.index()) << "event " << i;
+    if (const auto* step = std::get_if<StepReading>(&a.events[i].what))
+      near(step->step, std::get<StepReading>(b.events[i].what).step);
+    if (const auto* scan = std::get_if<LaserScan>(&a.events[i].what)) {
+      const auto& other = std::get<LaserScan>(b.events[i].what);
+      near(scan->robot_from_sensor, other.robot_from_sensor);
+      EXPECT_EQ(scan->ranges, other.ranges);
+      EXPECT_EQ(scan->first_angle, other.first_angle);
+      EXPECT_EQ(scan->angle_step, other.angle_step);
+      EXPECT_EQ(scan->max_range, other.max_range);
+    }
+  }
+}
+
+TEST_F(Bag, HoldsTheDriveOfAWaymarkLogInEitherByteOrderAndStorage) {
+  for (const bool big : {false, true}) {
+    const MadeDrive drive = made_drive(big);
+    const RobotLog native = importers::import_log(write("made.jsonl", drive.native), {});
+    ASSERT_EQ(native.events.size(), 99u);
+    expect_same(read_rosbag2(drive.bag), native);
+    for (const std::size_t chunk : {0u, 1u, 7u})
+      expect_same(importers::import_log(write("made.mcap", made_mcap(drive.bag, chunk)), {}), native);
+  }
+}
+
+TEST_F(Bag, OfSeveralFilesIsOneDrive) {
+  const MadeDrive drive = made_drive(false);
+  const auto middle = drive.bag.begin() + 41;
+  fs::create_directory(file("drive"));
+  write_rosbag2(file("drive/drive_0.db3"), {drive.bag.begin(), middle});
+  write_rosbag2(file("drive/drive_1.db3"), {middle, drive.bag.end()});
+  expect_same(importers::import_log(file("drive"), {}),
+              importers::import_log(write("made.jsonl", drive.native), {}));
+}
+
+TEST_F(Bag, ScansOfAScannerUpsideDownAreTurnedOver) {
+  const RobotLog log = read_rosbag2({made_frame(false, "base_link", "laser", 1, 2, 0.5, true),
+                                     made_scan(false, 1, -0.5, 0.25, {1, 2, 3, 4})});
+  ASSERT_EQ(log.events.size(), 1u);
+  const auto& scan = std::get<LaserScan>(log.events[0].what);
+  EXPECT_NEAR(scan.robot_from_sensor.yaw, 0.5, 1e-12);
+  EXPECT_EQ(scan.first_angle, -0.25);  // the last beam was at +0.25 and is now the first, to the right
+  EXPECT_EQ(scan.ranges, (std::vector<float>{4, 3, 2, 1}));
+}
+
+TEST_F(Bag, ReadsTheTopicWithTheMostMessagesAndNamesTheOthers) {
+  const RobotLog log =
+      read_rosbag2({made_odometry(false, 1, 0, 0, 0, "/wheel"), made_odometry(false, 1, 0, 0, 0),
+                    made_odometry(false, 2, 1, 0, 0), made_odometry(false, 2, 9, 0, 0)});
+  EXPECT_THAT(
+      log.remarks,
+      Contains(HasSubstr("odometry is read from /odom, which has the most messages; not from /wheel")));
+  ASSERT_EQ(log.events.size(), 2u);
+  EXPECT_EQ(std::get<StepReading>(log.events[0].what).step.x, 1);
+}
+
+TEST_F(Bag, RangesBelowTheMinimumAndWithoutReturnAreNone) {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  const RobotLog log = read_rosbag2({made_scan(false, 1, 0, 0.1, {0.05f, none, 2})});
+  EXPECT_EQ(std::get<LaserScan>(log.events[0].what).ranges, (std::vector<float>{0, 0, 2}));
+  EXPECT_THAT(log.remarks, Contains(HasSubstr("no transform leads from laser to base_link")));
+}
+
+TEST_F(Bag, UnstampedMessagesHaveTheTimeOfTheRecorder) {
+  MadeMessage scan = made_scan(false, 0, 0, 0.1, {1, 2});
+  scan.received = 7'500'000'000;
+  EXPECT_EQ(read_rosbag2({scan}).events[0].t, 7.5);
+}
+
+TEST_F(Bag, BadMessagesAreSkippedAndCounted) {
+  MadeBag bag = made_drive(false).bag;
+  bag.push_back({"/odom", "nav_msgs/msg/Odometry", "\x02"});
+  bag.push_back({"/odom", "nav_msgs/msg/Odometry", std::string("\0\3\0\0", 4)});
+  bag.push_back({"/odom", "nav_msgs/msg/Odometry", bag[2].bytes.substr(0, 60)});
+  bag.push_back({"/camera", "sensor_msgs/msg/Image", ""});
+  const RobotLog log = read_rosbag2(bag);
+  EXPECT_EQ(log.events.size(), 99u);
+  EXPECT_THAT(log.remarks,
+              Contains(HasSubstr("3 messages cannot be read and are skipped, the first is of topic "
+                                 "/odom: the message ends too early")));
+  EXPECT_THAT(log.remarks, Contains(HasSubstr("1 messages of type sensor_msgs/msg/Image are skipped")));
+}
+
+TEST_F(Bag, RefusalsSayWhatToDo) {
+  EXPECT_THAT(refusal(write("a.mcap", "nothing")), HasSubstr("does not begin like an MCAP file"));
+  EXPECT_THAT(refusal(write("a.mcap", made_mcap({}, 0))), HasSubstr("neither odometry nor scans"));
+  const std::string packed = refusal(write("a.mcap", made_mcap(made_drive(false).bag, 7, "zstd")));
+  EXPECT_THAT(packed, HasSubstr("compressed by 'zstd'"));
+  EXPECT_THAT(packed, HasSubstr("mcap decompress"));
+  write_rosbag2(file("empty.db3"), {});
+  EXPECT_THAT(refusal(file("empty.db3")), HasSubstr("neither odometry nor scans"));
+  write_rosbag2(file("tilted.db3"), {made_scan(false, 1, 0, 0.1, {1, 2}),
+                                     {"/tf", "tf2_msgs/msg/TFMessage",
+                                      MadeCdr(false)
+                                          .add(std::uint32_t{1})
+                                          .header(0, "base_link")
+                                          .text("laser")
+                                          .add(0.0)
+                                          .add(0.0)
+                                          .add(0.0)
+                                          .add(0.6)
+                                          .add(0.0)
+                                          .add(0.0)
+                                          .add(0.8)
+                                          .bytes()}});
+  EXPECT_THAT(refusal(file("tilted.db3")), HasSubstr("the scanner laser is tilted by 74 degrees"));
+}
+
+TEST_F(Bag, WithAViewInPlaceOfATableIsRefused) {
+  sqlite3* db = nullptr;
+  sqlite3_open(file("view.db3").c_str(), &db);
+  sqlite3_exec(db,
+               "CREATE TABLE topics(id, name, type, serialization_format);"
+               "CREATE VIEW messages AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+               " SELECT i AS id, 1 AS topic_id, 0 AS timestamp, zeroblob(1000000) AS data FROM n",
+               nullptr, nullptr, nullptr);
+  sqlite3_close(db);
+  EXPECT_THAT(refusal(file("view.db3")), HasSubstr("no tables 'topics' and 'messages'"));
+}
+
+TEST_F(Bag, CutOffMcapIsReadUpToThere) {
+  const std::string whole = made_mcap(made_drive(false).bag, 1);
+  const RobotLog log = importers::import_log(write("cut.mcap", whole.substr(0, whole.size() / 2)), {});
+  EXPECT_GT(log.events.size(), 20u);
+  EXPECT_LT(log.events.size(), 99u);
+  EXPECT_THAT(log.remarks, Contains(HasSubstr("cut.mcap is cut off after byte")));
+}
+
+// A crash or an allocation beyond the file's size ends the test program.
+TEST_F(Bag, MutatedFilesAreReadOrRefused) {
+  const MadeBag bag = made_drive(true).bag;
+  write_rosbag2(file("whole.db3"), bag);
+  const std::string database = read_text(file("whole.db3"), "the bag");
+  int refused = 0, read = 0;
+  for (unsigned seed = 0; seed < 600; ++seed) {
+    std::mt19937 random(seed);
+    const bool mcap = seed % 2 == 0;
+    std::string bytes = mcap ? made_mcap(bag, seed % 3 * 5) : database;
+    for (unsigned n = 0; n <= random() % 40; ++n)
+      bytes[random() % bytes.size()] = char(random() % 3 ? random() : 255);
+    if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+    try {
+      importers::import_log(write(mcap ? "m.mcap" : "m.db3", bytes), {});
+      ++read;
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+  EXPECT_GT(read, 0);
+}
+
+}  // namespace
+}  // namespace waymark::test
