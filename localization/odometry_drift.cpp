@@ -94,10 +94,16 @@ void DriftEstimator::learn(const PoseEstimate& before, const PoseEstimate& after
   covariance_ -= gain * (before.covariance - after.covariance) * gain.transpose();
   with_pose_ = after.covariance * update->inverse * with_pose_;
   covariance_ = (covariance_ + covariance_.transpose()).eval() / 2;
-  // A mixture may widen; the errors never become less certain than they were at first.
+  // A mixture may widen, and samples have noise; the errors never become less certain than they were at
+  // first. What exceeds that is scaled down with its correlations.
   const Eigen::Vector4d all = variances(prior_);
-  for (int i = 0; i < 4; ++i)
-    if (!(covariance_(i, i) >= 0 && covariance_(i, i) <= 1.0001 * all[i])) return restart();
+  Eigen::Vector4d scale = Eigen::Vector4d::Ones();
+  for (int i = 0; i < 4; ++i) {
+    if (!(covariance_(i, i) >= 0)) return restart();
+    if (covariance_(i, i) > all[i]) scale[i] = std::sqrt(all[i] / covariance_(i, i));
+  }
+  covariance_ = scale.asDiagonal() * covariance_ * scale.asDiagonal();
+  with_pose_ = with_pose_ * scale.asDiagonal();
 }
 
 void DriftEstimator::consider(const PoseEstimate& before, const PoseEstimate& after) {
