@@ -13,8 +13,6 @@ namespace waymark::localization {
 namespace {
 
 constexpr double kEverywhere = 1e150;  // m
-constexpr double kReach = 2.5;         // of a mode, over the root of the sum of its variances
-constexpr int kMaxSteps = 20;          // in which a mode grows
 
 /// Direction of the sum of the unit vectors within a squared distance.
 double direction(std::span<const Pose2> poses, std::span<const double> weights, const Eigen::Vector2d& near,
@@ -134,20 +132,12 @@ PoseEstimate dominant_mode(std::span<const Pose2> poses, std::span<const double>
     weight = (same ? weight : 0) + weights[std::get<2>(cells[i])];
     if (weight > heaviest) heaviest = weight, best = std::get<2>(cells[i]);
   }
-  // A cloud wider than the radius is taken whole: cut off, it would seem as narrow as the radius.
-  PoseEstimate mode{{poses[best].x, poses[best].y, 0}, Eigen::Matrix3d::Zero()};
-  double reach = radius;
-  for (int i = 0; i < kMaxSteps; ++i) {
-    mode = moments(poses, weights, mode.pose.at(), reach);
-    const double next =
-        std::max(radius, kReach * std::sqrt(mode.covariance(0, 0) + mode.covariance(1, 1)));
-    if (i > 1 && next <= reach) break;
-    reach = std::max(reach, next);
-  }
+  Eigen::Vector2d centre = poses[best].at();
+  for (int i = 0; i < 3; ++i) centre = moments(poses, weights, centre, radius).pose.at();
   double inside = 0;
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if ((poses[i].at() - mode.pose.at()).norm() <= reach) inside += weights[i];
-  return inside > 0.5 ? mode : all;
+    if ((poses[i].at() - centre).norm() <= radius) inside += weights[i];
+  return inside > 0.5 ? moments(poses, weights, centre, radius) : all;
 }
 
 }  // namespace waymark::localization

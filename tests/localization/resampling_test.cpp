@@ -36,28 +36,6 @@ TEST(Resampling, RedrawnParticlesKeepMeanAndCovarianceAndAreNoCopies) {
   EXPECT_EQ(different.size(), after.size());
 }
 
-TEST(Resampling, AWideCloudIsNotCutToTheRadiusOfAMode) {
-  Random random(3, "cloud");
-  for (const double sd : {0.3, 1.0, 2.0, 3.0}) {
-    std::vector<Pose2> poses;
-    for (int i = 0; i < 2000; ++i) poses.push_back({sd * random.normal(), sd * random.normal(), 0});
-    const std::vector<double> equal(poses.size(), 1.0 / 2000);
-    const PoseEstimate mode = dominant_mode(poses, equal, 1.5);
-    EXPECT_NEAR(std::sqrt(mode.covariance(0, 0)) / sd, 1, 0.08) << sd;
-    EXPECT_NEAR(std::sqrt(mode.covariance(1, 1)) / sd, 1, 0.08) << sd;
-  }
-}
-
-TEST(Resampling, AModeDoesNotReachTheNextOne) {
-  Random random(3, "two clouds");
-  std::vector<Pose2> poses;
-  for (int i = 0; i < 2000; ++i)
-    poses.push_back({0.3 * random.normal() + (i % 3 ? 0 : 6), 0.3 * random.normal(), 0});
-  const PoseEstimate mode = dominant_mode(poses, std::vector<double>(poses.size(), 1.0 / 2000), 1.5);
-  EXPECT_NEAR(mode.pose.x, 0, 0.05);
-  EXPECT_NEAR(std::sqrt(mode.covariance(0, 0)), 0.3, 0.02);
-}
-
 TEST(Resampling, TemperingKeepsEnoughParticles) {
   const std::vector<double> weights(100, 0.01);
   std::vector<double> fit;
