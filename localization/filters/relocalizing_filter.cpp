@@ -27,7 +27,7 @@ RelocalizingFilter::RelocalizingFilter(const PoseEstimate& start, Factory factor
 
 void RelocalizingFilter::predict(const BodyMotion& motion) {
   if (located_) inner_->predict(motion);
-  if (finder_) memory_.predict(motion);
+  memory_.predict(motion);
   reliable_ = predict_other_pose(reliable_, motion);
 }
 
@@ -49,7 +49,7 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
 
 // Restarts at the finder's pose if it is certain.
 bool RelocalizingFilter::relocate(const SightingSet& seen) {
-  if (!finder_ || ++sets_since_query_ < kWait) return false;
+  if (++sets_since_query_ < kWait) return false;
   sets_since_query_ = 0;
   const PoseSearchResult found = memory_.find(finder_, seen);
   if (!found.accepted) return false;
@@ -63,14 +63,13 @@ bool RelocalizingFilter::relocate(const SightingSet& seen) {
 }
 
 std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
-  if (finder_) memory_.add(seen);
+  memory_.add(seen);
   if (!located_ && !relocate(seen)) return std::vector<Match>(seen.sightings.size());
   std::vector<Match> matches = inner_->update(seen);
   const double fit = matched_fraction(matches);
   if (fit >= 0) fit_ += kFade * (fit - fit_);
   if (chance_ && fit >= 0) {
-    chance_fraction_ = chance_(seen, inner_->estimate(), matches);
-    explained_.add(fit, chance_fraction_);
+    explained_.add(fit, chance_(seen, inner_->estimate(), matches));
     chance_matches_ =
         chance_matches_
             ? !is_explained()

@@ -26,8 +26,7 @@ class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
   /// `start_known`: false if `start` only says where the robot may be (pose_anywhere). The filter is then
-  /// lost and uses no sighting before the finder is certain. Without a `finder` it restarts at the last
-  /// reliable estimate only.
+  /// lost and uses no sighting before the finder is certain.
   RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
                      ChanceFraction chance = {}, FeatureScales scales = {}, bool start_known = true);
 
@@ -40,8 +39,6 @@ class RelocalizingFilter final : public Localizer {
   }
   LocalizationStatus status() const override { return lost() ? LocalizationStatus::lost : inner_->status(); }
   int restarts() const { return restarts_; }
-  /// Returns the fraction of the last set's sightings that fits by chance; < 0: unknown.
-  double chance() const { return chance_fraction_; }
 
  private:
   template <class Fix>
@@ -77,7 +74,6 @@ class RelocalizingFilter final : public Localizer {
   std::unique_ptr<Localizer> inner_;
   SightingMemory memory_;
   PoseEstimate reliable_;        // the last reliable estimate, predicted by odometry since
-  double chance_fraction_ = -1;
   double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
   double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
   int usual_sets_ = 5;           // sets that count in it; five for the value it begins with

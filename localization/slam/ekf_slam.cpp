@@ -93,7 +93,7 @@ PoseEstimate EkfSlam::own_estimate() const {
 
 PoseEstimate EkfSlam::estimate() const {
   const PoseEstimate own = own_estimate();
-  return tracker_ && (position_sd(own) > kPrecise || search_->lost()) ? tracker_->estimate() : own;
+  return tracker_ && position_sd(own) > kPrecise ? tracker_->estimate() : own;
 }
 
 Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
@@ -180,7 +180,7 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
   const std::vector<Match> tracked = tracker_->update(seen);
   add(tracked);
   in_map_.fit = matched_fraction(tracked);
-  if (in_map_.fit >= 0) in_map_.chance = tracker_->chance();
+  if (in_map_.fit >= 0) in_map_.chance = chance_(seen, tracker_->estimate(), tracked);
   return keys;
 }
 

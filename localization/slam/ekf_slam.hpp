@@ -9,7 +9,6 @@
 #include <vector>
 #include "core/options.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
-#include "localization/filters/relocalizing_filter.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/identification/landmark_matcher.hpp"
@@ -157,8 +156,9 @@ class EkfSlam final : public Localizer {
   BearingStarts starts_;
   double hits_ = 0, chances_ = 0;
   std::optional<SlamRelocalization> search_;
-  std::unique_ptr<EkfSlam> rival_;               ///< started at the pose under trial
-  std::unique_ptr<RelocalizingFilter> tracker_;  ///< follows the robot in the map as given
+  std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial
+  std::unique_ptr<MultiHypothesisFilter> tracker_;  ///< follows the robot in the map as given
+  ChanceFraction chance_;
   SetEvidence in_map_;       ///< of the last set: `fit` and `chance`
   std::size_t trusted_ = 0;  ///< number of landmarks when the map was last seen
   int restarts_ = 0;

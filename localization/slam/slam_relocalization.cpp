@@ -127,10 +127,8 @@ void EkfSlam::start_tracker(const PoseEstimate& at) {
   MultiHypothesisOptions options;
   options.search.search_growth = 1;
   const LandmarkMatcher matcher(LandmarkWindow(map_), scales_, options_.identification);
-  const auto make = [matcher, options](const PoseEstimate& start) -> std::unique_ptr<Localizer> {
-    return std::make_unique<MultiHypothesisFilter>(start, matcher, options);
-  };
-  tracker_ = std::make_unique<RelocalizingFilter>(at, make, PoseFinder(), make_chance_fraction(matcher));
+  tracker_ = std::make_unique<MultiHypothesisFilter>(at, matcher, options);
+  if (!chance_) chance_ = make_chance_fraction(matcher);
 }
 
 // Returns the pose of the sum of Gaussians if it is precise and contradicts this filter.
