@@ -139,14 +139,14 @@ std::unique_ptr<localization::Localizer> make_particle_localizer(
     LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search) {
   localization::PoseFinder finder = make_pose_finder(task, search);
   const localization::LandmarkMatcher matcher = make_matcher(task);
-  const auto particles =
-      [matcher, &settings = task.settings, visible = line_of_sight(task)](
-          const std::optional<localization::PoseEstimate>& from, localization::PoseFinder finds) {
-        auto filter = std::make_unique<localization::ParticleFilter>(from, matcher, settings.particles,
-                                                                     std::move(finds));
-        filter->set_line_of_sight(visible);
-        return filter;
-      };
+  const auto particles = [matcher, &settings = task.settings, visible = line_of_sight(task)](
+                             const std::optional<localization::PoseEstimate>& from,
+                             localization::PoseFinder finds) {
+    auto filter =
+        std::make_unique<localization::ParticleFilter>(from, matcher, settings.particles, std::move(finds));
+    filter->set_line_of_sight(visible);
+    return filter;
+  };
   if (!start) return particles({}, std::move(finder));
   localization::ChanceFraction chance;
   if (!task.settings.identification.use_identities) chance = localization::make_chance_fraction(matcher);
