@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace waymark::localization {
 namespace {
@@ -14,6 +15,20 @@ constexpr double kMaxJump = 25;  // squared Mahalanobis distance beyond which an
 Eigen::Vector4d variances(const OdometryDrift& d) {
   return {d.scale_sd * d.scale_sd, d.slip_sd * d.slip_sd, d.sideways_sd * d.sideways_sd,
           d.yaw_rate_sd * d.yaw_rate_sd};
+}
+
+struct Update {
+  Eigen::Vector3d moved;
+  Eigen::Matrix3d inverse;  // of the covariance before
+};
+
+/// `std::nullopt` for a jump of the pose.
+std::optional<Update> as_update(const PoseEstimate& before, const PoseEstimate& after) {
+  const Eigen::Vector3d moved(after.pose.x - before.pose.x, after.pose.y - before.pose.y,
+                              wrap_angle(after.pose.yaw - before.pose.yaw));
+  const Eigen::Matrix3d inverse = (before.covariance + 1e-12 * Eigen::Matrix3d::Identity()).inverse();
+  if (!inverse.allFinite() || !(moved.dot(inverse * moved) <= kMaxJump)) return {};
+  return Update{moved, inverse};
 }
 
 }  // namespace
@@ -72,20 +87,29 @@ BodyMotion DriftEstimator::correct(const PoseEstimate& pose, const BodyMotion& m
 }
 
 void DriftEstimator::learn(const PoseEstimate& before, const PoseEstimate& after) {
-  const Eigen::Vector3d moved(after.pose.x - before.pose.x, after.pose.y - before.pose.y,
-                              wrap_angle(after.pose.yaw - before.pose.yaw));
-  const Eigen::Matrix3d prior = before.covariance + 1e-12 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix3d inverse = prior.inverse();
-  if (!inverse.allFinite() || !(moved.dot(inverse * moved) <= kMaxJump)) return restart();
-  const Eigen::Matrix<double, 4, 3> gain = with_pose_.transpose() * inverse;
-  mean_ += gain * moved;
+  const std::optional<Update> update = as_update(before, after);
+  if (!update) return restart();
+  const Eigen::Matrix<double, 4, 3> gain = with_pose_.transpose() * update->inverse;
+  mean_ += gain * update->moved;
   covariance_ -= gain * (before.covariance - after.covariance) * gain.transpose();
-  with_pose_ = after.covariance * inverse * with_pose_;
+  with_pose_ = after.covariance * update->inverse * with_pose_;
   covariance_ = (covariance_ + covariance_.transpose()).eval() / 2;
-  // A mixture may widen; the errors never become less certain than they were at first.
+  // A mixture may widen, and samples have noise; the errors never become less certain than they were at
+  // first. What exceeds that is scaled down with its correlations.
   const Eigen::Vector4d all = variances(prior_);
-  for (int i = 0; i < 4; ++i)
-    if (!(covariance_(i, i) >= 0 && covariance_(i, i) <= 1.0001 * all[i])) return restart();
+  Eigen::Vector4d scale = Eigen::Vector4d::Ones();
+  for (int i = 0; i < 4; ++i) {
+    if (!(covariance_(i, i) >= 0)) return restart();
+    if (covariance_(i, i) > all[i]) scale[i] = std::sqrt(all[i] / covariance_(i, i));
+  }
+  covariance_ = scale.asDiagonal() * covariance_ * scale.asDiagonal();
+  with_pose_ = with_pose_ * scale.asDiagonal();
+}
+
+void DriftEstimator::consider(const PoseEstimate& before, const PoseEstimate& after) {
+  const std::optional<Update> update = as_update(before, after);
+  if (!update) return restart();
+  with_pose_ = after.covariance * update->inverse * with_pose_;
 }
 
 void DriftEstimator::restart() {

@@ -35,6 +35,10 @@ class DriftEstimator {
   /// Learns from an update of the pose. A jump of more than five standard deviations teaches nothing.
   void learn(const PoseEstimate& before, const PoseEstimate& after);
 
+  /// Follows an update of the pose that is not trusted: it teaches nothing, but the pose remains correlated
+  /// with the errors (Schmidt 1966). Without that, an error that persists would count as new at each set.
+  void consider(const PoseEstimate& before, const PoseEstimate& after);
+
   /// Keeps the errors, with their first variance, and takes the pose for a new one: after relocalization.
   void restart();
 

@@ -104,7 +104,7 @@ void LogReplay::learn_drift(const PoseEstimate& prior) {
   if (localizer_.status() == LocalizationStatus::tracking)
     drift_.learn(prior, localizer_.estimate());
   else
-    drift_.restart();
+    drift_.consider(prior, localizer_.estimate());
 }
 
 bool LogReplay::take(SightingSet seen, TrackRow& row) {

@@ -16,6 +16,20 @@ double largest_sd(const Eigen::Matrix2d& c) {
   return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
 }
 
+// Returns the existence from which landmarks are searched. A doubtful one in the index takes the place of a
+// true neighbour in triangles, and counts as one that may match by chance. Those that rather do not exist are
+// left out, unless half of the landmarks that exist are expected among them.
+double min_existence(const std::vector<MapLandmark>& landmarks, const IdentificationOptions& options) {
+  constexpr double kLikely = 0.5;
+  double all = 0, likely = 0;
+  for (const MapLandmark& l : landmarks) {
+    const double exists = existence_prior(l, options);
+    all += exists;
+    if (exists >= kLikely) likely += exists;
+  }
+  return likely > all / 2 ? kLikely : 0;
+}
+
 std::vector<LandmarkPosition> planar_positions(const std::vector<MapLandmark>& landmarks) {
   std::vector<LandmarkPosition> positions;
   positions.reserve(landmarks.size());
@@ -54,7 +68,10 @@ PoseEstimate ConstellationFix::pose() const {
 ConstellationIndex::ConstellationIndex(std::vector<MapLandmark> landmarks, FeatureScales scales,
                                        ConstellationOptions options)
     : landmarks_(std::move(landmarks)), scales_(std::move(scales)), options_(options) {
-  std::erase_if(landmarks_, [](const MapLandmark& l) { return !l.at.allFinite(); });
+  const double existence = min_existence(landmarks_, options_.identification);
+  std::erase_if(landmarks_, [&](const MapLandmark& l) {
+    return !l.at.allFinite() || existence_prior(l, options_.identification) < existence;
+  });
   positions_ = planar_positions(landmarks_);
   build();
 }

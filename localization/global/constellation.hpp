@@ -63,7 +63,8 @@ struct ConstellationAnswer {
 /// threads may search.
 class ConstellationIndex {
  public:
-  /// Indexes a planar map.
+  /// Indexes a planar map, without the landmarks that rather do not exist (probability below 0.5) if the
+  /// others are expected to be most of those that exist.
   ConstellationIndex(std::vector<MapLandmark> landmarks, FeatureScales scales,
                      ConstellationOptions options = {});
   /// Indexes a map around a body. `positions` are parallel to the landmarks, whose own `at` is not used.

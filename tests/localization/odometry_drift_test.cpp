@@ -152,6 +152,57 @@ TEST(DriftEstimator, LearntErrorsCarryTheRobotThroughAGap) {
   EXPECT_LT(ratio, 1.3);
 }
 
+/// Returns the variance along the way after 100 m straight ahead, with an update of the pose at each metre.
+template <class Update>
+double variance_ahead(Update&& update) {
+  DriftEstimator drift(kDrift);
+  PoseEstimate pose{{}, Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal()};
+  for (int i = 0; i < 200; ++i) {
+    pose = predict_pose(pose, drift.correct(pose, twist_motion(0.5, 0, 0, 1, kNoise), 1));
+    if (i % 2) pose = update(drift, pose);
+  }
+  return pose.covariance(0, 0);
+}
+
+// A lost robot rejects its sightings. A scale error of 3 % grows to 3 m in 100 m, not to the root of a
+// hundred independent errors of 3 cm.
+TEST(DriftEstimator, ErrorsPersistWhileTheRobotIsLost) {
+  const double without = variance_ahead([](DriftEstimator&, const PoseEstimate& pose) { return pose; });
+  EXPECT_GT(without, 100 * 100 * kDrift.scale_sd * kDrift.scale_sd);
+  const double lost = variance_ahead([](DriftEstimator& drift, const PoseEstimate& pose) {
+    drift.consider(pose, pose);
+    return pose;
+  });
+  EXPECT_NEAR(lost / without, 1, 1e-6);
+}
+
+TEST(DriftEstimator, AnUpdateOfALostRobotTeachesNoErrors) {
+  DriftEstimator drift(kDrift);
+  PoseEstimate pose{{}, Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal()};
+  for (int i = 0; i < 40; ++i)
+    pose = predict_pose(pose, drift.correct(pose, twist_motion(0.5, 0, 0, 1, kNoise), 1));
+  drift.consider(pose, update_pose(pose, GnssFix{pose.pose.at() + Eigen::Vector2d(0.5, 0), 0.1}).estimate);
+  EXPECT_EQ(drift.errors(), DriftEstimator::Errors::Zero());
+  EXPECT_NEAR(std::sqrt(drift.covariance()(0, 0)), kDrift.scale_sd, 1e-12);
+}
+
+// The covariance of 500 particles has an error of a sixteenth, also where no sighting changes them.
+TEST(DriftEstimator, NoiseOfParticlesIsNoNewStart) {
+  Random random(2, "particles");
+  const double without = variance_ahead([](DriftEstimator&, const PoseEstimate& pose) { return pose; });
+  double sampled = 0;
+  constexpr int kDrives = 40;
+  for (int drive = 0; drive < kDrives; ++drive)
+    sampled += variance_ahead([&](DriftEstimator& drift, const PoseEstimate& pose) {
+      PoseEstimate after = pose;
+      after.covariance *= 1 + 0.0625 * random.normal();
+      drift.learn(pose, after);
+      return after;
+    });
+  EXPECT_GT(sampled / kDrives / without, 0.6);
+  EXPECT_LT(sampled / kDrives / without, 1.5);
+}
+
 TEST(DriftEstimator, AJumpTeachesNothing) {
   DriftEstimator drift(kDrift);
   PoseEstimate pose{{}, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()};

@@ -138,18 +138,21 @@ localization::LineOfSight line_of_sight(const LocalizeTask& task) {
 std::unique_ptr<localization::Localizer> make_particle_localizer(
     LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search) {
   localization::PoseFinder finder = make_pose_finder(task, search);
-  const auto particles =
-      [matcher = make_matcher(task), &settings = task.settings, visible = line_of_sight(task)](
-          const std::optional<localization::PoseEstimate>& from, localization::PoseFinder finds) {
-        auto filter = std::make_unique<localization::ParticleFilter>(from, matcher, settings.particles,
-                                                                     std::move(finds));
-        filter->set_line_of_sight(visible);
-        return filter;
-      };
+  const localization::LandmarkMatcher matcher = make_matcher(task);
+  const auto particles = [matcher, &settings = task.settings, visible = line_of_sight(task)](
+                             const std::optional<localization::PoseEstimate>& from,
+                             localization::PoseFinder finds) {
+    auto filter =
+        std::make_unique<localization::ParticleFilter>(from, matcher, settings.particles, std::move(finds));
+    filter->set_line_of_sight(visible);
+    return filter;
+  };
   if (!start) return particles({}, std::move(finder));
+  localization::ChanceFraction chance;
+  if (!task.settings.identification.use_identities) chance = localization::make_chance_fraction(matcher);
   return std::make_unique<localization::RelocalizingFilter>(
       *start, [particles](const localization::PoseEstimate& from) { return particles(from, {}); },
-      std::move(finder), localization::ChanceFraction(), localization::FeatureScales(task.map.map.types()));
+      std::move(finder), std::move(chance), localization::FeatureScales(task.map.map.types()));
 }
 
 std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& task,

@@ -138,6 +138,34 @@ TEST(Constellation, FindsRocksAnywhereInAMap) {
   EXPECT_EQ(t.invented, 0);
 }
 
+// Three for each true one, near it: in the index they would take the places of true neighbours.
+TEST(Constellation, DoubtfulLandmarksAreNoWorseThanNone) {
+  const Stars stars = strewn_rocks(600, 200, 3);
+  std::vector<MapLandmark> with_false = stars.map;
+  Random random(8, "false");
+  for (const MapLandmark& l : stars.map)
+    for (int i = 0; i < 3; ++i) {
+      MapLandmark false_one = l;
+      false_one.key = with_false.size() + 1000000;
+      false_one.at += Eigen::Vector2d(random.uniform(-5, 5), random.uniform(-5, 5));
+      false_one.quality = random.uniform(0.05, 0.3);
+      with_false.push_back(false_one);
+    }
+  const ConstellationIndex removed(stars.map, {}), with(with_false, {});
+  const Tally expected = tally(stars, removed, {.reach = 15}, 60, 1);
+  const Tally found = tally(stars, with, {.reach = 15}, 60, 1);
+  EXPECT_EQ(found.right, expected.right);
+  EXPECT_EQ(found.wrong, 0);
+  EXPECT_GE(expected.right, 50);
+  ConstellationOptions unaware;
+  unaware.identification.quality_floor = 1;
+  EXPECT_LT(tally(stars, ConstellationIndex(with_false, {}, unaware), {.reach = 15}, 60, 1).right,
+            expected.right - 5);
+  // Where nothing is more likely than not, everything is searched.
+  for (MapLandmark& l : with_false) l.quality = 0.3;
+  EXPECT_EQ(ConstellationIndex(with_false, {}).size(), with_false.size());
+}
+
 TEST(Constellation, WithoutFeaturesMoreSightingsAreNeededButNoneIsWrong) {
   const Stars stars = on_plane(scatter_landmarks(5000, 500, 5, 0.05));
   const ConstellationIndex index(stars.map, {});
