@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kMinRange = 0.1;  // m: nearer, a bearing has no direction
 
-void add(Symmetric3& sum, const Symmetric3& more, double factor) {
-  sum.xx += factor * more.xx, sum.xy += factor * more.xy, sum.yy += factor * more.yy;
-  sum.xt += factor * more.xt, sum.yt += factor * more.yt, sum.tt += factor * more.tt;
-}
-
 }  // namespace
 
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,

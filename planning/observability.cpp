@@ -12,10 +12,7 @@ namespace {
 constexpr int kDoublings = 7;  // 128 sightings per drive
 
 void add(Information& sum, const Information& more, double factor) {
-  Symmetric3& j = sum.rate;
-  const Symmetric3& one = more.rate;
-  j.xx += factor * one.xx, j.xy += factor * one.xy, j.yy += factor * one.yy;
-  j.xt += factor * one.xt, j.yt += factor * one.yt, j.tt += factor * one.tt;
+  planning::add(sum.rate, more.rate, factor);
   sum.quality += factor * more.quality;
 }
 

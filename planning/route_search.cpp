@@ -147,24 +147,6 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
   return {};
 }
 
-DriveBelief propagate_route(const RouteProblem& problem, DriveBelief before, Route& route) {
-  const RouteCells& cells = problem.field.cells;
-  for (std::size_t i = 0; i < route.nodes.size(); ++i) {
-    RouteNode& node = route.nodes[i];
-    if (i > 0) {
-      const double length = step_length(cells, node.heading), yaw = node.heading * std::numbers::pi / 4;
-      before.drive(
-          {length, std::cos(yaw), std::sin(yaw), turn_between(route.nodes[i - 1].heading, node.heading)});
-      const Symmetric3& j = problem.field.get(node.cell, node.heading).rate;
-      before.see({j.xx * length, j.xy * length, j.yy * length, j.xt * length, j.yt * length, j.tt * length});
-    }
-    node.covariance = before.pose();
-    const double sd = position_sd(node.covariance);
-    route.worst_sd = i > 0 ? std::max(route.worst_sd, sd) : sd;
-  }
-  return before;
-}
-
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd) {
   // With the yaw known, the smallest variance of the position obeys v <- 1 / (1 / (v + q L) + j L): q is the
   // smaller of the odometry's variances, j the largest information in any direction. Both are bounds.

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 #include "planning/information_field.hpp"
-#include "planning/odometry_belief.hpp"
 namespace waymark::planning {
 
 /// Terrain and information on which routes are searched.
@@ -59,10 +58,6 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd);
 /// shortest (section 6 of the paper). Exact on the grid; `std::nullopt` if there is none.
 /// `by_quality`: sums qualities (eq. 8) in place of counting.
 std::optional<Route> search_by_landmarks(const RouteProblem& problem, double count, bool by_quality);
-
-/// Replaces the covariances of a route by those of a belief before it, and its largest sd. Returns the belief
-/// at the end.
-DriveBelief propagate_route(const RouteProblem& problem, DriveBelief before, Route& route);
 
 /// Returns the covariance after one step between neighbouring cells.
 Symmetric3 step_belief(const RouteProblem& problem, const Symmetric3& covariance, std::int64_t to,

@@ -14,11 +14,11 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
-#include "core/random.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
+#include "planning/world_beliefs.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/path_clearance.hpp"
 #include "workflows/planning/planning_sensor.hpp"
@@ -57,7 +57,8 @@ void check(const RouteRequest& request) {
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
 }
 
-constexpr int kTrials = 8;  // searches for the limit of a search
+constexpr int kTrials = 8;      // searches for the limit of a search
+constexpr double kJust = 0.95;  // of a limit: a route that reaches it is not longer than needed
 
 std::size_t slot(std::int64_t i) {
   return static_cast<std::size_t>(i);
@@ -86,15 +87,17 @@ struct Planner {
   planning::RouteProblem problem;
   std::map<std::uint64_t, std::string> uids;
   planning::Odometry odometry = {};
-  planning::DriveBelief before{{}, {}};  ///< at the start of the leg
+  std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
 
-  /// A route of the search, which takes all errors of the odometry as independent.
+  /// A route of the search, which takes all errors of the odometry as independent and all misses of a
+  /// landmark.
   std::optional<planning::Route> search_white(double max_sd, double weight, int labels) const {
     return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
   }
-  /// The same route with the belief that knows errors to persist.
+  /// The same route with the belief over worlds.
   planning::Route believed(planning::Route route) const {
-    if (odometry.drift.any()) planning::propagate_route(problem, before, route);
+    planning::WorldBeliefs beliefs = *before;
+    planning::follow_route(beliefs, problem, landmarks, sensing, route);
     return route;
   }
   std::optional<planning::Route> search(double max_sd, double weight, int labels) const {
@@ -113,49 +116,56 @@ struct Planner {
     return route;
   }
 
-  /// Returns the shortest route found that keeps a limit. Where errors of the odometry persist, the limit of
-  /// the search is moved until the route with the whole belief just keeps it.
-  std::optional<planning::Route> keep(double limit) {
-    if (!odometry.drift.any()) return best(limit, 0);
+  /// Routes that weigh the sd, which the search for a limit does not beyond the limit.
+  std::vector<planning::Route> weighted() const {
+    std::vector<planning::Route> routes;
+    for (const double weight : {0.3, 1.0, 3.0, 10.0})
+      if (auto route = search(1e9, weight, 1)) routes.push_back(std::move(*route));
+    return routes;
+  }
+
+  /// Returns the shortest route found that keeps a limit. The limit of the search is moved until the route
+  /// with the belief over worlds just keeps it.
+  std::optional<planning::Route> keep(double limit) const {
     const double shortest =
         planning::distances_to(problem.field.cells, problem.passable, problem.to)[slot(problem.from)];
     std::optional<planning::Route> kept;
     double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
     for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
-      auto route = best(asked, 0);
+      auto route = search(asked, 0, 4);
       const bool keeps = route && route->worst_sd <= limit;
       (route && !keeps ? high : low) = asked;
       if (keeps && (!kept || route->length < kept->length)) kept = std::move(route);
-      if (kept && kept->length < shortest + 1e-6) break;
+      if (kept && (kept->length < shortest + 1e-6 || kept->worst_sd > kJust * limit)) return kept;
       asked = !(low > 0) ? high / 1.5 : std::isfinite(high) ? std::sqrt(low * high) : 1.5 * low;
     }
+    for (planning::Route& route : weighted())
+      if (route.worst_sd <= limit && (!kept || route.length < kept->length)) kept = std::move(route);
     return kept;
   }
 
-  /// Returns the route with the smallest worst sd that was found, by bisection of the limit to 1 %: first
-  /// with one label per cell and heading, then near the result with four.
+  /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
+  /// routes that weigh the sd.
   planning::Route least() const {
-    const double start = position_sd(problem.start);
     planning::Route least = *search(1e9, 0, 1);
-    double high = search_white(1e9, 0, 1)->worst_sd;
-    for (const int labels : {1, 4}) {
-      double low = labels == 1 ? start : std::max(start, high / 1.5);
-      while (high > 1.01 * low) {
-        const double middle = std::sqrt(low * high);
-        auto route = search_white(middle, 0, labels);
-        if (!route) {
-          low = middle;
-          continue;
-        }
-        high = std::min(middle, route->worst_sd);
-        planning::Route known = believed(std::move(*route));
-        if (known.worst_sd < least.worst_sd) least = std::move(known);
+    double low = position_sd(problem.start), high = search_white(1e9, 0, 1)->worst_sd;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      auto route = search_white(middle, 0, 1);
+      if (!route) {
+        low = middle;
+        continue;
       }
+      high = std::min(middle, route->worst_sd);
+      planning::Route known = believed(std::move(*route));
+      if (known.worst_sd < least.worst_sd) least = std::move(known);
     }
+    for (planning::Route& route : weighted())
+      if (route.worst_sd < least.worst_sd) least = std::move(route);
     return least;
   }
 
-  [[noreturn]] void fail_limit() const {
+  [[noreturn]] void fail_limit(double least_sd) const {
     planning::RouteProblem independent = problem;  // persistent errors can be known: they bound nothing
     independent.noise = odometry.noise;
     const double bound = planning::relaxed_sd(independent, 1e6)[slot(problem.to)];
@@ -164,7 +174,7 @@ struct Planner {
                 request.map,
                 fmt::format("the least worst sd that was found is {:.2f} m; at the goal it cannot be below "
                             "{:.2f} m",
-                            least().worst_sd, bound));
+                            least_sd, bound));
   }
 
   planning::Route leg() {
@@ -173,10 +183,14 @@ struct Planner {
         return believed(*route);
     } else if (request.least_sigma) {
       return least();
-    } else if (auto route = request.limit_sigma > 0 ? keep(request.limit_sigma) : best(1e9, request.weight)) {
+    } else if (request.limit_sigma > 0) {
+      if (auto route = keep(request.limit_sigma)) return *route;
+      planning::Route best_kept = least();
+      if (!(best_kept.worst_sd <= request.limit_sigma)) fail_limit(best_kept.worst_sd);
+      return best_kept;
+    } else if (auto route = best(1e9, request.weight)) {
       return *route;
     }
-    if (request.limit_sigma > 0) fail_limit();
     throw Error(ErrorCode::input, "the search found no route", request.map, "");
   }
 
@@ -194,49 +208,20 @@ struct Planner {
     return first;
   }
 
-  /// Returns the worst sd on the route in worlds in which each landmark exists or not.
-  std::vector<double> worst_in_worlds(const std::vector<planning::RouteNode>& nodes) const {
-    std::vector<double> worst;
-    for (std::int64_t world = 0; world < request.worlds; ++world) {
-      Random random(static_cast<std::uint64_t>(request.seed * 1'000'003 + world));
-      std::vector<char> exists(landmarks.size());
-      for (std::size_t i = 0; i < landmarks.size(); ++i) exists[i] = random.uniform() < landmarks[i].quality;
-      planning::DriveBelief belief(problem.start, odometry);
-      double sd = position_sd(problem.start);
-      for (std::size_t k = 1; k < nodes.size(); ++k) {
-        const planning::RouteCells& cells = problem.field.cells;
-        const auto &a = nodes[k - 1], &b = nodes[k];
-        if (a.cell == b.cell) continue;
-        const Eigen::Vector2d step(cells.x(b.cell) - cells.x(a.cell), cells.y(b.cell) - cells.y(a.cell));
-        const double length = step.norm();
-        const double turn =
-            std::abs(localization::wrap_angle((b.heading - a.heading) * std::numbers::pi / 4));
-        belief.drive({length, step.x() / length, step.y() / length, turn});
-        planning::Symmetric3 j;
-        planning::visit_information(
-            planning::heading_pose(cells.x(b.cell), cells.y(b.cell), b.heading), landmarks, sensing,
-            [&](std::uint32_t i, const planning::Symmetric3& one) {
-              if (!exists[i]) return;
-              j.xx += length * one.xx, j.xy += length * one.xy, j.yy += length * one.yy;
-              j.xt += length * one.xt, j.yt += length * one.yt, j.tt += length * one.tt;
-            });
-        belief.see(j);
-        sd = std::max(sd, position_sd(belief.pose()));
-      }
-      worst.push_back(sd);
-    }
-    return worst;
-  }
-
   PlannedRoute describe(const std::vector<planning::Route>& legs) const {
     PlannedRoute route;
     const planning::RouteCells& cells = problem.field.cells;
     std::vector<planning::RouteNode> nodes;
+    planning::Route whole;
     for (const planning::Route& leg : legs) {
       route.length += leg.length, route.outside += leg.outside;
-      route.worst_sd = std::max(route.worst_sd, leg.worst_sd);
       nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
     }
+    whole.nodes = nodes;
+    planning::WorldBeliefs beliefs(problem.start, odometry, landmarks, request.worlds, request.seed);
+    std::vector<double> worst = planning::follow_route(beliefs, problem, landmarks, sensing, whole);
+    nodes = whole.nodes;
+    route.worst_sd = whole.worst_sd;
     double distance = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const planning::RouteNode& node = nodes[k];
@@ -252,7 +237,6 @@ struct Planner {
                                 important(pose)});
     }
     route.final_sd = route.stations.back().sd;
-    std::vector<double> worst = worst_in_worlds(nodes);
     std::ranges::sort(worst, std::greater<>());
     for (const double sd : worst) route.worlds_mean += sd / double(worst.size());
     const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
@@ -310,7 +294,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   const auto legs_with = [&](auto&& search) {
     std::vector<planning::Route> legs;
     problem.start = start;
-    planner.before = planning::DriveBelief(start, planner.odometry);
+    planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
     problem.heading.reset();
     if (points[0].yaw)
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
@@ -323,8 +307,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
                     request.hazards,
                     "hazards and unknown terrain lie between; make --cell finer, or pass --hazards none");
       legs.push_back(search());
-      if (planner.odometry.drift.any())
-        planner.before = planning::propagate_route(problem, planner.before, legs.back());
+      planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
       problem.start = legs.back().nodes.back().covariance;
       problem.heading = legs.back().nodes.back().heading;
     }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "planning/odometry_belief.hpp"
 #include "testbed/drive/drive_readings.hpp"
 #include "testbed/drive/odometry_errors.hpp"
 #include "workflows/planning/planning_sensor.hpp"
