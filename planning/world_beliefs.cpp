@@ -8,14 +8,24 @@
 #include "core/random.hpp"
 
 namespace waymark::planning {
+namespace {
+
+// Square root of the intra-class correlation of detections: 0.4 for the rocks of a simulated site
+// (docs/methods/routes.md).
+constexpr double kRepeated = 0.63;
+
+}  // namespace
 
 WorldBeliefs::WorldBeliefs(const Symmetric3& start, const Odometry& odometry,
                            const localization::LandmarkGrid& map, std::int64_t worlds, std::int64_t seed)
     : beliefs_(static_cast<std::size_t>(worlds), DriveBelief(start, odometry)) {
   for (std::int64_t world = 0; world < worlds; ++world) {
     Random random(static_cast<std::uint64_t>(seed * 1'000'003 + world));
-    std::vector<double>& draws = draws_.emplace_back(map.size());
-    for (double& draw : draws) draw = random.uniform();
+    std::vector<Draw>& draws = draws_.emplace_back();
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      const bool exists = random.uniform() < map[i].quality;
+      draws.push_back({exists, random.uniform()});
+    }
   }
 }
 
@@ -31,9 +41,12 @@ void WorldBeliefs::see(const localization::Pose2& pose, double length, const loc
     const double detection =
         detection_probability(sensing.coverage, (landmark.at - pose.at()).norm(), landmark.diameter);
     if (!(detection > 0)) return;
-    const double scale = length / detection;  // seen each time, in the worlds that see it
-    for (std::size_t world = 0; world < sums.size(); ++world)
-      if (draws_[world][i] < landmark.quality * detection) add(sums[world], information, scale);
+    for (std::size_t world = 0; world < sums.size(); ++world) {
+      const Draw& draw = draws_[world][i];
+      if (!draw.exists) continue;
+      const double repeated = draw.visible < detection ? kRepeated : 0;
+      add(sums[world], information, length * (1 - kRepeated + repeated / detection));
+    }
   });
   for (std::size_t world = 0; world < sums.size(); ++world)
     if (!(sums[world] == Symmetric3{})) beliefs_[world].see(sums[world]);

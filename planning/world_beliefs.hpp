@@ -6,9 +6,10 @@
 #include "planning/route_search.hpp"
 namespace waymark::planning {
 
-/// Beliefs of one drive in random worlds. What a landmark does repeats: one that is absent, too low or behind
-/// a bump is missed at each sighting of a passage. So each world draws once per landmark whether it is seen,
-/// by its confidence and the sensor's probability of detection; that falls with the range.
+/// Beliefs of one drive in random worlds. What a landmark does repeats: one that is absent is missed at each
+/// sighting, one that is low or behind a bump at most of them. So each world draws once per landmark whether
+/// it exists, by its confidence, and how well it is seen: its detections have the sensor's probability on
+/// average, and an intra-class correlation of 0.4.
 class WorldBeliefs {
  public:
   WorldBeliefs(const Symmetric3& start, const Odometry& odometry, const localization::LandmarkGrid& map,
@@ -24,8 +25,12 @@ class WorldBeliefs {
   std::vector<double> position_sds() const;
 
  private:
+  struct Draw {
+    bool exists;
+    double visible;  // in [0, 1): seen well where the probability of detection is larger
+  };
   std::vector<DriveBelief> beliefs_;
-  std::vector<std::vector<double>> draws_;  // per world and landmark, in [0, 1)
+  std::vector<std::vector<Draw>> draws_;  // per world and landmark
 };
 
 /// Follows a route, whose covariances become those over all worlds. Returns the largest sd in each world.

@@ -57,7 +57,19 @@ TEST(WorldBeliefs, AnAbsentLandmarkIsMissedAtEachSighting) {
   const double seen = variance(1, 1), never = variance(0, 1);
   ASSERT_GT(never, 4 * seen);
   EXPECT_NEAR(variance(0.5, 1), (seen + never) / 2, 0.04 * never);
-  EXPECT_NEAR(variance(1, 0.5), variance(0.5, 1), 1e-12) << "missed for good or not there: the same";
+}
+
+TEST(WorldBeliefs, MissesThatRepeatAreWorseThanRandomOnesAndBetterThanAbsence) {
+  const auto map = one_landmark(1);
+  DriveBelief random({0.01, 0, 0.01, 0, 0, 3e-4}, {});
+  for (int i = 1; i <= 15; ++i) {
+    random.drive({2, 1, 0, 0});
+    Symmetric3 j;
+    add(j, information_at({2.0 * i, 0, 0}, map, laser(0.5)).rate, 2);
+    random.see(j);
+  }
+  EXPECT_GT(variance(1, 0.5), std::pow(position_sd(random.pose()), 2));
+  EXPECT_LT(variance(1, 0.5), variance(0.5, 1));
 }
 
 }  // namespace
