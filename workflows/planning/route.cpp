@@ -60,6 +60,8 @@ void check(const RouteRequest& request) {
 constexpr int kTrials = 8;      // searches for the limit of a search
 constexpr double kJust = 0.95;  // of a limit: a route that reaches it is not longer than needed
 
+constexpr std::int64_t kManyLabels = 50'000;  // cells up to which each trial has four labels
+
 std::size_t slot(std::int64_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -129,10 +131,13 @@ struct Planner {
   std::optional<planning::Route> keep(double limit) const {
     const double shortest =
         planning::distances_to(problem.field.cells, problem.passable, problem.to)[slot(problem.from)];
+    const int labels = problem.field.cells.count() <= kManyLabels ? 4 : 1;
     std::optional<planning::Route> kept;
     double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
     for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
-      auto route = search(asked, 0, 4);
+      auto route = search(asked, 0, labels);
+      // The search is too cautious at most where errors persist; else what it refuses cannot be kept.
+      if (!route && i == 0 && !odometry.drift.any()) return {};
       const bool keeps = route && route->worst_sd <= limit;
       (route && !keeps ? high : low) = asked;
       if (keeps && (!kept || route->length < kept->length)) kept = std::move(route);
