@@ -51,7 +51,7 @@ class RouteCommand final : public Command {
              Argument{"--by-quality", "", &request_.by_quality,
                       "Sum their qualities in place of counting them"},
              Argument{"--weight", "W", &request_.weight, "Metres of detour per metre driven at an sd of 1 m"},
-             Argument{"--least-sigma", "", &request_.least_sigma,
+             Argument{"--least-sigma", "", &request_.min_sigma,
                       "Drive where the largest sd is the smallest that is found"},
              Argument{"--odometry", "LOG", &request_.odometry,
                       "Log of the vehicle: its header states the odometry noise and the errors at the start"}

@@ -52,11 +52,12 @@ LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const E
 /// forgotten, mixed or undone by a motion may leave more, and an update would then make variances negative.
 Eigen::Matrix<double, 3, 2> possible(const Eigen::Matrix<double, 3, 2>& with, const Eigen::Matrix3d& pose,
                                      const Eigen::Matrix2d& landmark) {
-  constexpr double most = 0.98;  // of the landmark's variance explained by the pose
+  constexpr double max_explained = 0.98;  // of the landmark's variance explained by the pose
   const Eigen::Matrix2d explained = landmark.inverse() * with.transpose() * pose.inverse() * with;
   const double mean = explained.trace() / 2;
   const double largest = mean + std::sqrt(std::max(0.0, mean * mean - explained.determinant()));
-  return largest > most ? Eigen::Matrix<double, 3, 2>(with * std::sqrt(most / largest)) : with;
+  return largest > max_explained ? Eigen::Matrix<double, 3, 2>(with * std::sqrt(max_explained / largest))
+                                 : with;
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ namespace {
 
 void check(const RouteRequest& request) {
   const int objectives = (request.limit_sigma > 0) + (request.keep_landmarks > 0) + (request.weight > 0) +
-                         (request.least_sigma ? 1 : 0);
+                         (request.min_sigma ? 1 : 0);
   const auto refuse = [](const std::string& problem, const std::string& hint) {
     throw Error(ErrorCode::usage, problem, "", hint);
   };
@@ -97,14 +97,14 @@ struct Planner {
     return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
   }
   /// The same route with the belief over worlds.
-  planning::Route believed(planning::Route route) const {
+  planning::Route with_belief(planning::Route route) const {
     planning::WorldBeliefs beliefs = *before;
     planning::follow_route(beliefs, problem, landmarks, sensing, route);
     return route;
   }
   std::optional<planning::Route> search(double max_sd, double weight, int labels) const {
     auto route = search_white(max_sd, weight, labels);
-    return route ? std::optional(believed(std::move(*route))) : std::nullopt;
+    return route ? std::optional(with_belief(std::move(*route))) : std::nullopt;
   }
 
   /// Grows the number of labels until the cost stops to fall.
@@ -151,8 +151,8 @@ struct Planner {
 
   /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
   /// routes that weigh the sd.
-  planning::Route least() const {
-    planning::Route least = *search(1e9, 0, 1);
+  planning::Route min_sd_route() const {
+    planning::Route best = *search(1e9, 0, 1);
     double low = position_sd(problem.start), high = search_white(1e9, 0, 1)->worst_sd;
     while (high > 1.01 * low) {
       const double middle = std::sqrt(low * high);
@@ -162,12 +162,12 @@ struct Planner {
         continue;
       }
       high = std::min(middle, route->worst_sd);
-      planning::Route known = believed(std::move(*route));
-      if (known.worst_sd < least.worst_sd) least = std::move(known);
+      planning::Route known = with_belief(std::move(*route));
+      if (known.worst_sd < best.worst_sd) best = std::move(known);
     }
     for (planning::Route& route : weighted())
-      if (route.worst_sd < least.worst_sd) least = std::move(route);
-    return least;
+      if (route.worst_sd < best.worst_sd) best = std::move(route);
+    return best;
   }
 
   [[noreturn]] void fail_limit(double least_sd) const {
@@ -185,14 +185,14 @@ struct Planner {
   planning::Route leg() {
     if (request.keep_landmarks > 0) {
       if (auto route = planning::search_by_landmarks(problem, request.keep_landmarks, request.by_quality))
-        return believed(*route);
-    } else if (request.least_sigma) {
-      return least();
+        return with_belief(*route);
+    } else if (request.min_sigma) {
+      return min_sd_route();
     } else if (request.limit_sigma > 0) {
       if (auto route = keep(request.limit_sigma)) return *route;
-      planning::Route best_kept = least();
-      if (!(best_kept.worst_sd <= request.limit_sigma)) fail_limit(best_kept.worst_sd);
-      return best_kept;
+      planning::Route safest = min_sd_route();
+      if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
+      return safest;
     } else if (auto route = best(1e9, request.weight)) {
       return *route;
     }

@@ -20,7 +20,7 @@ struct RouteRequest {
   double limit_sigma = 0;        ///< metres; 0: none
   double keep_landmarks = 0;     ///< number; 0: not wanted
   double weight = 0;             ///< metres of detour per metre at an sd of 1 m
-  bool least_sigma = false;      ///< the smallest worst sd
+  bool min_sigma = false;        ///< the smallest worst sd
   bool by_quality = false;       ///< keep_landmarks sums qualities
   double cell = 2;               ///< metres
   double start_sd = 0;           ///< metres; 0: that of the odometry's log, else 0.1
@@ -31,8 +31,8 @@ struct RouteRequest {
   std::int64_t seed = 1;
   std::vector<std::string> dem = {};  ///< terrain that hides landmarks, for clearance and tilt at the
                                       ///< stations; empty: that stored in the map hides, no clearance
-  double sensor_height = 1;       ///< metres above the terrain
-  std::string vehicle = "rover";  ///< of clearance and tilt
+  double sensor_height = 1;           ///< metres above the terrain
+  std::string vehicle = "rover";      ///< of clearance and tilt
 };
 
 /// One row of the layer `route_station`.
