@@ -26,6 +26,11 @@ Eigen::Matrix3d Symmetric3::matrix() const {
   return m;
 }
 
+void add(Symmetric3& sum, const Symmetric3& more, double factor) {
+  sum.xx += factor * more.xx, sum.xy += factor * more.xy, sum.yy += factor * more.yy;
+  sum.xt += factor * more.xt, sum.yt += factor * more.yt, sum.tt += factor * more.tt;
+}
+
 Symmetric3 symmetric(const Eigen::Matrix3d& m) {
   return {m(0, 0), (m(0, 1) + m(1, 0)) / 2, m(1, 1), (m(0, 2) + m(2, 0)) / 2, (m(1, 2) + m(2, 1)) / 2,
           m(2, 2)};

@@ -12,6 +12,9 @@ struct Symmetric3 {
   friend bool operator==(const Symmetric3&, const Symmetric3&) = default;
 };
 
+/// Adds `factor` times a matrix to a sum.
+void add(Symmetric3& sum, const Symmetric3& more, double factor);
+
 /// Returns the upper triangle of a symmetric matrix.
 Symmetric3 symmetric(const Eigen::Matrix3d& matrix);
 

@@ -14,11 +14,6 @@ namespace {
 
 constexpr double kMinRange = 0.1;  // m: nearer, a bearing has no direction
 
-void add(Symmetric3& sum, const Symmetric3& more, double factor) {
-  sum.xx += factor * more.xx, sum.xy += factor * more.xy, sum.yy += factor * more.yy;
-  sum.xt += factor * more.xt, sum.yt += factor * more.yt, sum.tt += factor * more.tt;
-}
-
 }  // namespace
 
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
@@ -54,6 +49,18 @@ void visit_information(const localization::Pose2& pose, const localization::Land
   });
 }
 
+LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing) {
+  LandmarkSensing once = sensing;
+  if (!sensing.visible) return once;
+  once.visible = [&visible = sensing.visible, tested = std::vector<std::pair<Eigen::Vector2d, bool>>()](
+                     const localization::Pose2& pose, const Eigen::Vector2d& landmark) mutable {
+    const auto found = std::ranges::find(tested, landmark, &std::pair<Eigen::Vector2d, bool>::first);
+    if (found != tested.end()) return found->second;
+    return tested.emplace_back(landmark, visible(pose, landmark)).second;
+  };
+  return once;
+}
+
 Information information_at(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                            const LandmarkSensing& sensing) {
   Information sum;
@@ -84,9 +91,10 @@ InformationField make_information_field(const RouteCells& cells, const std::vect
   const auto fill_row = [&](std::int64_t row) {
     for (std::int64_t i = row * cells.columns; i < (row + 1) * cells.columns; ++i) {
       if (!passable[static_cast<std::size_t>(i)]) continue;
+      const LandmarkSensing here = sensing_at_one_position(sensing);
       for (int h = 0; h < field.headings; ++h)
         field.at[static_cast<std::size_t>(i * field.headings + h)] =
-            information_at(heading_pose(cells.x(i), cells.y(i), h), map, sensing);
+            information_at(heading_pose(cells.x(i), cells.y(i), h), map, here);
     }
   };
   if (sensing.visible) {  // a line of sight reads the DEM through a cache of one thread

@@ -26,6 +26,10 @@ using VisitInformation = std::function<void(std::uint32_t landmark, const Symmet
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                        const LandmarkSensing& sensing, const VisitInformation& visit);
 
+/// Returns the same sensing with each line of sight tested once, for poses at one position. `sensing` must
+/// outlive it.
+LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing);
+
 /// Information at a pose.
 struct Information {
   Symmetric3 rate;     ///< per metre driven; each landmark counts with its confidence

@@ -12,10 +12,7 @@ namespace {
 constexpr int kDoublings = 7;  // 128 sightings per drive
 
 void add(Information& sum, const Information& more, double factor) {
-  Symmetric3& j = sum.rate;
-  const Symmetric3& one = more.rate;
-  j.xx += factor * one.xx, j.xy += factor * one.xy, j.yy += factor * one.yy;
-  j.xt += factor * one.xt, j.yt += factor * one.yt, j.tt += factor * one.tt;
+  planning::add(sum.rate, more.rate, factor);
   sum.quality += factor * more.quality;
 }
 
@@ -29,11 +26,12 @@ Observability observability_at(double x, double y, const localization::LandmarkG
                                const ObservabilityRules& rules) {
   const bool all_round = !(rules.sensing.coverage.view < 360);
   const double step = rules.drive / (1 << kDoublings);
+  const LandmarkSensing here = sensing_at_one_position(rules.sensing);
   Observability out;
   Information seen;
   for (int heading = 0; heading < kHeadings; ++heading) {
     const localization::Pose2 pose = heading_pose(x, y, heading);
-    if (heading == 0 || !all_round) seen = information_at(pose, map, rules.sensing);
+    if (heading == 0 || !all_round) seen = information_at(pose, map, here);
     add(out.mean, seen, 1.0 / kHeadings);
     out.landmarks += static_cast<double>(seen.landmarks) / kHeadings;
     const Symmetric3 after = covariance_after(drive_segment({step, std::cos(pose.yaw), std::sin(pose.yaw), 0},

@@ -67,6 +67,9 @@ class Hazards final : public Command {
              Argument{"--horizon-reach", "METRES", &request_.horizon_reach,
                       "Farthest terrain that hides the sun"}
                  .or_else("1000"),
+             Argument{"--aoi", "POLYGONS", &request_.aoi, "Terrain outside this area is unknown"}.offering(
+                 Offer::file),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of a DEM whose file has none"},
              Argument{"--polygons", "FILE.gpkg", &request_.polygons,
                       "Write areas that are not safe as polygons, layer hazard"}
                  .offering(Offer::file),

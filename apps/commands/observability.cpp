@@ -21,7 +21,8 @@ class ObservabilityCommand final : public Command {
             "eight headings; then the landmarks in sight, the sum of their qualities, and the information "
             "per metre driven, means over the headings. A QGIS style is written beside it.\n\n"
             "Noise of the odometry and correlated errors of the map are those of `waymark route`. "
-            "Identities are taken as known, and no terrain hides a landmark.",
+            "Identities are taken as known. With a DEM, terrain hides landmarks as it does for `waymark "
+            "localize`.",
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks, in metres"),
              Argument{"-o,--output", "INFO.tif", &request_.output, "Raster"}.needed().offering(Offer::file),
@@ -35,6 +36,14 @@ class ObservabilityCommand final : public Command {
              Argument{"--view", "DEGREES", &request_.view, "Horizontal field of view"}.or_else(
                  "that of the profile"),
              Argument{"--cell", "METRES", &request_.cell, "Cells of the raster"}.or_else("2"),
+             Argument{"--dem", "DEM...", &request_.dem, "Terrain that hides landmarks"}
+                 .offering(Offer::file)
+                 .or_else("that stored in the map"),
+             Argument{"--sensor-height", "METRES", &request_.sensor_height,
+                      "Height of the sensor above the terrain"}
+                 .or_else("1"),
+             Argument{"--aoi", "POLYGONS", &request_.aoi, "Cover only this area; cells outside have no value"}
+                 .offering(Offer::file),
              Argument{"--drive", "METRES", &request_.drive, "Length of the drive"}.or_else("100"),
              Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("256")},
         .examples = {{"waymark observability site.gpkg -o info.tif --sensor horizontal_laser",

@@ -18,10 +18,10 @@ class RouteCommand final : public Command {
             "The covariance of the position is propagated along the route with the odometry noise of "
             "`waymark localize` and the landmarks that the sensor sees. Give one objective: --limit-sigma "
             "keeps the sd below a limit on the shortest route, --keep-landmarks drives the least length "
-            "with fewer landmarks in sight, --weight is a compromise of length and sd.\n\n"
+            "with fewer landmarks in sight, --weight is a compromise of length and sd, --least-sigma has the "
+            "smallest worst sd.\n\n"
             "OUT.gpkg has the layers route and route_station: the ellipse of the error, the landmarks in "
-            "sight, and the three that inform most. Identities are taken as known, and no terrain hides a "
-            "landmark.",
+            "sight, and the three that inform most. Identities are taken as known.",
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks"),
              Argument{"--from", "X,Y[,YAW]", &request_.from,
@@ -51,9 +51,17 @@ class RouteCommand final : public Command {
              Argument{"--by-quality", "", &request_.by_quality,
                       "Sum their qualities in place of counting them"},
              Argument{"--weight", "W", &request_.weight, "Metres of detour per metre driven at an sd of 1 m"},
+             Argument{"--least-sigma", "", &request_.min_sigma,
+                      "Drive where the largest sd is the smallest that is found"},
+             Argument{"--odometry", "LOG", &request_.odometry,
+                      "Log of the vehicle: its header states the odometry noise and the errors at the start"}
+                 .offering(Offer::file)
+                 .or_else("noise of an unknown vehicle"),
+             Argument{"--speed", "M/S", &request_.speed, "Speed of the drive, for biases of turn rates"}
+                 .or_else("0.5"),
              Argument{"--cell", "METRES", &request_.cell, "Cells of the search"}.or_else("2"),
              Argument{"--start-sd", "METRES", &request_.start_sd, "Sd of the position at the start"}.or_else(
-                 "0.1"),
+                 "that of the log, else 0.1"),
              Argument{"--worlds", "N", &request_.worlds,
                       "Random sets of existing landmarks that check the route"}
                  .or_else("32"),
@@ -61,8 +69,12 @@ class RouteCommand final : public Command {
                       "Routes along the front of length and sd, each a tenth better"}
                  .or_else("1"),
              Argument{"--dem", "DEM...", &request_.dem,
-                      "Terrain: gives the stations bounds of the belly's clearance and of the tilt"}
+                      "Terrain: hides landmarks, and gives the stations bounds of the belly's clearance and "
+                      "of the tilt; that stored in the map hides, too"}
                  .offering(Offer::file),
+             Argument{"--sensor-height", "METRES", &request_.sensor_height,
+                      "Height of the sensor above the terrain"}
+                 .or_else("1"),
              Argument{"--vehicle", "NAME|FILE", &request_.vehicle, "Vehicle of these bounds"}.or_else(
                  "rover"),
              Argument{"--seed", "N", &request_.seed, "Seed of the worlds"}.or_else("1")},

@@ -86,6 +86,12 @@ bool Area::contains(double x, double y) const {
   return false;
 }
 
+Eigen::AlignedBox2d Area::box() const {
+  Eigen::AlignedBox2d box;
+  for (const Part& part : parts_) box.extend(Eigen::AlignedBox2d(part.low, part.high));
+  return box;
+}
+
 Area read_area_of_interest(const std::string& path, const Crs& into) {
   const GdalDataset dataset =
       open_vector(path, "file of areas", "areas are polygons: GeoPackage, GeoJSON, ...");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
@@ -16,6 +16,8 @@ class Area {
 
   /// Returns whether a polygon contains the point; on the boundary either answer. O(corners).
   bool contains(double x, double y) const;
+  /// Returns the box of all polygons.
+  Eigen::AlignedBox2d box() const;
 
  private:
   struct Part {

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "localization/body_motion.hpp"
 #include "localization/filters/measurement.hpp"
@@ -47,6 +48,18 @@ LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const E
   return line;
 }
 
+/// Returns the covariance of pose and landmark, scaled down to what their own covariances allow: what was
+/// forgotten, mixed or undone by a motion may leave more, and an update would then make variances negative.
+Eigen::Matrix<double, 3, 2> possible(const Eigen::Matrix<double, 3, 2>& with, const Eigen::Matrix3d& pose,
+                                     const Eigen::Matrix2d& landmark) {
+  constexpr double max_explained = 0.98;  // of the landmark's variance explained by the pose
+  const Eigen::Matrix2d explained = landmark.inverse() * with.transpose() * pose.inverse() * with;
+  const double mean = explained.trace() / 2;
+  const double largest = mean + std::sqrt(std::max(0.0, mean * mean - explained.determinant()));
+  return largest > max_explained ? Eigen::Matrix<double, 3, 2>(with * std::sqrt(max_explained / largest))
+                                 : with;
+}
+
 }  // namespace
 
 void MapErrors::predict(const Pose2& before, const Pose2& step) {
@@ -71,8 +84,9 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
                                         : by_derivatives(before, robot_from_sensor, landmark.at);
   const auto at = std::ranges::lower_bound(errors_, landmark.key, {}, &Entry::key);
   const bool known = at != errors_.end() && at->key == landmark.key;
-  const WithLandmark with = known ? at->covariance : WithLandmark::Zero();
   const Eigen::Matrix2d map_error = landmark.covariance / trust;
+  const WithLandmark with =
+      known ? possible(at->covariance, before.covariance, map_error) : WithLandmark::Zero();
   Eigen::Matrix<double, 2, 3> h = line.by_pose;
   Eigen::Matrix2d b = line.by_landmark, r = sensor_noise(seen) / trust + line.residual;
   if (!seen.range) {  // the range row carries no information

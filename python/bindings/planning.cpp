@@ -38,6 +38,10 @@ const Keywords<workflows::RouteRequest>& route_keywords() {
                               .add("by_quality", &R::by_quality)
                               .add("cell", &R::cell)
                               .add("start_sd", &R::start_sd)
+                              .add("least_sigma", &R::min_sigma)
+                              .add("odometry", &R::odometry)
+                              .add("speed", &R::speed)
+                              .add("sensor_height", &R::sensor_height)
                               .add("worlds", &R::worlds)
                               .add("alternatives", &R::alternatives)
                               .add("seed", &R::seed)
@@ -64,6 +68,8 @@ const Keywords<workflows::HazardMapRequest>& hazard_keywords() {
                               .add("landing_ellipse", &R::landing_ellipse)
                               .add("sun", &R::sun)
                               .add("horizon_reach", &R::horizon_reach)
+                              .add("aoi", &R::aoi)
+                              .add("crs", &R::crs)
                               .add("tile_cells", &R::tile_cells)
                               .add("threads", &R::threads);
   return all;

@@ -954,11 +954,11 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         weight: metres of detour per metre at an sd of 1 m
         by_quality: keep_landmarks sums qualities
         cell: metres
-        start_sd: metres
+        start_sd: metres; 0: that of the odometry's log, else 0.1
         worlds: random sets of existing landmarks
         alternatives
         seed
-        dem: terrain, for clearance and tilt at the stations; empty: none
+        dem: terrain that hides landmarks, for clearance and tilt at the stations; empty: that stored in the map hides, no clearance
         vehicle: of clearance and tilt"""
     ...
 

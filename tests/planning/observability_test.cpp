@@ -105,5 +105,29 @@ TEST(Observability, ANarrowViewSeesLandmarksOfSomeHeadings) {
   EXPECT_NEAR(narrow.position_sd, position_sd(predict({}, {100, 1, 0, 0}, {})), 0.01 * narrow.position_sd);
 }
 
+TEST(Observability, LandmarksBehindAHillAreNotSeen) {
+  const auto map = row_of_landmarks(8);  // x from 0 to 35, y = 10
+  ObservabilityRules hill = laser();
+  const auto ridge = [](const Eigen::Vector2d& at) -> std::optional<double> {
+    return at.x() > 15 && at.x() < 19 ? 5.0 : 0.0;
+  };
+  hill.sensing.visible = localization::terrain_line_of_sight(ridge, {});
+  const Observability open = observability_at(10, 0, map, laser()),
+                      behind = observability_at(10, 0, map, hill);
+  EXPECT_EQ(open.landmarks, 6);    // x up to 25
+  EXPECT_EQ(behind.landmarks, 4);  // not those at 20 and 25
+  EXPECT_GT(behind.position_sd, open.position_sd);
+}
+
+TEST(Observability, ALineOfSightIsTestedOncePerPlace) {
+  ObservabilityRules rules = laser(120);  // eight headings
+  int tests = 0;
+  rules.sensing.visible = [&](const localization::Pose2&, const Eigen::Vector2d&) { return ++tests > 0; };
+  const Observability at = observability_at(10, 0, row_of_landmarks(8), rules);
+  EXPECT_EQ(tests, 6);
+  ObservabilityRules free = laser(120);
+  EXPECT_EQ(at.position_sd, observability_at(10, 0, row_of_landmarks(8), free).position_sd);
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -51,6 +51,7 @@ std::optional<DrivePlan> DrivePlanner::plan(const DrivePlanRequest& request) con
   const planning::RouteCells cells = cells_for({Waypoint{request.from.pose.at()}, Waypoint{request.to}},
                                                settings_.cell, settings_.coverage.range);
   planning::RouteProblem problem;
+  problem.noise = settings_.noise;
   problem.passable = passable_cells(cells, hazards_.get());
   block(problem.passable, cells, request.obstacles, settings_.clearance);
   problem.from = nearest_passable(cells, problem.passable, request.from.pose.at());
@@ -93,7 +94,7 @@ double DrivePlanner::expected_sd(const localization::PoseEstimate& from,
     const double heading = std::atan2(along.y(), along.x());
     p = planning::predict(p,
                           {length, along.x(), along.y(), std::abs(localization::wrap_angle(heading - yaw))},
-                          localization::OdometryNoise{});
+                          settings_.noise);
     planning::Symmetric3 j = planning::information_at({next.x(), next.y(), heading}, there, sensing_).rate;
     for (double* value : {&j.xx, &j.xy, &j.yy, &j.xt, &j.yt, &j.tt}) *value *= length;
     p = planning::update(p, j);

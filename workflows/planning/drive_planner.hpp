@@ -33,6 +33,7 @@ class DrivePlanner {
     double cell = 2;         ///< metres
     double limit_sigma = 0;  ///< metres; 0: none
     double clearance = 1.5;  ///< metres between the vehicle's middle and an obstacle
+    localization::OdometryNoise noise = {};
   };
   /// `hazards` may be null.
   DrivePlanner(localization::LandmarkGrid landmarks, Settings settings,

@@ -42,10 +42,12 @@ std::shared_ptr<const importers::ImportedDem> open_dem(const HazardMapRequest& r
                   "pass the elevation model with --dem, or make the map with `waymark run --with-dem`");
     files = {"GPKG:" + request.input + ":dem"};
   }
-  const auto dem = importers::import_dem({.files = files,
-                                          .nodata = NodataPolicy::unknown,
-                                          .crs = map && map->crs().kind() == CrsKind::local ? "local" : "",
-                                          .inspect = map == nullptr || !request.dem.empty()});
+  const auto dem =
+      importers::import_dem({.files = files,
+                             .nodata = NodataPolicy::unknown,
+                             .crs = map && map->crs().kind() == CrsKind::local ? "local" : request.crs,
+                             .area = request.aoi,
+                             .inspect = map == nullptr || !request.dem.empty()});
   const GridGeometry& grid = dem->geometry();
   if (grid.where.crs.kind() == CrsKind::geographic)
     throw Error(
@@ -111,6 +113,16 @@ planning::UndetectedRocks undetected_rocks(const HazardMapRequest& request, cons
   if (area && map->crs().same_as(dem))
     for (const exporters::CountingArea::Ring& ring : area->rings) rocks.surveyed.push_back(ring.corners);
   return rocks;
+}
+
+/// Sets cells outside the area of interest to unknown.
+void close_outside(Grid<float>& classes, const Window& window, const importers::ImportedDem& dem) {
+  const Georeference& where = dem.geometry().where;
+  for (std::int64_t r = 0; r < window.rows; ++r)
+    for (std::int64_t c = 0; c < window.columns; ++c)
+      if (!dem.in_area(where.x(static_cast<double>(window.column + c)),
+                       where.y(static_cast<double>(window.row + r))))
+        classes(c, r) = static_cast<float>(planning::HazardClass::unknown);
 }
 
 std::string hazard_style() {
@@ -192,7 +204,11 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   exporters::CogStream file(request.output, bands, grid);
   write_tiles(
       grid, {request.tile_cells, request.threads, "hazards"},
-      [&](const Window& window) { return compute_with_extras(hazards, *dem, window, extras); },
+      [&](const Window& window) {
+        std::vector<Grid<float>> tile = compute_with_extras(hazards, *dem, window, extras);
+        if (!request.aoi.empty()) close_outside(tile[planning::kHazardBands - 1], window, *dem);
+        return tile;
+      },
       [&](const std::vector<Grid<float>>& tile) {
         for (const float c : tile[planning::kHazardBands - 1].cells())
           ++result.cells.at(static_cast<std::size_t>(c));

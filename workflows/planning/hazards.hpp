@@ -22,6 +22,8 @@ struct HazardMapRequest {
   std::string landing_ellipse;  ///< MAJOR,MINOR[,AZIMUTH] for the band `landing`; empty: none
   std::string sun;  ///< AZIMUTH,ELEVATION in degrees for the bands `horizon`, `shade`; empty: none
   double horizon_reach = 1000;  ///< metres
+  std::string aoi;              ///< polygons: terrain outside is unknown; empty: all
+  std::string crs;              ///< of a DEM whose file has none
   std::int64_t tile_cells = 512;
   int threads = 0;
   std::string command_line;

@@ -2,14 +2,18 @@
 #include "workflows/planning/observability.hpp"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "importers/tables/area_of_interest.hpp"
 #include "planning/observability.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/planning_sensor.hpp"
@@ -34,21 +38,26 @@ void check(const ObservabilityRequest& request) {
   check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.drive > 0 && request.drive <= 1e5))
     refuse(fmt::format("--drive {:g} is outside (0, 100000] m", request.drive), "");
+  check_number("--sensor-height", request.sensor_height, "m", {.help = "", .min = 0, .max = 1000});
   check_number("--tile-cells", static_cast<double>(request.tile_cells), "",
                {.help = "", .min = 16, .max = 8192});
 }
 
-/// Cells of the map's CRS about all landmarks and the range around them, aligned to multiples of a cell.
+/// Cells of the map's CRS about all landmarks and the range around them, or those of the area's box, aligned
+/// to multiples of a cell.
 GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& landmarks, double range,
-                     const ObservabilityRequest& request) {
+                     const std::optional<importers::Area>& area, const ObservabilityRequest& request) {
   const double metres = map.crs().metres_per_unit(), cell = request.cell / metres;
   Eigen::AlignedBox2d box;
   for (const localization::MapLandmark& landmark : landmarks.landmarks())
     box.extend(map.frame.crs_from_map_frame({{landmark.at.x(), landmark.at.y(), 0}}).xyz.head<2>().eval());
-  const double west = std::floor((box.min().x() - range / metres) / cell),
-               east = std::ceil((box.max().x() + range / metres) / cell),
-               south = std::floor((box.min().y() - range / metres) / cell),
-               north = std::ceil((box.max().y() + range / metres) / cell);
+  box.min().array() -= range / metres, box.max().array() += range / metres;
+  if (area) box = box.intersection(area->box());
+  if (box.isEmpty())
+    throw Error(ErrorCode::input, "no landmark can be seen from the area of interest", request.aoi,
+                "draw it nearer to the landmarks of the map");
+  const double west = std::floor(box.min().x() / cell), east = std::ceil(box.max().x() / cell),
+               south = std::floor(box.min().y() / cell), north = std::ceil(box.max().y() / cell);
   const double columns = east - west, rows = north - south;
   if (columns * rows > kMaxRasterCells)
     throw Error(ErrorCode::usage,
@@ -65,14 +74,17 @@ GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& land
 
 std::vector<Grid<float>> compute_tile(const Window& window, const GridGeometry& grid, const RobotMap& map,
                                       const localization::LandmarkGrid& landmarks,
+                                      const std::optional<importers::Area>& area,
                                       const planning::ObservabilityRules& rules) {
   constexpr std::size_t bands = std::size(planning::kObservabilityBands);
-  std::vector<Grid<float>> out(bands, Grid<float>(window.columns, window.rows, 0));
+  std::vector<Grid<float>> out(
+      bands, Grid<float>(window.columns, window.rows, std::numeric_limits<float>::quiet_NaN()));
   for (std::int64_t r = 0; r < window.rows; ++r)
     for (std::int64_t c = 0; c < window.columns; ++c) {
-      const Point<MapFrame> at =
-          map.frame.map_frame_from_crs({{grid.where.x(static_cast<double>(window.column + c)),
-                                         grid.where.y(static_cast<double>(window.row + r)), 0}});
+      const double x = grid.where.x(static_cast<double>(window.column + c)),
+                   y = grid.where.y(static_cast<double>(window.row + r));
+      if (area && !area->contains(x, y)) continue;
+      const Point<MapFrame> at = map.frame.map_frame_from_crs({{x, y, 0}});
       const auto values =
           observability_bands(planning::observability_at(at.xyz.x(), at.xyz.y(), landmarks, rules));
       for (std::size_t b = 0; b < bands; ++b) out[b](c, r) = static_cast<float>(values[b]);
@@ -86,6 +98,7 @@ class SdCounts {
   void add(const std::vector<Grid<float>>& tile) {
     const auto sd = tile[0].cells(), landmarks = tile[2].cells();
     for (std::size_t i = 0; i < sd.size(); ++i) {
+      if (std::isnan(sd[i])) continue;  // outside the area of interest
       ++cells_;
       if (!(landmarks[i] > 0)) continue;
       ++seen_;
@@ -120,7 +133,17 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
     throw Error(ErrorCode::input, "the map is in degrees: cells need metres", request.map,
                 "export it into a projected CRS, e.g. its UTM zone");
   const localization::LandmarkGrid landmarks(all_landmarks(map, sensor.get()));
-  const GridGeometry grid = grid_of(map, landmarks, rules.sensing.coverage.range, request);
+  std::optional<importers::Area> area;
+  if (!request.aoi.empty()) area = importers::read_area_of_interest(request.aoi, map.crs());
+  const GridGeometry grid = grid_of(map, landmarks, rules.sensing.coverage.range, area, request);
+  // Terrain is read through a cache that one thread may use.
+  tbb::enumerable_thread_specific<planning::ObservabilityRules> rules_of_thread([&] {
+    planning::ObservabilityRules own = rules;
+    own.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
+                                                              {.sensor_height = request.sensor_height});
+    return own;
+  });
+  const bool hides = static_cast<bool>(rules_of_thread.local().sensing.visible);
   std::vector<exporters::CogStream::Band> bands;
   for (const auto& [name, unit] : planning::kObservabilityBands)
     bands.push_back({std::string(name), std::string(unit)});
@@ -128,13 +151,16 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
   SdCounts counts;
   write_tiles(
       grid, {request.tile_cells, request.threads, "observability"},
-      [&](const Window& window) { return compute_tile(window, grid, map, landmarks, rules); },
+      [&](const Window& window) {
+        return compute_tile(window, grid, map, landmarks, area, rules_of_thread.local());
+      },
       [&](const std::vector<Grid<float>>& tile) { counts.add(tile); }, file, callbacks);
   file.commit({{"WAYMARK_VERSION", program_version()},
                {"SENSOR", sensor->name},
                {"RANGE", fmt::format("{:g}", rules.sensing.coverage.range)},
                {"VIEW", fmt::format("{:g}", rules.sensing.coverage.view)},
-               {"DRIVE", fmt::format("{:g}", request.drive)}});
+               {"DRIVE", fmt::format("{:g}", request.drive)},
+               {"TERRAIN_HIDES", hides ? "yes" : "no"}});
   write_file(fs::path(request.output).replace_extension(".qml"),
              raster_style({.band = 1,
                            .colours = {{0, "#1a9641", "0"},
@@ -145,9 +171,9 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
   const ObservabilityResult result{grid.columns, grid.rows, counts.seen(), counts.median()};
   callbacks.summary(fmt::format(
       "{}: {} x {} cells of {:g} m for {}\n  {:.1f} % with a landmark in sight; there the sd of the position "
-      "is {:.2g} m in the median after {:g} m\n",
+      "is {:.2g} m in the median after {:g} m{}\n",
       request.output, grid.columns, grid.rows, request.cell, sensor->name, 100 * result.seen,
-      result.median_sd, request.drive));
+      result.median_sd, request.drive, hides ? "" : "\n  terrain hides no landmark: --dem gives it"));
   return result;
 }
 

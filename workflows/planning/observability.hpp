@@ -2,17 +2,21 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 #include "workflows/callbacks.hpp"
 namespace waymark::workflows {
 
 /// Request of a raster of what the landmarks of a map give a localizer.
 struct ObservabilityRequest {
   std::string map;
-  std::string output;          ///< .tif; a style .qml is written beside it
-  std::string sensor;          ///< name or file (.json) of a sensor profile
-  double range = 0, view = 0;  ///< metres, degrees; 0: those of the sensor
-  double cell = 2;             ///< metres
-  double drive = 100;          ///< metres driven at each place
+  std::string output;                 ///< .tif; a style .qml is written beside it
+  std::string sensor;                 ///< name or file (.json) of a sensor profile
+  double range = 0, view = 0;         ///< metres, degrees; 0: those of the sensor
+  double cell = 2;                    ///< metres
+  double drive = 100;                 ///< metres driven at each place
+  std::vector<std::string> dem = {};  ///< terrain that hides landmarks; empty: stored in the map, or none
+  double sensor_height = 1;           ///< metres above the terrain
+  std::string aoi = {};               ///< polygons: only their box is covered; empty: all
   std::int64_t tile_cells = 256;
   int threads = 0;
 };

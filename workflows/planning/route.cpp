@@ -14,9 +14,11 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
-#include "core/random.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
+#include "importers/logs/import_log.hpp"
+#include "localization/robot_log.hpp"
+#include "planning/world_beliefs.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/path_clearance.hpp"
 #include "workflows/planning/planning_sensor.hpp"
@@ -28,19 +30,23 @@ namespace waymark::workflows {
 namespace {
 
 void check(const RouteRequest& request) {
-  const int objectives = (request.limit_sigma > 0) + (request.keep_landmarks > 0) + (request.weight > 0);
+  const int objectives = (request.limit_sigma > 0) + (request.keep_landmarks > 0) + (request.weight > 0) +
+                         (request.min_sigma ? 1 : 0);
   const auto refuse = [](const std::string& problem, const std::string& hint) {
     throw Error(ErrorCode::usage, problem, "", hint);
   };
+  for (const auto& [name, value] : {std::pair("--start-sd", request.start_sd),
+                                    {"--range", request.range},
+                                    {"--view", request.view},
+                                    {"--limit-sigma", request.limit_sigma},
+                                    {"--keep-landmarks", request.keep_landmarks},
+                                    {"--weight", request.weight}})
+    if (!(value >= 0)) refuse(fmt::format("{} {:g} is negative", name, value), "");
   if (objectives != 1)
     refuse(objectives ? "more than one objective is given" : "the route has no objective",
-           "pass one of --limit-sigma M, --keep-landmarks N, --weight W");
+           "pass one of --limit-sigma M, --keep-landmarks N, --weight W, --least-sigma");
   check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
-  if (!(request.start_sd > 0)) refuse(fmt::format("--start-sd {:g} is not above 0 m", request.start_sd), "");
-  if (request.limit_sigma > 0 && request.limit_sigma < request.start_sd)
-    refuse(fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", request.start_sd,
-                       request.limit_sigma),
-           "raise --limit-sigma, or give the start's --start-sd");
+  if (!(request.speed > 0)) refuse(fmt::format("--speed {:g} is not above 0 m/s", request.speed), "");
   if (request.worlds < 1 || request.alternatives < 1)
     refuse("--worlds and --alternatives are at least 1", "");
   std::error_code missing;
@@ -51,6 +57,29 @@ void check(const RouteRequest& request) {
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
 }
 
+constexpr int kTrials = 8;      // searches for the limit of a search
+constexpr double kJust = 0.95;  // of a limit: a route that reaches it is not longer than needed
+
+constexpr std::int64_t kManyLabels = 50'000;  // cells up to which each trial has four labels
+
+std::size_t slot(std::int64_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Returns the odometry that a log states. Sets the start's uncertainty if the log has it.
+planning::Odometry read_odometry(const RouteRequest& request, const RobotMap& map, double& start_sd,
+                                 double& start_yaw_sd) {
+  planning::Odometry odometry{.speed = request.speed};
+  if (request.odometry.empty()) return odometry;
+  const localization::RobotLog log = importers::import_log(request.odometry, map.types());
+  if (!log.odometry)
+    throw Error(ErrorCode::input, "the log states no odometry noise", request.odometry,
+                "add \"odometry_noise\" to its header, or leave --odometry out");
+  odometry.noise = *log.odometry, odometry.drift = log.drift;
+  if (log.start_sd > 0) start_sd = log.start_sd, start_yaw_sd = log.start_yaw_sd;
+  return odometry;
+}
+
 /// Everything that legs of one request share.
 struct Planner {
   const RouteRequest& request;
@@ -59,9 +88,23 @@ struct Planner {
   planning::LandmarkSensing sensing;
   planning::RouteProblem problem;
   std::map<std::uint64_t, std::string> uids;
+  planning::Odometry odometry = {};
+  std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
 
-  std::optional<planning::Route> search(double max_sd, double weight, int labels) {
+  /// A route of the search, which takes all errors of the odometry as independent and all misses of a
+  /// landmark.
+  std::optional<planning::Route> search_white(double max_sd, double weight, int labels) const {
     return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
+  }
+  /// The same route with the belief over worlds.
+  planning::Route with_belief(planning::Route route) const {
+    planning::WorldBeliefs beliefs = *before;
+    planning::follow_route(beliefs, problem, landmarks, sensing, route);
+    return route;
+  }
+  std::optional<planning::Route> search(double max_sd, double weight, int labels) const {
+    auto route = search_white(max_sd, weight, labels);
+    return route ? std::optional(with_belief(std::move(*route))) : std::nullopt;
   }
 
   /// Grows the number of labels until the cost stops to fall.
@@ -75,35 +118,84 @@ struct Planner {
     return route;
   }
 
-  [[noreturn]] void fail_limit() {
-    const std::size_t goal = static_cast<std::size_t>(problem.to);
-    const double bound = planning::relaxed_sd(problem, 1e6)[goal];
-    double low = request.limit_sigma, high = low;
-    std::optional<planning::Route> found;
-    for (int i = 0; i < 12 && !found; ++i) high *= 1.6, found = search(high, 0, 1);
-    for (int i = 0; i < 5 && found; ++i) {
-      const double middle = std::sqrt(low * std::min(high, found->worst_sd));
-      if (auto better = search(middle, 0, 1))
-        found = std::move(better), high = middle;
-      else
-        low = middle;
+  /// Routes that weigh the sd, which the search for a limit does not beyond the limit.
+  std::vector<planning::Route> weighted() const {
+    std::vector<planning::Route> routes;
+    for (const double weight : {0.3, 1.0, 3.0, 10.0})
+      if (auto route = search(1e9, weight, 1)) routes.push_back(std::move(*route));
+    return routes;
+  }
+
+  /// Returns the shortest route found that keeps a limit. The limit of the search is moved until the route
+  /// with the belief over worlds just keeps it.
+  std::optional<planning::Route> keep(double limit) const {
+    const double shortest =
+        planning::distances_to(problem.field.cells, problem.passable, problem.to)[slot(problem.from)];
+    const int labels = problem.field.cells.count() <= kManyLabels ? 4 : 1;
+    std::optional<planning::Route> kept;
+    double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
+    for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
+      auto route = search(asked, 0, labels);
+      // The search is too cautious at most where errors persist; else what it refuses cannot be kept.
+      if (!route && i == 0 && !odometry.drift.any()) return {};
+      const bool keeps = route && route->worst_sd <= limit;
+      (route && !keeps ? high : low) = asked;
+      if (keeps && (!kept || route->length < kept->length)) kept = std::move(route);
+      if (kept && (kept->length < shortest + 1e-6 || kept->worst_sd > kJust * limit)) return kept;
+      asked = !(low > 0) ? high / 1.5 : std::isfinite(high) ? std::sqrt(low * high) : 1.5 * low;
     }
+    for (planning::Route& route : weighted())
+      if (route.worst_sd <= limit && (!kept || route.length < kept->length)) kept = std::move(route);
+    return kept;
+  }
+
+  /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
+  /// routes that weigh the sd.
+  planning::Route min_sd_route() const {
+    planning::Route best = *search(1e9, 0, 1);
+    double low = position_sd(problem.start), high = search_white(1e9, 0, 1)->worst_sd;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      auto route = search_white(middle, 0, 1);
+      if (!route) {
+        low = middle;
+        continue;
+      }
+      high = std::min(middle, route->worst_sd);
+      planning::Route known = with_belief(std::move(*route));
+      if (known.worst_sd < best.worst_sd) best = std::move(known);
+    }
+    for (planning::Route& route : weighted())
+      if (route.worst_sd < best.worst_sd) best = std::move(route);
+    return best;
+  }
+
+  [[noreturn]] void fail_limit(double least_sd) const {
+    planning::RouteProblem independent = problem;  // persistent errors can be known: they bound nothing
+    independent.noise = odometry.noise;
+    const double bound = planning::relaxed_sd(independent, 1e6)[slot(problem.to)];
     throw Error(ErrorCode::input,
                 fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma),
                 request.map,
-                (found ? fmt::format("the least worst sd that was found is {:.2f} m", found->worst_sd)
-                       : std::string("no route keeps a hundred times as much")) +
-                    fmt::format("; at the goal it cannot be below {:.2f} m", bound));
+                fmt::format("the least worst sd that was found is {:.2f} m; at the goal it cannot be below "
+                            "{:.2f} m",
+                            least_sd, bound));
   }
 
   planning::Route leg() {
     if (request.keep_landmarks > 0) {
       if (auto route = planning::search_by_landmarks(problem, request.keep_landmarks, request.by_quality))
-        return *route;
-    } else if (auto route = best(request.limit_sigma > 0 ? request.limit_sigma : 1e9, request.weight)) {
+        return with_belief(*route);
+    } else if (request.min_sigma) {
+      return min_sd_route();
+    } else if (request.limit_sigma > 0) {
+      if (auto route = keep(request.limit_sigma)) return *route;
+      planning::Route safest = min_sd_route();
+      if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
+      return safest;
+    } else if (auto route = best(1e9, request.weight)) {
       return *route;
     }
-    if (request.limit_sigma > 0) fail_limit();
     throw Error(ErrorCode::input, "the search found no route", request.map, "");
   }
 
@@ -121,49 +213,20 @@ struct Planner {
     return first;
   }
 
-  /// Returns the worst sd on the route in worlds in which each landmark exists or not.
-  std::vector<double> worst_in_worlds(const std::vector<planning::RouteNode>& nodes) const {
-    std::vector<double> worst;
-    for (std::int64_t world = 0; world < request.worlds; ++world) {
-      Random random(static_cast<std::uint64_t>(request.seed * 1'000'003 + world));
-      std::vector<char> exists(landmarks.size());
-      for (std::size_t i = 0; i < landmarks.size(); ++i) exists[i] = random.uniform() < landmarks[i].quality;
-      planning::Symmetric3 p = problem.start;
-      double sd = position_sd(p);
-      for (std::size_t k = 1; k < nodes.size(); ++k) {
-        const planning::RouteCells& cells = problem.field.cells;
-        const auto &a = nodes[k - 1], &b = nodes[k];
-        if (a.cell == b.cell) continue;
-        const Eigen::Vector2d step(cells.x(b.cell) - cells.x(a.cell), cells.y(b.cell) - cells.y(a.cell));
-        const double length = step.norm();
-        const double turn =
-            std::abs(localization::wrap_angle((b.heading - a.heading) * std::numbers::pi / 4));
-        p = planning::predict(p, {length, step.x() / length, step.y() / length, turn}, problem.noise);
-        planning::Symmetric3 j;
-        planning::visit_information(
-            planning::heading_pose(cells.x(b.cell), cells.y(b.cell), b.heading), landmarks, sensing,
-            [&](std::uint32_t i, const planning::Symmetric3& one) {
-              if (!exists[i]) return;
-              j.xx += length * one.xx, j.xy += length * one.xy, j.yy += length * one.yy;
-              j.xt += length * one.xt, j.yt += length * one.yt, j.tt += length * one.tt;
-            });
-        p = planning::update(p, j);
-        sd = std::max(sd, position_sd(p));
-      }
-      worst.push_back(sd);
-    }
-    return worst;
-  }
-
   PlannedRoute describe(const std::vector<planning::Route>& legs) const {
     PlannedRoute route;
     const planning::RouteCells& cells = problem.field.cells;
     std::vector<planning::RouteNode> nodes;
+    planning::Route whole;
     for (const planning::Route& leg : legs) {
       route.length += leg.length, route.outside += leg.outside;
-      route.worst_sd = std::max(route.worst_sd, leg.worst_sd);
       nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
     }
+    whole.nodes = nodes;
+    planning::WorldBeliefs beliefs(problem.start, odometry, landmarks, request.worlds, request.seed);
+    std::vector<double> worst = planning::follow_route(beliefs, problem, landmarks, sensing, whole);
+    nodes = whole.nodes;
+    route.worst_sd = whole.worst_sd;
     double distance = 0;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const planning::RouteNode& node = nodes[k];
@@ -179,7 +242,6 @@ struct Planner {
                                 important(pose)});
     }
     route.final_sd = route.stations.back().sd;
-    std::vector<double> worst = worst_in_worlds(nodes);
     std::ranges::sort(worst, std::greater<>());
     for (const double sd : worst) route.worlds_mean += sd / double(worst.size());
     const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
@@ -218,15 +280,26 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   for (const Waypoint& point : points)
     stops.push_back(
         cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.map));
+  planner.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
+                                                                {.sensor_height = request.sensor_height});
   problem.field =
       planning::make_information_field(cells, problem.passable, planner.landmarks, planner.sensing);
-  const double sd = request.start_sd;
-  problem.start = {sd * sd, 0, sd * sd, 0, 0, 0.0012};  // 2 degrees
+  double sd = 0.1, yaw_sd = 2 * kRadiansPerDegree;
+  planner.odometry = read_odometry(request, map, sd, yaw_sd);
+  if (request.start_sd > 0) sd = request.start_sd;
+  if (request.limit_sigma > 0 && request.limit_sigma < sd)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", sd, request.limit_sigma), "",
+        "raise --limit-sigma, or give the start's --start-sd");
+  problem.noise = planner.odometry.white();
+  problem.start = {sd * sd, 0, sd * sd, 0, 0, yaw_sd * yaw_sd};
   const planning::Symmetric3 start = problem.start;
 
   const auto legs_with = [&](auto&& search) {
     std::vector<planning::Route> legs;
     problem.start = start;
+    planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
     problem.heading.reset();
     if (points[0].yaw)
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
@@ -239,6 +312,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
                     request.hazards,
                     "hazards and unknown terrain lie between; make --cell finer, or pass --hazards none");
       legs.push_back(search());
+      planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
       problem.start = legs.back().nodes.back().covariance;
       problem.heading = legs.back().nodes.back().heading;
     }
@@ -254,7 +328,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     const double limit = 0.9 * result.routes.back().worst_sd;
     bool found = true;
     const auto legs = legs_with([&] {
-      auto route = planner.search(limit, 0, 4);
+      auto route = planner.keep(limit);
       found = found && route;
       return route ? *route : *planner.search(1e9, 0, 1);
     });
@@ -267,7 +341,9 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       problem.from = stops[i], problem.to = stops[i + 1];
       std::vector<char> reached = problem.passable;
       if (i == 0) {
-        const std::vector<double> bound = planning::relaxed_sd(problem, request.limit_sigma);
+        planning::RouteProblem independent = problem;
+        independent.noise = planner.odometry.noise;  // persistent errors may be known: they bound nothing
+        const std::vector<double> bound = planning::relaxed_sd(independent, request.limit_sigma);
         for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
       }
       result.lower_bound +=

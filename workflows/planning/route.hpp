@@ -20,13 +20,18 @@ struct RouteRequest {
   double limit_sigma = 0;        ///< metres; 0: none
   double keep_landmarks = 0;     ///< number; 0: not wanted
   double weight = 0;             ///< metres of detour per metre at an sd of 1 m
+  bool min_sigma = false;        ///< the smallest worst sd
   bool by_quality = false;       ///< keep_landmarks sums qualities
   double cell = 2;               ///< metres
-  double start_sd = 0.1;         ///< metres
+  double start_sd = 0;           ///< metres; 0: that of the odometry's log, else 0.1
+  std::string odometry;          ///< log of the vehicle, whose odometry noise is used; empty: the defaults
+  double speed = 0.5;            ///< m/s, turns biases of rates into errors per metre
   std::int64_t worlds = 32;      ///< random sets of existing landmarks
   std::int64_t alternatives = 1;
   std::int64_t seed = 1;
-  std::vector<std::string> dem = {};  ///< terrain, for clearance and tilt at the stations; empty: none
+  std::vector<std::string> dem = {};  ///< terrain that hides landmarks, for clearance and tilt at the
+                                      ///< stations; empty: that stored in the map hides, no clearance
+  double sensor_height = 1;           ///< metres above the terrain
   std::string vehicle = "rover";      ///< of clearance and tilt
 };
 

@@ -10,7 +10,9 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "planning/odometry_belief.hpp"
 #include "testbed/drive/drive_readings.hpp"
+#include "testbed/drive/odometry_errors.hpp"
 #include "workflows/planning/planning_sensor.hpp"
 #include "workflows/planning/read_route.hpp"
 #include "workflows/sensor_file.hpp"
@@ -76,6 +78,9 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   report.limit_sigma = model.limit_sigma;
   const std::string header =
       testbed::log_header(world, place, start, planned_steps(scene.terrain, planned, settings.wheels));
+  const testbed::OdometryErrors errors =
+      testbed::odometry_errors(settings, planned_steps(scene.terrain, planned, settings.wheels));
+  const planning::Odometry odometry{errors.noise, errors.drift, settings.speed};
   LiveLocalizer live({.map = map_file,
                       .log = {},
                       .method = model.method,
@@ -91,7 +96,8 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
                                    {.coverage = coverage,
                                     .cell = model.cell,
                                     .limit_sigma = model.limit_sigma,
-                                    .clearance = vehicle.track_width() / 2 + model.margin},
+                                    .clearance = vehicle.track_width() / 2 + model.margin,
+                                    .noise = odometry.white()},
                                    hazards),
                       stations, report);
   testbed::SlippingVehicle motion(scene.terrain, settings, start, world.seed);

@@ -75,6 +75,28 @@ TEST_F(Hazards, WallIsAHazardAndTheVoidUnknown) {
   EXPECT_NEAR(area, expected, 1e-6);
 }
 
+TEST_F(Hazards, OutsideTheAreaOfInterestIsUnknown) {
+  write_text(folder_ / "west.geojson", R"({"type": "FeatureCollection",
+    "crs": {"type": "name", "properties": {"name": "EPSG:32632"}}, "features": [{"type": "Feature", "properties": {},
+    "geometry": {"type": "Polygon", "coordinates":
+    [[[499000, 5190000], [500010, 5190000], [500010, 5210000], [499000, 5210000], [499000, 5190000]]]}}]})");
+  ASSERT_EQ(waymark({"hazards", wall(), "-o", folder_ / "all.tif"}).code, 0);
+  const Outcome made =
+      waymark({"hazards", wall(), "-o", folder_ / "west.tif", "--aoi", folder_ / "west.geojson"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::vector<float> all = band(folder_ / "all.tif", 11), west = band(folder_ / "west.tif", 11);
+  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(west[i], i % 80 < 20 ? all[i] : 3) << i;
+}
+
+TEST_F(Hazards, ADemWithoutACrsIsTakenWithOne) {
+  const std::string dem = wall("");
+  const Outcome refused = waymark({"hazards", dem, "-o", folder_ / "h.tif"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("pass --crs"));
+  const Outcome made = waymark({"hazards", dem, "-o", folder_ / "h.tif", "--crs", "local"});
+  EXPECT_EQ(made.code, 0) << made.err;
+}
+
 TEST_F(Hazards, BytesDoNotDependOnTilesAndThreads) {
   wall();
   std::vector<std::string> files;

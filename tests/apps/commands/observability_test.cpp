@@ -3,6 +3,8 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/apps/program.hpp"
 
 namespace waymark::test {
@@ -64,6 +66,44 @@ TEST_F(ObservabilityCommand, BytesDependOnNeitherTilesNorThreads) {
   ASSERT_EQ(run({"--threads", "1"}, "a.tif").code, 0);
   ASSERT_EQ(run({"--threads", "2", "--tile-cells", "16"}, "b.tif").code, 0);
   EXPECT_EQ(text_of(folder_ / "a.tif"), text_of(folder_ / "b.tif"));
+}
+
+TEST_F(ObservabilityCommand, LandmarksBehindAHillAreNotSeen) {
+  // A wall of 5 m along y = 8 hides the row from the north.
+  std::string dem = "ncols 160\nnrows 60\nxllcorner -30\nyllcorner -30\ncellsize 1\n";
+  for (int row = 0; row < 60; ++row)
+    for (int column = 0; column < 160; ++column)
+      dem += std::string(30 - row == 9 ? "5" : "0") + (column == 159 ? "\n" : " ");
+  write_text(folder_ / "hill.asc", dem);
+  const Outcome open = run({"--cell", "1"});
+  EXPECT_THAT(open.err, HasSubstr("terrain hides no landmark: --dem gives it"));
+  EXPECT_EQ(at(3, 50.5, 15.5), 5);  // x from 40 to 60
+  const Outcome made = run({"--cell", "1", "--dem", folder_ / "hill.asc", "--sensor-height", "0.5"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(at(3, 50.5, 15.5), 0);
+  EXPECT_GT(at(1, 50.5, 15.5), 5) << "odometry alone";
+  EXPECT_EQ(at(3, 50.5, 5.5), 7);
+  const Outcome tiles = run({"--cell", "1", "--dem", folder_ / "hill.asc", "--sensor-height", "0.5",
+                             "--threads", "2", "--tile-cells", "16"},
+                            "tiles.tif");
+  ASSERT_EQ(tiles.code, 0) << tiles.err;
+  EXPECT_EQ(text_of(folder_ / "info.tif"), text_of(folder_ / "tiles.tif"));
+}
+
+TEST_F(ObservabilityCommand, CoversTheAreaOfInterest) {
+  write_text(folder_ / "area.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+    "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[[40, -10], [60, -10], [60, 10], [40, -10]]]}}]})");
+  ASSERT_EQ(run({"--cell", "1"}).code, 0);
+  const double whole = at(1, 55.5, -5.5);
+  const Outcome made = run({"--cell", "1", "--aoi", folder_ / "area.geojson"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("20 x 20 cells of 1 m"));
+  EXPECT_EQ(at(1, 55.5, -5.5), whole);
+  EXPECT_TRUE(std::isnan(at(1, 41.5, 5.5))) << "in the box, outside the triangle";
+  write_text(folder_ / "far.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+    "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[[400, -10], [600, -10], [600, 10], [400, -10]]]}}]})");
+  EXPECT_THAT(run({"--aoi", folder_ / "far.geojson"}).err,
+              HasSubstr("no landmark can be seen from the area of interest"));
 }
 
 TEST_F(ObservabilityCommand, SaysWhatCannotWork) {

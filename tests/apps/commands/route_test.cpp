@@ -143,7 +143,70 @@ TEST_F(RouteCommand, HazardsAreAvoidedOrNamed) {
   EXPECT_THAT(refused("-500,0"), HasSubstr("unknown terrain or outside the hazard map"));
 }
 
+TEST_F(RouteCommand, LeastSigmaIsBelowWhatOtherRoutesReach) {
+  ASSERT_EQ(route({"--least-sigma"}).code, 0);
+  const double least = largest("sd");
+  for (const std::vector<std::string>& other :
+       {std::vector<std::string>{"--weight", "1"}, {"--keep-landmarks", "2"}, {"--limit-sigma", "1.5"}}) {
+    ASSERT_EQ(route(other).code, 0);
+    EXPECT_LE(least, 1.02 * largest("sd")) << other[0];
+  }
+  const Outcome limited = route({"--limit-sigma", std::to_string(1.02 * least)});
+  EXPECT_EQ(limited.code, 0) << limited.err;
+  const Outcome below = route({"--limit-sigma", std::to_string(0.97 * least)});
+  EXPECT_EQ(below.code, 1) << below.err;
+}
+
+TEST_F(RouteCommand, OdometryIsThatOfTheLog) {
+  const std::string noise =
+      R"("odometry_noise":{"along_per_metre":1e-5,"across_per_metre":1e-5,"yaw_per_metre":1e-6,"yaw_per_radian":0)";
+  write_text(folder_ / "good.jsonl", R"({"kind":"header","version":1,)" + noise + "}}\n");
+  write_text(folder_ / "drifts.jsonl",
+             R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0,"sd":0.02,"yaw_sd":0.001},)" +
+                 noise + R"(,"scale_sd":0.03}})" + "\n");
+  write_text(folder_ / "silent.jsonl", R"({"kind":"header","version":1})"
+                                       "\n");
+  ASSERT_EQ(route({"--weight", "1e-9"}).code, 0);
+  const double unknown = largest("sd");
+  ASSERT_EQ(route({"--weight", "1e-9", "--odometry", folder_ / "good.jsonl"}).code, 0);
+  EXPECT_LT(largest("sd"), 0.5 * unknown);
+  const Outcome drifts =
+      waymark({"route", map_, "--from=-60,-60", "--to", "60,-60", "--sensor", "horizontal_laser", "--weight",
+               "1e-9", "--odometry", folder_ / "drifts.jsonl", "-o", folder_ / "r.csv"});
+  ASSERT_EQ(drifts.code, 0) << drifts.err;
+  EXPECT_NEAR(largest("sd"), 0.03 * 120, 0.1) << "a scale of 3 % over 120 m without landmarks";
+  // Among the landmarks the scale is learned, and a limit is kept with what is then known.
+  const Outcome limited = route({"--limit-sigma", "1", "--odometry", folder_ / "drifts.jsonl"});
+  ASSERT_EQ(limited.code, 0) << limited.err;
+  EXPECT_LE(largest("sd"), 1);
+  EXPECT_THAT(route({"--weight", "1", "--odometry", folder_ / "silent.jsonl"}).err,
+              HasSubstr("the log states no odometry noise"));
+}
+
+TEST_F(RouteCommand, TerrainHidesLandmarks) {
+  MadeDem dem{.columns = 260, .rows = 140};
+  dem.geotransform = {-130, 1, 0, 90, 0, -1};
+  dem.height = [](int, int row) { return row == 80 ? 3.0 : 0.0; };  // a wall along y = 9.5
+  const std::string wall = make_dem(folder_ / "wall.tif", dem);
+  const auto seen = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "route",  map_,  "--from=-100,0", "--to", "-90,0", "--sensor",        "horizontal_laser",
+        "--view", "360", "--range",       "25",   "-o",    folder_ / "r.csv", "--weight",
+        "1e-9"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome made = waymark(words);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return largest("landmarks");
+  };
+  EXPECT_GT(seen({}), 0);
+  EXPECT_EQ(seen({"--dem", wall}), 2) << "rocks at y = 0 and 7.7";
+  EXPECT_GT(seen({"--dem", wall, "--sensor-height", "20"}), 2);
+}
+
 TEST_F(RouteCommand, BadRequestsAreRefused) {
+  EXPECT_THAT(route({"--weight", "-1"}).err, HasSubstr("--weight -1 is negative"));
+  EXPECT_THAT(route({"--weight", "1", "--start-sd", "-1"}).err, HasSubstr("--start-sd -1 is negative"));
+  EXPECT_THAT(route({"--weight", "1", "--speed", "0"}).err, HasSubstr("--speed 0 is not above 0 m/s"));
   EXPECT_THAT(route({}).err, HasSubstr("the route has no objective"));
   EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the route would replace the map"));
   EXPECT_THAT(route({"--weight", "1", "--limit-sigma", "1"}).err, HasSubstr("more than one objective"));

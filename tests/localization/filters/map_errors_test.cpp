@@ -2,6 +2,7 @@
 // Map errors that a robot measures repeatedly.
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
@@ -150,6 +151,27 @@ TEST(MapErrors, ALandmarkSeenForEverIsAsCertainAsItWasMapped) {
     PoseEstimate sure{{}, Eigen::Vector3d(1, 1, 1e-6).asDiagonal()};
     for (int i = 0; i < 1000; ++i) sure = independent.correct(sure, s, {}, landmark, 1, unscented);
     EXPECT_LT(std::sqrt(sure.covariance(0, 0)), 0.01) << unscented;
+  }
+}
+
+// A motion may undo much of a pose's error (DriftEstimator), and what is kept of a landmark is then more than
+// pose and landmark allow.
+TEST(MapErrors, NoVarianceBecomesNegative) {
+  MapLandmark landmark;
+  landmark.key = 1, landmark.at = {8, 3}, landmark.covariance = Eigen::Matrix2d::Identity() * 0.09;
+  SeenLandmark seen;
+  seen.range = std::hypot(8, 3), seen.range_sd = 0.02;
+  seen.bearing = std::atan2(3, 8), seen.bearing_sd = 0.002;
+  for (double undone = 0.5; undone <= 1; undone += 0.01) {
+    MapErrors errors;
+    PoseEstimate pose;
+    pose.covariance = Eigen::Vector3d(0.5, 0.5, 0.02).asDiagonal();
+    for (int i = 0; i < 5; ++i) {
+      pose = errors.correct(pose, seen, {}, landmark, 1);
+      Eigen::LLT<Eigen::Matrix3d> root(pose.covariance);
+      EXPECT_EQ(root.info(), Eigen::Success) << undone << ", sighting " << i << "\n" << pose.covariance;
+      pose.covariance *= undone;
+    }
   }
 }
 
