@@ -838,7 +838,7 @@ def find_trees(chm: Any = ..., *, dsm: Any = ..., dtm: Any = ..., las: Any = ...
     `find_mountain_tops`. Options: preset, min_height, allometry, species, ..."""
     ...
 
-def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ..., polygons: _Path = ..., nav2: _Path = ..., height_sd: float = ..., height_correlation: float = ..., rock_cover: float = ..., detection_limit: float = ..., uncertain: float = ..., hazard: float = ..., landing_ellipse: _Path = ..., sun: _Path = ..., horizon_reach: float = ..., tile_cells: int = ..., threads: int = ...) -> None:
+def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ..., polygons: _Path = ..., nav2: _Path = ..., height_sd: float = ..., height_correlation: float = ..., rock_cover: float = ..., detection_limit: float = ..., uncertain: float = ..., hazard: float = ..., landing_ellipse: _Path = ..., sun: _Path = ..., horizon_reach: float = ..., aoi: _Path = ..., crs: _Path = ..., tile_cells: int = ..., threads: int = ...) -> None:
     """Writes a hazard map of a map or a DEM, as `waymark hazards`. options: vehicle, dem, polygons, nav2, ...
 
     Keywords:
@@ -855,6 +855,8 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         landing_ellipse: MAJOR,MINOR[,AZIMUTH] for the band `landing`; empty: none
         sun: AZIMUTH,ELEVATION in degrees for the bands `horizon`, `shade`; empty: none
         horizon_reach: metres
+        aoi: polygons: terrain outside is unknown; empty: all
+        crs: of a DEM whose file has none
         tile_cells
         threads"""
     ...
@@ -938,7 +940,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         threads: 0: one per processor"""
     ...
 
-def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
+def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., least_sigma: bool = ..., odometry: _Path = ..., speed: float = ..., sensor_height: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
     """Plans a route and writes it to `output`, as `waymark route`.
 
     start is (x, y) or (x, y, yaw in degrees), goal and each via (x, y), in the map's CRS. One of limit_sigma,
@@ -955,6 +957,10 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         by_quality: keep_landmarks sums qualities
         cell: metres
         start_sd: metres; 0: that of the odometry's log, else 0.1
+        least_sigma: the smallest worst sd
+        odometry: log of the vehicle, whose odometry noise is used; empty: the defaults
+        speed: m/s, turns biases of rates into errors per metre
+        sensor_height: metres above the terrain
         worlds: random sets of existing landmarks
         alternatives
         seed
