@@ -51,7 +51,7 @@ void visit_information(const localization::Pose2& pose, const localization::Land
 
 LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing) {
   LandmarkSensing once = sensing;
-  if (!sensing.visible) return once;
+  if (!sensing.visible || !(sensing.coverage.view < 360)) return once;
   once.visible = [&visible = sensing.visible, tested = std::vector<std::pair<Eigen::Vector2d, bool>>()](
                      const localization::Pose2& pose, const Eigen::Vector2d& landmark) mutable {
     const auto found = std::ranges::find(tested, landmark, &std::pair<Eigen::Vector2d, bool>::first);

@@ -26,8 +26,8 @@ using VisitInformation = std::function<void(std::uint32_t landmark, const Symmet
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                        const LandmarkSensing& sensing, const VisitInformation& visit);
 
-/// Returns the same sensing with each line of sight tested once, for poses at one position. `sensing` must
-/// outlive it.
+/// Returns the same sensing with each line of sight tested once, for several headings at one position.
+/// `sensing` must outlive it. A sensor that sees all round has one heading: nothing is kept.
 LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing);
 
 /// Information at a pose.

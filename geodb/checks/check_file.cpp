@@ -89,10 +89,10 @@ void check_file(const sqlite::Database& database, const TypeRegistry& types, Fin
             "pragma_foreign_key_check");
   if (!database.has_table("landmark") && types.size() > 0)
     findings.add("view.missing", "landmark", std::nullopt, "the view over all types is missing");
-  find_rows(database, findings, "view.recursive", "",
-            "SELECT NULL, 'the view ' || name || ' is recursive: its rows need not end' FROM sqlite_master "
-            "WHERE type = 'view' AND upper(sql) LIKE '%UNION%' AND ' ' || replace(replace(replace(replace("
-            "upper(sql), char(13), ' '), char(10), ' '), char(9), ' '), '(', ' ') LIKE '% WITH %'");
+  sqlite::Statement view = database.prepare(sql_text("recursive_views"));
+  while (view.step())
+    findings.add("view.recursive", std::string(view.text(0)), std::nullopt,
+                 "the view is recursive: its rows need not end");
   for (const auto& type : types) check_layer(database, type.name, findings);
   check_types(database, findings);
   check_runs(database, findings);

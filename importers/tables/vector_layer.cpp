@@ -7,6 +7,7 @@
 #include <ogrsf_frmts.h>
 
 #include "core/error.hpp"
+#include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -16,10 +17,8 @@ void refuse_recursive_views(GDALDataset& dataset, const std::string& path) {
   const std::string driver = dataset.GetDriverName();
   if (driver != "GPKG" && driver != "SQLite") return;
   const GdalListener quiet;
-  OGRLayer* views = dataset.ExecuteSQL(
-      "SELECT name FROM sqlite_master WHERE type = 'view' AND upper(sql) LIKE '%UNION%' AND ' ' || "
-      "replace(replace(replace(upper(sql), char(10), ' '), char(9), ' '), '(', ' ') LIKE '% WITH %'",
-      nullptr, "");
+  const std::string query(geodb::sql_text("recursive_views"));
+  OGRLayer* views = dataset.ExecuteSQL(query.c_str(), nullptr, "");
   if (views == nullptr) return;
   std::string name;
   if (const OGRFeatureUniquePtr row{views->GetNextFeature()}) name = row->GetFieldAsString(0);

@@ -50,8 +50,8 @@ LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const E
 
 /// Returns the covariance of pose and landmark, scaled down to what their own covariances allow: what was
 /// forgotten, mixed or undone by a motion may leave more, and an update would then make variances negative.
-Eigen::Matrix<double, 3, 2> possible(const Eigen::Matrix<double, 3, 2>& with, const Eigen::Matrix3d& pose,
-                                     const Eigen::Matrix2d& landmark) {
+Eigen::Matrix<double, 3, 2> limit_correlation(const Eigen::Matrix<double, 3, 2>& with,
+                                              const Eigen::Matrix3d& pose, const Eigen::Matrix2d& landmark) {
   constexpr double max_explained = 0.98;  // of the landmark's variance explained by the pose
   const Eigen::Matrix2d explained = landmark.inverse() * with.transpose() * pose.inverse() * with;
   const double mean = explained.trace() / 2;
@@ -86,7 +86,7 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
   const bool known = at != errors_.end() && at->key == landmark.key;
   const Eigen::Matrix2d map_error = landmark.covariance / trust;
   const WithLandmark with =
-      known ? possible(at->covariance, before.covariance, map_error) : WithLandmark::Zero();
+      known ? limit_correlation(at->covariance, before.covariance, map_error) : WithLandmark::Zero();
   Eigen::Matrix<double, 2, 3> h = line.by_pose;
   Eigen::Matrix2d b = line.by_landmark, r = sensor_noise(seen) / trust + line.residual;
   if (!seen.range) {  // the range row carries no information
