@@ -9,12 +9,12 @@
 namespace waymark::localization {
 namespace {
 
-using PoseErrors = Eigen::Matrix<double, 3, 4>;
+using Errors = DriftEstimator::Errors;
+using PoseErrors = Eigen::Matrix<double, 3, 5>;
 constexpr double kMaxJump = 25;  // squared Mahalanobis distance beyond which an update is a new start
 
-Eigen::Vector4d variances(const OdometryDrift& d) {
-  return {d.scale_sd * d.scale_sd, d.slip_sd * d.slip_sd, d.sideways_sd * d.sideways_sd,
-          d.yaw_rate_sd * d.yaw_rate_sd};
+Errors variances(const OdometryDrift& d) {
+  return Errors(d.scale_sd, d.slip_sd, d.sideways_sd, d.yaw_rate_sd, d.curvature_sd).cwiseAbs2();
 }
 
 struct Update {
@@ -52,6 +52,10 @@ void OdometryDrift::describe(OptionVisitor& option) {
          {.help = "Standard deviation of the bias of the turn rate, rad/s, that lasts the drive",
           .min = 0,
           .max = 0.5});
+  option("curvature_sd", curvature_sd,
+         {.help = "Standard deviation of yaw per metre driven, rad/m, that lasts the drive",
+          .min = 0,
+          .max = 0.5});
 }
 
 DriftEstimator::DriftEstimator(const OdometryDrift& prior)
@@ -62,12 +66,13 @@ BodyMotion DriftEstimator::correct(const PoseEstimate& pose, const BodyMotion& m
   BodyMotion corrected = motion;
   corrected.step.x += (mean_[0] + mean_[1]) * odometry.x - mean_[2] * odometry.y;
   corrected.step.y += (mean_[0] + mean_[1]) * odometry.y + mean_[2] * odometry.x;
-  corrected.step.yaw = wrap_angle(odometry.yaw + mean_[3] * seconds);
+  corrected.step.yaw = wrap_angle(odometry.yaw + mean_[3] * seconds + mean_[4] * odometry.x);
   PoseErrors by_errors = PoseErrors::Zero();  // of the step
   by_errors.col(0) << odometry.x, odometry.y, 0;
   by_errors.col(1) = by_errors.col(0);
   by_errors.col(2) << -odometry.y, odometry.x, 0;
   by_errors(2, 3) = seconds;
+  by_errors(2, 4) = odometry.x;  // a robot that backs turns the other way
 
   const MotionJacobians j = motion_jacobians(pose.pose, corrected.step);
   const PoseErrors g = j.by_step * by_errors;
@@ -77,28 +82,28 @@ BodyMotion DriftEstimator::correct(const PoseEstimate& pose, const BodyMotion& m
 
   with_pose_ = j.by_pose * with_pose_ + g * covariance_;
   const double fade = std::exp(-odometry.at().norm() / prior_.drift_distance);
-  const Eigen::Vector4d fading(1, fade, fade, 1);
+  const Errors fading(1, fade, fade, 1, 1);
   mean_ = mean_.cwiseProduct(fading);
   with_pose_ = with_pose_ * fading.asDiagonal();
   covariance_ = fading.asDiagonal() * covariance_ * fading.asDiagonal();
-  const Eigen::Vector4d all = variances(prior_);
-  covariance_.diagonal() += all.cwiseProduct(Eigen::Vector4d::Ones() - fading.cwiseAbs2());
+  const Errors all = variances(prior_);
+  covariance_.diagonal() += all.cwiseProduct(Errors::Ones() - fading.cwiseAbs2());
   return corrected;
 }
 
 void DriftEstimator::learn(const PoseEstimate& before, const PoseEstimate& after) {
   const std::optional<Update> update = as_update(before, after);
   if (!update) return restart();
-  const Eigen::Matrix<double, 4, 3> gain = with_pose_.transpose() * update->inverse;
+  const Eigen::Matrix<double, 5, 3> gain = with_pose_.transpose() * update->inverse;
   mean_ += gain * update->moved;
   covariance_ -= gain * (before.covariance - after.covariance) * gain.transpose();
   with_pose_ = after.covariance * update->inverse * with_pose_;
   covariance_ = (covariance_ + covariance_.transpose()).eval() / 2;
   // A mixture may widen, and samples have noise; the errors never become less certain than they were at
   // first. What exceeds that is scaled down with its correlations.
-  const Eigen::Vector4d all = variances(prior_);
-  Eigen::Vector4d scale = Eigen::Vector4d::Ones();
-  for (int i = 0; i < 4; ++i) {
+  const Errors all = variances(prior_);
+  Errors scale = Errors::Ones();
+  for (int i = 0; i < 5; ++i) {
     if (!(covariance_(i, i) >= 0)) return restart();
     if (covariance_(i, i) > all[i]) scale[i] = std::sqrt(all[i] / covariance_(i, i));
   }

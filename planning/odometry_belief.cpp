@@ -11,8 +11,14 @@ double square(double value) {
   return value * value;
 }
 
-Eigen::Vector4d variances(const localization::OdometryDrift& d) {
-  return {square(d.scale_sd), square(d.slip_sd), square(d.sideways_sd), square(d.yaw_rate_sd)};
+/// At a constant speed a bias of the curvature is one of the turn rate.
+double yaw_rate_variance(const Odometry& o) {
+  return square(o.drift.yaw_rate_sd) + square(o.drift.curvature_sd * o.speed);
+}
+
+Eigen::Vector4d variances(const Odometry& o) {
+  return {square(o.drift.scale_sd), square(o.drift.slip_sd), square(o.drift.sideways_sd),
+          yaw_rate_variance(o)};
 }
 
 }  // namespace
@@ -22,13 +28,13 @@ localization::OdometryNoise Odometry::white() const {
   const double twice = 2 * drift.drift_distance;
   all.along_per_metre += twice * (square(drift.scale_sd) + square(drift.slip_sd));
   all.across_per_metre += twice * square(drift.sideways_sd);
-  all.yaw_per_metre += twice * square(drift.yaw_rate_sd / speed);
+  all.yaw_per_metre += twice * yaw_rate_variance(*this) / square(speed);
   return all;
 }
 
 DriveBelief::DriveBelief(const Symmetric3& start, const Odometry& odometry) : odometry_(odometry) {
   covariance_.topLeftCorner<3, 3>() = start.matrix();
-  covariance_.bottomRightCorner<4, 4>() = variances(odometry.drift).asDiagonal();
+  covariance_.bottomRightCorner<4, 4>() = variances(odometry).asDiagonal();
 }
 
 void DriveBelief::drive(const DriveStep& step) {
@@ -44,7 +50,7 @@ void DriveBelief::drive(const DriveStep& step) {
   f(4, 4) = f(5, 5) = fade;
   covariance_ = (f * covariance_ * f.transpose()).eval();
   covariance_.topLeftCorner<3, 3>() += predict({}, step, odometry_.noise).matrix();
-  const Eigen::Vector4d prior = variances(odometry_.drift);
+  const Eigen::Vector4d prior = variances(odometry_);
   covariance_(4, 4) += prior[1] * (1 - fade * fade);
   covariance_(5, 5) += prior[2] * (1 - fade * fade);
 }

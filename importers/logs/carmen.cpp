@@ -21,6 +21,9 @@ namespace {
 constexpr std::size_t kMaxBeams = 100'000;
 constexpr double kMaxRange = 80;  // m: scanners of these logs write 81 m and more for no return
 constexpr double kMaxAngle = 4 * std::numbers::pi;
+// Robots of these logs have wheels of unequal diameter (Borenstein & Feng 1996): they drift by degrees per
+// metre.
+constexpr localization::OdometryDrift kDrift{.scale_sd = 0.03, .curvature_sd = 0.03};
 
 /// Words of a line, taken one by one; `valid` is false after a word that is missing or no number.
 class CarmenWords {
@@ -108,6 +111,7 @@ class CarmenReader {
       log_.remarks.push_back(fmt::format("scans have from {} to {} beams; each is read with its own",
                                          beam_counts_.begin()->first, beam_counts_.rbegin()->first));
     add_odometry_steps(log_, std::move(poses_));  // messages come late and out of order
+    log_.drift = kDrift;
     localization::clean_log(log_);
     return std::move(log_);
   }

@@ -16,8 +16,12 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-constexpr OdometryDrift kDrift{
-    .scale_sd = 0.03, .slip_sd = 0.03, .sideways_sd = 0.02, .drift_distance = 10, .yaw_rate_sd = 0.002};
+constexpr OdometryDrift kDrift{.scale_sd = 0.03,
+                               .slip_sd = 0.03,
+                               .sideways_sd = 0.02,
+                               .drift_distance = 10,
+                               .yaw_rate_sd = 0.002,
+                               .curvature_sd = 0.003};
 constexpr OdometryNoise kNoise{.along_per_metre = 1e-5,
                                .across_per_metre = 1e-5,
                                .yaw_per_metre = 1e-5,
@@ -25,26 +29,27 @@ constexpr OdometryNoise kNoise{.along_per_metre = 1e-5,
                                .position_per_second = 1e-8,
                                .yaw_per_second = 1e-8};
 
-/// The slow twin: a Kalman filter of pose and errors in one state of seven.
+/// The slow twin: a Kalman filter of pose and errors in one state of eight.
 struct WholeState {
-  Eigen::Matrix<double, 7, 1> mean = Eigen::Matrix<double, 7, 1>::Zero();
-  Eigen::Matrix<double, 7, 7> covariance = Eigen::Matrix<double, 7, 7>::Zero();
+  Eigen::Vector<double, 8> mean = Eigen::Vector<double, 8>::Zero();
+  Eigen::Matrix<double, 8, 8> covariance = Eigen::Matrix<double, 8, 8>::Zero();
 
-  WholeState() { covariance.diagonal() << 0.01, 0.01, 1e-4, 9e-4, 9e-4, 4e-4, 4e-6; }
+  WholeState() { covariance.diagonal() << 0.01, 0.01, 1e-4, 9e-4, 9e-4, 4e-4, 4e-6, 9e-6; }
   void predict(const BodyMotion& motion, double seconds) {
     const Pose2& step = motion.step;
-    const Eigen::Vector4d e = mean.tail<4>();
-    const Pose2 driven{step.x * (1 + e[0] + e[1]), step.x * e[2], step.yaw + e[3] * seconds};
+    const DriftEstimator::Errors e = mean.tail<5>();
+    const Pose2 driven{step.x * (1 + e[0] + e[1]), step.x * e[2], step.yaw + e[3] * seconds + e[4] * step.x};
     const MotionJacobians j = motion_jacobians(pose_of(mean.head<3>()), driven);
-    Eigen::Matrix<double, 3, 4> by_errors = Eigen::Matrix<double, 3, 4>::Zero();
-    by_errors(0, 0) = by_errors(0, 1) = by_errors(1, 2) = step.x, by_errors(2, 3) = seconds;
-    Eigen::Matrix<double, 7, 7> f = Eigen::Matrix<double, 7, 7>::Identity(), q = f * 0;
-    f.topLeftCorner<3, 3>() = j.by_pose, f.topRightCorner<3, 4>() = j.by_step * by_errors;
+    Eigen::Matrix<double, 3, 5> by_errors = Eigen::Matrix<double, 3, 5>::Zero();
+    by_errors(0, 0) = by_errors(0, 1) = by_errors(1, 2) = step.x, by_errors(2, 3) = seconds,
+                 by_errors(2, 4) = step.x;
+    Eigen::Matrix<double, 8, 8> f = Eigen::Matrix<double, 8, 8>::Identity(), q = f * 0;
+    f.topLeftCorner<3, 3>() = j.by_pose, f.topRightCorner<3, 5>() = j.by_step * by_errors;
     q.topLeftCorner<3, 3>() = j.by_step * motion.covariance * j.by_step.transpose();
     mean.head<3>() = (pose_of(mean.head<3>()) * driven).vector();
     const double fade = std::exp(-step.x / kDrift.drift_distance);
-    Eigen::Matrix<double, 7, 1> fading;
-    fading << 1, 1, 1, 1, fade, fade, 1;
+    Eigen::Vector<double, 8> fading;
+    fading << 1, 1, 1, 1, fade, fade, 1, 1;
     q(4, 4) = 9e-4 * (1 - fade * fade), q(5, 5) = 4e-4 * (1 - fade * fade);
     mean = mean.cwiseProduct(fading);
     f = fading.asDiagonal() * f;
@@ -53,7 +58,7 @@ struct WholeState {
   void correct(const GnssFix& fix) {
     const Eigen::Matrix2d s =
         covariance.topLeftCorner<2, 2>() + fix.sd * fix.sd * Eigen::Matrix2d::Identity();
-    const Eigen::Matrix<double, 7, 2> gain = covariance.leftCols<2>() * s.inverse();
+    const Eigen::Matrix<double, 8, 2> gain = covariance.leftCols<2>() * s.inverse();
     mean += gain * (fix.at - mean.head<2>());
     covariance -= (gain * s * gain.transpose()).eval();
   }
@@ -78,8 +83,8 @@ TEST(DriftEstimator, IsTheKalmanFilterOfPoseAndErrors) {
       drift.learn(before, pose);
     }
     EXPECT_NEAR((pose.pose.vector() - whole.mean.head<3>()).norm(), 0, 1e-4) << seed;
-    EXPECT_NEAR((drift.errors() - whole.mean.tail<4>()).norm(), 0, 1e-4) << seed;
-    for (int k = 0; k < 4; ++k)
+    EXPECT_NEAR((drift.errors() - whole.mean.tail<5>()).norm(), 0, 1e-4) << seed;
+    for (int k = 0; k < 5; ++k)
       EXPECT_NEAR(std::sqrt(drift.covariance()(k, k)), std::sqrt(whole.covariance(3 + k, 3 + k)), 1e-4)
           << seed << ", error " << k;
     for (int k = 0; k < 3; ++k)
@@ -109,7 +114,8 @@ struct Gap {
 /// Drives 60 m with fixes, then 60 m without, by odometry whose errors are drawn from `kDrift`.
 Gap drive_into_a_gap(std::uint64_t seed, bool estimate) {
   Random random(seed, "gap");
-  const double scale = random.normal(0, kDrift.scale_sd), bias = random.normal(0, kDrift.yaw_rate_sd);
+  const double scale = random.normal(0, kDrift.scale_sd), bias = random.normal(0, kDrift.yaw_rate_sd),
+               curvature = random.normal(0, kDrift.curvature_sd);
   double slip = random.normal(0, kDrift.slip_sd), aside = random.normal(0, kDrift.sideways_sd);
   const double fade = std::exp(-0.5 / kDrift.drift_distance), fresh = std::sqrt(1 - fade * fade);
   Pose2 truth;
@@ -120,7 +126,8 @@ Gap drive_into_a_gap(std::uint64_t seed, bool estimate) {
     const double along = std::sqrt(kNoise.along_per_metre / 2) * random.normal(),
                  across = std::sqrt(kNoise.across_per_metre / 2) * random.normal(),
                  yaw = std::sqrt(kNoise.yaw_per_metre / 2) * random.normal();
-    truth = truth * Pose2{0.5 * (1 + scale + slip) + along, 0.5 * aside + across, turn + bias + yaw};
+    truth = truth * Pose2{0.5 * (1 + scale + slip) + along, 0.5 * aside + across,
+                          turn + bias + 0.5 * curvature + yaw};
     slip = fade * slip + fresh * random.normal(0, kDrift.slip_sd);
     aside = fade * aside + fresh * random.normal(0, kDrift.sideways_sd);
     BodyMotion motion = twist_motion(0.5, 0, turn, 1, kNoise);
