@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <optional>
 #include "localization/filters/explained_fraction.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
@@ -22,6 +23,10 @@ namespace waymark::localization {
 /// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
 /// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
 /// not reliable.
+///
+/// A pose that the robot cannot have reached by itself since the last reliable estimate contradicts odometry:
+/// the robot was carried away, or the place only looks alike. Such a pose is a claim, and the filter restarts
+/// there when three answers of the finder agree that have no sighting in common.
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
@@ -52,28 +57,34 @@ class RelocalizingFilter final : public Localizer {
     const bool used = inner_->fix(fix);
     // A tracking filter replaces dead reckoning. Errors of fixes are correlated: many are no better than one.
     if (used && !lost() && is_explained())
-      reliable_ = inner_->estimate();
+      trust(inner_->estimate());
     else if (const auto fixed = update_pose(reliable_, fix); fixed.squares < 16 && is_informative(fix))
       reliable_ = fixed.estimate;
     return used;
   }
   bool lost() const;
+  void trust(const PoseEstimate& at) { reliable_ = at, driven_ = 0, claim_.reset(); }
   void restart(const PoseEstimate& at);
-  std::vector<Match> follow(PoseEstimate found, const SightingSet& seen);
   bool is_informative(const GnssFix& f) const {
     return reliable_.covariance(0, 0) + reliable_.covariance(1, 1) > 2 * f.sd * f.sd;
   }
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
   bool is_explained() const;
   bool relocate(const SightingSet& seen);
+  bool is_within_reach(const PoseEstimate& found) const;
+  bool is_confirmed(const PoseEstimate& found);
 
   Factory make_filter_;
   PoseFinder finder_;
   ChanceFraction chance_;
   ExplainedFraction explained_;
   std::unique_ptr<Localizer> inner_;
+  FeatureScales scales_;
   SightingMemory memory_;
-  PoseEstimate reliable_;        // the last reliable estimate, predicted by odometry since
+  PoseEstimate reliable_;              // the last reliable estimate, predicted by odometry since
+  double driven_ = 0;                  // m since that estimate
+  std::optional<PoseEstimate> claim_;  // a pose out of reach, predicted by odometry
+  int claims_ = 0;                     // answers in a row that agree with it
   double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
   double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
   int usual_sets_ = 5;           // sets that count in it; five for the value it begins with
