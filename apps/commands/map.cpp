@@ -37,6 +37,8 @@ class MapDrive final : public Command {
                       fmt::format("Detectors for laser scans: {}",
                                   fmt::join(localization::laser_detectors().names(), ", "))}
                  .or_else("walls"),
+             Argument{"--max-range", "M", &request_.max_range, "Do not use sightings farther away, metres"}
+                 .or_else("20"),
              Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else("local"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})

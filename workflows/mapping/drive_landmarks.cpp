@@ -148,11 +148,16 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   const localization::FeatureScales scales(types);
   std::vector<Observation> observations;
   std::map<std::string_view, std::size_t> by_name;
+  DriveLandmarks made;
   for (std::size_t i = 0; i < looks.size(); ++i) {
     by_name.emplace(looks[i].name, i);
-    for (const SeenLandmark& s : looks[i].seen.sightings)
-      if (s.is_valid() && s.range && *s.range <= options.max_range && s.type && *s.type < types.size())
+    for (const SeenLandmark& s : looks[i].seen.sightings) {
+      if (!s.is_valid() || !s.range || !s.type || *s.type >= types.size()) continue;
+      if (*s.range <= options.max_range)
         observations.push_back(observation_of(s, looks[i], types, scales, options));
+      else
+        ++made.too_far;
+    }
   }
   pipeline::MergeRules rules;
   rules.weights = pipeline::FeatureWeights::precision;
@@ -166,7 +171,8 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
     if (o.rejected.empty()) evidence[o.landmark_uid].push_back(&o);
   for (Landmark& landmark : merged.landmarks)
     value_landmark(landmark, evidence[landmark.uid], looks, by_name, types[landmark.type]);
-  DriveLandmarks made{.landmarks = std::move(merged.landmarks), .evidence = std::move(merged.evidence)};
+  made.landmarks = std::move(merged.landmarks);
+  made.evidence = std::move(merged.evidence);
   made.improbable = pipeline::remove_improbable(made.landmarks, made.evidence, types);
   return made;
 }

@@ -39,6 +39,7 @@ struct DriveLandmarks {
   std::vector<Landmark> landmarks;
   std::vector<Observation> evidence;
   std::int64_t improbable = 0;  ///< landmarks removed as too improbable
+  std::int64_t too_far = 0;     ///< sightings beyond `max_range`
 };
 
 /// Merges the sightings of looks into landmarks and values them (Rossmann et al. 3.2 and 3.3, a look in place

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -45,6 +46,8 @@ Crs crs_of_poses(const std::string& text) {
 }  // namespace
 
 void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
+  if (!(request.max_range > 0 && std::isfinite(request.max_range)))
+    throw Error(ErrorCode::usage, "the range must be above 0 m", "--max-range", "e.g. --max-range 40");
   check_map_output(request.map);
   const auto started = std::chrono::system_clock::now();
   const TypeRegistry& types = all_types();
@@ -62,7 +65,8 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   if (looks.empty())
     throw Error(ErrorCode::input, "no scan or sighting of the log has a known pose", request.log,
                 "are the poses of the same drive, with the same clock?");
-  DriveLandmarks made = landmarks_of_looks(looks, types, contents.crs);
+  DriveLandmarks made =
+      landmarks_of_looks(looks, types, contents.crs, DriveMappingOptions{.max_range = request.max_range});
   std::size_t sightings = 0;
   for (const DriveLook& look : looks) sightings += look.seen.sightings.size();
   contents.landmarks = std::move(made.landmarks);
@@ -73,6 +77,7 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   stage.counts.in = static_cast<std::int64_t>(sightings);
   stage.counts.out = static_cast<std::int64_t>(contents.landmarks.size());
   if (made.improbable) stage.counts.rejected["landmark improbable"] = made.improbable;
+  if (made.too_far) stage.counts.rejected["beyond max_range"] = made.too_far;
   contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
   std::set<std::string> made_types;
   for (const localization::DetectorSpec& detector : localization::laser_detectors())
@@ -81,8 +86,9 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   const auto written =
       geodb::write_map(request.map, contents,
                        {.empty_tables = std::vector<std::string>(made_types.begin(), made_types.end())});
-  callbacks.summary(fmt::format("{} looks, {} sightings, {} improbable landmarks removed\n", looks.size(),
-                                sightings, made.improbable));
+  callbacks.summary(
+      fmt::format("{} looks, {} sightings, {} of them beyond {} m, {} improbable landmarks removed\n",
+                  looks.size(), sightings, made.too_far, request.max_range, made.improbable));
   for (const auto& [type, count] : written) callbacks.summary(fmt::format("    {} {}\n", count, type));
   callbacks.summary(
       fmt::format("{}: {} landmarks in {}\n", request.map, contents.landmarks.size(), contents.crs.id()));

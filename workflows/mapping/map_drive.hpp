@@ -14,6 +14,7 @@ struct DriveMapRequest {
   std::string crs = "local";  ///< of the poses, local or projected
   importers::LogImport log_format = {};
   std::string scans = "walls";    ///< detectors for laser scans, separated by commas
+  double max_range = 20;          ///< m, > 0: farther sightings are not used
   std::string command_line = {};  ///< recorded in the map
 };
 
