@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "localization/detectors/detected_types.hpp"
+#include "localization/filters/locating_filter.hpp"
 #include "localization/filters/relocalizing_filter.hpp"
 #include "localization/global/skyline_index.hpp"
 
@@ -137,7 +138,7 @@ localization::LineOfSight line_of_sight(const LocalizeTask& task) {
 
 std::unique_ptr<localization::Localizer> make_particle_localizer(
     LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search) {
-  localization::PoseFinder finder = make_pose_finder(task, search);
+  const localization::PoseFinder finder = make_pose_finder(task, search);
   const localization::LandmarkMatcher matcher = make_matcher(task);
   const auto particles = [matcher, &settings = task.settings, visible = line_of_sight(task)](
                              const std::optional<localization::PoseEstimate>& from,
@@ -147,12 +148,17 @@ std::unique_ptr<localization::Localizer> make_particle_localizer(
     filter->set_line_of_sight(visible);
     return filter;
   };
-  if (!start) return particles({}, std::move(finder));
   localization::ChanceFraction chance;
   if (!task.settings.identification.use_identities) chance = localization::make_chance_fraction(matcher);
-  return std::make_unique<localization::RelocalizingFilter>(
-      *start, [particles](const localization::PoseEstimate& from) { return particles(from, {}); },
-      std::move(finder), std::move(chance), localization::FeatureScales(task.map.map.types()));
+  const auto track =
+      [particles, finder, chance, scales = localization::FeatureScales(task.map.map.types())](
+          const localization::PoseEstimate& found) -> std::unique_ptr<localization::Localizer> {
+    return std::make_unique<localization::RelocalizingFilter>(
+        found, [particles](const localization::PoseEstimate& from) { return particles(from, {}); }, finder,
+        chance, scales);
+  };
+  if (start) return track(*start);
+  return std::make_unique<localization::LocatingFilter>(particles({}, finder), track);
 }
 
 std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& task,
