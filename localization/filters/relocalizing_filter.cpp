@@ -2,15 +2,12 @@
 #include "localization/filters/relocalizing_filter.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace waymark::localization {
 namespace {
 
 constexpr int kWait = 5, kRestartInterval = 20;  // sets between calls of the finder, and between restarts
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
-constexpr int kClaims = 3;                       // answers of the finder for a pose that contradicts odometry
-constexpr double kMaxOdometryError = 0.3;        // m per metre driven, beyond what the covariance states
 constexpr double kMinOfUsual = 0.5, kWell = 0.8;
 // Fractions of the sightings explained beyond chance, or of the usual fit where the map lacks most objects.
 constexpr double kByChance = 0.2, kExplained = 0.3, kByChanceOfUsual = 0.4, kExplainedOfUsual = 0.6;
@@ -33,8 +30,7 @@ void RelocalizingFilter::predict(const BodyMotion& motion) {
   if (located_) inner_->predict(motion);
   memory_.predict(motion);
   reliable_ = predict_other_pose(reliable_, motion);
-  driven_ += motion.step.at().norm();
-  if (claim_) claim_ = predict_other_pose(*claim_, motion);
+  claims_.predict(motion);
 }
 
 bool RelocalizingFilter::lost() const {
@@ -53,28 +49,16 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
   explained_.clear();
 }
 
-bool RelocalizingFilter::is_within_reach(const PoseEstimate& found) const {
-  const double sd = std::sqrt((reliable_.covariance + found.covariance).topLeftCorner<2, 2>().trace());
-  return (found.pose.at() - reliable_.pose.at()).norm() < 1 + 4 * sd + kMaxOdometryError * driven_;
-}
-
-// Counts the answers that agree with a pose out of reach. Their sightings are forgotten: they are no further
-// evidence.
-bool RelocalizingFilter::is_confirmed(const PoseEstimate& found) {
-  claims_ = claim_ && !are_distinct(found, *claim_) ? claims_ + 1 : 1;
-  claim_ = found;
-  if (claims_ >= kClaims) return true;
-  memory_ = SightingMemory(scales_);
-  return false;
-}
-
 // Restarts at the finder's pose if it is certain.
 bool RelocalizingFilter::relocate(const SightingSet& seen) {
   if (++sets_since_query_ < kWait) return false;
   sets_since_query_ = 0;
   const PoseSearchResult found = memory_.find(finder_, seen);
   if (!found.accepted) return false;
-  if (located_ && !is_within_reach(*found.accepted) && !is_confirmed(*found.accepted)) return false;
+  if (located_ && claims_.judge(*found.accepted, reliable_) == PoseClaims::Verdict::open) {
+    memory_ = SightingMemory(scales_);
+    return false;
+  }
   restart(*found.accepted);
   trust(*found.accepted);
   ++restarts_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
-#include <optional>
 #include "localization/filters/explained_fraction.hpp"
+#include "localization/global/pose_claims.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
@@ -23,10 +23,7 @@ namespace waymark::localization {
 /// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
 /// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
 /// not reliable.
-///
-/// A pose that the robot cannot have reached by itself since the last reliable estimate contradicts odometry:
-/// the robot was carried away, or the place only looks alike. Such a pose is a claim, and the filter restarts
-/// there when three answers of the finder agree that have no sighting in common.
+/// A pose out of odometry's reach needs three answers that agree (PoseClaims).
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
@@ -63,7 +60,7 @@ class RelocalizingFilter final : public Localizer {
     return used;
   }
   bool lost() const;
-  void trust(const PoseEstimate& at) { reliable_ = at, driven_ = 0, claim_.reset(); }
+  void trust(const PoseEstimate& at) { reliable_ = at, claims_.trust(); }
   void restart(const PoseEstimate& at);
   bool is_informative(const GnssFix& f) const {
     return reliable_.covariance(0, 0) + reliable_.covariance(1, 1) > 2 * f.sd * f.sd;
@@ -71,8 +68,6 @@ class RelocalizingFilter final : public Localizer {
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
   bool is_explained() const;
   bool relocate(const SightingSet& seen);
-  bool is_within_reach(const PoseEstimate& found) const;
-  bool is_confirmed(const PoseEstimate& found);
 
   Factory make_filter_;
   PoseFinder finder_;
@@ -81,10 +76,8 @@ class RelocalizingFilter final : public Localizer {
   std::unique_ptr<Localizer> inner_;
   FeatureScales scales_;
   SightingMemory memory_;
-  PoseEstimate reliable_;              // the last reliable estimate, predicted by odometry since
-  double driven_ = 0;                  // m since that estimate
-  std::optional<PoseEstimate> claim_;  // a pose out of reach, predicted by odometry
-  int claims_ = 0;                     // answers in a row that agree with it
+  PoseEstimate reliable_;  // the last reliable estimate, predicted by odometry since
+  PoseClaims claims_;
   double fit_ = 1;               // fraction of the sightings with a landmark, over about the last ten sets
   double usual_fit_ = 2.0 / 3;   // the same over about the last hundred sets while not lost
   int usual_sets_ = 5;           // sets that count in it; five for the value it begins with

@@ -8,11 +8,11 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kMinRange = 0.5;     // m
-constexpr double kSigmas = 3;         // of a bearing that may be of an object
-constexpr double kRangeError = 0.2;   // largest relative standard deviation of the distance of a landmark
-constexpr double kForget = 60;        // m driven
-constexpr std::size_t kMinLooks = 3;  // bearings of an object that starts a landmark
+constexpr double kMinRange = 0.5;      // m
+constexpr double kBearingSigmas = 3;   // of a bearing that may be of an object
+constexpr double kRangeError = 0.2;    // largest relative standard deviation of the distance of a landmark
+constexpr double kForgetBearing = 60;  // m driven
+constexpr std::size_t kMinLooks = 3;   // bearings of an object that starts a landmark
 constexpr std::size_t kMaxLooks = 12, kMaxObjects = 200;
 
 /// Ray in the robot's frame of now.
@@ -51,7 +51,8 @@ std::optional<Eigen::Vector2d> meet(const Ray& a, const Ray& b) {
 void BearingStarts::predict(const BodyMotion& motion) {
   for (Object& object : objects_)
     for (Look& look : object.looks) look.since = compose(look.since, motion);
-  std::erase_if(objects_, [](const Object& o) { return o.looks.front().since.step.at().norm() > kForget; });
+  std::erase_if(objects_,
+                [](const Object& o) { return o.looks.front().since.step.at().norm() > kForgetBearing; });
 }
 
 // The object lies on the ray of its last bearing, up to `max_range`, so it may now be between two bearings.
@@ -62,7 +63,7 @@ bool BearingStarts::may_be(const Object& object, const Look& now) const {
   const double a = ray.bearing_of(before.at(kMinRange)),
                b = a + wrap_angle(ray.bearing_of(before.at(max_range_)) - a);
   const double turn = last.since.covariance(2, 2);
-  const double margin = kSigmas * std::sqrt(last.sd * last.sd + now.sd * now.sd + turn);
+  const double margin = kBearingSigmas * std::sqrt(last.sd * last.sd + now.sd * now.sd + turn);
   return std::min(a, b) - margin <= 0 && 0 <= std::max(a, b) + margin;
 }
 
@@ -98,7 +99,7 @@ std::optional<BearingStarts::Start> BearingStarts::start(const Object& object) c
         Eigen::Vector2d(-from.y(), from.x()).dot(covariance * Eigen::Vector2d(-from.y(), from.x()));
     const double sd =
         std::sqrt(look.sd * look.sd + look.since.covariance(2, 2) + across / (*at - ray.from).squaredNorm());
-    if (!(std::abs(ray.bearing_of(*at)) < kSigmas * sd)) return {};
+    if (!(std::abs(ray.bearing_of(*at)) < kBearingSigmas * sd)) return {};
   }
   return Start{0, *at, (covariance + covariance.transpose()) / 2};
 }

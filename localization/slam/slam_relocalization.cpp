@@ -99,11 +99,13 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   unmatched_sets_ = evidence.matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
   const bool confident = !searching && fit_ > kConfident * usual_;
+  if (confident && is_explained()) claims_.trust();
   ++sets_since_query_;
   if (++sets_since_check_ >= (confident ? kRoutineInterval : kCheckInDoubt)) {
     sets_since_check_ = 0;
     if (is_confirmed(seen, here)) {
       fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
+      claims_.trust();
       sets_since_query_ = 0;
       return {};
     }
@@ -112,8 +114,13 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   sets_since_query_ = 0;
   PoseSearchResult answer = memory_.find(finder_, seen);
   if (!answer.accepted) return {};
-  if (are_distinct(*answer.accepted, here)) return answer.accepted;
+  if (are_distinct(*answer.accepted, here)) {
+    if (claims_.judge(*answer.accepted, here) == PoseClaims::Verdict::believed) return answer.accepted;
+    memory_ = SightingMemory(scales_);
+    return {};
+  }
   fit_ = std::max(fit_, usual_);
+  claims_.trust();
   return {};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include "localization/filters/explained_fraction.hpp"
+#include "localization/global/pose_claims.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
@@ -33,8 +34,9 @@ struct SetEvidence {
 /// - Every twentieth set the pose is checked with recent sightings: matches in a dense map are no proof.
 /// - The finder searches the whole map if the check fails; in doubt (every tenth set); while lost (every
 ///   fifth); and after ten sets without a landmark of the map (returning to the map closes the loop).
-/// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
-///   trial: they share its errors.
+/// - A pose found that contradicts SLAM is put on trial; one out of odometry's reach after three answers that
+///   agree (PoseClaims): in unmapped terrain a trial is won by landmarks that match by chance. The sightings
+///   that made it are no evidence in the trial: they share its errors.
 /// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt.
 /// - Lost also: two fractions are small and no answer confirms the pose. SLAM finds less than 0.4 of the
 ///   expected landmarks that it usually finds; terrain without landmarks does not count. And the map explains
@@ -43,9 +45,9 @@ struct SetEvidence {
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, PoseCheck check = {}, FeatureScales scales = {})
-      : finder_(std::move(finder)), check_(std::move(check)), memory_(std::move(scales)) {}
+      : finder_(std::move(finder)), check_(std::move(check)), scales_(std::move(scales)), memory_(scales_) {}
 
-  void predict(const BodyMotion& motion) { memory_.predict(motion); }
+  void predict(const BodyMotion& motion) { memory_.predict(motion), claims_.predict(motion); }
   /// Adds a set. Returns a pose to put on trial.
   std::optional<PoseEstimate> update(const SightingSet& seen, const SetEvidence& evidence,
                                      const PoseEstimate& here);
@@ -67,7 +69,9 @@ class SlamRelocalization {
 
   PoseFinder finder_;
   PoseCheck check_;
+  FeatureScales scales_;
   SightingMemory memory_;
+  PoseClaims claims_;
   std::optional<PoseTrial> trial_;
   double fit_ = 0, usual_ = 0;  // fractions of the expected landmarks that were seen, short and long term
   double explained_fit_ = 0, usual_explained_ = 0;  // fractions of the sightings that the map explains
