@@ -19,10 +19,10 @@ void PoseClaims::predict(const BodyMotion& motion) {
 PoseClaims::Verdict PoseClaims::judge(const PoseEstimate& found, const PoseEstimate& reckoned) {
   const double sd = std::sqrt((reckoned.covariance + found.covariance).topLeftCorner<2, 2>().trace());
   const double distance = (found.pose.at() - reckoned.pose.at()).norm();
-  if (distance < 1 + 4 * sd + kMaxOdometryError * driven_) return Verdict::believed;
+  if (distance < 1 + 4 * sd + kMaxOdometryError * driven_) return Verdict::accepted;
   answers_ = claim_ && !are_distinct(found, *claim_) ? answers_ + 1 : 1;
   claim_ = found;
-  return answers_ < kAnswers ? Verdict::open : Verdict::believed;
+  return answers_ < kAnswers ? Verdict::open : Verdict::accepted;
 }
 
 }  // namespace waymark::localization

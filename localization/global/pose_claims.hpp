@@ -5,10 +5,10 @@
 #include "localization/global/pose_finder.hpp"
 namespace waymark::localization {
 
-/// Decides which poses of a finder a robot believes that knows where it was.
-/// - A pose within reach of dead reckoning is believed at once.
+/// Decides which poses of a finder a robot accepts that knows where it was.
+/// - A pose within reach of dead reckoning is accepted at once.
 /// - A pose that the robot cannot have reached by itself contradicts odometry: the robot was carried away, or
-///   the place only looks alike. Such a claim is believed when three answers of the finder agree that have no
+///   the place only looks alike. Such a claim is accepted when three answers of the finder agree that have no
 ///   sighting in common.
 class PoseClaims {
  public:
@@ -16,7 +16,7 @@ class PoseClaims {
   /// Records that the pose is reliable: odometry errs from here on.
   void trust() { driven_ = 0, claim_.reset(); }
 
-  enum class Verdict { believed, open };
+  enum class Verdict { accepted, open };
   /// Judges a pose found by the finder. `reckoned`: the last reliable pose, predicted by odometry. If the
   /// verdict is `open` the next answer must be of other sightings.
   Verdict judge(const PoseEstimate& found, const PoseEstimate& reckoned);

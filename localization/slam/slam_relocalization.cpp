@@ -115,7 +115,7 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   PoseSearchResult answer = memory_.find(finder_, seen);
   if (!answer.accepted) return {};
   if (are_distinct(*answer.accepted, here)) {
-    if (claims_.judge(*answer.accepted, here) == PoseClaims::Verdict::believed) return answer.accepted;
+    if (claims_.judge(*answer.accepted, here) == PoseClaims::Verdict::accepted) return answer.accepted;
     memory_ = SightingMemory(scales_);
     return {};
   }

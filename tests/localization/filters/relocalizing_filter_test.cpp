@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recovery of a lost filter: which poses of the finder it believes.
+// Recovery of a lost filter: which poses of the finder it accepts.
 #include "localization/filters/relocalizing_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ class LostDrive {
   RelocalizingFilter filter_;
 };
 
-TEST(RelocalizingFilter, BelievesAPoseWithinReachAtOnce) {
+TEST(RelocalizingFilter, AcceptsAPoseWithinReachAtOnce) {
   LostDrive drive([](int) { return Eigen::Vector2d(1.2, 0.5); });
   drive.drive(7);
   EXPECT_EQ(drive.answers(), 1);
@@ -79,7 +79,7 @@ TEST(RelocalizingFilter, DoubtsAPoseThatOdometryCannotHaveReached) {
   EXPECT_LT(drive.error(), 0.01);
 }
 
-TEST(RelocalizingFilter, BelievesThreeAnswersThatAgreeAboutARobotThatWasCarried) {
+TEST(RelocalizingFilter, AcceptsThreeAnswersThatAgreeAboutARobotThatWasCarried) {
   LostDrive drive([](int) { return Eigen::Vector2d(25, 7); });
   drive.drive(11);
   EXPECT_EQ(drive.restarts(), 0);
