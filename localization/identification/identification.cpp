@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/covariance.hpp"
 #include "localization/chi_square.hpp"
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
@@ -26,10 +27,6 @@ double gate_of(const IdentificationOptions& options, int freedom) {
     last = options.gate;
   }
   return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMaxFreedom))];
-}
-
-double largest_sd(const Eigen::Matrix2d& c) {
-  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
 }
 
 /// Returns the landmarks of its type that may pass the gate of a sighting; others cannot.
