@@ -2,6 +2,7 @@
 // SLAM with increasing numbers of landmarks, and graphs with increasing numbers of poses. One thread.
 #include <benchmark/benchmark.h>
 
+#include "localization/filters/measurement.hpp"
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/graph_solver.hpp"
 #include "tests/localization/made_world.hpp"
@@ -30,6 +31,31 @@ void slam_set(benchmark::State& state) {
   state.counters["landmarks"] = static_cast<double>(slam.landmarks().size());
 }
 BENCHMARK(slam_set)->Arg(30)->Arg(60)->Arg(200)->Unit(benchmark::kMicrosecond);
+
+/// The state alone, per metre driven on a circle of 80 m: eight of the landmarks within 25 m are measured;
+/// every 15 m the landmarks within 50 m become active. So many landmarks on 300 m by 300 m.
+void slam_state(benchmark::State& state) {
+  localization::SlamState slam({{0, -80, 0}, Eigen::Matrix3d::Identity() * 1e-6});
+  for (const localization::MapLandmark& l :
+       scatter_landmarks(static_cast<std::size_t>(state.range(0)), 300, 1, 0.2))
+    slam.add(l.at, l.covariance);
+  slam.focus(50);
+  const localization::BodyMotion step{{1, 0, 1.0 / 80}, Eigen::Vector3d(1e-4, 1e-5, 1e-6).asDiagonal()};
+  int driven = 0;
+  for (auto _ : state) {
+    slam.predict(step);
+    if (++driven % 15 == 0) slam.focus(50);
+    std::vector<localization::SlamState::Correction> corrections;
+    for (const auto slot : slam.active()) {
+      if (corrections.size() == 8 || (slam.at(slot) - slam.pose().at()).norm() > 25) continue;
+      const localization::ExpectedSighting e = localization::expect(slam.pose(), {}, slam.at(slot));
+      corrections.push_back({slot, Eigen::Vector2d::Zero(), e.by_pose, e.by_landmark,
+                             Eigen::Vector2d(0.01, 1e-4).asDiagonal()});
+    }
+    slam.update(corrections);
+  }
+}
+BENCHMARK(slam_state)->Arg(300)->Arg(1000)->Iterations(300)->Unit(benchmark::kMicrosecond);
 
 localization::PoseGraph rounds(std::size_t poses) {
   Random random(1, "rounds");

@@ -25,4 +25,8 @@ Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric) {
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
+double largest_sd(const Eigen::Matrix2d& c) {
+  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
+}
+
 }  // namespace waymark::inline core

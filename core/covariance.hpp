@@ -12,4 +12,7 @@ bool is_covariance(const Eigen::Matrix3d& matrix);
 /// Returns a symmetric matrix without its negative eigenvalues: itself if it is a covariance.
 Eigen::Matrix3d positive_part(const Eigen::Matrix3d& symmetric);
 
+/// Returns the standard deviation along the longest axis of a covariance.
+double largest_sd(const Eigen::Matrix2d& covariance);
+
 }  // namespace waymark::inline core

@@ -145,7 +145,7 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some,
                                            const LandmarkGrid& map) {
   std::vector<Component> next;
   std::vector<double> logs;
-  for (const Component& component : components_) {
+  for (Component& component : components_) {
     std::vector<Candidates> sets;
     for (const SeenLandmark& s : some.sightings) {
       sets.push_back(matcher_.candidates(s, some.robot_from_sensor, component.at, map));
@@ -156,8 +156,9 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some,
     const auto found = joint_hypotheses(sets, some, map, component.at.covariance, matcher_.options());
     if (!found) continue;
     const FollowedDecision earlier(component.of_object, objects, *found, sets, map);
+    const double log_weight = std::log(component.weight);
     for (const JointHypothesis& h : *found) {
-      Component& after = next.emplace_back(component);
+      Component& after = next.emplace_back(&h == &found->back() ? std::move(component) : component);
       const auto keys = decisions(h.choice, sets, map);
       for (std::size_t i = 0; i < keys.size(); ++i) after.of_object[objects[i].object] = keys[i];
       update_component(after, some, sets, h, map);
@@ -166,7 +167,7 @@ void MultiHypothesisFilter::update_jointly(const SightingSet& some,
             h.choice[i] < 0
                 ? -1
                 : static_cast<int>(sets[i].pairings[static_cast<std::size_t>(h.choice[i])].landmark));
-      logs.push_back(std::log(component.weight) + earlier.log_weight(h, keys));
+      logs.push_back(log_weight + earlier.log_weight(h, keys));
     }
   }
   if (next.empty()) {

@@ -22,10 +22,10 @@ void MultiHypothesisFilter::split() {
   constexpr double kSteps[] = {-1.6, -0.8, 0, 0.8, 1.6};
   constexpr double kWeights[] = {0.0924, 0.2414, 0.3324, 0.2414, 0.0924};
   constexpr double kLeft = 0.218;  // fraction of the variance that each keeps
-  for (const Component& component : components_) {
+  for (Component& component : components_) {
     const double variance = component.at.covariance(2, 2);
     if (!(variance > options_.split_yaw * options_.split_yaw)) {
-      next.push_back(component);
+      next.push_back(std::move(component));
       continue;
     }
     const Eigen::Vector3d line = component.at.covariance.col(2) / std::sqrt(variance);
@@ -44,7 +44,7 @@ void MultiHypothesisFilter::prune() {
   std::ranges::stable_sort(components_, std::greater<>{}, &Component::weight);
   const double min_weight = components_[0].weight * options_.min_weight;
   std::vector<Component> kept;
-  for (const Component& component : components_) {
+  for (Component& component : components_) {
     if (component.weight < min_weight && !kept.empty()) break;
     bool merged = false;
     for (Component& k : kept) {
@@ -61,7 +61,8 @@ void MultiHypothesisFilter::prune() {
       merged = true;
       break;
     }
-    if (!merged && kept.size() < static_cast<std::size_t>(options_.max_hypotheses)) kept.push_back(component);
+    if (!merged && kept.size() < static_cast<std::size_t>(options_.max_hypotheses))
+      kept.push_back(std::move(component));
   }
   double total = 0;
   for (const Component& component : kept) total += component.weight;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/covariance.hpp"
+
 namespace waymark::localization {
 namespace {
 
@@ -52,6 +54,12 @@ double at_least(double a, double low) {
 Lanes at_least(const Lanes& a, double low) {
   return a.max(low);
 }
+double larger(double a, double b) {
+  return std::max(a, b);
+}
+Lanes larger(const Lanes& a, const Lanes& b) {
+  return a.max(b);
+}
 
 }  // namespace
 
@@ -60,6 +68,22 @@ template <class T>
 struct SightingScore::View {
   T x, y, cosine, sine;
 };
+
+SightingScore::GateBounds::GateBounds(const Prepared& p, double sd) {
+  constexpr double kSlack = 1 + 1e-5, kMinRange = 2e-3;  // of rounding; m: matches take no range below 1 mm
+  const double gate = kSlack * p.gate;
+  off = p.seen.range ? std::sqrt(gate * (p.range_variance + sd * sd)) + kMinRange : kNone;
+  const double nearest = p.seen.range ? std::max(0.0, *p.seen.range - off) : 0;
+  const double farthest = p.seen.range ? *p.seen.range + off : kNone;
+  min_square = nearest * nearest, max_square = farthest * farthest;
+  near = gate * sd * sd, widening = gate * p.bearing_variance;
+}
+
+template <class T>
+T SightingScore::GateBounds::excess(const T& left, const T& square) const {
+  return larger(T(left * left - near - widening * square),
+                larger(T(min_square - square), T(square - max_square)));
+}
 
 // Comparison of a landmark's position with the measured one: squared distance, and one over the determinant
 // of its covariance.
@@ -101,7 +125,8 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
     if (p.known) {
       if (const auto l = map.find(*s.identity))
         if (const auto alike = pose_free_terms(p, *l))
-          p.candidates.push_back({*l, map[*l].at, map_covariance(*l), *alike});
+          p.candidates.push_back(
+              {*l, map[*l].at, map_covariance(*l), GateBounds(p, largest_sd(map_covariance(*l))), *alike});
     }
     if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
     prepared_.push_back(std::move(p));
@@ -220,6 +245,8 @@ SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& v
   const Eigen::Vector2d centre(view.x + range * view.cosine, view.y + range * view.sine);
   if (p.known || (in_cloud && p.prefetched)) {
     for (const Candidate& c : p.candidates) {
+      const double dx = c.at.x() - view.x, dy = c.at.y() - view.y;
+      if (!(c.bounds.excess(view.cosine * dy - view.sine * dx, dx * dx + dy * dy) <= 0)) continue;
       if (!p.known && !((c.at - centre).squaredNorm() <= p.radius * p.radius)) continue;
       if (const auto there = match_position(p, c.at, c.covariance, view); there.squares <= p.gate)
         take(there, c.pose_free_terms, c.landmark);
@@ -259,6 +286,10 @@ void SightingScore::score_lanes(const Pose2* poses, double* fit) const {
     const Lanes centre_x = x + range * view.cosine, centre_y = y + range * view.sine;
     Lanes best = Lanes::Zero();
     for (const Candidate& l : p.candidates) {
+      const Lanes dx = l.at.x() - x, dy = l.at.y() - y;
+      const Lanes excess =
+          l.bounds.excess(Lanes(view.cosine * dy - view.sine * dx), Lanes(dx * dx + dy * dy));
+      if (!(excess.minCoeff() <= 0)) continue;
       const Lanes away = (l.at.x() - centre_x).square() + (l.at.y() - centre_y).square();
       if (!(away.minCoeff() <= square)) continue;
       const PositionMatch<Lanes> there = match_position(p, l.at, l.covariance, view);

@@ -47,10 +47,24 @@ class SightingScore {
     double scale;     ///< `likelihood`: the density is this times exp(-squares / 2) / sqrt(det)
     double features;  ///< `paper`: their part of the distance of eq. 11
   };
+  struct Prepared;
+  /// Bounds that no landmark inside the gate exceeds, whatever the correlation of its errors. They need
+  /// neither an inverse nor an angle.
+  struct GateBounds {
+    GateBounds(const Prepared& p, double sd);
+    double off;                     ///< m: largest difference of the ranges; infinite without a range
+    double min_square, max_square;  ///< m^2: squared distance from the sensor
+    double near, widening;          ///< left^2 <= near + widening * squared distance from the sensor
+    /// Returns a positive number for a landmark outside the bounds. `left`: its distance from the line of
+    /// sight, m; `square`: its squared distance from the sensor.
+    template <class T>
+    T excess(const T& left, const T& square) const;
+  };
   struct Candidate {
     std::uint32_t landmark;
     Eigen::Vector2d at;
     Eigen::Matrix2d covariance;
+    GateBounds bounds;
     PoseFreeTerms pose_free_terms;
   };
   struct Prepared {

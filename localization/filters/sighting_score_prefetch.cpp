@@ -2,6 +2,7 @@
 // Candidate landmarks shared by the poses of a cloud.
 #include <algorithm>
 
+#include "core/covariance.hpp"
 #include "localization/filters/sighting_score.hpp"
 
 namespace waymark::localization {
@@ -53,16 +54,19 @@ void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
     const MapLandmark& l = (*map_)[i];
     const Eigen::Vector2d d = l.at - sensor.at();
     const double away = d.norm();
-    if (p.seen.range) {
-      if (std::abs(away - *p.seen.range) > p.radius + radius) return;
-    } else if (away > 2 * radius) {
-      const double nearest = away - radius, sd = map_->largest_sd() / nearest;
-      const double max_turn = std::sqrt(p.gate * (p.bearing_variance + sd * sd)) + cloud_.turn +
-                              std::asin(radius / away) + kSlack;
+    if (p.seen.range && std::abs(away - *p.seen.range) > p.radius + radius) return;
+    const Eigen::Matrix2d covariance = map_covariance(i);
+    const double sd = largest_sd(covariance);
+    const GateBounds bounds(p, sd);
+    if (p.seen.range && std::abs(away - *p.seen.range) > bounds.off + radius) return;
+    if (away > 2 * radius) {
+      const double nearest_sd = sd / (away - radius);
+      const double max_turn = std::sqrt(p.gate * (p.bearing_variance + nearest_sd * nearest_sd)) +
+                              cloud_.turn + std::asin(radius / away) + kSlack;
       if (std::abs(std::atan2(out.x() * d.y() - out.y() * d.x(), out.dot(d))) > max_turn) return;
     }
     if (const auto alike = pose_free_terms(p, i))
-      p.candidates.push_back({i, l.at, map_covariance(i), *alike});
+      p.candidates.push_back({i, l.at, covariance, bounds, *alike});
   });
 }
 

@@ -7,14 +7,12 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "core/covariance.hpp"
+
 namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kSample = 400;  // landmarks to estimate how rare a feature is
-
-double largest_sd(const Eigen::Matrix2d& c) {
-  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
-}
 
 // Returns the existence from which landmarks are searched. A doubtful one in the index takes the place of a
 // true neighbour in triangles, and counts as one that may match by chance. Those that rather do not exist are

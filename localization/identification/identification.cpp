@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "core/covariance.hpp"
 #include "localization/chi_square.hpp"
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
@@ -26,10 +27,6 @@ double gate_of(const IdentificationOptions& options, int freedom) {
     last = options.gate;
   }
   return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMaxFreedom))];
-}
-
-double largest_sd(const Eigen::Matrix2d& c) {
-  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1))));
 }
 
 /// Returns the landmarks of its type that may pass the gate of a sighting; others cannot.
@@ -73,6 +70,47 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   found.erase(std::ranges::unique(found).begin(), found.end());
   return found;
 }
+
+/// Bounds on the errors of range and bearing that pass the widest gate, from the largest deviation of each
+/// source. They need no inverse and no angle.
+class WidestGate {
+ public:
+  WidestGate(const SeenLandmark& seen, const Pose2& robot_from_sensor, const PoseEstimate& robot,
+             const IdentificationOptions& options)
+      : seen_(seen),
+        options_(options),
+        sensor_((robot.pose * robot_from_sensor).at()),
+        gate_(gate_of(options, 2 + static_cast<int>(kMaxFeatures)) * (1 + 1e-6)),  // rounding
+        place_(largest_sd(robot.covariance.topLeftCorner<2, 2>())),
+        turn_(std::sqrt(std::max(0.0, robot.covariance(2, 2)))),
+        lever_(robot_from_sensor.at().norm()) {
+    const double along = robot.pose.yaw + robot_from_sensor.yaw + seen.bearing;
+    cosine_ = std::cos(along), sine_ = std::sin(along);
+  }
+
+  bool excludes(const MapLandmark& landmark) const {
+    const Eigen::Vector2d to = landmark.at - sensor_;
+    const double square = to.squaredNorm(), range = std::sqrt(square),
+                 trust = noise_divisor(landmark, options_);
+    const double sd = largest_sd(landmark.covariance), map_error = sd * sd;
+    const double left = cosine_ * to.y() - sine_ * to.x();
+    const double sideways = place_ + (range + lever_) * turn_, ahead = place_ + lever_ * turn_;
+    const double bearing = seen_.bearing_sd * seen_.bearing_sd;
+    if (left * left > gate_ * ((bearing * square + map_error) / trust + sideways * sideways)) return true;
+    if (!seen_.range) return false;
+    const double off = std::abs(*seen_.range - range) - kMinRange;
+    return off > 0 &&
+           off * off > gate_ * ((seen_.range_sd * seen_.range_sd + map_error) / trust + ahead * ahead);
+  }
+
+ private:
+  static constexpr double kMinRange = 1e-3;  // m: expect() takes no range below
+  const SeenLandmark& seen_;
+  const IdentificationOptions& options_;
+  Eigen::Vector2d sensor_;
+  double gate_, place_, turn_, lever_;
+  double cosine_ = 1, sine_ = 0;
+};
 
 double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
   const double range = seen.range ? v[0] / seen.range_sd : 0, bearing = v[1] / seen.bearing_sd;
@@ -269,9 +307,12 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
   const KnownFeatures seen_features =
       seen.type ? features_in_map(scales, *seen.type, seen.features, sensor.yaw, robot.covariance(2, 2))
                 : seen.features;
+  const WidestGate widest(seen, robot_from_sensor, robot, options);
   for (const std::uint32_t i : reach) {
     const MapLandmark& landmark = map[i];
     if (!known && seen.type && *seen.type != landmark.type) continue;
+    // `too_far` is final: only landmarks inside the gate still count.
+    if (result.verdict == Verdict::too_far && widest.excludes(landmark)) continue;
     FeatureComparison features;
     if (seen.type && *seen.type == landmark.type)
       features = compare_features(scales, landmark.type, seen_features, landmark.features,

@@ -4,23 +4,16 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/covariance.hpp"
+
 namespace waymark::localization {
-namespace {
-
-double largest_sd(const MapLandmark& landmark) {
-  const Eigen::Matrix2d& c = landmark.covariance;
-  const double half = (c(0, 0) - c(1, 1)) / 2;
-  return std::sqrt(std::max(0.0, (c(0, 0) + c(1, 1)) / 2 + std::hypot(half, c(0, 1))));
-}
-
-}  // namespace
 
 LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
   std::erase_if(landmarks, [](const MapLandmark& l) { return !l.at.allFinite(); });
   if (landmarks.empty()) return;
   for (const MapLandmark& landmark : landmarks) {
     bounds_.extend(landmark.at);
-    largest_sd_ = std::max(largest_sd_, localization::largest_sd(landmark));
+    largest_sd_ = std::max(largest_sd_, core::largest_sd(landmark.covariance));
     min_quality_ = std::min(min_quality_, landmark.paper_quality);
   }
   const Eigen::Vector2d size = bounds_.sizes();

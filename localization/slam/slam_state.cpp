@@ -28,7 +28,8 @@ SlamState::SlamState(const PoseEstimate& start)
       pbb_(0, 0),
       phi_(Eigen::Matrix3d::Identity()),
       psi_(Eigen::Matrix3d::Zero()),
-      theta_(Eigen::Vector3d::Zero()) {}
+      theta_(Eigen::Vector3d::Zero()),
+      measured_{0, 1, 2} {}
 
 Eigen::Matrix2d SlamState::covariance(Slot slot) const {
   if (index_[slot] < active_.size() && active_[index_[slot]] == slot)
@@ -76,8 +77,34 @@ double SlamState::joint_squares(std::span<const Correction> corrections) const {
   return v.dot(root.solve(v));
 }
 
+// Gives a landmark its columns of phi and psi before it is measured first: until then those of the identity
+// and of zero.
+void SlamState::add_column(Slot slot) {
+  Index& omitted = identity_[index_[slot]];
+  if (omitted < 0) return;
+  const Index old = phi_.cols();
+  phi_.conservativeResize(Eigen::NoChange, old + 2);
+  phi_.rightCols<2>().setZero();
+  phi_.block<2, 2>(row(slot), old).setIdentity();
+  psi_.conservativeResize(old + 2, old + 2);
+  psi_.rightCols<2>().setZero();
+  psi_.bottomRows<2>().setZero();
+  theta_.conservativeResize(old + 2);
+  theta_.tail<2>().setZero();
+  measured_.push_back(omitted);
+  measured_.push_back(omitted + 1);
+  omitted = -1;
+}
+
+Eigen::MatrixXd SlamState::measured_rows() const {
+  return pab_(measured_, Eigen::all);
+}
+
 void SlamState::update(std::span<const Correction> corrections) {
   if (corrections.empty()) return;
+  const bool has_passive = pbb_.rows() > 0;
+  if (has_passive)
+    for (const Correction& c : corrections) add_column(c.slot);
   const Index n = paa_.rows(), m = 2 * static_cast<Index>(corrections.size());
   Eigen::MatrixXd ph(n, m), h_phi(m, phi_.cols()), s = Eigen::MatrixXd::Zero(m, m);
   Eigen::VectorXd v(m);
@@ -86,8 +113,10 @@ void SlamState::update(std::span<const Correction> corrections) {
     const Index l = row(c.slot);
     ph.middleCols<2>(k).noalias() = paa_.leftCols<3>() * c.by_pose.transpose();
     ph.middleCols<2>(k).noalias() += paa_.middleCols<2>(l) * c.by_landmark.transpose();
-    h_phi.middleRows<2>(k).noalias() = c.by_pose * phi_.topRows<3>();
-    h_phi.middleRows<2>(k).noalias() += c.by_landmark * phi_.middleRows<2>(l);
+    if (has_passive) {
+      h_phi.middleRows<2>(k).noalias() = c.by_pose * phi_.topRows<3>();
+      h_phi.middleRows<2>(k).noalias() += c.by_landmark * phi_.middleRows<2>(l);
+    }
     s.block<2, 2>(k, k) = c.noise;
     v.segment<2>(k) = c.innovation;
   }
@@ -103,7 +132,7 @@ void SlamState::update(std::span<const Correction> corrections) {
   pose_ = pose_of(pose_.vector() + step.head<3>());
   for (std::size_t i = 0; i < active_.size(); ++i)
     at_[active_[i]] += step.segment<2>(3 + 2 * static_cast<Index>(i));
-  if (psi_.rows() > 0 && pbb_.rows() > 0) {
+  if (has_passive) {
     const Eigen::MatrixXd weighed = root.solve(h_phi);
     theta_.noalias() += h_phi.transpose() * root.solve(v);
     psi_.noalias() += h_phi.transpose() * weighed;
@@ -119,6 +148,7 @@ SlamState::Slot SlamState::append(const Eigen::Vector2d& at) {
   at_.push_back(at);
   index_.push_back(active_.size());
   active_.push_back(at_.size() - 1);
+  identity_.push_back(-1);
   return at_.size() - 1;
 }
 
@@ -149,6 +179,7 @@ void SlamState::remove(Slot slot) {
   phi_.middleRows(l, rest) = phi_.bottomRows(rest).eval();
   phi_.conservativeResize(n - 2, Eigen::NoChange);
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(index_[slot]));
+  identity_.erase(identity_.begin() + static_cast<std::ptrdiff_t>(index_[slot]));
   for (std::size_t i = index_[slot]; i < active_.size(); ++i) index_[active_[i]] = i;
 }
 
@@ -159,19 +190,26 @@ Eigen::MatrixXd SlamState::full_covariance(std::vector<Slot>& order) const {
   Eigen::MatrixXd all(a + b, a + b);
   all.topLeftCorner(a, a) = paa_;
   if (b > 0) {
+    const Eigen::MatrixXd measured = measured_rows();
     // In blocks of columns, the same for any number of threads.
     tbb::parallel_for(Index{0}, (b + kBlock - 1) / kBlock, [&](Index k) {
       const Index j = k * kBlock, width = std::min(kBlock, b - j), below = b - j;
-      const auto part = pab_.middleCols(j, width);
-      all.block(0, a + j, a, width).noalias() = phi_ * part;
+      const auto part = measured.middleCols(j, width);
+      auto with_active = all.block(0, a + j, a, width);
+      with_active.noalias() = phi_ * part;
+      for (std::size_t i = 0; i < active_.size(); ++i)
+        if (identity_[i] >= 0)
+          with_active.middleRows<2>(3 + 2 * static_cast<Index>(i)) += pab_.block(identity_[i], j, 2, width);
+      all.block(a + j, 0, width, a) = with_active.transpose();
       const Eigen::MatrixXd lost = psi_ * part;
       auto rest = all.block(a + j, a + j, below, width);
       rest = pbb_.block(j, j, below, width);
-      rest.noalias() -= pab_.rightCols(below).transpose() * lost;
+      rest.noalias() -= measured.rightCols(below).transpose() * lost;
+      for (Index c = 1; c < width; ++c)
+        for (Index r = 0; r < c; ++r) rest(r, c) = rest(c, r);
+      const Index beyond = below - width;
+      all.block(a + j, a + j + width, width, beyond) = rest.bottomRows(beyond).transpose();
     });
-    all.bottomLeftCorner(b, a) = all.topRightCorner(a, b).transpose();
-    for (Index j = 1; j < b; ++j)
-      for (Index i = 0; i < j; ++i) all(a + i, a + j) = all(a + j, a + i);
   }
   return all;
 }
@@ -180,7 +218,7 @@ void SlamState::focus(double radius) {
   std::vector<Slot> order;
   const Eigen::MatrixXd all = full_covariance(order);
   if (pbb_.rows() > 0) {
-    const Eigen::VectorXd step = pab_.transpose() * theta_;
+    const Eigen::VectorXd step = measured_rows().transpose() * theta_;
     for (std::size_t i = 0; i < passive_.size(); ++i)
       at_[passive_[i]] += step.segment<2>(2 * static_cast<Index>(i));
   }
@@ -200,10 +238,12 @@ void SlamState::focus(double radius) {
   paa_ = all(near, near);
   pab_ = all(near, far);
   pbb_ = all(far, far);
-  const Index a = paa_.rows();
-  phi_ = Eigen::MatrixXd::Identity(a, a);
-  psi_ = Eigen::MatrixXd::Zero(a, a);
-  theta_ = Eigen::VectorXd::Zero(a);
+  phi_ = Eigen::MatrixXd::Identity(paa_.rows(), 3);
+  psi_ = Eigen::Matrix3d::Zero();
+  theta_ = Eigen::Vector3d::Zero();
+  measured_ = {0, 1, 2};
+  identity_.clear();
+  for (std::size_t i = 0; i < active_.size(); ++i) identity_.push_back(3 + 2 * static_cast<Index>(i));
 }
 
 }  // namespace waymark::localization

@@ -8,8 +8,9 @@ namespace waymark::localization {
 
 /// Robot and landmarks in one Gaussian (compressed filter, Guivant & Nebot 2001). Only the active part A
 /// near the robot is kept up to date. The effect of its measurements on the passive rest B is collected in
-/// three small matrices and applied when the robot leaves the neighbourhood. Equals the full filter to
-/// rounding; an update costs O(A^2) instead of O((A + B)^2).
+/// three small matrices and applied when the robot leaves the neighbourhood. These have columns only for the
+/// robot and the landmarks M that were measured meanwhile; the others would be zero or those of the identity.
+/// Equals the full filter to rounding; an update costs O(A^2), a change of neighbourhood O(M (A + B)^2).
 class SlamState {
  public:
   using Slot = std::size_t;  ///< of a landmark; never reused
@@ -59,6 +60,8 @@ class SlamState {
  private:
   Eigen::Index row(Slot slot) const { return 3 + 2 * static_cast<Eigen::Index>(index_[slot]); }
   Slot append(const Eigen::Vector2d& at);
+  void add_column(Slot slot);
+  Eigen::MatrixXd measured_rows() const;
 
   Pose2 pose_;
   std::vector<Eigen::Vector2d> at_;  // by slot
@@ -66,8 +69,13 @@ class SlamState {
   std::vector<Slot> active_, passive_;
   Eigen::MatrixXd paa_;        // robot and active landmarks
   Eigen::MatrixXd pab_, pbb_;  // as of the last focus(); rows of pab_: those active then
-  Eigen::MatrixXd phi_, psi_;  // P_AB now = phi P_AB then; P_BB now = P_BB then - P_BA psi P_AB
-  Eigen::VectorXd theta_;      // x_B now = x_B then + P_BA theta
+  // With P_MB, the rows `measured_` of P_AB: P_AB now = phi P_MB then + rows of P_AB then by `identity_`;
+  // P_BB now = P_BB then - P_BM psi P_MB; x_B now = x_B then + P_BM theta.
+  Eigen::MatrixXd phi_, psi_;
+  Eigen::VectorXd theta_;
+  std::vector<Eigen::Index> measured_;
+  std::vector<Eigen::Index>
+      identity_;  // by index in active_: row of pab_, -1 for those in `measured_` or new
 };
 
 }  // namespace waymark::localization

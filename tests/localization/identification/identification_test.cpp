@@ -26,6 +26,54 @@ TEST(ChiSquare, TablesAgree) {
   EXPECT_NEAR(chi_square_quantile(0.975, 100), 129.5612, 1e-4);
 }
 
+// Slow twin: maps of one landmark, where nothing but its gate excludes it, and a remote one that makes the
+// search as wide.
+TEST(Candidates, AreThoseOfEachLandmarkAlone) {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    Random random(seed, "candidates");
+    auto all = scatter_landmarks(200, 40, seed, 0.1);
+    for (MapLandmark& l : all) {
+      l.type = static_cast<TypeId>(random.uniform_index(2));
+      l.features.value[0] = random.uniform(0.5, 1);
+      l.paper_quality = random.uniform(0.05, 1);
+      const double sd = random.log_uniform(0.01, 1), other = random.log_uniform(0.01, 1);
+      const double along = random.uniform(-1, 1) * sd * other;
+      l.covariance << sd * sd, along, along, other * other;
+    }
+    const LandmarkGrid map(all);
+    const FeatureScales scales;
+    IdentificationOptions options{.use_identities = false, .quality = seed % 3 ? "existence" : "paper"};
+    options.distance = seed % 7 ? "mahalanobis" : "paper";
+    options.bearing_reach = 30;
+    SeenLandmark s = seen_at(random.log_uniform(0.01, 20), random.uniform(-3, 3));
+    s.bearing_sd = random.log_uniform(0.001, 1);
+    if (random.bernoulli(0.3)) s.range.reset();
+    if (random.bernoulli(0.7)) s.type = TypeId{0}, s.features.value[0] = 0.7, s.features.variance[0] = 0.01;
+    const Pose2 mount{random.normal(), 0.3, random.uniform(-3, 3)};
+    PoseEstimate robot{{random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-3, 3)}, {}};
+    const Eigen::Vector3d sd(random.log_uniform(0.01, 3), random.log_uniform(0.01, 3),
+                             random.log_uniform(0.001, 0.5));
+    robot.covariance = sd.cwiseAbs2().asDiagonal();
+    robot.covariance(0, 2) = robot.covariance(2, 0) = random.uniform(-1, 1) * sd[0] * sd[2];
+
+    MapLandmark remote = landmark_at(1e6, 0, 1000);
+    remote.covariance = map.largest_sd() * map.largest_sd() * Eigen::Matrix2d::Identity();
+    remote.paper_quality = map.min_quality();
+    std::vector<double> together, alone;
+    for (const CandidatePair& p : candidates(s, mount, robot, map, scales, options).pairings)
+      together.push_back(p.score);
+    for (const MapLandmark& l : all)
+      for (const CandidatePair& p :
+           candidates(s, mount, robot, LandmarkGrid({l, remote}), scales, options).pairings)
+        alone.push_back(p.score);
+    std::ranges::sort(alone);
+    ASSERT_EQ(together, alone) << "seed " << seed;
+    found += alone.size();
+  }
+  EXPECT_GT(found, 1000u);
+}
+
 TEST(LandmarkGrid, FindsWhatAnExhaustiveSearchFinds) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     Random random(seed, "queries");
