@@ -8,9 +8,11 @@ namespace waymark::localization {
 
 /// Robot and landmarks in one Gaussian (compressed filter, Guivant & Nebot 2001). Only the active part A
 /// near the robot is kept up to date. The effect of its measurements on the passive rest B is collected in
-/// three small matrices and applied when the robot leaves the neighbourhood. These have columns only for the
-/// robot and the landmarks M that were measured meanwhile; the others would be zero or those of the identity.
-/// Equals the full filter to rounding; an update costs O(A^2), a change of neighbourhood O(M (A + B)^2).
+/// three small matrices and applied when the robot leaves the neighbourhood. Equals the full filter to
+/// rounding.
+/// - An update costs O(A^2).
+/// - The matrices have columns only for the robot and the landmarks M measured meanwhile. A change of
+///   neighbourhood costs O(M (A + B)^2).
 class SlamState {
  public:
   using Slot = std::size_t;  ///< of a landmark; never reused
