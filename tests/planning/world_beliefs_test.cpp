@@ -72,5 +72,28 @@ TEST(WorldBeliefs, MissesThatRepeatAreWorseThanRandomOnesAndBetterThanAbsence) {
   EXPECT_LT(variance(1, 0.5), variance(0.5, 1));
 }
 
+// Doubtful and rarely seen landmarks: worlds differ, and some see far more than the mean.
+TEST(WorldBeliefs, MaxInformationBoundsEveryWorld) {
+  const auto map = one_landmark(0.4);
+  const LandmarkSensing sensing = laser(0.3);
+  RouteProblem problem;
+  const RouteCells cells{.cell = 2, .columns = 16, .rows = 1};
+  problem.passable.assign(16, 1);
+  problem.field = max_information_field(cells, problem.passable, map, sensing);
+  problem.to = 15;
+  problem.start = {0.01, 0, 0.01, 0, 0, 3e-4};
+  Route route;
+  for (std::int64_t cell = 0; cell < 16; ++cell) route.nodes.push_back({cell, 0, {}});
+  const double bound = relaxed_sd(problem, 1e6)[15];
+  double least = 1e9;
+  for (std::int64_t seed = 1; seed <= 40; ++seed) {
+    WorldBeliefs beliefs(problem.start, {}, map, 1, seed);
+    follow_route(beliefs, problem, map, sensing, route);
+    least = std::min(least, position_sd(route.nodes.back().covariance));
+  }
+  EXPECT_GE(least, bound);
+  EXPECT_GT(bound, 0);
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -90,6 +90,7 @@ struct Planner {
   std::map<std::uint64_t, std::string> uids;
   planning::Odometry odometry = {};
   std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
+  bool worlds_agree = true;                           ///< at the start of the leg: all have problem.start
 
   /// A route of the search, which takes all errors of the odometry as independent and all misses of a
   /// landmark.
@@ -137,7 +138,7 @@ struct Planner {
     for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
       auto route = search(asked, 0, labels);
       // The search is too cautious at most where errors persist; else what it refuses cannot be kept.
-      if (!route && i == 0 && !odometry.drift.any()) return {};
+      if (!route && i == 0 && (!odometry.drift.any() || min_limit(limit) > limit)) return {};
       const bool keeps = route && route->worst_sd <= limit;
       (route && !keeps ? high : low) = asked;
       if (keeps && (!kept || route->length < kept->length)) kept = std::move(route);
@@ -170,6 +171,38 @@ struct Planner {
     return best;
   }
 
+  /// Returns a lower bound of the limits that a route can keep in any world, to 1 %; `limit` if the relaxed
+  /// test does not exclude it. Beliefs over worlds that start apart have no such bound.
+  double min_limit(double limit) const {
+    if (!worlds_agree) return limit;
+    planning::RouteProblem relaxed = problem;
+    relaxed.noise = odometry.noise;  // persistent errors may be known: they bound nothing
+    const auto excludes = [&](double sd) {
+      return !std::isfinite(planning::relaxed_sd(relaxed, sd)[slot(problem.to)]);
+    };
+    if (!excludes(limit)) return limit;  // the field of the search has less information
+    relaxed.field =
+        planning::max_information_field(problem.field.cells, problem.passable, landmarks, sensing);
+    if (!excludes(limit)) return limit;
+    double low = limit, high = 2 * limit;
+    while (excludes(high)) low = high, high *= 2;
+    while (high > 1.01 * low) {
+      const double middle = std::sqrt(low * high);
+      (excludes(middle) ? low : high) = middle;
+    }
+    return low;
+  }
+
+  [[noreturn]] void fail_impossible(double least) const {
+    const planning::Route shortest = *search(1e9, 0, 1);
+    throw Error(
+        ErrorCode::input,
+        fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma), request.map,
+        fmt::format("no limit below {:.3g} m can be kept, even if every landmark is seen; the shortest route "
+                    "keeps {:.3g} m; --least-sigma seeks the least",
+                    least, std::ceil(shortest.worst_sd * 1000) / 1000));
+  }
+
   [[noreturn]] void fail_limit(double least_sd) const {
     planning::RouteProblem independent = problem;  // persistent errors can be known: they bound nothing
     independent.noise = odometry.noise;
@@ -190,6 +223,8 @@ struct Planner {
       return min_sd_route();
     } else if (request.limit_sigma > 0) {
       if (auto route = keep(request.limit_sigma)) return *route;
+      if (const double least = min_limit(request.limit_sigma); least > request.limit_sigma)
+        fail_impossible(least);
       planning::Route safest = min_sd_route();
       if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
       return safest;
@@ -305,6 +340,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
       problem.from = stops[i], problem.to = stops[i + 1];
+      planner.worlds_agree = i == 0;
       if (!std::isfinite(planning::distances_to(cells, problem.passable,
                                                 problem.to)[static_cast<std::size_t>(problem.from)]))
         throw Error(ErrorCode::input,

@@ -102,6 +102,15 @@ TEST_F(RouteCommand, LineIsDividedAtTheAntimeridian) {
   for (const auto& at : lines[1]) EXPECT_LT(at[0], -179.99);
 }
 
+TEST_F(RouteCommand, LimitThatNoWorldAllowsNamesTheLeastLimit) {
+  const Outcome none = route({"--limit-sigma", "0.02", "--start-sd", "0.01"});
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("no route keeps the sd of the position below 0.02 m"),
+                              HasSubstr("can be kept, even if every landmark is seen"),
+                              HasSubstr("the shortest route keeps")));
+}
+
+// The relaxed test knows the heading, so it does not exclude this limit.
 TEST_F(RouteCommand, LimitThatCannotBeKeptNamesTheLeastFound) {
   const Outcome none = route({"--limit-sigma", "0.11"});
   EXPECT_EQ(none.code, 1);
