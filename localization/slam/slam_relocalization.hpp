@@ -34,9 +34,10 @@ struct SetEvidence {
 /// - Every twentieth set the pose is checked with recent sightings: matches in a dense map are no proof.
 /// - The finder searches the whole map if the check fails; in doubt (every tenth set); while lost (every
 ///   fifth); and after ten sets without a landmark of the map (returning to the map closes the loop).
-/// - A pose found that contradicts SLAM is put on trial; one out of odometry's reach after three answers that
-///   agree (PoseClaims): in unmapped terrain a trial is won by landmarks that match by chance. The sightings
-///   that made it are no evidence in the trial: they share its errors.
+/// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
+///   trial: they share its errors.
+/// - In unmapped terrain landmarks that match by chance win a trial. A pose out of odometry's reach is put on
+///   trial there after three answers that agree (PoseClaims).
 /// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt.
 /// - Lost also: two fractions are small and no answer confirms the pose. SLAM finds less than 0.4 of the
 ///   expected landmarks that it usually finds; terrain without landmarks does not count. And the map explains
