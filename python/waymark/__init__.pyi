@@ -64,6 +64,7 @@ class EkfSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -143,6 +144,7 @@ class GlobalSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -222,6 +224,7 @@ class GraphSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -317,6 +320,7 @@ class OdometrySettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -384,6 +388,7 @@ class PfSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -463,6 +468,7 @@ class SlamSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -554,6 +560,7 @@ class UkfSettings(TypedDict, total=False):
     sideways_sd: float  # Standard deviation of metres sideways per metre driven, lasting drift_distance
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
+    curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
