@@ -193,14 +193,14 @@ struct Planner {
     return low;
   }
 
-  [[noreturn]] void fail_impossible(double least) const {
+  [[noreturn]] void fail_impossible(double min_kept) const {
     const planning::Route shortest = *search(1e9, 0, 1);
     throw Error(
         ErrorCode::input,
         fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma), request.map,
         fmt::format("no limit below {:.3g} m can be kept, even if every landmark is seen; the shortest route "
                     "keeps {:.3g} m; --least-sigma seeks the least",
-                    least, std::ceil(shortest.worst_sd * 1000) / 1000));
+                    min_kept, std::ceil(shortest.worst_sd * 1000) / 1000));
   }
 
   [[noreturn]] void fail_limit(double least_sd) const {
@@ -223,8 +223,8 @@ struct Planner {
       return min_sd_route();
     } else if (request.limit_sigma > 0) {
       if (auto route = keep(request.limit_sigma)) return *route;
-      if (const double least = min_limit(request.limit_sigma); least > request.limit_sigma)
-        fail_impossible(least);
+      if (const double min_kept = min_limit(request.limit_sigma); min_kept > request.limit_sigma)
+        fail_impossible(min_kept);
       planning::Route safest = min_sd_route();
       if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
       return safest;
