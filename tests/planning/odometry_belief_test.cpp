@@ -38,6 +38,14 @@ DriveBelief believe(const Odometry& odometry, double step) {
   return belief;
 }
 
+TEST(DriveBelief, AtOneSpeedABiasOfTheCurvatureIsOneOfTheTurnRate) {
+  Odometry curved = kRover;
+  curved.drift.curvature_sd = kRover.drift.yaw_rate_sd / kRover.speed;
+  curved.drift.yaw_rate_sd = 0;
+  EXPECT_NEAR((believe(curved, 0.5).pose().matrix() - believe(kRover, 0.5).pose().matrix()).norm(), 0, 1e-12);
+  EXPECT_NEAR(curved.white().yaw_per_metre, kRover.white().yaw_per_metre, 1e-15);
+}
+
 /// Errors of the pose after one drive on the route, x, y, yaw.
 Eigen::Vector3d drive_with_errors(Random& random) {
   const auto& [noise, drift, speed] = kRover;

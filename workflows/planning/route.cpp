@@ -172,9 +172,16 @@ struct Planner {
   }
 
   /// Returns a lower bound of the limits that a route can keep in any world, to 1 %; `limit` if the relaxed
-  /// test does not exclude it. Beliefs over worlds that start apart have no such bound.
+  /// test does not exclude it. Beliefs over worlds that start apart have no such bound. A refused limit is
+  /// asked for twice, so the last answer is kept.
   double min_limit(double limit) const {
     if (!worlds_agree) return limit;
+    if (!last_bound || last_bound->first != limit) last_bound = {limit, compute_min_limit(limit)};
+    return last_bound->second;
+  }
+  mutable std::optional<std::pair<double, double>> last_bound = {};  ///< limit of the first leg, its bound
+
+  double compute_min_limit(double limit) const {
     planning::RouteProblem relaxed = problem;
     relaxed.noise = odometry.noise;  // persistent errors may be known: they bound nothing
     const auto excludes = [&](double sd) {

@@ -54,6 +54,13 @@ TEST_F(CarmenLog, HoldsStepsAndScans) {
   EXPECT_THAT(log.remarks, testing::Contains(HasSubstr("1 lines of other messages are skipped")));
 }
 
+// The odometry of such robots drifts; nothing in the log says by how much.
+TEST_F(CarmenLog, OdometryHasErrorsThatPersist) {
+  const RobotLog log = read(kSound);
+  EXPECT_GT(log.drift.curvature_sd, 0);
+  EXPECT_GT(log.drift.scale_sd, 0);
+}
+
 TEST_F(CarmenLog, NewerScansHoldTheirOwnGeometry) {
   const RobotLog log = read(
       "ROBOTLASER1 0 -0.5 1.0 0.25 50 0.01 0 3 5 6 7 1 9 1.2 2 0.1 1 2 0 0 0 0.3 0.3 1e6 12.5 nohost 0\n");

@@ -64,6 +64,19 @@ TEST(DriveLandmarks, AreTheCornersOfTheRoom) {
   for (const Observation& o : made.evidence) EXPECT_EQ(o.rejected.empty(), !o.landmark_uid.empty());
 }
 
+TEST(DriveLandmarks, SightingsOutOfRangeAreCounted) {
+  const auto looks = made_looks();
+  std::int64_t far = 0, all = 0;
+  for (const DriveLook& look : looks)
+    for (const SeenLandmark& s : look.seen.sightings) ++all, far += *s.range > 3;
+  ASSERT_GT(far, 0);
+  ASSERT_LT(far, all);
+  const auto made = landmarks_of_looks(looks, all_types(), Crs::local(), {.max_range = 3});
+  EXPECT_EQ(made.too_far, far);
+  EXPECT_EQ(std::ssize(made.evidence), all - far);
+  EXPECT_EQ(landmarks_of_looks(looks, all_types(), Crs::local()).too_far, 0);
+}
+
 // Both faces of the partition end at one position, and look in opposite directions.
 TEST(DriveLandmarks, OfTwoFacesOfOneWallStayTwo) {
   const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
