@@ -5,7 +5,7 @@
 namespace waymark::localization {
 
 /// Motion of the robot, new_from_old of its frame, with covariance (x forward, y left, yaw). Every motion
-/// model returns one, and every filter predicts with one. Of an error that persists (DriftEstimator) the
+/// model returns one, and every filter predicts with one. Of an error that persists (PersistentErrors) the
 /// covariance may have a negative part: what the motion undoes of the pose's own.
 struct BodyMotion {
   Pose2 step;

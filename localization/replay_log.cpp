@@ -21,8 +21,7 @@ LogReplay::LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOpti
       options_(options),
       car_(log.car),
       odometry_(log.odometry && options.odometry == OdometryNoise{} ? *log.odometry : options.odometry),
-      drift_(drift_of(log, options)),
-      estimates_drift_(drift_of(log, options).any()),
+      errors_(drift_of(log, options), options.frames),
       detect_(std::move(detect)),
       clock_(std::move(clock)),
       ground_(std::move(ground)),
@@ -36,7 +35,7 @@ bool LogReplay::take(const LogEvent& event) {
   const bool seen = std::visit([&](const auto& reading) { return take(reading, row); }, event.what);
   if (!seen && !options_.every_event) return false;
   row.t = event.t;
-  row.at = localizer_.estimate();
+  row.at = errors_.robot(localizer_.estimate());
   row.lost = localizer_.status() != LocalizationStatus::tracking;
   update_terrain_pose(row.at.pose);
   row.z = terrain_pose_.z, row.roll = terrain_pose_.roll, row.pitch = terrain_pose_.pitch;
@@ -60,7 +59,7 @@ void LogReplay::advance(double t) {
 
 void LogReplay::drive(BodyMotion motion, double seconds) {
   motion.step = project_to_map(motion.step, terrain_pose_);
-  if (estimates_drift_) motion = drift_.correct(localizer_.estimate(), motion, seconds);
+  if (errors_.any()) motion = errors_.correct(localizer_.estimate(), motion, seconds);
   predict(motion);
 }
 
@@ -94,17 +93,22 @@ bool LogReplay::take_fix(const Fix& fix, TrackRow&) {
   if (!options_.use_fixes) return false;
   ++track_.fixes;
   const PoseEstimate prior = localizer_.estimate();
-  track_.fixes_rejected += !localizer_.fix(fix);
-  learn_drift(prior);
+  const bool used = localizer_.fix(errors_.relative_to_map(fix, prior));
+  track_.fixes_rejected += !used;
+  if (!errors_.any()) return false;
+  if (localizer_.status() != LocalizationStatus::tracking)
+    errors_.consider(prior, localizer_.estimate());
+  else if (used)
+    errors_.learn(fix, prior, localizer_.estimate());
   return false;
 }
 
-void LogReplay::learn_drift(const PoseEstimate& prior) {
-  if (!estimates_drift_) return;
+void LogReplay::learn_errors(const PoseEstimate& prior) {
+  if (!errors_.any()) return;
   if (localizer_.status() == LocalizationStatus::tracking)
-    drift_.learn(prior, localizer_.estimate());
+    errors_.learn(prior, localizer_.estimate());
   else
-    drift_.consider(prior, localizer_.estimate());
+    errors_.consider(prior, localizer_.estimate());
 }
 
 bool LogReplay::take(SightingSet seen, TrackRow& row) {
@@ -117,7 +121,7 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
   const double before = clock_ ? clock_() : 0;
   matches_ = localizer_.update(seen);
   if (clock_) track_.seconds += row.seconds = clock_() - before;
-  learn_drift(prior);
+  learn_errors(prior);
   ++track_.updates;
   JointEvidence evidence;
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -142,6 +146,7 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
 void ReplayOptions::describe(OptionVisitor& option) {
   odometry.describe(option);
   drift.describe(option);
+  frames.describe(option);
   option("max_hold", max_hold,
          {.help = "Seconds a speed holds without a new reading; then the robot stands",
           .min = 0,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
-#include "localization/odometry_drift.hpp"
+#include "localization/persistent_errors.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/terrain_pose.hpp"
 #include "localization/track.hpp"
@@ -11,6 +11,7 @@ namespace waymark::localization {
 struct ReplayOptions {
   OdometryNoise odometry;                 ///< unchanged: that of the log, if it states one
   OdometryDrift drift;                    ///< unchanged: that of the log
+  FrameErrors frames;                     ///< of map and sensors
   double max_hold = 1;                    ///< s: how long a speed holds without a new reading
   double sensor_noise = 1;                ///< factor on the standard deviations the log states
   double error_memory = 1;                ///< factor on the correlation times of the log's sensor errors
@@ -33,7 +34,8 @@ using TrackWatcher = std::function<void(const Track&)>;
 /// outlive it.
 class LogReplay {
  public:
-  /// Of the log only the car, the memory of errors, the odometry noise and its drift are used.
+  /// Of the log only the car, the memory of errors, the odometry noise and its drift are used. Rows have the
+  /// robot's pose in the reference frame (FrameErrors); that of the localizer is relative to landmarks.
   LogReplay(const RobotLog& log, Localizer& localizer, const ReplayOptions& options, ScanDetector detect = {},
             TimeSource clock = {}, TerrainHeight ground = {});
 
@@ -51,7 +53,7 @@ class LogReplay {
   void advance(double t);
   void drive(BodyMotion motion, double seconds);
   void predict(const BodyMotion& motion);
-  void learn_drift(const PoseEstimate& prior);
+  void learn_errors(const PoseEstimate& prior);
   void update_terrain_pose(const Pose2& pose);
   bool take(const TwistReading& reading, TrackRow& row);
   bool take(const CarReading& reading, TrackRow& row);
@@ -67,8 +69,7 @@ class LogReplay {
   ReplayOptions options_;
   Ackermann car_;
   OdometryNoise odometry_;
-  DriftEstimator drift_;
-  bool estimates_drift_;
+  PersistentErrors errors_;
   ScanDetector detect_;
   TimeSource clock_;
   TerrainHeight ground_;

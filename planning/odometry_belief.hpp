@@ -16,7 +16,7 @@ struct Odometry {
 };
 
 /// Covariance of the pose and of the persistent odometry errors, which landmarks teach: the Gaussian of
-/// localization::DriftEstimator.
+/// localization::PersistentErrors.
 class DriveBelief {
  public:
   DriveBelief(const Symmetric3& start, const Odometry& odometry);

@@ -65,6 +65,10 @@ class EkfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -145,6 +149,10 @@ class GlobalSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -225,6 +233,10 @@ class GraphSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -321,6 +333,10 @@ class OdometrySettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -389,6 +405,10 @@ class PfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -469,6 +489,10 @@ class SlamSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM
@@ -561,6 +585,10 @@ class UkfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
+    mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
+    mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
     max_hold: float  # Seconds a speed holds without a new reading; then the robot stands (formerly longest_hold)
     use_fixes: bool  # Use the GNSS and compass readings of the log
     wheelbase: float  # Metres between front and rear wheels on the DEM

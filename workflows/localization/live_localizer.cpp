@@ -22,6 +22,7 @@ LiveLocalizer::LiveLocalizer(const LocalizeRequest& request, const std::string& 
   settings_ = make_settings(request, method, sensor_.get(), callbacks);
   OpenedMap opened = open_robot_map(request.map, sensor_.get(), false, request.min_confidence);
   map_ = opened.map;
+  use_survey_accuracy(*map_, settings_->play);
   log_ = read("");
   if (!log_.start)
     throw Error(ErrorCode::input, "the header of the log has no start", request.map, "add \"start\"");

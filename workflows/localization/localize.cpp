@@ -236,6 +236,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   const RobotMap map = opened.map;
   localization::RobotLog log = read_log(request, sensor.get(), map, callbacks);
   share_odometry_noise(request, options, settings.play, log);
+  use_survey_accuracy(map, settings.play);
   check_reach(log, settings.identification, request, callbacks);
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());

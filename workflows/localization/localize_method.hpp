@@ -109,6 +109,9 @@ class MethodTable {
   std::vector<std::unique_ptr<LocalizeMethod>> methods_;
 };
 
+/// Sets the shift of the map to the accuracy of a survey, unless it is set.
+void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play);
+
 struct LocalizeRequest;
 
 /// Returns the settings of a request, and sets those of the method itself. Throws Error{usage} for unknown

@@ -58,6 +58,24 @@ bool is_sound_or_unknown(const Eigen::Matrix3d& covariance) {
   return c.array().isNaN().all() || is_covariance(c);
 }
 
+/// Returns the median standard deviation, m, of an imported map's landmarks along their shorter axes. What a
+/// survey states is mostly the error of its positioning, which neighbours share. Maps made from observations
+/// have covariances of their own: 0.
+double survey_sd(const geodb::MapStore& store) {
+  const std::vector<geodb::RunRecord> runs = store.runs();
+  if (runs.empty() || runs.front().report_json.find("\"import_table\"") == std::string::npos) return 0;
+  std::vector<double> all;
+  for (const Landmark& l : store.query({.limit = 10000})) {
+    const Eigen::Matrix2d c = l.covariance.topLeftCorner<2, 2>();
+    const double variance = c.trace() / 2 - std::hypot((c(0, 0) - c(1, 1)) / 2, c(0, 1));
+    all.push_back(variance > 0 ? std::sqrt(variance) : 0);
+  }
+  if (all.empty()) return 0;
+  const auto middle = all.begin() + std::ssize(all) / 2;
+  std::ranges::nth_element(all, middle);
+  return *middle;
+}
+
 /// Tiles of a DEM, read when the robot reaches them.
 class DemTiles {
  public:
@@ -149,6 +167,7 @@ OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, b
                .landmarks = store->count(),
                .min_confidence = min_confidence,
                .unsound_covariances = 0,
+               .survey_sd = survey_sd(*store),
                .bounds = {}};
   if (map.landmarks == 0 && !may_be_empty)
     throw Error(ErrorCode::input, "the map has no landmarks: there is nothing to find the way by", file,

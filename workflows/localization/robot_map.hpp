@@ -14,6 +14,7 @@ struct RobotMap {
   std::int64_t landmarks = 0;
   double min_confidence = 0;             ///< less probable landmarks are not read
   std::int64_t unsound_covariances = 0;  ///< of the landmarks read: not positive definite, repaired
+  double survey_sd = 0;        ///< m, of an imported map: accuracy that half of the landmarks have; else 0
   Eigen::AlignedBox2d bounds;  ///< of the landmarks read, map frame; empty if they are read by windows
 
   const TypeRegistry& types() const { return store->types(); }

@@ -154,8 +154,8 @@ TEST(MapErrors, ALandmarkSeenForEverIsAsCertainAsItWasMapped) {
   }
 }
 
-// A motion may undo much of a pose's error (DriftEstimator), and what is kept of a landmark is then more than
-// pose and landmark allow.
+// A motion may undo much of a pose's error (PersistentErrors), and what is kept of a landmark is then more
+// than pose and landmark allow.
 TEST(MapErrors, NoVarianceBecomesNegative) {
   MapLandmark landmark;
   landmark.key = 1, landmark.at = {8, 3}, landmark.covariance = Eigen::Matrix2d::Identity() * 0.09;

@@ -153,7 +153,7 @@ TEST(Drive, OdometryErrsAsTheLogStates) {
     settings.length = 60, settings.seed = 100 + k;
     const DriveWorld world = make_drive(settings, scene, {}, 5);
     const OdometryErrors stated = odometry_errors(world.settings, world.steps);
-    localization::DriftEstimator drift(stated.drift);
+    localization::PersistentErrors drift(stated.drift);
     localization::PoseEstimate at{world.steps.front().at.plane, 1e-9 * Eigen::Matrix3d::Identity()};
     for (std::size_t i = 0; i + 1 < world.steps.size(); ++i) {
       const DriveStep& step = world.steps[i];
