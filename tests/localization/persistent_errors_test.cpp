@@ -283,13 +283,14 @@ struct WholeFrames {
 constexpr FrameErrors kFrames{
     .map_shift_sd = 0.3, .map_shift_distance = 40, .mount_sd = 0.2, .mount_yaw_sd = 0.02};
 
-/// Drives 60 m in curves. Landmarks fix the pose relative to them at each fifth step; satellites that of the
-/// robot at each seventh, with the standard deviation `gnss_sd`, 0: never. Compares the robot's pose and its
-/// standard deviations with the twin.
 struct Tolerance {
   double pose;            // in standard deviations of the twin
   double min_sd, max_sd;  // relative to those of the twin
 };
+
+/// Drives 60 m in curves. Landmarks fix the pose relative to them at each fifth step; satellites that of the
+/// robot at each seventh, with the standard deviation `gnss_sd`, 0: never. Compares the robot's pose and its
+/// standard deviations with the twin.
 void compare_with_twin(std::uint64_t seed, double gnss_sd, const Tolerance& tolerance) {
   Random random(seed, "frames");
   const Eigen::Matrix3d start = Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal();
