@@ -120,10 +120,10 @@ TEST_F(RouteCommand, LimitThatCannotBeKeptNamesTheLeastFound) {
 
 TEST_F(RouteCommand, OutputsHoldRouteAndStations) {
   ASSERT_EQ(route({"--limit-sigma", "1.5", "--alternatives", "2"}, "r.geojson").code, 0);
-  const auto json = nlohmann::json::parse(text_of(folder_ / "r.geojson"));
-  EXPECT_EQ(json["features"][0]["geometry"]["type"], "LineString");
-  EXPECT_EQ(json["features"][0]["properties"]["layer"], "route");
-  EXPECT_EQ(json["features"].back()["properties"]["layer"], "route_station");
+  const auto collection = nlohmann::json::parse(text_of(folder_ / "r.geojson"));
+  EXPECT_EQ(collection["features"][0]["geometry"]["type"], "LineString");
+  EXPECT_EQ(collection["features"][0]["properties"]["layer"], "route");
+  EXPECT_EQ(collection["features"].back()["properties"]["layer"], "route_station");
   ASSERT_EQ(route({"--limit-sigma", "1.5"}, "r.gpkg").code, 0);
   const Outcome valid = waymark({"validate", folder_ / "r.gpkg"});
   EXPECT_EQ(valid.code, 0) << valid.out << valid.err;
