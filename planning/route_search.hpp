@@ -58,7 +58,7 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd);
 /// Returns the largest information per metre of each cell, in any direction and at any heading, 1/m^3.
 std::vector<double> max_rate(const InformationField& field);
 
-/// The same bound from the max_rate() of the field, for several limits.
+/// Returns the same bound from the max_rate() of the field, for several limits.
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate);
 
 /// Returns the route with the least length at which fewer than `count` landmarks are seen, and of these the
