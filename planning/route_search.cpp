@@ -173,8 +173,7 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd) {
   return relaxed_sd(problem, max_sd, max_rate(problem.field));
 }
 
-std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd,
-                               const std::vector<double>& information) {
+std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate) {
   // With the yaw known, the smallest variance of the position obeys v <- 1 / (1 / (v + q L) + j L): q is the
   // smaller of the odometry's variances, j the largest information in any direction. Both are bounds.
   const RouteCells& cells = problem.field.cells;
@@ -197,7 +196,7 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd,
       const std::int64_t next = neighbour(cells, problem.passable, cell, h);
       if (next < 0) continue;
       const double length = step_length(cells, h);
-      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + information[slot(next)] * length);
+      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + rate[slot(next)] * length);
       if (!(v <= max_sd * max_sd) || !(v < variance[slot(next)] * (1 - 1e-6))) continue;
       variance[slot(next)] = v;
       if (!is_open[slot(next)]) open.push_back(next), is_open[slot(next)] = 1;

@@ -136,7 +136,7 @@ class Drawing {
     for (const Entry& e : entries) box = std::max(box, 44 + kLetter * static_cast<double>(e.text.size()));
 
     const double right = kBorder + scale_ * box_.sizes().x();
-    const double left = right + 12 + box <= kWidth ? right + 12 : right - box - 6;
+    const double left = right + 12 + box <= kWidth ? right + 12 : std::max(0.0, right - box - 6);
     svg_ += fmt::format(
         "<rect x=\"{}\" y=\"36\" width=\"{}\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
         "stroke=\"#bbb\"/>\n",

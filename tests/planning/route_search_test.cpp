@@ -143,12 +143,17 @@ TEST(RouteSearch, DistancesEqualRelaxationToTheLastBit) {
   }
 }
 
-TEST(RouteSearch, GivenDistancesChangeNothing) {
-  std::mt19937 random(5);
+/// Returns 25 landmarks in a square of 80 m.
+LandmarkGrid scattered_landmarks(unsigned seed) {
+  std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<MapLandmark> marks;
   for (int i = 0; i < 25; ++i) marks.push_back(landmark(80 * uniform(random), 80 * uniform(random)));
-  const LandmarkGrid map(marks);
+  return LandmarkGrid(marks);
+}
+
+TEST(RouteSearch, GivenDistancesChangeNothing) {
+  const LandmarkGrid map = scattered_landmarks(5);
   RouteProblem problem = problem_of(41, 41, map, sensing(12));
   const auto own = search_by_sigma(problem, {.max_sd = 1.2});
   problem.to_go = distances_to(problem.field.cells, problem.passable, problem.to);
@@ -161,11 +166,7 @@ TEST(RouteSearch, GivenDistancesChangeNothing) {
 }
 
 TEST(RouteSearch, MoreLabelsAreNeverLongerAndTheLimitIsKept) {
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<MapLandmark> marks;
-  for (int i = 0; i < 25; ++i) marks.push_back(landmark(80 * uniform(random), 80 * uniform(random)));
-  const LandmarkGrid map(marks);
+  const LandmarkGrid map = scattered_landmarks(4);
   const RouteProblem problem = problem_of(41, 41, map, sensing(12));
   const auto shortest = search_by_sigma(problem, {});
   ASSERT_TRUE(shortest);

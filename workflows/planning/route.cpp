@@ -336,7 +336,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   std::vector<std::int64_t> stops;
   for (const Waypoint& point : points)
     stops.push_back(
-        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.map));
+        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
   planner.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
                                                                 {.sensor_height = request.sensor_height});
   problem.field =

@@ -129,7 +129,7 @@ std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
   const char* problem = kind == planning::HazardClass::unknown
                             ? "is on unknown terrain or outside the hazard map"
                         : kind == planning::HazardClass::hazard ? "is in a hazard"
-                        : hazards ? "is beside a hazard, within a cell of the route"
+                        : hazards ? "is beside a hazard or the border of the area, within a cell of the route"
                                   : "is beside the border of the area, within a cell of the route";
   throw Error(
       ErrorCode::input, fmt::format("{} {}", point.text, problem), file,

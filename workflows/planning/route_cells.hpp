@@ -55,7 +55,8 @@ std::vector<char> passable_cells(const planning::RouteCells& cells, const Hazard
 void close_outside(const std::string& aoi, const RobotMap& map, const std::vector<Waypoint>& points,
                    const planning::RouteCells& cells, std::vector<char>& passable);
 
-/// Returns the cell of a waypoint. Throws Error{input} if it is not passable; `file` is the hazard map.
+/// Returns the cell of a waypoint. Throws Error{input} if it is not passable; `file` is the hazard map,
+/// or the area without one.
 std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
                      const std::vector<char>& passable, const HazardClasses* hazards,
                      const std::string& file);

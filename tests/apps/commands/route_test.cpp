@@ -56,30 +56,27 @@ class RouteCommand : public testing::Test {
 };
 
 TEST_F(RouteCommand, StaysInTheAreaOfInterest) {
-  const auto area = [this](const std::string& ring) {
+  const auto area = [this](const std::string& type, const std::string& coordinates) {
     write_text(folder_ / "area.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
-      "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[)" +
-                                             ring + "]]}}]}");
+      "properties": {}, "geometry": {"type": ")" +
+                                             type + R"(", "coordinates": )" + coordinates + "}}]}");
     return folder_ / "area.geojson";
   };
   ASSERT_EQ(route({"--weight", "1e-9"}).code, 0);
   EXPECT_LT(largest("y"), 5);
   // An arch: the way straight ahead is outside.
   const std::string arch =
-      "[-110, -9], [-60, -9], [-60, 30], [60, 30], [60, -9], [110, -9], [110, 80], [-110, 80], [-110, -9]";
-  const Outcome made = route({"--weight", "1e-9", "--aoi", area(arch)});
+      "[[[-110, -9], [-60, -9], [-60, 30], [60, 30], [60, -9], [110, -9], [110, 80], [-110, 80], [-110, "
+      "-9]]]";
+  const Outcome made = route({"--weight", "1e-9", "--aoi", area("Polygon", arch)});
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_NEAR(largest("y"), 31, 2);
-  const std::string halves = "[-110, -9], [-60, -9], [-60, 30], [-110, 30], [-110, -9]";
-  EXPECT_THAT(route({"--weight", "1", "--aoi", area(halves)}).err,
+  const std::string west = "[[[-110, -9], [-60, -9], [-60, 30], [-110, 30], [-110, -9]]]",
+                    east = "[[[60, -9], [110, -9], [110, 30], [60, 30], [60, -9]]]";
+  EXPECT_THAT(route({"--weight", "1", "--aoi", area("Polygon", west)}).err,
               AllOf(HasSubstr("--to 100,0 is outside the area of interest"), HasSubstr("area.geojson")));
-  const std::string two = halves + "]], [[[60, -9], [110, -9], [110, 30], [60, 30], [60, -9]";
-  std::string text = text_of(area(two));
-  text.replace(text.find("\"Polygon\""), 9, "\"MultiPolygon\"");
-  text.replace(text.find("[[["), 3, "[[[[");
-  text.replace(text.rfind("]]}"), 2, "]]]");
-  write_text(folder_ / "area.geojson", text);
-  const Outcome parted = route({"--weight", "1", "--aoi", folder_ / "area.geojson"});
+  const Outcome parted =
+      route({"--weight", "1", "--aoi", area("MultiPolygon", "[" + west + ", " + east + "]")});
   EXPECT_EQ(parted.code, 1) << parted.err;
   EXPECT_THAT(parted.err, AllOf(HasSubstr("there is no route from --from -100,0 to --to 100,0"),
                                 HasSubstr("terrain outside the area of interest lies between")));

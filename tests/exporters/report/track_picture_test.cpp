@@ -11,7 +11,7 @@ namespace {
 
 using namespace exporters;
 
-/** Returns a picture of one straight drive of 100 m whose only track has the given name. */
+/// Returns a picture of one straight drive of 112 m whose only track has the given name.
 std::string picture_of(const std::string& name) {
   TrackPicture picture;
   picture.title = "drive";
