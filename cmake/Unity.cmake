@@ -26,8 +26,9 @@ set(alone
 
 function(waymark_unity TARGET)
   set(sources_per_unit 24)
-  if("${TARGET}" MATCHES "_(reconstruction|localization|pipeline)$")
-    set(sources_per_unit 6)  # the time of g++ grows faster than the number of instantiations of Eigen
+  # The time of g++ grows faster than the number of instantiations of Eigen, and a test target has work for every core.
+  if("${TARGET}" MATCHES "_(reconstruction|localization|pipeline|tests)$")
+    set(sources_per_unit 6)
   endif()
   set_target_properties(${TARGET} PROPERTIES UNITY_BUILD ${WAYMARK_UNITY} UNITY_BUILD_BATCH_SIZE ${sources_per_unit})
   list(TRANSFORM alone PREPEND ${PROJECT_SOURCE_DIR}/)

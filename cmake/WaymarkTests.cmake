@@ -23,6 +23,7 @@ function(waymark_tests)
   target_link_libraries(${target} PRIVATE ${arg_USES} waymark_test_support waymark_build_rules waymark_test_options
                         GTest::gmock GTest::gtest_main)
   waymark_use_precompiled(${target} waymark_tests_precompiled)
+  waymark_unity(${target})
   waymark_patience(patience 600)
   # The last line of a skipped test. A suite whose preparation fails skips its tests, too, and says more after it.
   gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60

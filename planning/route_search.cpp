@@ -8,6 +8,7 @@
 #include <deque>
 #include <numbers>
 #include <queue>
+#include <utility>
 
 namespace waymark::planning {
 namespace {
@@ -49,6 +50,7 @@ struct Label {
   std::int64_t cell;
   std::int32_t parent;
   int heading;
+  std::int32_t closed_before = -1;  // of the same cell and heading
 };
 
 Route trace(const std::vector<Label>& labels, std::int32_t last) {
@@ -66,19 +68,23 @@ Route trace(const std::vector<Label>& labels, std::int32_t last) {
 std::vector<double> distances_to(const RouteCells& cells, const std::vector<char>& passable,
                                  std::int64_t to) {
   std::vector<double> distance(slot(cells.count()), kInfinity);
+  // Dijkstra without a heap: steps have two lengths, and what is appended after steps of one length never
+  // decreases, so the nearest open cell is in front of one of two queues.
   using Entry = std::pair<double, std::int64_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  std::array<std::deque<Entry>, 2> open;
   distance[slot(to)] = 0;
-  open.emplace(0, to);
-  while (!open.empty()) {
-    const auto [d, cell] = open.top();
-    open.pop();
+  open[0].emplace_back(0, to);
+  while (!open[0].empty() || !open[1].empty()) {
+    const bool second = open[0].empty() || (!open[1].empty() && open[1].front() < open[0].front());
+    const auto [d, cell] = open[second].front();
+    open[second].pop_front();
     if (d > distance[slot(cell)]) continue;
     for (int h = 0; h < kHeadings; ++h) {
       const std::int64_t next = neighbour(cells, passable, cell, h);
       if (next < 0) continue;
       const double there = d + step_length(cells, h);
-      if (there < distance[slot(next)]) distance[slot(next)] = there, open.emplace(there, next);
+      if (there < distance[slot(next)])
+        distance[slot(next)] = there, open[slot(h % 2)].emplace_back(there, next);
     }
   }
   return distance;
@@ -101,21 +107,26 @@ Symmetric3 step_belief(const RouteProblem& problem, const Symmetric3& covariance
 
 std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSearch& search) {
   const RouteCells& cells = problem.field.cells;
-  const std::vector<double> to_go = distances_to(cells, problem.passable, problem.to);
+  const std::vector<double> own =
+      problem.to_go.empty() ? distances_to(cells, problem.passable, problem.to) : std::vector<double>();
+  const std::vector<double>& to_go = problem.to_go.empty() ? own : problem.to_go;
   const double first_sd = position_sd(problem.start);
   if (to_go[slot(problem.from)] == kInfinity || !(first_sd <= search.max_sd)) return {};
   const double scale = (1 + search.tolerance) * (1 + search.tolerance);
   std::vector<Label> labels;
-  std::vector<std::vector<std::int32_t>> closed(slot(cells.count() * kHeadings));
+  // The closed labels of a cell and heading are a list: the last one here, the one before it in the label.
+  std::vector<std::int32_t> closed(slot(cells.count() * kHeadings), -1);
   using Entry = std::pair<double, std::int32_t>;  // equal costs: the earlier label first
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto is_dominated = [&](const Label& label) {
-    const auto& kept = closed[slot(label.cell * kHeadings + label.heading)];
-    return static_cast<int>(kept.size()) >= search.labels || std::ranges::any_of(kept, [&](std::int32_t i) {
-             return labels[slot(i)].cost <= label.cost &&
-                    (labels[slot(i)].covariance == label.covariance ||
-                     exceeds(label.covariance, labels[slot(i)].covariance, scale));
-           });
+    int kept = 0;
+    for (std::int32_t i = closed[slot(label.cell * kHeadings + label.heading)]; i >= 0;
+         i = labels[slot(i)].closed_before, ++kept)
+      if (labels[slot(i)].cost <= label.cost &&
+          (labels[slot(i)].covariance == label.covariance ||
+           exceeds(label.covariance, labels[slot(i)].covariance, scale)))
+        return true;
+    return kept >= search.labels;
   };
   const auto push = [&](const Label& label) {
     if (is_dominated(label) || labels.size() >= search.max_labels) return;
@@ -130,7 +141,8 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
     const Label label = labels[slot(at)];
     if (is_dominated(label)) continue;
     if (label.cell == problem.to) return trace(labels, at);
-    closed[slot(label.cell * kHeadings + label.heading)].push_back(at);
+    std::int32_t& last = closed[slot(label.cell * kHeadings + label.heading)];
+    labels[slot(at)].closed_before = std::exchange(last, at);
     for (int h = 0; h < kHeadings; ++h) {
       const std::int64_t next = neighbour(cells, problem.passable, label.cell, h);
       if (next < 0 || to_go[slot(next)] == kInfinity) continue;
@@ -147,18 +159,25 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
   return {};
 }
 
+std::vector<double> max_rate(const InformationField& field) {
+  std::vector<double> rate(slot(field.cells.count()), 0);
+  for (std::int64_t i = 0; i < field.cells.count(); ++i)
+    for (int h = 0; h < field.headings; ++h) {
+      const double sd = position_sd(field.get(i, h).rate);
+      rate[slot(i)] = std::max(rate[slot(i)], sd * sd);
+    }
+  return rate;
+}
+
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd) {
+  return relaxed_sd(problem, max_sd, max_rate(problem.field));
+}
+
+std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate) {
   // With the yaw known, the smallest variance of the position obeys v <- 1 / (1 / (v + q L) + j L): q is the
   // smaller of the odometry's variances, j the largest information in any direction. Both are bounds.
   const RouteCells& cells = problem.field.cells;
   const double q = std::min(problem.noise.along_per_metre, problem.noise.across_per_metre);
-  std::vector<double> information(slot(cells.count()), 0);
-  for (std::int64_t i = 0; i < cells.count(); ++i)
-    for (int h = 0; h < problem.field.headings; ++h)
-      information[slot(i)] = std::max(information[slot(i)], [&] {
-        const double sd = position_sd(problem.field.get(i, h).rate);
-        return sd * sd;
-      }());
   std::vector<double> variance(slot(cells.count()), kInfinity);
   // The smallest eigenvalue of the start's position given its yaw.
   Eigen::Matrix2d start;
@@ -177,7 +196,7 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd) {
       const std::int64_t next = neighbour(cells, problem.passable, cell, h);
       if (next < 0) continue;
       const double length = step_length(cells, h);
-      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + information[slot(next)] * length);
+      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + rate[slot(next)] * length);
       if (!(v <= max_sd * max_sd) || !(v < variance[slot(next)] * (1 - 1e-6))) continue;
       variance[slot(next)] = v;
       if (!is_open[slot(next)]) open.push_back(next), is_open[slot(next)] = 1;

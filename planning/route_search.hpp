@@ -14,6 +14,7 @@ struct RouteProblem {
   std::int64_t from = 0, to = 0;    ///< passable cells
   std::optional<int> heading = {};  ///< at the start; unknown: any, without a turn
   Symmetric3 start;                 ///< covariance at the start
+  std::vector<double> to_go = {};   ///< distances_to(`to`); empty: each search computes them
 };
 
 /// One cell of a route.
@@ -32,7 +33,7 @@ struct Route {
 };
 
 /// Returns the shortest distance over passable cells to `to` from every cell, metres; infinity if there is
-/// none.
+/// none. O(cells).
 std::vector<double> distances_to(const RouteCells& cells, const std::vector<char>& passable, std::int64_t to);
 
 /// Settings of the search for a limited or weighted sd.
@@ -53,6 +54,12 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
 /// Returns, for each cell, a lower bound of the position's sd over all routes that keep below `max_sd`;
 /// infinity for cells that no such route reaches.
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd);
+
+/// Returns the largest information per metre of each cell, in any direction and at any heading, 1/m^3.
+std::vector<double> max_rate(const InformationField& field);
+
+/// Returns the same bound from the max_rate() of the field, for several limits.
+std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate);
 
 /// Returns the route with the least length at which fewer than `count` landmarks are seen, and of these the
 /// shortest (section 6 of the paper). Exact on the grid; `std::nullopt` if there is none.

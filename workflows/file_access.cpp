@@ -6,6 +6,7 @@
 #include <cpl_http.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
+#include <cpl_vsi_virtual.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -106,9 +107,16 @@ void refuse_network() {
   const std::unique_ptr<VSIFilesystemPluginCallbacksStruct, decltype(&VSIFreeFilesystemPluginCallbacksStruct)>
       callbacks(VSIAllocFilesystemPluginCallbacksStruct(), VSIFreeFilesystemPluginCallbacksStruct);
   callbacks->open = refuse_file;
+  constexpr std::array kEnds{"/", "?", "_streaming/"};
+  // GDAL forgets the handlers that are replaced: a leak, were they not kept here.
+  static std::array<const VSIFilesystemHandler*, kFileSystems.size() * kEnds.size()> replaced;
+  std::size_t count = 0;
   for (const std::string_view name : kFileSystems)
-    for (const char* end : {"/", "?", "_streaming/"})
-      VSIInstallPluginHandler((std::string(name) + end).c_str(), callbacks.get());
+    for (const char* end : kEnds) {
+      const std::string prefix = std::string(name) + end;
+      replaced[count++] = VSIFileManager::GetHandler(prefix.c_str());
+      VSIInstallPluginHandler(prefix.c_str(), callbacks.get());
+    }
   for (const char* skip : {"GDAL_SKIP", "OGR_SKIP"}) CPLSetConfigOption(skip, kDatabases);
 }
 

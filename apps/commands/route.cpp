@@ -36,6 +36,7 @@ class RouteCommand final : public Command {
                       "Hazard map that `waymark hazards` made, or none"}
                  .offering(Offer::file)
                  .or_else("none"),
+             Argument{"--aoi", "POLYGONS", &request_.aoi, "Stay inside this area"}.offering(Offer::file),
              Argument{"--sensor", "NAME|FILE", &request_.sensor,
                       "Sensor with its coverage; `waymark sensors` lists them, FILE.json is one of "
                       "your own, map: the profile that the map records"}

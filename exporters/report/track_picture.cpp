@@ -20,6 +20,7 @@ namespace {
 constexpr double kEllipseScale = 10;
 constexpr double kWidth = 900, kChart = 220, kBorder = 46;  // pixels
 constexpr double kMaxEllipse = 90;                          // pixels; larger ones are drawn in true size
+constexpr double kLetter = 6.8;                             // pixels, mean advance of a sans-serif of 12
 constexpr double kMinError = 0.01;                          // metres, foot of the chart
 constexpr std::array<const char*, 7> kColours{"#d95f02", "#1b6fb3", "#7b3294", "#1b9e77",
                                               "#c51b7d", "#8c6d31", "#444444"};
@@ -123,24 +124,30 @@ class Drawing {
   }
 
   void legend() {
+    struct Entry {
+      std::string text;
+      const char* paint;
+      double width;
+    };
+    std::vector<Entry> entries{{"truth", "#000000", 3.5}};
+    for (std::size_t k = 0; k < picture_.tracks.size(); ++k)
+      entries.push_back({picture_.tracks[k].name + median_text(picture_.tracks[k].track), colour(k), 2});
+    double box = 236;
+    for (const Entry& e : entries) box = std::max(box, 44 + kLetter * static_cast<double>(e.text.size()));
+
     const double right = kBorder + scale_ * box_.sizes().x();
-    const double left = right + 12 + 236 <= kWidth ? right + 12 : right - 242;
-    const auto rows = static_cast<double>(picture_.tracks.size() + 2);
+    const double left = right + 12 + box <= kWidth ? right + 12 : std::max(0.0, right - box - 6);
     svg_ += fmt::format(
-        "<rect x=\"{}\" y=\"36\" width=\"236\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
+        "<rect x=\"{}\" y=\"36\" width=\"{}\" height=\"{}\" fill=\"#ffffff\" fill-opacity=\"0.85\" "
         "stroke=\"#bbb\"/>\n",
-        left, rows * 17 + 6);
+        left, box, static_cast<double>(entries.size() + 1) * 17 + 6);
     double at = 52;
-    const auto entry = [&](const std::string& name, const char* paint, double width) {
+    for (const Entry& e : entries) {
       svg_ += fmt::format(
           "<path d=\"M {} {} h 24\" stroke=\"{}\" stroke-width=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
-          left + 6, at - 4, paint, width, left + 36, at, escape_markup(name));
+          left + 6, at - 4, e.paint, e.width, left + 36, at, escape_markup(e.text));
       at += 17;
-    };
-    entry("truth", "#000000", 3.5);
-    for (std::size_t k = 0; k < picture_.tracks.size(); ++k)
-      entry(fmt::format("{}{}", picture_.tracks[k].name, median_text(picture_.tracks[k].track)), colour(k),
-            2);
+    }
     svg_ += fmt::format(
         "<text x=\"{}\" y=\"{}\" font-size=\"10\">3 sigma: {:g} times as large; dashed: true size</text>\n",
         left + 6, at, kEllipseScale);

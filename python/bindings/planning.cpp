@@ -29,6 +29,7 @@ const Keywords<workflows::RouteRequest>& route_keywords() {
                               .add("output", &R::output)
                               .add("via", &R::via)
                               .add("hazards", &R::hazards)
+                              .add("aoi", &R::aoi)
                               .add("sensor", &R::sensor)
                               .add("range", &R::range)
                               .add("view", &R::view)

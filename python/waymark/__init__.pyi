@@ -975,7 +975,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         threads: 0: one per processor"""
     ...
 
-def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., least_sigma: bool = ..., odometry: _Path = ..., speed: float = ..., sensor_height: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
+def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., aoi: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., least_sigma: bool = ..., odometry: _Path = ..., speed: float = ..., sensor_height: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
     """Plans a route and writes it to `output`, as `waymark route`.
 
     start is (x, y) or (x, y, yaw in degrees), goal and each via (x, y), in the map's CRS. One of limit_sigma,
@@ -984,6 +984,7 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
 
     Keywords:
         hazards: hazard map (.tif), or none
+        aoi: polygons: the route stays inside; empty: anywhere
         range
         view
         limit_sigma: metres; 0: none

@@ -68,7 +68,7 @@ class AreaOfInterest : public testing::Test {
 };
 
 /// Cones every 8 m, 10 to 19 m high, cells of 0.5 m.
-MadeDem cones() {
+MadeDem cones_at_origin() {
   MadeDem chm{.columns = 300, .rows = 200, .geotransform = {500000, 0.5, 0, 5200000, 0, -0.5}};
   chm.height = [](int column, int row) {
     const double x = 0.5 * column, y = 0.5 * row, i = std::floor(x / 8), j = std::floor(y / 8);
@@ -79,14 +79,15 @@ MadeDem cones() {
 }
 
 TEST_F(AreaOfInterest, OfTreesAndTheirCrowns) {
-  const std::string chm = make_dem(folder_ / "chm.tif", cones());
+  const std::string chm = make_dem(folder_ / "chm.tif", cones_at_origin());
   expect_same_inside({"trees", "--chm", chm}, 500061, "urn:ogc:def:crs:EPSG::32632");
   EXPECT_EQ(rows_of("area.gpkg", "crown"), rows_of("area.gpkg", "tree"));
   EXPECT_NE(rows_of("area.gpkg", "crown"), rows_of("all.gpkg", "crown"));
 }
 
 TEST_F(AreaOfInterest, OfTreesOfSeveralFlights) {
-  const std::string chm = make_dem(folder_ / "chm.tif", cones()), same = make_dem(folder_ / "b.tif", cones());
+  const std::string chm = make_dem(folder_ / "chm.tif", cones_at_origin()),
+                    same = make_dem(folder_ / "b.tif", cones_at_origin());
   expect_same_inside({"trees", "--flights", "--chm", chm, same}, 500061, "urn:ogc:def:crs:EPSG::32632");
   EXPECT_EQ(rows_of("area.gpkg", "crown"), rows_of("area.gpkg", "tree"));
 }

@@ -166,8 +166,8 @@ TEST_F(BadInput, ForeignGeoPackageIsRefused) {
 
 class BadJob : public BadInput {
  protected:
-  Outcome run(const std::string& json, const std::vector<std::string>& more = {}) {
-    write_text(folder_ / "job.json", json);
+  Outcome run(const std::string& job, const std::vector<std::string>& more = {}) {
+    write_text(folder_ / "job.json", job);
     std::vector<std::string> words{"run", folder_ / "job.json", "-o", map()};
     words.insert(words.end(), more.begin(), more.end());
     return waymark(words);

@@ -35,6 +35,9 @@ Outcome bash(const std::string& line);
 /// Starts the program and does not wait; nothing it says is kept.
 pid_t start_waymark(const std::vector<std::string>& words);
 
+/// Exit code of view_browser.py where there is no Chromium.
+inline constexpr int kNoBrowser = 77;
+
 std::string text_of(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, const std::string& text);
 

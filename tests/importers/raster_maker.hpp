@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/grid.hpp"
+#include "geo/dem_source.hpp"
 #include "tests/support/message_of.hpp"
 namespace waymark::test {
 
@@ -37,6 +38,11 @@ GeoTransform centred_on(double lon, double lat, double cell);
 
 /// Returns the path of a file of the shared test data; `std::nullopt` if it is not installed.
 std::optional<std::string> shared_dem(const std::string& name);
+
+/// Returns all heights of a DEM.
+inline geo::HeightWindow all_heights(const geo::DemSource& dem) {
+  return dem.read({0, 0, dem.geometry().columns, dem.geometry().rows});
+}
 
 /// Writes a plain file with this content in a folder of this test.
 std::string write_text(const std::string& name, const std::string& content);

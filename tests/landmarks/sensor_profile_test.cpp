@@ -13,11 +13,12 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-FeatureSpec feature(const std::string& name) {
+FeatureSpec length_feature(const std::string& name) {
   return {.name = name, .unit = "m", .summary = {}};
 }
 
-const LandmarkType kPost{.name = "post", .summary = {}, .features = {feature("height"), feature("width")}};
+const LandmarkType kPost{
+    .name = "post", .summary = {}, .features = {length_feature("height"), length_feature("width")}};
 
 Landmark post(std::optional<double> height, std::optional<double> width) {
   Landmark landmark;

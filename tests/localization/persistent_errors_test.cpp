@@ -31,11 +31,11 @@ constexpr OdometryNoise kNoise{.along_per_metre = 1e-5,
                                .yaw_per_second = 1e-8};
 
 /// The slow twin: a Kalman filter of pose and errors in one state of eight.
-struct WholeState {
+struct PoseAndDrift {
   Eigen::Vector<double, 8> mean = Eigen::Vector<double, 8>::Zero();
   Eigen::Matrix<double, 8, 8> covariance = Eigen::Matrix<double, 8, 8>::Zero();
 
-  WholeState() { covariance.diagonal() << 0.01, 0.01, 1e-4, 9e-4, 9e-4, 4e-4, 4e-6, 9e-6; }
+  PoseAndDrift() { covariance.diagonal() << 0.01, 0.01, 1e-4, 9e-4, 9e-4, 4e-4, 4e-6, 9e-6; }
   void predict(const BodyMotion& motion, double seconds) {
     const Pose2& step = motion.step;
     const Eigen::Vector<double, 5> e = mean.tail<5>();
@@ -68,7 +68,7 @@ struct WholeState {
 TEST(PersistentErrors, IsTheKalmanFilterOfPoseAndErrors) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed, "drift");
-    WholeState whole;
+    PoseAndDrift whole;
     PersistentErrors drift(kDrift);
     PoseEstimate pose{{}, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
     for (int i = 0; i < 60; ++i) {

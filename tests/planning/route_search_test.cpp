@@ -101,12 +101,72 @@ TEST(RouteSearch, ExactSearchEqualsEnumeration) {
   EXPECT_GT(infeasible, 3);
 }
 
-TEST(RouteSearch, MoreLabelsAreNeverLongerAndTheLimitIsKept) {
-  std::mt19937 random(4);
+/// Relaxes every step until nothing changes (Bellman and Ford).
+std::vector<double> by_relaxation(const RouteCells& cells, const std::vector<char>& passable,
+                                  std::int64_t to) {
+  const auto is_open = [&](std::int64_t c, std::int64_t r) {
+    return c >= 0 && r >= 0 && c < cells.columns && r < cells.rows &&
+           passable[static_cast<std::size_t>(r * cells.columns + c)];
+  };
+  std::vector<double> distance(static_cast<std::size_t>(cells.count()),
+                               std::numeric_limits<double>::infinity());
+  distance[static_cast<std::size_t>(to)] = 0;
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (std::int64_t i = 0; i < cells.count(); ++i)
+      for (int dc = -1; dc <= 1; ++dc)
+        for (int dr = -1; dr <= 1; ++dr) {
+          const std::int64_t c = i % cells.columns, r = i / cells.columns;
+          if ((!dc && !dr) || !is_open(c + dc, r + dr) || !is_open(c + dc, r) || !is_open(c, r + dr))
+            continue;
+          const double there =
+              distance[static_cast<std::size_t>(i)] + cells.cell * (dc && dr ? std::numbers::sqrt2 : 1);
+          double& best = distance[static_cast<std::size_t>((r + dr) * cells.columns + c + dc)];
+          if (there < best) best = there, changes = true;
+        }
+  }
+  return distance;
+}
+
+TEST(RouteSearch, DistancesEqualRelaxationToTheLastBit) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int round = 0; round < 60; ++round) {
+    const RouteCells cells{
+        .cell = 0.1 + 3 * uniform(random), .columns = 1 + round % 23, .rows = 1 + round * 7 % 31};
+    std::vector<char> passable(static_cast<std::size_t>(cells.count()));
+    const double open = 0.5 + 0.5 * uniform(random);
+    for (char& p : passable) p = uniform(random) < open;
+    const auto to = static_cast<std::int64_t>(uniform(random) * static_cast<double>(cells.count()));
+    passable[static_cast<std::size_t>(to)] = 1;
+    EXPECT_EQ(distances_to(cells, passable, to), by_relaxation(cells, passable, to)) << "round " << round;
+  }
+}
+
+/// Returns 25 landmarks in a square of 80 m.
+LandmarkGrid scattered_landmarks(unsigned seed) {
+  std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<MapLandmark> marks;
   for (int i = 0; i < 25; ++i) marks.push_back(landmark(80 * uniform(random), 80 * uniform(random)));
-  const LandmarkGrid map(marks);
+  return LandmarkGrid(marks);
+}
+
+TEST(RouteSearch, GivenDistancesChangeNothing) {
+  const LandmarkGrid map = scattered_landmarks(5);
+  RouteProblem problem = problem_of(41, 41, map, sensing(12));
+  const auto own = search_by_sigma(problem, {.max_sd = 1.2});
+  problem.to_go = distances_to(problem.field.cells, problem.passable, problem.to);
+  const auto given = search_by_sigma(problem, {.max_sd = 1.2});
+  ASSERT_EQ(own.has_value(), given.has_value());
+  if (!own) return;
+  EXPECT_EQ(own->length, given->length);
+  EXPECT_EQ(own->worst_sd, given->worst_sd);
+  EXPECT_EQ(relaxed_sd(problem, 1.2), relaxed_sd(problem, 1.2, max_rate(problem.field)));
+}
+
+TEST(RouteSearch, MoreLabelsAreNeverLongerAndTheLimitIsKept) {
+  const LandmarkGrid map = scattered_landmarks(4);
   const RouteProblem problem = problem_of(41, 41, map, sensing(12));
   const auto shortest = search_by_sigma(problem, {});
   ASSERT_TRUE(shortest);

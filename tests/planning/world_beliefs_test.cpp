@@ -20,7 +20,7 @@ localization::LandmarkGrid one_landmark(double confidence) {
   return localization::LandmarkGrid({l});
 }
 
-LandmarkSensing laser(double detection) {
+LandmarkSensing laser_sensing(double detection) {
   LandmarkSensing sensing;
   sensing.coverage.range = 15, sensing.coverage.view = 360;
   sensing.coverage.range_sd = 0.05, sensing.coverage.bearing_sd = 0.5;
@@ -34,7 +34,7 @@ double variance(double confidence, double detection, std::int64_t worlds = 2000)
   WorldBeliefs beliefs({0.01, 0, 0.01, 0, 0, 3e-4}, {}, map, worlds, 1);
   for (int i = 1; i <= 15; ++i) {
     beliefs.drive({2, 1, 0, 0});
-    beliefs.see({2.0 * i, 0, 0}, 2, map, laser(detection));
+    beliefs.see({2.0 * i, 0, 0}, 2, map, laser_sensing(detection));
   }
   return std::pow(position_sd(beliefs.mean()), 2);
 }
@@ -46,7 +46,7 @@ TEST(WorldBeliefs, CertainLandmarksLeaveOneWorld) {
   for (int i = 1; i <= 15; ++i) {
     one.drive({2, 1, 0, 0});
     Symmetric3 j;
-    add(j, information_at({2.0 * i, 0, 0}, map, laser(1)).rate, 2);
+    add(j, information_at({2.0 * i, 0, 0}, map, laser_sensing(1)).rate, 2);
     one.see(j);
   }
   EXPECT_NEAR(variance(1, 1), std::pow(position_sd(one.pose()), 2), 1e-9);
@@ -65,7 +65,7 @@ TEST(WorldBeliefs, MissesThatRepeatAreWorseThanRandomOnesAndBetterThanAbsence) {
   for (int i = 1; i <= 15; ++i) {
     random.drive({2, 1, 0, 0});
     Symmetric3 j;
-    add(j, information_at({2.0 * i, 0, 0}, map, laser(0.5)).rate, 2);
+    add(j, information_at({2.0 * i, 0, 0}, map, laser_sensing(0.5)).rate, 2);
     random.see(j);
   }
   EXPECT_GT(variance(1, 0.5), std::pow(position_sd(random.pose()), 2));
@@ -75,7 +75,7 @@ TEST(WorldBeliefs, MissesThatRepeatAreWorseThanRandomOnesAndBetterThanAbsence) {
 // Doubtful and rarely seen landmarks: worlds differ, and some see far more than the mean.
 TEST(WorldBeliefs, MaxInformationBoundsEveryWorld) {
   const auto map = one_landmark(0.4);
-  const LandmarkSensing sensing = laser(0.3);
+  const LandmarkSensing sensing = laser_sensing(0.3);
   RouteProblem problem;
   const RouteCells cells{.cell = 2, .columns = 16, .rows = 1};
   problem.passable.assign(16, 1);

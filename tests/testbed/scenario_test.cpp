@@ -15,7 +15,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string refusal(const std::string& json) {
+std::string refusal_of_scenario(const std::string& json) {
   try {
     read_scenario(json, "site.json");
   } catch (const Error& error) {
@@ -45,26 +45,29 @@ TEST(Scenario, IsReadBackAsWritten) {
 }
 
 TEST(Scenario, SaysWhereItIsWrong) {
-  EXPECT_THAT(refusal("{"), StartsWith("not valid JSON: expected a name in double quotes\n  site.json:1:2"));
-  EXPECT_THAT(refusal("{}"), StartsWith("not a scenario: \"waymark_scenario\" is missing\n  site.json"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 2})"),
+  EXPECT_THAT(refusal_of_scenario("{"),
+              StartsWith("not valid JSON: expected a name in double quotes\n  site.json:1:2"));
+  EXPECT_THAT(refusal_of_scenario("{}"),
+              StartsWith("not a scenario: \"waymark_scenario\" is missing\n  site.json"));
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 2})"),
               StartsWith("waymark_scenario is 2, this program reads 1"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "rocks": {"kk": 1}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "rocks": {"kk": 1}})"),
               StartsWith("rocks has no option 'kk'; did you mean 'k'?"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "rock": {}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "rock": {}})"),
               StartsWith("the scenario has no option 'rock'; did you mean 'rocks'?"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "sun": {"elevation": -3}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "sun": {"elevation": -3}})"),
               StartsWith("sun.elevation = -3 is outside [0.5, 90]"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "sun": {"elevation": "high"}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "sun": {"elevation": "high"}})"),
               StartsWith("sun.elevation must be a number, is a string (\"high\")"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "camera": {"rows": 1.5}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "camera": {"rows": 1.5}})"),
               StartsWith("camera.rows must be a whole number, is a number (1.5)"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "picture": {"bits": 12}})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "picture": {"bits": 12}})"),
               StartsWith("picture.bits must be 8 or 16, is 12"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "flights": []})"), StartsWith("flights must be a list"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "flights": [{"images": 0}]})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "flights": []})"),
+              StartsWith("flights must be a list"));
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "flights": [{"images": 0}]})"),
               StartsWith("flights[0].images = 0 is outside"));
-  EXPECT_THAT(refusal(R"({"waymark_scenario": 1, "flights": [{}, {}]})"),
+  EXPECT_THAT(refusal_of_scenario(R"({"waymark_scenario": 1, "flights": [{}, {}]})"),
               StartsWith("flights[1] and an earlier flight are both called 'descent'"));
 }
 

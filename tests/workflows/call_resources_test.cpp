@@ -16,7 +16,7 @@ std::map<std::string, pipeline::CallResources> parse(const std::vector<std::stri
   return parse_resources(texts, kStages);
 }
 
-std::string message_of(const std::vector<std::string>& texts) {
+std::string message_of_texts(const std::vector<std::string>& texts) {
   try {
     parse(texts);
   } catch (const Error& e) {
@@ -39,16 +39,17 @@ TEST(CallResources, StagesInheritWhatTheyDoNotName) {
 }
 
 TEST(CallResources, NonsenseIsRefused) {
-  EXPECT_THAT(message_of({"memory=8"}), HasSubstr("usage: memory=8 has no unit"));
-  EXPECT_THAT(message_of({"memory=-8G"}), HasSubstr("is no amount"));
-  EXPECT_THAT(message_of({"cpus=0"}), HasSubstr("is no amount"));
-  EXPECT_THAT(message_of({"cpus=two"}), HasSubstr("cpus must be a whole number"));
-  EXPECT_THAT(message_of({"cpus"}), HasSubstr("cpus must be a whole number"));
-  EXPECT_THAT(message_of({"time=99999999999999h"}), HasSubstr("time"));
-  EXPECT_THAT(message_of({"disk=8G"}), HasSubstr("'disk' is no resource"));
-  EXPECT_THAT(message_of({"merge:cpus=1"}), HasSubstr("no stage 'merge'; it has list_tiles, join, map"));
-  EXPECT_THAT(message_of({"join:cpus=1", "join:cpus=2"}), HasSubstr("'join' is given twice"));
-  EXPECT_THAT(message_of({"cpus=1", "cpus=2"}), HasSubstr("all calls are given twice"));
+  EXPECT_THAT(message_of_texts({"memory=8"}), HasSubstr("usage: memory=8 has no unit"));
+  EXPECT_THAT(message_of_texts({"memory=-8G"}), HasSubstr("is no amount"));
+  EXPECT_THAT(message_of_texts({"cpus=0"}), HasSubstr("is no amount"));
+  EXPECT_THAT(message_of_texts({"cpus=two"}), HasSubstr("cpus must be a whole number"));
+  EXPECT_THAT(message_of_texts({"cpus"}), HasSubstr("cpus must be a whole number"));
+  EXPECT_THAT(message_of_texts({"time=99999999999999h"}), HasSubstr("time"));
+  EXPECT_THAT(message_of_texts({"disk=8G"}), HasSubstr("'disk' is no resource"));
+  EXPECT_THAT(message_of_texts({"merge:cpus=1"}),
+              HasSubstr("no stage 'merge'; it has list_tiles, join, map"));
+  EXPECT_THAT(message_of_texts({"join:cpus=1", "join:cpus=2"}), HasSubstr("'join' is given twice"));
+  EXPECT_THAT(message_of_texts({"cpus=1", "cpus=2"}), HasSubstr("all calls are given twice"));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr const char* kMine = R"({"waymark_sensor": 1, "summary": "Mine",
   "coverage": {"range": 12, "view": 90, "range_sd": 0.2, "bearing_sd": 1, "detection": 0.6,
                "detection_odds": {"intercept": 3, "per_metre": -0.2, "per_log_diameter": 1}}})";
 
-std::string refusal(const std::string& from, const std::string& to) {
+std::string refusal_of_sensor(const std::string& from, const std::string& to) {
   std::string text = kMine;
   text.replace(text.find(from), from.size(), to);
   try {
@@ -62,13 +62,13 @@ TEST(SensorFile, BuiltInProfilesAreFiles) {
 }
 
 TEST(SensorFile, SaysWhatIsWrong) {
-  EXPECT_THAT(refusal("0.7", "0.5"),
+  EXPECT_THAT(refusal_of_sensor("0.7", "0.5"),
               AllOf(HasSubstr("mine.json"), HasSubstr("the weights of rock sum to 0.8")));
-  EXPECT_THAT(refusal("0.7", "-0.7"), HasSubstr("weights.rock.radius = -0.7 is outside [0, 1]"));
-  EXPECT_THAT(refusal("\"radius\"", "\"raduis\""), HasSubstr("did you mean 'radius'?"));
-  EXPECT_THAT(refusal("\"view\": 90", "\"view\": 500"), HasSubstr("coverage.view"));
-  EXPECT_THAT(refusal("\"range_sd\"", "\"rangesd\""), HasSubstr("did you mean 'range_sd'?"));
-  EXPECT_THAT(refusal("\"waymark_sensor\": 1", "\"waymark_sensor\": 2"), HasSubstr("version"));
+  EXPECT_THAT(refusal_of_sensor("0.7", "-0.7"), HasSubstr("weights.rock.radius = -0.7 is outside [0, 1]"));
+  EXPECT_THAT(refusal_of_sensor("\"radius\"", "\"raduis\""), HasSubstr("did you mean 'radius'?"));
+  EXPECT_THAT(refusal_of_sensor("\"view\": 90", "\"view\": 500"), HasSubstr("coverage.view"));
+  EXPECT_THAT(refusal_of_sensor("\"range_sd\"", "\"rangesd\""), HasSubstr("did you mean 'range_sd'?"));
+  EXPECT_THAT(refusal_of_sensor("\"waymark_sensor\": 1", "\"waymark_sensor\": 2"), HasSubstr("version"));
 }
 
 TEST(SensorFile, AnUnknownNameHasTheNearest) {

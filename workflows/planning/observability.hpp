@@ -16,7 +16,7 @@ struct ObservabilityRequest {
   double drive = 100;                 ///< metres driven at each place
   std::vector<std::string> dem = {};  ///< terrain that hides landmarks; empty: stored in the map, or none
   double sensor_height = 1;           ///< metres above the terrain
-  std::string aoi = {};               ///< polygons: only their box is covered; empty: all
+  std::string aoi = {};               ///< polygons: cells outside have no value; empty: all
   std::int64_t tile_cells = 256;
   int threads = 0;
 };

@@ -80,6 +80,18 @@ planning::Odometry read_odometry(const RouteRequest& request, const RobotMap& ma
   return odometry;
 }
 
+[[noreturn]] void fail_between(const RouteRequest& request, const Waypoint& from, const Waypoint& to) {
+  const bool has_hazards = request.hazards != "none";
+  const std::string between = !has_hazards ? "terrain outside the area of interest lies"
+                              : request.aoi.empty()
+                                  ? "hazards and unknown terrain lie"
+                                  : "hazards, unknown terrain or the border of the area lie";
+  throw Error(ErrorCode::input, fmt::format("there is no route from {} to {}", from.text, to.text),
+              has_hazards ? request.hazards : request.aoi,
+              between + " between; make --cell finer" +
+                  (has_hazards ? ", or pass --hazards none" : ", or the area larger"));
+}
+
 /// Everything that legs of one request share.
 struct Planner {
   const RouteRequest& request;
@@ -130,8 +142,7 @@ struct Planner {
   /// Returns the shortest route found that keeps a limit. The limit of the search is moved until the route
   /// with the belief over worlds just keeps it.
   std::optional<planning::Route> keep(double limit) const {
-    const double shortest =
-        planning::distances_to(problem.field.cells, problem.passable, problem.to)[slot(problem.from)];
+    const double shortest = problem.to_go[slot(problem.from)];
     const int labels = problem.field.cells.count() <= kManyLabels ? 4 : 1;
     std::optional<planning::Route> kept;
     double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
@@ -153,8 +164,9 @@ struct Planner {
   /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
   /// routes that weigh the sd.
   planning::Route min_sd_route() const {
-    planning::Route best = *search(1e9, 0, 1);
-    double low = position_sd(problem.start), high = search_white(1e9, 0, 1)->worst_sd;
+    const planning::Route shortest = *search_white(1e9, 0, 1);
+    planning::Route best = with_belief(shortest);
+    double low = position_sd(problem.start), high = shortest.worst_sd;
     while (high > 1.01 * low) {
       const double middle = std::sqrt(low * high);
       auto route = search_white(middle, 0, 1);
@@ -184,12 +196,14 @@ struct Planner {
   double compute_min_limit(double limit) const {
     planning::RouteProblem relaxed = problem;
     relaxed.noise = odometry.noise;  // persistent errors may be known: they bound nothing
+    std::vector<double> rate = planning::max_rate(relaxed.field);
     const auto excludes = [&](double sd) {
-      return !std::isfinite(planning::relaxed_sd(relaxed, sd)[slot(problem.to)]);
+      return !std::isfinite(planning::relaxed_sd(relaxed, sd, rate)[slot(problem.to)]);
     };
     if (!excludes(limit)) return limit;  // the field of the search has less information
     relaxed.field =
         planning::max_information_field(problem.field.cells, problem.passable, landmarks, sensing);
+    rate = planning::max_rate(relaxed.field);
     if (!excludes(limit)) return limit;
     double low = limit, high = 2 * limit;
     while (excludes(high)) low = high, high *= 2;
@@ -318,10 +332,11 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   const planning::RouteCells cells = cells_for(points, request.cell, coverage.range);
   planning::RouteProblem& problem = planner.problem;
   problem.passable = passable_cells(cells, classes);
+  if (!request.aoi.empty()) close_outside(request.aoi, map, points, cells, problem.passable);
   std::vector<std::int64_t> stops;
   for (const Waypoint& point : points)
     stops.push_back(
-        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.map));
+        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
   planner.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
                                                                 {.sensor_height = request.sensor_height});
   problem.field =
@@ -348,12 +363,8 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
       problem.from = stops[i], problem.to = stops[i + 1];
       planner.worlds_agree = i == 0;
-      if (!std::isfinite(planning::distances_to(cells, problem.passable,
-                                                problem.to)[static_cast<std::size_t>(problem.from)]))
-        throw Error(ErrorCode::input,
-                    fmt::format("there is no route from {} to {}", points[i].text, points[i + 1].text),
-                    request.hazards,
-                    "hazards and unknown terrain lie between; make --cell finer, or pass --hazards none");
+      problem.to_go = planning::distances_to(cells, problem.passable, problem.to);
+      if (!std::isfinite(problem.to_go[slot(problem.from)])) fail_between(request, points[i], points[i + 1]);
       legs.push_back(search());
       planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
       problem.start = legs.back().nodes.back().covariance;
@@ -389,8 +400,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
         const std::vector<double> bound = planning::relaxed_sd(independent, request.limit_sigma);
         for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
       }
-      result.lower_bound +=
-          planning::distances_to(cells, reached, problem.to)[static_cast<std::size_t>(problem.from)];
+      result.lower_bound += planning::distances_to(cells, reached, problem.to)[slot(problem.from)];
     }
   }
   const std::string clearance = add_clearance(request, map, result);

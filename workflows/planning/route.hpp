@@ -15,6 +15,7 @@ struct RouteRequest {
   std::string from, to;          ///< "X,Y" or "X,Y,YAW" (degrees from east towards north)
   std::vector<std::string> via;  ///< "X,Y", in order
   std::string hazards = "none";  ///< hazard map (.tif), or none
+  std::string aoi = {};          ///< polygons: the route stays inside; empty: anywhere
   std::string sensor;            ///< name or file (.json) of a sensor profile
   double range = 0, view = 0;    ///< metres, degrees; 0: those of the sensor
   double limit_sigma = 0;        ///< metres; 0: none

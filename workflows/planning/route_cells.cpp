@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "importers/tables/area_of_interest.hpp"
 #include "workflows/parse_number.hpp"
 
 namespace waymark::workflows {
@@ -102,18 +103,37 @@ std::vector<char> passable_cells(const planning::RouteCells& cells, const Hazard
   return passable;
 }
 
+void close_outside(const std::string& aoi, const RobotMap& map, const std::vector<Waypoint>& points,
+                   const planning::RouteCells& cells, std::vector<char>& passable) {
+  const importers::Area area = importers::read_area_of_interest(aoi, map.crs());
+  const auto is_inside = [&](double x, double y) {
+    const auto at = map.frame.crs_from_map_frame({{x, y, 0}}).xyz;
+    return area.contains(at.x(), at.y());
+  };
+  for (const Waypoint& point : points)
+    if (!is_inside(point.at.x(), point.at.y()))
+      throw Error(ErrorCode::input, point.text + " is outside the area of interest", aoi,
+                  "move it, or make the area larger");
+  for (std::int64_t i = 0; i < cells.count(); ++i) {
+    char& open = passable[static_cast<std::size_t>(i)];
+    if (open && !is_inside(cells.x(i), cells.y(i))) open = 0;
+  }
+}
+
 std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
                      const std::vector<char>& passable, const HazardClasses* hazards,
                      const std::string& file) {
   const std::int64_t cell = cells.index(point.at.x(), point.at.y());
   if (cell >= 0 && passable[static_cast<std::size_t>(cell)]) return cell;
   const auto kind = hazards ? hazards->at(point.at.x(), point.at.y()) : planning::HazardClass::safe;
-  const char* problem =
-      kind == planning::HazardClass::unknown  ? "is on unknown terrain or outside the hazard map"
-      : kind == planning::HazardClass::hazard ? "is in a hazard"
-                                              : "is beside a hazard, within a cell of the route";
-  throw Error(ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
-              "move it, make --cell finer, or pass --hazards none");
+  const char* problem = kind == planning::HazardClass::unknown
+                            ? "is on unknown terrain or outside the hazard map"
+                        : kind == planning::HazardClass::hazard ? "is in a hazard"
+                        : hazards ? "is beside a hazard or the border of the area, within a cell of the route"
+                                  : "is beside the border of the area, within a cell of the route";
+  throw Error(
+      ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
+      hazards ? "move it, make --cell finer, or pass --hazards none" : "move it, or make --cell finer");
 }
 
 }  // namespace waymark::workflows

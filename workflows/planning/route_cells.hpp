@@ -50,7 +50,13 @@ planning::RouteCells cells_for(const std::vector<Waypoint>& points, double cell,
 /// Returns 1 for each cell in which no cell of the hazard map is a hazard or unknown; all 1 without a map.
 std::vector<char> passable_cells(const planning::RouteCells& cells, const HazardClasses* hazards);
 
-/// Returns the cell of a waypoint. Throws Error{input} if it is not passable; `file` is the hazard map.
+/// Sets to 0 each cell whose centre lies outside the polygons of the file `aoi`. Throws Error{input} if a
+/// waypoint does, or the file has no polygon.
+void close_outside(const std::string& aoi, const RobotMap& map, const std::vector<Waypoint>& points,
+                   const planning::RouteCells& cells, std::vector<char>& passable);
+
+/// Returns the cell of a waypoint. Throws Error{input} if it is not passable; `file` is the hazard map,
+/// or the area without one.
 std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
                      const std::vector<char>& passable, const HazardClasses* hazards,
                      const std::string& file);

@@ -72,8 +72,8 @@ class LeaveTheMap : public Localize {
     MadePose truth;
     std::istringstream lines(made.log);
     for (std::string row; std::getline(lines, row);)
-      if (const auto json = nlohmann::json::parse(row); json["kind"] == "truth")
-        truth = {json["x"], json["y"], json["yaw"]};
+      if (const auto event = nlohmann::json::parse(row); event["kind"] == "truth")
+        truth = {event["x"], event["y"], event["yaw"]};
     return {truth.away({v.at("x"), v.at("y"), 0}), v.at("lost") != 0};
   }
 

@@ -76,9 +76,9 @@ TEST_F(LocalizeBadInput, AnglesInDegrees) {
   const auto degrees = [](const std::string& which, const std::string& key, double value) {
     return drive_log({.steps = 6, .change = [=](int step, const std::string& kind, const std::string& line) {
                         if (step != 2 || kind != which) return line;
-                        auto json = nlohmann::json::parse(line);
-                        (which == "sightings" ? json["items"][0] : json)[key] = value;
-                        return json.dump();
+                        auto event = nlohmann::json::parse(line);
+                        (which == "sightings" ? event["items"][0] : event)[key] = value;
+                        return event.dump();
                       }});
   };
   EXPECT_THAT(refusal(degrees("sightings", "bearing", -38.5)),
@@ -94,9 +94,9 @@ TEST_F(LocalizeBadInput, TimesBackwardsTwiceAndMissing) {
   const Outcome backwards =
       localize(drive_log({.named = true, .change = [](int step, const std::string&, const std::string& line) {
                             if (step != 50) return line;
-                            auto json = nlohmann::json::parse(line);
-                            json["t"] = 101.25;
-                            return json.dump();
+                            auto event = nlohmann::json::parse(line);
+                            event["t"] = 101.25;
+                            return event.dump();
                           }}));
   EXPECT_EQ(backwards.code, 0);
   EXPECT_THAT(backwards.err, HasSubstr("times run backwards; the log was sorted by time"));
@@ -124,12 +124,12 @@ TEST_F(LocalizeBadInput, SensorsAndTypesNobodyKnows) {
           return line + R"(
 {"kind":"sonar","t":103,"echo":[1,2]})";
         if (kind == "sightings" && step % 2) {
-          auto json = nlohmann::json::parse(line);
-          for (auto& item : json["items"]) {
+          auto event = nlohmann::json::parse(line);
+          for (auto& item : event["items"]) {
             item["type"] = "cactus";
             item.erase("features");
           }
-          return json.dump();
+          return event.dump();
         }
         return line;
       }}));
@@ -161,10 +161,10 @@ TEST_F(LocalizeBadInput, AllRejectedForMinutesThenLandmarksReturn) {
                               .change =
                                   [](int step, const std::string& kind, const std::string& line) {
                                     if (kind != "sightings" || step < 60 || step > 300) return line;
-                                    auto json = nlohmann::json::parse(line);
-                                    for (auto& item : json["items"])
+                                    auto event = nlohmann::json::parse(line);
+                                    for (auto& item : event["items"])
                                       item["range"] = 40 + item["range"].get<double>();
-                                    return json.dump();
+                                    return event.dump();
                                   }}),
                    {"--method", method, "--ids", named ? "known" : "unknown"});
       ASSERT_EQ(said.code, 0) << said.err;

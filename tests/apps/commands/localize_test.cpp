@@ -282,13 +282,13 @@ TEST_F(Localize, TheDemSaysWhatCouldNotBeSeen) {
   // Nothing beyond the wall is seen, until the robot comes near it.
   const auto behind = [&](int step, const std::string& kind, const std::string& line) {
     if (kind != "sightings") return line;
-    auto json = nlohmann::json::parse(line);
+    auto event = nlohmann::json::parse(line);
     nlohmann::json kept = nlohmann::json::array();
-    for (const auto& item : json["items"])
+    for (const auto& item : event["items"])
       if (item["range"].get<double>() < 6) kept.push_back(item);
-    json["items"] = kept;
+    event["items"] = kept;
     (void)step;
-    return json.dump();
+    return event.dump();
   };
   const std::string log = drive_log({.steps = 60, .change = behind});
   for (const std::string method : {"ekf", "ukf", "pf"}) {
@@ -311,12 +311,12 @@ TEST_F(Localize, ATrueYawMayGoOnTurning) {
   const std::string log =
       drive_log({.steps = 400, .change = [&](int, const std::string& kind, const std::string& line) {
                    if (kind != "truth") return line;
-                   auto json = nlohmann::json::parse(line);
-                   const double now = json["yaw"];
+                   auto event = nlohmann::json::parse(line);
+                   const double now = event["yaw"];
                    yaw += std::remainder(now - last, 2 * M_PI);
                    last = now;
-                   json["yaw"] = yaw;
-                   return json.dump();
+                   event["yaw"] = yaw;
+                   return event.dump();
                  }});
   ASSERT_GT(yaw, 13) << "more than two turns";
   ASSERT_EQ(localize(log, {"--ids", "unknown"}).code, 0);

@@ -55,6 +55,33 @@ class RouteCommand : public testing::Test {
   const std::string map_ = folder_ / "m.gpkg";
 };
 
+TEST_F(RouteCommand, StaysInTheAreaOfInterest) {
+  const auto area = [this](const std::string& type, const std::string& coordinates) {
+    write_text(folder_ / "area.geojson", R"({"type": "FeatureCollection", "features": [{"type": "Feature",
+      "properties": {}, "geometry": {"type": ")" +
+                                             type + R"(", "coordinates": )" + coordinates + "}}]}");
+    return folder_ / "area.geojson";
+  };
+  ASSERT_EQ(route({"--weight", "1e-9"}).code, 0);
+  EXPECT_LT(largest("y"), 5);
+  // An arch: the way straight ahead is outside.
+  const std::string arch =
+      "[[[-110, -9], [-60, -9], [-60, 30], [60, 30], [60, -9], [110, -9], [110, 80], [-110, 80], [-110, "
+      "-9]]]";
+  const Outcome made = route({"--weight", "1e-9", "--aoi", area("Polygon", arch)});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NEAR(largest("y"), 31, 2);
+  const std::string west = "[[[-110, -9], [-60, -9], [-60, 30], [-110, 30], [-110, -9]]]",
+                    east = "[[[60, -9], [110, -9], [110, 30], [60, 30], [60, -9]]]";
+  EXPECT_THAT(route({"--weight", "1", "--aoi", area("Polygon", west)}).err,
+              AllOf(HasSubstr("--to 100,0 is outside the area of interest"), HasSubstr("area.geojson")));
+  const Outcome parted =
+      route({"--weight", "1", "--aoi", area("MultiPolygon", "[" + west + ", " + east + "]")});
+  EXPECT_EQ(parted.code, 1) << parted.err;
+  EXPECT_THAT(parted.err, AllOf(HasSubstr("there is no route from --from -100,0 to --to 100,0"),
+                                HasSubstr("terrain outside the area of interest lies between")));
+}
+
 TEST_F(RouteCommand, LimitLeadsAlongTheLandmarks) {
   const Outcome shortest = route({"--weight", "1e-9"});
   ASSERT_EQ(shortest.code, 0) << shortest.err;
@@ -120,10 +147,10 @@ TEST_F(RouteCommand, LimitThatCannotBeKeptNamesTheLeastFound) {
 
 TEST_F(RouteCommand, OutputsHoldRouteAndStations) {
   ASSERT_EQ(route({"--limit-sigma", "1.5", "--alternatives", "2"}, "r.geojson").code, 0);
-  const auto json = nlohmann::json::parse(text_of(folder_ / "r.geojson"));
-  EXPECT_EQ(json["features"][0]["geometry"]["type"], "LineString");
-  EXPECT_EQ(json["features"][0]["properties"]["layer"], "route");
-  EXPECT_EQ(json["features"].back()["properties"]["layer"], "route_station");
+  const auto collection = nlohmann::json::parse(text_of(folder_ / "r.geojson"));
+  EXPECT_EQ(collection["features"][0]["geometry"]["type"], "LineString");
+  EXPECT_EQ(collection["features"][0]["properties"]["layer"], "route");
+  EXPECT_EQ(collection["features"].back()["properties"]["layer"], "route_station");
   ASSERT_EQ(route({"--limit-sigma", "1.5"}, "r.gpkg").code, 0);
   const Outcome valid = waymark({"validate", folder_ / "r.gpkg"});
   EXPECT_EQ(valid.code, 0) << valid.out << valid.err;

@@ -22,8 +22,6 @@ using testing::IsEmpty;
 using testing::Not;
 using Json = nlohmann::json;
 
-constexpr int kNoBrowser = 77;
-
 /// Rocks of a plain, a log of a drive among them and an estimated track.
 class ViewCommand : public testing::Test {
  protected:

@@ -21,8 +21,6 @@ using testing::IsEmpty;
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr int kNoBrowser = 77;
-
 /// 200 rocks on a plane of 100 m, one of them alone in the middle.
 class WebCommand : public testing::Test {
  protected:

@@ -57,10 +57,11 @@ TEST(WebProjection, LocalMetresAreToScaleEverywhere) {
 }
 
 TEST(WebProjection, PolarMapsAreDrawnOnTheirPlane) {
-  EXPECT_EQ(web_plane(kPole, MapBox{-1e5, -1e5, 1e5, 1e5}), WebPlane::metres);
-  EXPECT_EQ(web_plane(kPole, MapBox{5e5, 5e5, 6e5, 6e5}), WebPlane::mercator);
-  EXPECT_EQ(web_plane(Crs::from_text("EPSG:32632"), MapBox{4e5, 5e6, 4.1e5, 5.1e6}), WebPlane::mercator);
-  EXPECT_EQ(web_plane(kMoon, MapBox{0, -89, 10, -80}), WebPlane::mercator);
+  EXPECT_EQ(web_plane(kPole, exporters::MapBox{-1e5, -1e5, 1e5, 1e5}), WebPlane::metres);
+  EXPECT_EQ(web_plane(kPole, exporters::MapBox{5e5, 5e5, 6e5, 6e5}), WebPlane::mercator);
+  EXPECT_EQ(web_plane(Crs::from_text("EPSG:32632"), exporters::MapBox{4e5, 5e6, 4.1e5, 5.1e6}),
+            WebPlane::mercator);
+  EXPECT_EQ(web_plane(kMoon, exporters::MapBox{0, -89, 10, -80}), WebPlane::mercator);
   EXPECT_EQ(web_plane(Crs::local(), std::nullopt), WebPlane::metres);
   const WebProjection plane(kPole, WebPlane::metres);
   EXPECT_NEAR((*plane.to_world(3000, 4000) - *plane.to_world(0, 0)).norm() * plane.world_width(0.5), 5000,

@@ -23,7 +23,7 @@ std::string written(const std::string& text) {
   return path.string();
 }
 
-std::string refusal(const std::string& text) {
+std::string refusal_of_list(const std::string& text) {
   return message_of([&] { read_gcp_list(written(text)); });
 }
 
@@ -50,12 +50,12 @@ TEST(GroundControl, ReadsOpenDroneMapsList) {
 }
 
 TEST(GroundControl, RefusesWithTheLine) {
-  EXPECT_THAT(refusal("EPSG:32632\n"), HasSubstr("there are no control points"));
-  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5\n"), HasSubstr("the line has 5 words, not 6 or more"));
-  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 five a.jpg\n"), HasSubstr("row"));
-  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 4 4 5 b.jpg P\n"),
+  EXPECT_THAT(refusal_of_list("EPSG:32632\n"), HasSubstr("there are no control points"));
+  EXPECT_THAT(refusal_of_list("EPSG:32632\n1 2 3 4 5\n"), HasSubstr("the line has 5 words, not 6 or more"));
+  EXPECT_THAT(refusal_of_list("EPSG:32632\n1 2 3 4 five a.jpg\n"), HasSubstr("row"));
+  EXPECT_THAT(refusal_of_list("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 4 4 5 b.jpg P\n"),
               HasSubstr("'P' has another position on an earlier line"));
-  EXPECT_THAT(refusal("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 3 4 6 a.jpg P\n"),
+  EXPECT_THAT(refusal_of_list("EPSG:32632\n1 2 3 4 5 a.jpg P\n1 2 3 4 6 a.jpg P\n"),
               HasSubstr("'P' has two marks in the image 'a.jpg'"));
 }
 

@@ -25,7 +25,7 @@ RasterFile raster(const std::string& name, const std::function<double(double, do
   return file;
 }
 
-std::string refusal(const importers::CanopyImport& import) {
+std::string refusal_of_canopy(const importers::CanopyImport& import) {
   return message_of([&] { importers::import_canopy(import); });
 }
 
@@ -68,18 +68,19 @@ TEST(Canopy, NegativeHeightsCountAsZeroAndHolesAsUnknown) {
 TEST(Canopy, SaysWhatCannotBe) {
   const auto low = write_raster(raster("low", [](double, double) { return 500; }));
   const auto high = write_raster(raster("high", [](double x, double) { return 510 + x / 10; }));
-  EXPECT_THAT(refusal({.dsm = {low}, .dtm = {high}}),
+  EXPECT_THAT(refusal_of_canopy({.dsm = {low}, .dtm = {high}}),
               AllOf(HasSubstr("the terrain lies above the surface, by up to 1"), HasSubstr("exchanged?")));
-  EXPECT_THAT(refusal({.chm = {low}}), AllOf(HasSubstr("these are elevations"), HasSubstr("--dsm")));
-  EXPECT_THAT(refusal({.dsm = {low}}), HasSubstr("--dtm"));
-  EXPECT_THAT(refusal({.chm = {low}, .dtm = {low}}), HasSubstr("needs neither"));
-  EXPECT_THAT(refusal({}), HasSubstr("no canopy is given"));
+  EXPECT_THAT(refusal_of_canopy({.chm = {low}}),
+              AllOf(HasSubstr("these are elevations"), HasSubstr("--dsm")));
+  EXPECT_THAT(refusal_of_canopy({.dsm = {low}}), HasSubstr("--dtm"));
+  EXPECT_THAT(refusal_of_canopy({.chm = {low}, .dtm = {low}}), HasSubstr("needs neither"));
+  EXPECT_THAT(refusal_of_canopy({}), HasSubstr("no canopy is given"));
   RasterFile far = raster("far", [](double, double) { return 490; });
   far.transform = GeoTransform{600000, 1, 0, 5000000, 0, -1};
-  EXPECT_THAT(refusal({.dsm = {high}, .dtm = {write_raster(far)}}), HasSubstr("do not overlap"));
+  EXPECT_THAT(refusal_of_canopy({.dsm = {high}, .dtm = {write_raster(far)}}), HasSubstr("do not overlap"));
   RasterFile other = raster("other", [](double, double) { return 490; });
   other.crs = "EPSG:32632";
-  EXPECT_THAT(refusal({.dsm = {high}, .dtm = {write_raster(other)}}),
+  EXPECT_THAT(refusal_of_canopy({.dsm = {high}, .dtm = {write_raster(other)}}),
               AllOf(HasSubstr("EPSG:32633"), HasSubstr("EPSG:32632"), HasSubstr("gdalwarp")));
 }
 
@@ -87,7 +88,7 @@ TEST(Canopy, DegreesAreRefused) {
   RasterFile degrees = raster("degrees", [](double, double) { return 10; });
   degrees.crs = "EPSG:4326";
   degrees.transform = centred_on(15, 45, 1e-5);
-  EXPECT_THAT(refusal({.chm = {write_raster(degrees)}}),
+  EXPECT_THAT(refusal_of_canopy({.chm = {write_raster(degrees)}}),
               AllOf(HasSubstr("is in degrees (EPSG:4326)"), HasSubstr("gdalwarp")));
 }
 

@@ -72,7 +72,7 @@ std::string written(const LasFile& las) {
   return write_text(las.name, bytes);
 }
 
-std::string refusal(const LasFile& las) {
+std::string refusal_of_las(const LasFile& las) {
   const std::string path = written(las);
   return message_of([&] { importers::import_canopy({.las = {path}}); });
 }
@@ -111,23 +111,23 @@ TEST(Las, SaysWhatIsWrong) {
   LasFile good{.points = some_points()};
   LasFile las = good;
   las.compressed = true;
-  EXPECT_THAT(refusal(las),
+  EXPECT_THAT(refusal_of_las(las),
               AllOf(HasSubstr("compressed (LAZ)"), HasSubstr("record that says how is missing")));
   las = good, las.promised = 100;
-  EXPECT_THAT(refusal(las), HasSubstr("truncated: its header states 100 points, it holds 4"));
+  EXPECT_THAT(refusal_of_las(las), HasSubstr("truncated: its header states 100 points, it holds 4"));
   las = good, las.length = 20;
-  EXPECT_THAT(refusal(las),
+  EXPECT_THAT(refusal_of_las(las),
               HasSubstr("a point record of format 1 has 28 bytes at least, the header says 20"));
   las = good, las.format = 11;
-  EXPECT_THAT(refusal(las), HasSubstr("point format 11"));
+  EXPECT_THAT(refusal_of_las(las), HasSubstr("point format 11"));
   las = good, las.minor = 5;
-  EXPECT_THAT(refusal(las), HasSubstr("LAS 1.5 is not known"));
+  EXPECT_THAT(refusal_of_las(las), HasSubstr("LAS 1.5 is not known"));
   las = good;
   for (importers::LasPoint& p : las.points) p.classification = 1;
-  EXPECT_THAT(refusal(las),
+  EXPECT_THAT(refusal_of_las(las),
               AllOf(HasSubstr("no point is classified as ground (class 2)"), HasSubstr("classify it first")));
   las = good, las.points.clear();
-  EXPECT_THAT(refusal(las), HasSubstr("no points"));
+  EXPECT_THAT(refusal_of_las(las), HasSubstr("no points"));
   const auto text = write_text("no.las", "not a LAS file at all");
   EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {text}}); }),
               HasSubstr("does not begin with LASF"));
@@ -141,8 +141,8 @@ TEST(Las, SaysWhatIsWrong) {
 TEST(Las, PointsFarApartAreRefusedRatherThanGridded) {
   LasFile las{.points = some_points()};
   las.points[0].x += 300e3, las.points[0].y += 300e3;  // 2e10 cells for two usable points
-  EXPECT_THAT(refusal(las), AllOf(HasSubstr("points lie 3e+05 x 3e+05 m apart"), HasSubstr("points.las"),
-                                  HasSubstr("a wild point")));
+  EXPECT_THAT(refusal_of_las(las), AllOf(HasSubstr("points lie 3e+05 x 3e+05 m apart"),
+                                         HasSubstr("points.las"), HasSubstr("a wild point")));
 }
 
 TEST(Las, FilesOfDifferentPlacesOfReferenceAreRefused) {

@@ -17,7 +17,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const Grid<double> kHills = dem_art("1 2 3 / 4 9 6 / 7 8 5");
+const Grid<double> kThreeByThree = dem_art("1 2 3 / 4 9 6 / 7 8 5");
 
 std::string complaint_about(const std::string& path, const std::string& crs = {}) {
   ::testing::internal::CaptureStderr();
@@ -75,56 +75,61 @@ TEST(BadDem, DamagedInTheMiddle) {
 }
 
 TEST(BadDem, ThreeBands) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .type = GDT_Byte, .bands = 3}),
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .type = GDT_Byte, .bands = 3}),
               AllOf(HasSubstr("a DEM has one band of heights, this file has 3"),
                     HasSubstr("gdal_translate -b 1 '/vsimem/dem.tif' dem.tif")));
 }
 
 TEST(BadDem, ComplexNumbers) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .type = GDT_CFloat32}),
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .type = GDT_CFloat32}),
               HasSubstr("heights are real numbers, this file holds complex ones (CFloat32)"));
 }
 
 TEST(BadDem, NoCrs) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .crs = ""}),
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .crs = ""}),
               AllOf(HasSubstr("the file has no coordinate reference system"), HasSubstr("--crs EPSG:32611"),
                     HasSubstr("--crs local"), Not(HasSubstr("look like degrees"))));
 }
 
 TEST(BadDem, DegreesWithoutAnEllipsoid) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = centred_on(8, 46, 1.0 / 1200), .crs = ""}),
-              AllOf(HasSubstr("its numbers look like degrees: pass --crs EPSG:4326 if this is Earth"),
-                    HasSubstr("IAU_2015:49900 if Mars")));
+  EXPECT_THAT(
+      complaint_about({.cells = kThreeByThree, .transform = centred_on(8, 46, 1.0 / 1200), .crs = ""}),
+      AllOf(HasSubstr("its numbers look like degrees: pass --crs EPSG:4326 if this is Earth"),
+            HasSubstr("IAU_2015:49900 if Mars")));
 }
 
 TEST(BadDem, DegreesWhereMetresAreDeclared) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = centred_on(8, 46, 1.0 / 1200)}),
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .transform = centred_on(8, 46, 1.0 / 1200)}),
               AllOf(HasSubstr("EPSG:32633 is in metres, but these look like degrees: x 7.99"),
                     HasSubstr("--crs EPSG:4326")));
 }
 
 TEST(BadDem, MetresWhereDegreesAreDeclared) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .crs = "EPSG:4326"}),
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .crs = "EPSG:4326"}),
               AllOf(HasSubstr("EPSG:4326 is in degrees, but these are none: x 499985 to 500105"),
                     HasSubstr("pass --crs with the projection")));
 }
 
 TEST(BadDem, UnknownCrs) {
-  EXPECT_THAT(complaint_about(write_raster({.cells = kHills}), "EPSG:123456"), HasSubstr("crs not found"));
+  EXPECT_THAT(complaint_about(write_raster({.cells = kThreeByThree}), "EPSG:123456"),
+              HasSubstr("crs not found"));
 }
 
 TEST(BadDem, NoPlace) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = {}}), HasSubstr("the file has no geotransform"));
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .transform = {}}),
+              HasSubstr("the file has no geotransform"));
 }
 
 TEST(BadDem, Rotated) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = GeoTransform{500000, 30, 5, 4000000, 5, -30}}),
-              AllOf(HasSubstr("the grid is rotated"), HasSubstr("gdalwarp '/vsimem/dem.tif' dem.tif")));
+  EXPECT_THAT(
+      complaint_about({.cells = kThreeByThree, .transform = GeoTransform{500000, 30, 5, 4000000, 5, -30}}),
+      AllOf(HasSubstr("the grid is rotated"), HasSubstr("gdalwarp '/vsimem/dem.tif' dem.tif")));
 }
 
 TEST(BadDem, EastToWest) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .transform = GeoTransform{500000, -30, 0, 4000000, 0, -30}}),
-              HasSubstr("columns must run from west to east"));
+  EXPECT_THAT(
+      complaint_about({.cells = kThreeByThree, .transform = GeoTransform{500000, -30, 0, 4000000, 0, -30}}),
+      HasSubstr("columns must run from west to east"));
 }
 
 TEST(BadDem, NoHeightAtAll) {
@@ -133,11 +138,12 @@ TEST(BadDem, NoHeightAtAll) {
 }
 
 TEST(BadDem, ScaleOfZero) {
-  EXPECT_THAT(complaint_about({.cells = kHills, .scale = 0}), HasSubstr("heights would be 0 times the cell"));
+  EXPECT_THAT(complaint_about({.cells = kThreeByThree, .scale = 0}),
+              HasSubstr("heights would be 0 times the cell"));
 }
 
 TEST(BadDem, VirtualRasterWithoutItsSource) {
-  const std::string source = write_raster({.path = write_text("source.tif", ""), .cells = kHills});
+  const std::string source = write_raster({.path = write_text("source.tif", ""), .cells = kThreeByThree});
   const std::string vrt = "/vsimem/mosaic.vrt";
   GDALDatasetH opened = GDALOpen(source.c_str(), GA_ReadOnly);
   GDALClose(GDALCreateCopy(GDALGetDriverByName("VRT"), vrt.c_str(), opened, 0, nullptr, nullptr, nullptr));
@@ -154,7 +160,7 @@ TEST(BadDem, SeveralDataSetsInOneFile) {
   for (const char* table : {"RASTER_TABLE=summer", "RASTER_TABLE=winter"}) {
     const bool again = std::filesystem::exists(path);
     write_raster({.path = path,
-                  .cells = kHills,
+                  .cells = kThreeByThree,
                   .type = GDT_Float32,
                   .driver = "GPKG",
                   .options = {table, again ? "APPEND_SUBDATASET=YES" : "APPEND_SUBDATASET=NO"}});

@@ -17,12 +17,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-HeightWindow all_of(const DemSource& dem) {
-  return dem.read({0, 0, dem.geometry().columns, dem.geometry().rows});
-}
-
 HeightWindow heights_of(const RasterFile& file) {
-  return all_of(*import_dem({.files = {write_raster(file)}}));
+  return all_heights(*import_dem({.files = {write_raster(file)}}));
 }
 
 const Grid<double> kHills = dem_art("1 2 3 / 4 9 6 / 7 8 5");
@@ -32,7 +28,7 @@ TEST(ImportDem, ReadsOtherFormatsAlike) {
   for (const auto& [driver, path] :
        {std::pair{"COG", "/vsimem/hills_cog.tif"}, {"AAIGrid", "/vsimem/hills.asc"}}) {
     GDALClose(GDALCreateCopy(GDALGetDriverByName(driver), path, tiff, 0, nullptr, nullptr, nullptr));
-    EXPECT_EQ(all_of(*import_dem({.files = {path}, .crs = "EPSG:32633"})), kHills) << driver;
+    EXPECT_EQ(all_heights(*import_dem({.files = {path}, .crs = "EPSG:32633"})), kHills) << driver;
   }
   GDALClose(tiff);
 }
@@ -44,7 +40,7 @@ TEST(ImportDem, HeightsNoBodyHasAreNoHeights) {
   cells(0, 1) = -32768;
   const auto dem =
       import_dem({.files = {write_raster({.cells = cells, .type = GDT_Float32, .nodata = -9999})}});
-  EXPECT_EQ(all_of(*dem), dem_art("1 2 . 21229 5 / . 2 3 4 5"));
+  EXPECT_EQ(all_heights(*dem), dem_art("1 2 . 21229 5 / . 2 3 4 5"));
   const CellFaults faults = dem->faults({0, 0, 5, 2});
   EXPECT_EQ(faults.implausible, 2);
   EXPECT_FLOAT_EQ(static_cast<float>(faults.height), 9e9F);
@@ -52,22 +48,22 @@ TEST(ImportDem, HeightsNoBodyHasAreNoHeights) {
   EXPECT_EQ(faults.row, 0);
   EXPECT_EQ(dem->faults({3, 0, 2, 2}).implausible, 0);
   const auto integers = import_dem({.files = {write_raster({.cells = dem_art("1 2 / -32768 4")})}});
-  EXPECT_EQ(all_of(*integers), dem_art("1 2 / . 4"));
+  EXPECT_EQ(all_heights(*integers), dem_art("1 2 / . 4"));
   EXPECT_EQ(integers->faults({0, 0, 2, 2}).row, 1);
 }
 
 TEST(ImportDem, ReadsTheBandThatIsNamed) {
   const std::string file = write_raster({.cells = kHills, .bands = 3});
-  EXPECT_EQ(all_of(*import_dem({.files = {file}, .band = 2})), kHills);
+  EXPECT_EQ(all_heights(*import_dem({.files = {file}, .band = 2})), kHills);
   EXPECT_THAT(message_of([&] { import_dem({.files = {file}, .band = 4}); }),
               HasSubstr("there is no band 4: this file has 3"));
 }
 
 TEST(ImportDem, TakesUnitAndScaleFromTheUser) {
   const std::string feet = write_raster({.cells = dem_art("100 200"), .unit = "fathom"});
-  EXPECT_NEAR(all_of(*import_dem({.files = {feet}, .height_unit = "ft"}))(1, 0), 60.96, 1e-12);
+  EXPECT_NEAR(all_heights(*import_dem({.files = {feet}, .height_unit = "ft"}))(1, 0), 60.96, 1e-12);
   EXPECT_THAT(import_dem({.files = {feet}, .height_unit = "ft"})->warnings(), IsEmpty());
-  EXPECT_EQ(all_of(*import_dem({.files = {feet}, .height_unit = "m", .height_scale = 0.1}))(0, 0), 10);
+  EXPECT_EQ(all_heights(*import_dem({.files = {feet}, .height_unit = "m", .height_scale = 0.1}))(0, 0), 10);
   EXPECT_THAT(message_of([&] { import_dem({.files = {feet}, .height_unit = "cubit"}); }),
               HasSubstr("name one of m, km, dm, cm, mm, ft, us-ft"));
 }
@@ -94,7 +90,7 @@ TEST(ImportDem, GivesTheCentresOfCells) {
   EXPECT_EQ(grid.where.dy, -30);
   EXPECT_EQ(grid.where.crs.id(), "EPSG:32633");
   EXPECT_FALSE(grid.wraps);
-  EXPECT_EQ(all_of(*dem), kHills);
+  EXPECT_EQ(all_heights(*dem), kHills);
   EXPECT_THAT(dem->warnings(), IsEmpty());
 }
 
@@ -209,7 +205,7 @@ TEST(ImportDem, TurnsASouthUpFile) {
   const auto dem =
       import_dem({.files = {write_raster({.cells = dem_art("1 2 / 3 4 / 5 6"),
                                           .transform = GeoTransform{500000, 30, 0, 3999910, 0, 30}})}});
-  EXPECT_EQ(all_of(*dem), dem_art("5 6 / 3 4 / 1 2"));
+  EXPECT_EQ(all_heights(*dem), dem_art("5 6 / 3 4 / 1 2"));
   EXPECT_EQ(dem->geometry().where.y0, 3999985);
   EXPECT_EQ(dem->read({1, 1, 1, 2}), dem_art("4 / 2"));
 }
@@ -225,7 +221,7 @@ TEST(ImportDem, ReadsOtherFormats) {
                                       "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 50\ncellsize 0.5\n"
                                       "NODATA_value -9999\n1 2 3\n4 -9999 6\n");
   const auto dem = import_dem({.files = {grid}, .crs = "EPSG:4326"});
-  EXPECT_EQ(all_of(*dem), dem_art("1 2 3 / 4 . 6"));
+  EXPECT_EQ(all_heights(*dem), dem_art("1 2 3 / 4 . 6"));
   EXPECT_EQ(dem->geometry().where.x0, 10.25);
   EXPECT_EQ(dem->geometry().where.y0, 50.75);
 }
@@ -239,12 +235,12 @@ TEST(ImportDem, ReadsAnArchiveWithoutUnpackingIt) {
   VSIFCloseL(plain);
   VSIFWriteL(bytes.data(), 1, bytes.size(), zip);
   VSIFCloseL(zip);
-  EXPECT_EQ(all_of(*import_dem({.files = {"/vsizip//vsimem/archive.zip/inside.tif"}})), kHills);
+  EXPECT_EQ(all_heights(*import_dem({.files = {"/vsizip//vsimem/archive.zip/inside.tif"}})), kHills);
 }
 
 TEST(ImportDem, OneCellIsADem) {
   const auto dem = import_dem({.files = {write_raster({.cells = dem_art("7")})}});
-  EXPECT_EQ(all_of(*dem), dem_art("7"));
+  EXPECT_EQ(all_heights(*dem), dem_art("7"));
   EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("every cell has the height 7 m")));
 }
 
@@ -264,7 +260,7 @@ TEST(ImportDem, WithoutATransformLocalCellsAreMetres) {
   const auto dem = import_dem({.files = {path}, .crs = "local"});
   EXPECT_EQ(dem->geometry().where.dx, 1);
   EXPECT_EQ(dem->geometry().where.dy, -1);
-  EXPECT_EQ(all_of(*dem), kHills);
+  EXPECT_EQ(all_heights(*dem), kHills);
 }
 
 TEST(ImportDem, KeepsFeetOfTheGroundInTheCrs) {

@@ -19,12 +19,8 @@ namespace waymark::test {
 using namespace importers;
 namespace {
 
-HeightWindow all_of(const DemSource& dem) {
-  return dem.read({0, 0, dem.geometry().columns, dem.geometry().rows});
-}
-
 HeightWindow filled(const RasterFile& file) {
-  return all_of(*import_dem({.files = {write_raster(file)}, .nodata = NodataPolicy::fill}));
+  return all_heights(*import_dem({.files = {write_raster(file)}, .nodata = NodataPolicy::fill}));
 }
 
 TEST(FillVoids, TakesTheNearestOfFourQuadrants) {
@@ -59,7 +55,7 @@ TEST(FillVoids, DistanceIsAnOptionAndCounted) {
   const auto dem = import_dem({.files = {write_raster({.cells = wide, .nodata = -32768})},
                                .nodata = NodataPolicy::fill,
                                .fill_distance = 20});
-  const HeightWindow heights = all_of(*dem);
+  const HeightWindow heights = all_heights(*dem);
   EXPECT_EQ(heights(20, 0), 5);
   EXPECT_EQ(heights(21, 0), kNoHeight);
   EXPECT_EQ(dem->faults({0, 0, 301, 1}).filled, 40);
@@ -115,7 +111,7 @@ RC_GTEST_PROP(FillVoids, AnyWindowGivesTheSameCells, ()) {
     const auto file = write_raster({.path = "/vsimem/holed.tif", .cells = cells, .nodata = -32768});
     return import_dem({.files = {file}, .nodata = NodataPolicy::fill});
   }();
-  static const HeightWindow whole = all_of(*dem);
+  static const HeightWindow whole = all_heights(*dem);
   const Window window{*rc::gen::inRange(-5, 255), *rc::gen::inRange(-5, 235), *rc::gen::inRange(1, 60),
                       *rc::gen::inRange(1, 60)};
   const HeightWindow heights = dem->read(window);

@@ -19,10 +19,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-HeightWindow all_of(const DemSource& dem) {
-  return dem.read({0, 0, dem.geometry().columns, dem.geometry().rows});
-}
-
 // One-degree cells, the first centred on (lon, lat).
 std::string degrees_file(const std::string& name, double lon, double lat, const Grid<double>& cells) {
   return write_raster({.path = "/vsimem/" + name,
@@ -36,17 +32,17 @@ TEST(Mosaic, FilesThatTouchBecomeOneGrid) {
   const auto west = degrees_file("west.tif", 10, 50, dem_art("1 2 / 3 4"));
   const auto east = degrees_file("east.tif", 12, 49, dem_art("5 6 / 7 8"));
   const auto dem = import_dem({.files = {west, east}});
-  EXPECT_EQ(all_of(*dem), dem_art("1 2 . . / 3 4 5 6 / . . 7 8"));
+  EXPECT_EQ(all_heights(*dem), dem_art("1 2 . . / 3 4 5 6 / . . 7 8"));
   EXPECT_EQ(dem->geometry().where.x0, 10);
   EXPECT_EQ(dem->geometry().where.y0, 50);
-  EXPECT_EQ(all_of(*import_dem({.files = {east, west}})), all_of(*dem))
+  EXPECT_EQ(all_heights(*import_dem({.files = {east, west}})), all_heights(*dem))
       << "order matters only where files overlap";
 }
 
 TEST(Mosaic, TheFirstFileWinsWhereItHasData) {
   const auto first = degrees_file("first.tif", 10, 50, dem_art("1 2 / 3 ."));
   const auto second = degrees_file("second.tif", 11, 50, dem_art("2 9 / 8 7"));
-  EXPECT_EQ(all_of(*import_dem({.files = {first, second}})), dem_art("1 2 9 / 3 8 7"));
+  EXPECT_EQ(all_heights(*import_dem({.files = {first, second}})), dem_art("1 2 9 / 3 8 7"));
 }
 
 TEST(Mosaic, ReportsSeamsThatDisagree) {
@@ -73,7 +69,7 @@ TEST(Mosaic, EachFileHasItsOwnNoDataAndScale) {
                                     .crs = "EPSG:4326",
                                     .nodata = 0,
                                     .scale = 0.1});
-  const auto heights = all_of(*import_dem({.files = {metres, tenths}}));
+  const auto heights = all_heights(*import_dem({.files = {metres, tenths}}));
   EXPECT_EQ(heights(1, 0), kNoHeight);
   EXPECT_NEAR(heights(2, 0), 3, 1e-12);
   EXPECT_EQ(heights(3, 0), kNoHeight);
@@ -83,7 +79,7 @@ TEST(Mosaic, JoinsAcrossTheAntimeridian) {
   const auto east = degrees_file("east.tif", 178.5, 10, dem_art("1 2"));
   const auto west = degrees_file("west.tif", -179.5, 10, dem_art("3 4"));
   const auto dem = import_dem({.files = {west, east}});
-  EXPECT_EQ(all_of(*dem), dem_art("1 2 3 4"));
+  EXPECT_EQ(all_heights(*dem), dem_art("1 2 3 4"));
   EXPECT_EQ(dem->geometry().where.x0, 178.5);
 }
 
@@ -160,14 +156,14 @@ TEST(GlobalGrid, UtmDoesNotWrap) {
   EXPECT_FALSE(import_dem({.files = {file}})->geometry().wraps);
 }
 
-std::string complaint_about(const std::string& a, const std::string& b) {
+std::string complaint_about_both(const std::string& a, const std::string& b) {
   return message_of([&] { import_dem({.files = {a, b}}); });
 }
 
 TEST(BadMosaic, DifferentCrs) {
   const auto a = degrees_file("a.tif", 10, 50, dem_art("1 2"));
   const auto b = write_raster({.path = "/vsimem/b.tif", .cells = dem_art("1 2")});
-  EXPECT_THAT(complaint_about(a, b),
+  EXPECT_THAT(complaint_about_both(a, b),
               AllOf(HasSubstr("the files are in different coordinate systems: EPSG:4326 and EPSG:32633"),
                     HasSubstr("/vsimem/a.tif and /vsimem/b.tif"),
                     HasSubstr("gdalwarp -t_srs 'EPSG:4326' '/vsimem/b.tif'")));
@@ -180,7 +176,7 @@ TEST(BadMosaic, DifferentResolution) {
                                .transform = GeoTransform{11.2, 0.5, 0, 50.5, 0, -0.5},
                                .crs = "EPSG:4326"});
   EXPECT_THAT(
-      complaint_about(a, b),
+      complaint_about_both(a, b),
       AllOf(HasSubstr("cells of different size: 1 x 1 and 0.5 x 0.5"),
             HasSubstr("gdalwarp -r bilinear -tr 1 1 -te 10.5 49.5 12.5 50.5 '/vsimem/b.tif' aligned.tif")));
 }
@@ -188,7 +184,7 @@ TEST(BadMosaic, DifferentResolution) {
 TEST(BadMosaic, NotOnOneGrid) {
   const auto a = degrees_file("a.tif", 10, 50, dem_art("1 2"));
   const auto b = degrees_file("b.tif", 12.25, 50, dem_art("1 2"));
-  EXPECT_THAT(complaint_about(a, b),
+  EXPECT_THAT(complaint_about_both(a, b),
               AllOf(HasSubstr("do not lie on one grid: they are 0.250 columns and 0.000 rows apart"),
                     HasSubstr("-te 11.5 49.5 14.5 50.5")));
 }
@@ -210,7 +206,7 @@ std::shared_ptr<const ImportedDem> patchwork(NodataPolicy policy, std::int64_t m
 
 RC_GTEST_PROP(Mosaic, AnyWindowGivesTheSameCells, ()) {
   static const auto dem = patchwork(NodataPolicy::ocean, 4096);  // a cache of a few blocks, always too small
-  static const HeightWindow whole = all_of(*dem);
+  static const HeightWindow whole = all_heights(*dem);
   const Window window{*rc::gen::inRange(-5, 100), *rc::gen::inRange(-5, 60), *rc::gen::inRange(1, 60),
                       *rc::gen::inRange(1, 40)};
   const HeightWindow heights = dem->read(window);
@@ -223,12 +219,12 @@ RC_GTEST_PROP(Mosaic, AnyWindowGivesTheSameCells, ()) {
 
 TEST(Mosaic, ManyThreadsReadTheSame) {
   const auto dem = patchwork(NodataPolicy::ocean, 4096);
-  const HeightWindow whole = all_of(*dem);
+  const HeightWindow whole = all_heights(*dem);
   std::vector<std::thread> threads;
   std::vector<int> wrong(4, 0);
   for (std::size_t thread = 0; thread < wrong.size(); ++thread)
     threads.emplace_back([&, thread] {
-      for (int i = 0; i < 50; ++i) wrong[thread] += all_of(*dem) == whole ? 0 : 1;
+      for (int i = 0; i < 50; ++i) wrong[thread] += all_heights(*dem) == whole ? 0 : 1;
     });
   for (auto& thread : threads) thread.join();
   EXPECT_THAT(wrong, ::testing::Each(0));

@@ -163,7 +163,7 @@ TEST(ListImages, EmptyInputIsAnError) {
               HasSubstr("there are no images"));
 }
 
-pipeline::RunResult load(const std::string& options) {
+pipeline::RunResult load_these_images(const std::string& options) {
   pipeline::Registry registry;
   register_importer_stages(registry);
   pipeline::Pipeline pipeline(registry);
@@ -175,7 +175,7 @@ TEST(LoadImages, ListsImagesWithTheirFingerprints) {
   const fs::path folder = folder_of("stage", {"a.pgm", "b.pgm"});
   const std::string options = R"({"cameras": ")" + cameras_in(folder, {"a.pgm", "b.pgm"}) +
                               R"(", "sun_azimuth": 90, "sun_elevation": 40})";
-  const pipeline::RunResult result = load(options);
+  const pipeline::RunResult result = load_these_images(options);
   const auto& items = result.artifact<std::vector<pipeline::ImageItem>>("images");
   ASSERT_EQ(items.size(), 2u);
   EXPECT_EQ(items[1].index, 1);
@@ -186,9 +186,10 @@ TEST(LoadImages, ListsImagesWithTheirFingerprints) {
 }
 
 TEST(LoadImages, ChecksItsOptions) {
-  EXPECT_THAT(message_of([] { load(R"({"files": ["a"], "image_sun_angle": "left"})"); }),
+  EXPECT_THAT(message_of([] { load_these_images(R"({"files": ["a"], "image_sun_angle": "left"})"); }),
               HasSubstr("image_sun_angle is 'left'"));
-  EXPECT_THAT(message_of([] { load(R"({"files": ["a"], "sun": "moon"})"); }), HasSubstr("auto, time, none"));
+  EXPECT_THAT(message_of([] { load_these_images(R"({"files": ["a"], "sun": "moon"})"); }),
+              HasSubstr("auto, time, none"));
 }
 
 TEST(HashFile, OfAFolderNoticesANewImage) {

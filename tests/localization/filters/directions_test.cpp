@@ -9,11 +9,10 @@
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/global/constellation.hpp"
 #include "tests/localization/made_world.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 namespace {
-
-constexpr double kRight = std::numbers::pi / 2;
 
 TypeRegistry facing_types() {
   TypeRegistry types;
@@ -42,7 +41,7 @@ SeenLandmark sight_of(const MapLandmark& face, const Pose2& robot) {
   s.range_sd = 0.05;
   s.bearing = wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw);
   s.bearing_sd = 0.01;
-  s.features.value[0] = wrap_angle(kRight - face.features.value[0] - robot.yaw);
+  s.features.value[0] = wrap_angle(kRightAngle - face.features.value[0] - robot.yaw);
   s.features.variance[0] = 1e-4;
   return s;
 }
@@ -106,7 +105,7 @@ TEST(Directions, AreARowOfTheInnovation) {
   r.topLeftCorner<2, 2>() = sensor_noise(s) + e.by_landmark * face.covariance * e.by_landmark.transpose();
   r(2, 2) = s.features.variance[0] + face.features.variance[0];
   Eigen::Vector3d v;
-  v << innovation(s, e.value), wrap_angle(s.features.value[0] - (kRight - 0.4 - before.pose.yaw));
+  v << innovation(s, e.value), wrap_angle(s.features.value[0] - (kRightAngle - 0.4 - before.pose.yaw));
   const Eigen::Matrix3d sum = h * before.covariance * h.transpose() + r;
   EXPECT_NEAR(pair.squares, v.dot(sum.inverse() * v), 1e-6);
   const PoseEstimate after = update_pose(before, pair.evidence);

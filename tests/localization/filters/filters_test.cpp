@@ -21,9 +21,9 @@ IdentificationOptions identification_options(bool identities) {
   return options;
 }
 
-using Make = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const MadeDrive&)>;
+using MakeOfDrive = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const MadeDrive&)>;
 
-Make kalman(bool unscented) {
+MakeOfDrive kalman(bool unscented) {
   return [unscented](const PoseEstimate& start, const MadeDrive& drive) -> std::unique_ptr<Localizer> {
     const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(drive.map())}, {},
                                   identification_options(true));
@@ -35,7 +35,7 @@ Make kalman(bool unscented) {
 /// Tests the mean NEES at the end of many drives against the bounds of a consistent filter in 99.9 % of all
 /// cases. One pose per drive counts: landmark errors are drawn once per drive, so poses of one drive are
 /// correlated.
-void expect_consistent(const Make& make, int runs, double slack) {
+void expect_consistent(const MakeOfDrive& make, int runs, double slack) {
   double sum = 0;
   for (int run = 0; run < runs; ++run) {
     MadeDrive drive(static_cast<std::uint64_t>(run) + 1);

@@ -34,7 +34,7 @@ std::vector<MapLandmark> beacons() {
 
 // One set of sightings of all beacons from a pose drawn from the prior, of beacons drawn from their
 // covariance.
-RobotLog look(std::uint64_t seed) {
+RobotLog one_look(std::uint64_t seed) {
   Random random(seed, "innovations");
   const auto draw = [&](const auto& covariance) {
     auto e = covariance.col(0).eval();
@@ -90,7 +90,7 @@ double by_hand(const RobotLog& log) {
 TEST(Innovations, AreThoseOfTheWholeSetWrittenOut) {
   int whole = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    const RobotLog log = look(seed);
+    const RobotLog log = one_look(seed);
     auto filter = ekf();
     const TrackRow row = row_of(filter, log);
     if (row.matched < 3) continue;  // one in a hundred sightings is outside the gate
@@ -105,8 +105,8 @@ TEST(Innovations, AreChiSquareWhereTheFilterIsRight) {
   Track right, sure;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     auto filter = ekf(), doubled = ekf();
-    right.rows.push_back(row_of(filter, look(seed)));
-    sure.rows.push_back(row_of(doubled, look(seed), 0.3));
+    right.rows.push_back(row_of(filter, one_look(seed)));
+    sure.rows.push_back(row_of(doubled, one_look(seed), 0.3));
     right.rows.back().t = sure.rows.back().t = double(seed);
   }
   const TrackScore good = score(right, {}, TrackAlignment::none, true);
@@ -117,7 +117,7 @@ TEST(Innovations, AreChiSquareWhereTheFilterIsRight) {
 }
 
 TEST(Innovations, AreReportedByAMultiHypothesisFilter) {
-  const RobotLog log = look(3);
+  const RobotLog log = one_look(3);
   IdentificationOptions options;
   options.quality_floor = 1;
   MultiHypothesisFilter filter({{}, kPrior},
@@ -127,7 +127,7 @@ TEST(Innovations, AreReportedByAMultiHypothesisFilter) {
 
 TEST(Innovations, NoneWhereNothingIsMatched) {
   DeadReckoning robot({});
-  const TrackRow row = row_of(robot, look(1));
+  const TrackRow row = row_of(robot, one_look(1));
   EXPECT_EQ(row.nis_rows, 0);
   EXPECT_EQ(row.nis, 0);
   Track track;

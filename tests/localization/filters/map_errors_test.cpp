@@ -78,7 +78,7 @@ TEST(MultiHypothesisFilter, KnowsThatTheMapErrsTheSameWayAgain) {
 }
 
 // The slow twin: one state of pose and all landmarks, whose rows of the gain are set to zero (Schmidt 1966).
-struct WholeState {
+struct PoseAndLandmarks {
   Pose2 pose;
   Eigen::MatrixXd covariance;
 
@@ -107,7 +107,7 @@ TEST(MapErrors, AreThoseOfAStateWithAllLandmarks) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     Random random(seed, "consider");
     std::vector<MapLandmark> map(4);
-    WholeState whole{{}, Eigen::MatrixXd::Zero(11, 11)};
+    PoseAndLandmarks whole{{}, Eigen::MatrixXd::Zero(11, 11)};
     whole.covariance.topLeftCorner<3, 3>() = Eigen::Vector3d(0.1, 0.2, 0.01).asDiagonal();
     for (std::size_t i = 0; i < map.size(); ++i) {
       map[i].key = 100 - i;

@@ -17,7 +17,7 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-using Make = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const LandmarkMatcher&)>;
+using MakeOfMap = std::function<std::unique_ptr<Localizer>(const PoseEstimate&, const LandmarkMatcher&)>;
 using MakeMap = std::function<std::vector<MapLandmark>(const std::vector<MapLandmark>&, std::uint64_t seed)>;
 
 constexpr int kDrives = 8;
@@ -35,12 +35,13 @@ std::unique_ptr<Localizer> odometry(const PoseEstimate& start, const LandmarkMat
   return std::make_unique<DeadReckoning>(start);
 }
 
-std::vector<std::pair<const char*, Make>> all_filters() {
+std::vector<std::pair<const char*, MakeOfMap>> all_filters() {
   return {{"gaussians", gaussians}, {"particles", particles}, {"one gaussian", one_gaussian}};
 }
 
 /// Returns the RMSE, m, of each of eight drives among 200 objects, sorted. Identities are unknown.
-std::vector<double> errors(const Make& make, const MakeMap& make_map, IdentificationOptions options = {}) {
+std::vector<double> errors(const MakeOfMap& make, const MakeMap& make_map,
+                           IdentificationOptions options = {}) {
   options.use_identities = false;
   std::vector<double> all;
   for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {

@@ -14,12 +14,12 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-constexpr OdometryNoise kNoise{.along_per_metre = 1e-4,
-                               .across_per_metre = 1e-4,
-                               .yaw_per_metre = 1e-5,
-                               .yaw_per_radian = 1e-5,
-                               .position_per_second = 0,
-                               .yaw_per_second = 0};
+constexpr OdometryNoise kRoverNoise{.along_per_metre = 1e-4,
+                                    .across_per_metre = 1e-4,
+                                    .yaw_per_metre = 1e-5,
+                                    .yaw_per_radian = 1e-5,
+                                    .position_per_second = 0,
+                                    .yaw_per_second = 0};
 
 std::vector<Eigen::Vector2d> made_objects(Random& random, int count) {
   std::vector<Eigen::Vector2d> all;
@@ -47,7 +47,7 @@ SightingSet look(const Pose2& robot, const std::vector<Eigen::Vector2d>& objects
 }
 
 Pose2 drive(Pose2& truth, BodyMotion& motion, Random& random) {
-  motion = twist_motion(0.5, 0, 0.02, 1, kNoise);
+  motion = twist_motion(0.5, 0, 0.02, 1, kRoverNoise);
   const Eigen::Vector3d sd = motion.covariance.diagonal().cwiseSqrt();
   truth = truth * pose_of(motion.step.vector() + sd.cwiseProduct(Eigen::Vector3d(
                                                      random.normal(), random.normal(), random.normal())));
@@ -93,7 +93,7 @@ TEST(BearingStarts, AnObjectInTheDirectionOfTheMotionHasNoRange) {
   BearingStarts bearings;
   Pose2 truth;
   for (int step = 0; step < 30; ++step) {
-    const BodyMotion motion = twist_motion(0.5, 0, 0, 1, kNoise);
+    const BodyMotion motion = twist_motion(0.5, 0, 0, 1, kRoverNoise);
     truth = truth * motion.step;
     bearings.predict(motion);
     EXPECT_TRUE(bearings.add(look(truth, {{20.4, 0}}, false, random), {0}, false).empty()) << step;
@@ -107,7 +107,7 @@ TEST(BearingStarts, TwoObjectsThatMayBeOneStartNothing) {
   Pose2 truth;
   int starts = 0;
   for (int step = 0; step < 40; ++step) {
-    const BodyMotion motion = twist_motion(0.5, 0, 0, 1, kNoise);
+    const BodyMotion motion = twist_motion(0.5, 0, 0, 1, kRoverNoise);
     truth = truth * motion.step;
     bearings.predict(motion);
     const SightingSet seen = look(truth, {{12, 6}, {12.1, 6.1}}, false, random);

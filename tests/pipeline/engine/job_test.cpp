@@ -11,7 +11,7 @@ namespace {
 
 const Registry kRegistry = toy::registry();
 
-std::string refusal(std::string_view json) {
+std::string refusal_of_job(std::string_view json) {
   return message_of([&] { parse_job(json, kRegistry, "alps.json"); });
 }
 
@@ -38,37 +38,37 @@ TEST(Job, ThatIsMissingSaysSo) {
 }
 
 TEST(Job, SyntaxErrorsHaveLineAndColumn) {
-  EXPECT_THAT(refusal("{\n  \"name\": \"x\",\n  \"stages\" [\n]}"),
+  EXPECT_THAT(refusal_of_job("{\n  \"name\": \"x\",\n  \"stages\" [\n]}"),
               testing::AllOf(testing::StartsWith("not valid JSON: expected ':' after a name"),
                              testing::HasSubstr("\n  alps.json:3:12")));
-  EXPECT_THAT(refusal(""), testing::HasSubstr("\n  alps.json:1:1"));
-  EXPECT_THAT(refusal("{\"name\": \"\xff\"}"),
+  EXPECT_THAT(refusal_of_job(""), testing::HasSubstr("\n  alps.json:1:1"));
+  EXPECT_THAT(refusal_of_job("{\"name\": \"\xff\"}"),
               testing::HasSubstr("not valid JSON: this is not UTF-8\n  alps.json:1:11"));
 }
 
 TEST(Job, NamesThePlaceOfEveryOtherError) {
-  EXPECT_EQ(refusal("[]"), "the job must be an object, is array\n  alps.json");
-  EXPECT_EQ(refusal(R"({"name": 1, "stages": []})"), "name must be a string, is number\n  alps.json");
-  EXPECT_EQ(refusal("{}"), "the job has no \"stages\"\n  alps.json\n  a job has a name and stages");
-  EXPECT_EQ(refusal(R"({"stage": []})"),
+  EXPECT_EQ(refusal_of_job("[]"), "the job must be an object, is array\n  alps.json");
+  EXPECT_EQ(refusal_of_job(R"({"name": 1, "stages": []})"), "name must be a string, is number\n  alps.json");
+  EXPECT_EQ(refusal_of_job("{}"), "the job has no \"stages\"\n  alps.json\n  a job has a name and stages");
+  EXPECT_EQ(refusal_of_job(R"({"stage": []})"),
             "the job has no 'stage'; did you mean 'stages'?\n  alps.json\n  a job has a name and stages");
-  EXPECT_EQ(refusal(R"({"stages": {}})"), "stages must be an array, is object\n  alps.json");
-  EXPECT_EQ(refusal(R"({"stages": ["x"]})"), "stages[0] must be an object, is string\n  alps.json");
-  EXPECT_EQ(refusal(R"({"stages": [{}]})"),
+  EXPECT_EQ(refusal_of_job(R"({"stages": {}})"), "stages must be an array, is object\n  alps.json");
+  EXPECT_EQ(refusal_of_job(R"({"stages": ["x"]})"), "stages[0] must be an object, is string\n  alps.json");
+  EXPECT_EQ(refusal_of_job(R"({"stages": [{}]})"),
             "stages[0] has no \"stage\"\n  alps.json\n  add the name of a stage");
-  EXPECT_EQ(refusal(R"({"stages": [{"stage": 1}]})"),
+  EXPECT_EQ(refusal_of_job(R"({"stages": [{"stage": 1}]})"),
             "stages[0].stage must be a string, is number\n  alps.json");
-  EXPECT_EQ(refusal(R"({"stages": []})"), "the job has no stages\n  alps.json");
-  EXPECT_EQ(refusal(R"({"stages": [{"stage": "list_numbers", "tiles": "many"}]})"),
+  EXPECT_EQ(refusal_of_job(R"({"stages": []})"), "the job has no stages\n  alps.json");
+  EXPECT_EQ(refusal_of_job(R"({"stages": [{"stage": "list_numbers", "tiles": "many"}]})"),
             "stages[0].tiles must be a whole number, is a string (\"many\")\n  alps.json\n  How many tiles "
             "there are");
-  EXPECT_EQ(refusal(R"({"stages": [{"stage": "sum_squares"}]})"),
+  EXPECT_EQ(refusal_of_job(R"({"stages": [{"stage": "sum_squares"}]})"),
             "stages[0] sum_squares reads 'square', which no stage before it writes\n  alps.json\n"
             "  add before it: square_number");
 }
 
 TEST(Job, RefusesAKeyGivenTwice) {
-  EXPECT_EQ(refusal(R"({"stages": [{"stage": "list_numbers", "tiles": 1, "tiles": 2}]})"),
+  EXPECT_EQ(refusal_of_job(R"({"stages": [{"stage": "list_numbers", "tiles": 1, "tiles": 2}]})"),
             "the key 'tiles' is given twice\n  alps.json");
   EXPECT_NO_THROW(
       parse_job(R"({"stages": [{"stage": "list_numbers"}, {"stage": "square_number"}]})", kRegistry));

@@ -16,7 +16,7 @@ struct Made {
   static void run(const Options&, StageContext&) {}
 };
 
-std::string refusal(StageSpec spec) {
+std::string refusal_of_stage(StageSpec spec) {
   Made<0>::the_spec = std::move(spec);
   return message_of<std::logic_error>([] { Registry().add<Made<0>>(); });
 }
@@ -43,20 +43,21 @@ TEST(Registry, RefusesAStageTwice) {
 }
 
 TEST(Registry, RefusesSpecsThatContradictThemselves) {
-  EXPECT_EQ(refusal({.name = "Find Tops", .summary = ""}),
+  EXPECT_EQ(refusal_of_stage({.name = "Find Tops", .summary = ""}),
             "stage 'Find Tops': its name is not [a-z][a-z0-9_]*");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .outputs = {Out<Number>{"../x"}}}),
+  EXPECT_EQ(refusal_of_stage({.name = "a", .summary = "", .outputs = {Out<Number>{"../x"}}}),
             "stage 'a': its output '../x' is not [a-z][a-z0-9_]*");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .outputs = {Out<Number>{"x"}, Out<Number>{"x"}}}),
+  EXPECT_EQ(refusal_of_stage({.name = "a", .summary = "", .outputs = {Out<Number>{"x"}, Out<Number>{"x"}}}),
             "stage 'a': it declares the output 'x' twice");
   EXPECT_EQ(
-      refusal({.name = "a", .summary = "", .scope = Scope::tile, .lists = Scope::tile, .outputs = {kTiles}}),
+      refusal_of_stage(
+          {.name = "a", .summary = "", .scope = Scope::tile, .lists = Scope::tile, .outputs = {kTiles}}),
       "stage 'a': a listing stage has map scope, lists tiles or images");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::tile}),
+  EXPECT_EQ(refusal_of_stage({.name = "a", .summary = "", .lists = Scope::tile}),
             "stage 'a': a stage that lists tiles writes one vector<Tile>");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .lists = Scope::image, .outputs = {kTiles}}),
+  EXPECT_EQ(refusal_of_stage({.name = "a", .summary = "", .lists = Scope::image, .outputs = {kTiles}}),
             "stage 'a': a stage that lists images writes one vector<ImageItem>");
-  EXPECT_EQ(refusal({.name = "a", .summary = "", .halo = 2}),
+  EXPECT_EQ(refusal_of_stage({.name = "a", .summary = "", .halo = 2}),
             "stage 'a': only a tile has a halo, >= 0 cells");
 }
 

@@ -9,11 +9,11 @@ namespace waymark::test {
 using namespace pipeline;
 namespace {
 
-const TypedStep<toy::SquareNumber> kSquare;
+const TypedStep<toy::SquareNumber> kSquareStep;
 const TypedStep<toy::ListNumbers> kList;
 
 TEST(StagePages, Markdown) {
-  EXPECT_EQ(stage_as_markdown(kSquare), R"(# square_number
+  EXPECT_EQ(stage_as_markdown(kSquareStep), R"(# square_number
 
 Raises the number of a tile to a power
 
@@ -56,7 +56,7 @@ Options:
 }
 
 TEST(StagePages, Schema) {
-  const auto schema = nlohmann::json::parse(stage_as_schema(kSquare));
+  const auto schema = nlohmann::json::parse(stage_as_schema(kSquareStep));
   EXPECT_EQ(schema["properties"]["stage"], (nlohmann::json{{"const", "square_number"}}));
   EXPECT_EQ(schema["properties"]["height"], (nlohmann::json{{"type", "number"},
                                                             {"description", "A length | unused"},

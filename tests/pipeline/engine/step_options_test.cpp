@@ -26,7 +26,7 @@ std::string canonical_after(std::string_view json) {
   read(step, json, "stages[1]");
   return canonical_options(step);
 }
-std::string refusal(std::string_view json) {
+std::string refusal_of_options(std::string_view json) {
   return message_of([&] { canonical_after(json); });
 }
 
@@ -39,27 +39,28 @@ TEST(OptionReader, SetsEveryKind) {
 }
 
 TEST(OptionReader, NamesTheNearestOption) {
-  EXPECT_EQ(refusal(R"({"powr": 3})"),
+  EXPECT_EQ(refusal_of_options(R"({"powr": 3})"),
             "stages[1] square_number has no option 'powr'; did you mean 'power'?\n"
             "  its options: power, keep, height, loud, memory");
-  EXPECT_EQ(refusal(R"({"xyz": 3})"),
+  EXPECT_EQ(refusal_of_options(R"({"xyz": 3})"),
             "stages[1] square_number has no option 'xyz'\n  its options: power, keep, height, loud, memory");
 }
 
 TEST(OptionReader, NamesTheKindItFoundInstead) {
-  EXPECT_EQ(refusal(R"({"power": "high"})"),
+  EXPECT_EQ(refusal_of_options(R"({"power": "high"})"),
             "stages[1].power must be a number, is a string (\"high\")\n  Exponent");
-  EXPECT_EQ(refusal(R"({"power": null})"), "stages[1].power must be a number, is null\n  Exponent");
-  EXPECT_EQ(refusal(R"({"loud": 1})"),
+  EXPECT_EQ(refusal_of_options(R"({"power": null})"),
+            "stages[1].power must be a number, is null\n  Exponent");
+  EXPECT_EQ(refusal_of_options(R"({"loud": 1})"),
             "stages[1].loud must be true or false, is a number (1)\n  Warn in every tile");
-  EXPECT_EQ(refusal(R"({"keep": ["all"]})"),
+  EXPECT_EQ(refusal_of_options(R"({"keep": ["all"]})"),
             "stages[1].keep must be a string, is an array ([\"all\"])\n  Which squares are kept");
-  EXPECT_EQ(refusal(R"({"memory": 1.5})"),
+  EXPECT_EQ(refusal_of_options(R"({"memory": 1.5})"),
             "stages[1].memory must be a whole number, is a number (1.5)\n  Bytes it may take");
-  EXPECT_EQ(refusal(R"({"memory": 1e300})"),
+  EXPECT_EQ(refusal_of_options(R"({"memory": 1e300})"),
             "stages[1].memory must be a whole number, is a number (1e+300)\n  Bytes it may take");
   EXPECT_EQ(
-      refusal(R"({"memory": 18446744073709551615})"),
+      refusal_of_options(R"({"memory": 18446744073709551615})"),
       "stages[1].memory must be a whole number, is a number (18446744073709551615)\n  Bytes it may take");
   TypedStep<toy::ListNumbers> list;
   EXPECT_EQ(message_of([&] { read(list, R"({"files": [1]})", "stages[0]"); }),
@@ -67,22 +68,24 @@ TEST(OptionReader, NamesTheKindItFoundInstead) {
 }
 
 TEST(OptionReader, NamesTheRangeAndItsUnit) {
-  EXPECT_EQ(refusal(R"({"power": 5})"), "stages[1].power = 5 is outside [0.5, 4]\n  Exponent");
-  EXPECT_EQ(refusal(R"({"height": -1})"), "stages[1].height = -1 is not at least 0 m\n  A length | unused");
-  EXPECT_EQ(refusal(R"({"memory": 0})"), "stages[1].memory = 0 is not at least 1\n  Bytes it may take");
+  EXPECT_EQ(refusal_of_options(R"({"power": 5})"), "stages[1].power = 5 is outside [0.5, 4]\n  Exponent");
+  EXPECT_EQ(refusal_of_options(R"({"height": -1})"),
+            "stages[1].height = -1 is not at least 0 m\n  A length | unused");
+  EXPECT_EQ(refusal_of_options(R"({"memory": 0})"),
+            "stages[1].memory = 0 is not at least 1\n  Bytes it may take");
 }
 
 TEST(OptionReader, NamesTheChoices) {
-  EXPECT_EQ(refusal(R"({"keep": "evn"})"),
+  EXPECT_EQ(refusal_of_options(R"({"keep": "evn"})"),
             "stages[1].keep must be one of all, even, none, is 'evn'; did you mean 'even'?\n  Which squares "
             "are kept");
-  EXPECT_EQ(refusal(R"({"keep": "everything"})"),
+  EXPECT_EQ(refusal_of_options(R"({"keep": "everything"})"),
             "stages[1].keep must be one of all, even, none, is 'everything'\n  Which squares are kept");
 }
 
 TEST(OptionReader, RefusesWhatIsNoObject) {
-  EXPECT_EQ(refusal("[1]"), "the options of stages[1] square_number are not a JSON object: [1]");
-  EXPECT_EQ(refusal("{"), "the options of stages[1] square_number are not a JSON object: {");
+  EXPECT_EQ(refusal_of_options("[1]"), "the options of stages[1] square_number are not a JSON object: [1]");
+  EXPECT_EQ(refusal_of_options("{"), "the options of stages[1] square_number are not a JSON object: {");
 }
 
 TEST(OptionReader, OptionsSetInCodeAreChecked) {

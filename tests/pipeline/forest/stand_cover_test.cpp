@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "pipeline/forest/stand_cover.hpp"
+#include "tests/pipeline/forest/square_stand.hpp"
 #include "tests/support/message_of.hpp"
 #include "workflows/forest/stand_figures.hpp"
 
@@ -17,20 +18,14 @@ namespace waymark::test {
 namespace {
 
 using ::testing::HasSubstr;
-constexpr double kPi = std::numbers::pi;
-
-pipeline::StandPolygon square(double x, double y, double side) {
-  return {{{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}}}};
-}
-
 TEST(StandCover, CirclesAndOutlinesShadeTheGround) {
-  const pipeline::StandPolygon stand = square(0, 0, 100);
+  const pipeline::StandPolygon stand = square_stand(0, 0, 100);
   const pipeline::StandCrown circle{.position = {50, 50}, .diameter = 20};
-  EXPECT_NEAR(pipeline::canopy_cover(std::span(&circle, 1), stand).value, kPi * 100 / 1e4, 2e-4);
+  EXPECT_NEAR(pipeline::canopy_cover(std::span(&circle, 1), stand).value, std::numbers::pi * 100 / 1e4, 2e-4);
   EXPECT_EQ(pipeline::canopy_cover({}, stand).value, 0);
   const pipeline::StandCrown halves[] = {{.position = {0, 50}, .diameter = 20},
                                          {.position = {0, 50}, .diameter = 20}};
-  EXPECT_NEAR(pipeline::canopy_cover(halves, stand).value, kPi * 50 / 1e4, 5e-4)
+  EXPECT_NEAR(pipeline::canopy_cover(halves, stand).value, std::numbers::pi * 50 / 1e4, 5e-4)
       << "half outside; twice is once";
   const pipeline::StandCrown outline{
       .position = {50, 50}, .diameter = 5, .ring = {{40, 40}, {60, 40}, {60, 60}, {40, 60}}};
@@ -52,7 +47,7 @@ TEST(StandCover, MatchesCountingPlaces) {
   for (int round = 0; round < 20; ++round) {
     pipeline::StandPolygon stand{{{}}};
     for (int i = 0; i < 9; ++i) {
-      const double r = random.uniform(10, 30), a = 2 * kPi * i / 9;
+      const double r = random.uniform(10, 30), a = 2 * std::numbers::pi * i / 9;
       stand.rings[0].emplace_back(r * std::cos(a), r * std::sin(a));
     }
     std::vector<pipeline::StandCrown> crowns;

@@ -10,17 +10,12 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "tests/pipeline/forest/square_stand.hpp"
 
 namespace waymark::test {
 namespace {
 
 using ::testing::ElementsAre;
-constexpr double kPi = std::numbers::pi;
-
-pipeline::StandPolygon square(double x, double y, double side) {
-  return {{{{x, y}, {x + side, y}, {x + side, y + side}, {x, y + side}}}};
-}
-
 pipeline::StandTree tree(double x, double y, double height, double dbh) {
   pipeline::StandTree t{.position = {x, y}, .height = height, .diameter = dbh};
   t.volume = pipeline::stem_volume(pipeline::built_in_volume()[0], dbh, height);
@@ -48,7 +43,7 @@ TEST(StandInventory, IsWhatAHandComputes) {
   EXPECT_NEAR(f.quadratic_mean_diameter.value, std::sqrt(0.29 / 3), 1e-12);              // 31.09 cm
   EXPECT_NEAR(f.mean_diameter.value, 0.3, 1e-12);
   EXPECT_NEAR(f.mean_height.value, 70.0 / 3, 1e-12);
-  EXPECT_NEAR(f.volume.value, 0.47 * kPi / 4 * (0.04 * 15 + 0.09 * 25 + 0.16 * 30) / 0.6, 1e-12);
+  EXPECT_NEAR(f.volume.value, 0.47 * std::numbers::pi / 4 * (0.04 * 15 + 0.09 * 25 + 0.16 * 30) / 0.6, 1e-12);
   EXPECT_NEAR(f.dominant_height.value, 70.0 / 3, 1e-12);  // 60 wanted, three there
   EXPECT_TRUE(std::isnan(f.mass.value));
   std::vector<double> stems;
@@ -73,7 +68,7 @@ TEST(StandInventory, ErrorsOfTreesBecomeErrorsOfFigures) {
   for (pipeline::StandTree& t : trees) t.diameter_sd = 0.03, t.height_sd = 1;
   const pipeline::StandAttributes f = pipeline::inventory(trees, half_hectare(), {.form_factor_error = 0.1});
   // d(sum g) = pi / 2 d dd
-  EXPECT_NEAR(f.basal_area.se, kPi / 2 * 0.03 * std::sqrt(0.29) / 0.6, 1e-9);
+  EXPECT_NEAR(f.basal_area.se, std::numbers::pi / 2 * 0.03 * std::sqrt(0.29) / 0.6, 1e-9);
   EXPECT_NEAR(f.mean_height.se, 1 / std::sqrt(3), 1e-12);
   EXPECT_NEAR(f.mean_diameter.se, 0.03 / std::sqrt(3), 1e-12);
   EXPECT_NEAR(f.dominant_height.se, 1 / std::sqrt(3), 1e-12);
@@ -124,16 +119,16 @@ TEST(StandInventory, TreesWithoutDiameterCountAsStemsOnly) {
   const pipeline::StandAttributes f = pipeline::inventory(trees, half_hectare());
   EXPECT_EQ(f.without_diameter, 1);
   EXPECT_NEAR(f.stems.value, 5, 1e-12);
-  EXPECT_NEAR(f.basal_area.value, kPi / 4 * 0.13 / 0.6, 1e-12);
+  EXPECT_NEAR(f.basal_area.value, std::numbers::pi / 4 * 0.13 / 0.6, 1e-12);
   EXPECT_NEAR(f.lorey_height.value, (0.04 * 15 + 0.09 * 25) / 0.13, 1e-12);
   for (pipeline::StandTree& t : trees) t.diameter = t.volume = pipeline::StandTree::kUnknown;
   EXPECT_TRUE(std::isnan(pipeline::inventory(trees, half_hectare()).basal_area.value)) << "unknown, not none";
 }
 
 TEST(StandPolygon, HolesTakeAwayAndIslandsInThemAdd) {
-  pipeline::StandPolygon stand = square(0, 0, 100);
-  stand.rings.push_back(square(20, 20, 40).rings[0]);
-  stand.rings.push_back(square(30, 30, 10).rings[0]);
+  pipeline::StandPolygon stand = square_stand(0, 0, 100);
+  stand.rings.push_back(square_stand(20, 20, 40).rings[0]);
+  stand.rings.push_back(square_stand(30, 30, 10).rings[0]);
   std::ranges::reverse(stand.rings[1]);  // the orientation does not matter
   EXPECT_DOUBLE_EQ(pipeline::area(stand), 10000 - 1600 + 100);
   EXPECT_TRUE(pipeline::inside(stand, {10, 10}));
@@ -146,7 +141,8 @@ TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
   Random random(3);
   // Triangles that fan out from a corner, over trees on a lattice that lie on their edges too.
   std::vector<Eigen::Vector2d> rim;
-  for (int i = 0; i <= 12; ++i) rim.emplace_back(60 * std::cos(i * kPi / 24), 60 * std::sin(i * kPi / 24));
+  for (int i = 0; i <= 12; ++i)
+    rim.emplace_back(60 * std::cos(i * std::numbers::pi / 24), 60 * std::sin(i * std::numbers::pi / 24));
   std::vector<pipeline::StandPolygon> stands;
   for (std::size_t i = 0; i + 1 < rim.size(); ++i) stands.push_back({{{{0, 0}, rim[i], rim[i + 1]}}});
   pipeline::StandPolygon whole{{{{0, 0}}}};
@@ -161,7 +157,7 @@ TEST(StandPolygon, NeighboursShareNoTreeAndLoseNone) {
 
 TEST(StandPolygon, CellsCutOffAtTheEdgeMakeUpTheWhole) {
   pipeline::StandPolygon stand{{{{3, 2}, {97, 11}, {60, 50}, {88, 93}, {9, 71}}}};
-  stand.rings.push_back(square(30, 30, 17).rings[0]);
+  stand.rings.push_back(square_stand(30, 30, 17).rings[0]);
   double sum = 0;
   for (int i = 0; i < 7; ++i)
     for (int j = 0; j < 7; ++j)
@@ -195,8 +191,8 @@ pipeline::StandAttributes by_definition(const std::vector<pipeline::StandTree>& 
   for (const pipeline::StandTree& t : trees) {
     if (!pipeline::inside(stand, t.position)) continue;
     ++f.trees, n += 1;
-    g += kPi / 4 * t.diameter * t.diameter;
-    gh += kPi / 4 * t.diameter * t.diameter * t.height;
+    g += std::numbers::pi / 4 * t.diameter * t.diameter;
+    gh += std::numbers::pi / 4 * t.diameter * t.diameter * t.height;
     v += t.volume;
     thick.emplace_back(-t.diameter, t.height);
   }
@@ -223,8 +219,8 @@ TEST(StandInventory, MatchesItsTwinAndItsErrorsAreThoseOfRepetition) {
     trees.back().height_sd = 0.8, trees.back().diameter_sd = 0.04, trees.back().position_sd = 0.7;
     trees.back().confidence = 0.9;
   }
-  pipeline::StandPolygon stand = square(0, 0, 100);
-  stand.rings.push_back(square(30, 30, 20).rings[0]);
+  pipeline::StandPolygon stand = square_stand(0, 0, 100);
+  stand.rings.push_back(square_stand(30, 30, 20).rings[0]);
   const pipeline::StandAttributes reported = pipeline::inventory(trees, stand),
                                   twin = by_definition(trees, stand);
   EXPECT_EQ(reported.trees, twin.trees);

@@ -8,11 +8,10 @@
 #include <numbers>
 
 #include "testbed/noise.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 // Marches along the ray: the relief is gentle.
 std::optional<Eigen::Vector2d> ground_point(const MadeGround& ground, const Eigen::Vector3d& from,

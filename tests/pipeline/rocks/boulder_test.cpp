@@ -14,11 +14,10 @@
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/rock_sun_angle.hpp"
 #include "tests/pipeline/rocks/boulder_scene.hpp"
+#include "tests/support/angles.hpp"
 namespace waymark::test {
 using namespace pipeline;
 namespace {
-
-constexpr double kTurn = 6.283185307179586;
 
 int scene_count() {
   const char* more = std::getenv("WAYMARK_BOULDER_SCENES");
@@ -80,7 +79,7 @@ TEST(Boulders, AreRocksUnderAnUnknownSun) {
       ++unknown;
       continue;
     }
-    opposite += std::abs(std::remainder(light->value - scene.view.sun_angle, kTurn)) > kTurn / 4;
+    opposite += std::abs(std::remainder(light->value - scene.view.sun_angle, kFullTurn)) > kFullTurn / 4;
     count(sum, scene, *light, {});
   }
   std::printf("%d boulders, %d found, %d with a false crater; sun opposite in %d scenes, unknown in %d\n",

@@ -9,13 +9,12 @@
 
 #include "pipeline/light_in_image.hpp"
 #include "tests/pipeline/rocks/foliage.hpp"
+#include "tests/support/angles.hpp"
 #include "workflows/training/rock_views.hpp"
 namespace waymark::test {
 using namespace pipeline;
 using namespace workflows;
 namespace {
-
-constexpr double kTurn = 6.283185307179586;
 
 TEST(RockSunAngle, IsTheSunsOrUnknownOnUnseenViews) {
   int right = 0, unknown = 0, wrong = 0;
@@ -23,7 +22,7 @@ TEST(RockSunAngle, IsTheSunsOrUnknownOnUnseenViews) {
     const SyntheticView view = synthetic_view(k);
     const Pixels& pixels = view.image.pixels;
     const auto seen = estimate_rock_sun_angle(pixels, crater_sun_angle(pixels));
-    const double off = seen ? std::abs(std::remainder(seen->angle.value - view.sun_angle, kTurn)) : 0;
+    const double off = seen ? std::abs(std::remainder(seen->angle.value - view.sun_angle, kFullTurn)) : 0;
     ++(!seen ? unknown : off < 0.35 ? right : wrong);
     std::printf("view %d, elevation %.0f deg: %s %.0f deg\n", k, to_degrees(view.elevation).value,
                 seen ? "off by" : "unknown", to_degrees(Radians{off}).value);
@@ -54,9 +53,9 @@ TEST(RockSunAngle, CratersChooseTheSide) {
   const auto seen = estimate_rock_sun_angle(view.image.pixels, craters);
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->angle.value, craters.angle.value);
-  craters.angle.value += kTurn / 4;  // across the axis of the spots: no evidence
+  craters.angle.value += kFullTurn / 4;  // across the axis of the spots: no evidence
   const auto other = estimate_rock_sun_angle(view.image.pixels, craters);
-  EXPECT_TRUE(!other || std::abs(std::remainder(other->angle.value - craters.angle.value, kTurn)) > 1);
+  EXPECT_TRUE(!other || std::abs(std::remainder(other->angle.value - craters.angle.value, kFullTurn)) > 1);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ Terrain slope(double forward, double left, double side = 60) {
   return {std::move(heights), -side / 2, side / 2, 1, 1};
 }
 
-SiteModel small_site() {
+SiteModel drive_site() {
   SiteModel ground;
   ground.width = ground.height = 90;
   ground.cell = 0.5;
@@ -57,7 +57,7 @@ std::vector<StandingTree> rows_of_trees(const Terrain& terrain) {
 }
 
 TEST(RayFan, MeetsWhatAskingEveryTargetMeets) {
-  const Scene scene = make_scene(small_site(), 5);
+  const Scene scene = make_scene(drive_site(), 5);
   const auto trees = rows_of_trees(scene.terrain);
   ForestSolids solids = forest_solids(trees, {}, scene.terrain, 5);
   solids.thickets.clear();  // where a beam ends in one is drawn
@@ -145,7 +145,7 @@ TEST(Drive, OdometryWithoutErrorsIsTheTruth) {
 
 // The noise stated in the log must be that of the odometry: dead reckoning errs by as much as it claims.
 TEST(Drive, OdometryErrsAsTheLogStates) {
-  const Scene scene = make_scene(small_site(), 5);
+  const Scene scene = make_scene(drive_site(), 5);
   double squares = 0;
   constexpr int kDrives = 40;
   for (int k = 0; k < kDrives; ++k) {
@@ -172,7 +172,7 @@ TEST(Drive, OdometryErrsAsTheLogStates) {
 std::string log_on(int threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(threads));
-  const Scene scene = make_scene(small_site(), 3);
+  const Scene scene = make_scene(drive_site(), 3);
   DriveSettings settings;
   settings.length = 30;
   settings.laser.step = Degrees{1};
@@ -189,7 +189,7 @@ TEST(Drive, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Drive, AHarvesterFellsWhatStandsInItsWay) {
-  SiteModel ground = small_site();
+  SiteModel ground = drive_site();
   ground.rocks.k = 0;
   ground.craters.density = 0;
   const Scene scene = make_scene(ground, 4);
@@ -210,7 +210,7 @@ TEST(Drive, AHarvesterFellsWhatStandsInItsWay) {
   EXPECT_THAT(standing_table(world, {}), HasSubstr("\ntree,"));
 }
 
-std::string refusal(const std::string& drive) {
+std::string refusal_of_drive(const std::string& drive) {
   try {
     read_scenario(R"({"waymark_scenario": 1, "flights": [], "drive": )" + drive + "}", "s.json");
   } catch (const Error& error) {
@@ -220,14 +220,14 @@ std::string refusal(const std::string& drive) {
 }
 
 TEST(DriveSection, SaysWhatIsWrongWithIt) {
-  EXPECT_EQ(refusal("{}"), "accepted");
-  EXPECT_THAT(refusal("3"), HasSubstr("drive must be an object"));
-  EXPECT_THAT(refusal(R"({"speeed": 1})"), HasSubstr("did you mean 'speed'"));
-  EXPECT_THAT(refusal(R"({"laser": {"step": 0}})"), HasSubstr("drive.laser.step = 0 is outside"));
-  EXPECT_THAT(refusal(R"({"route": "waypoints"})"), HasSubstr("drive.waypoints is missing"));
-  EXPECT_THAT(refusal(R"({"waypoints": [[1, 2], [3]]})"),
+  EXPECT_EQ(refusal_of_drive("{}"), "accepted");
+  EXPECT_THAT(refusal_of_drive("3"), HasSubstr("drive must be an object"));
+  EXPECT_THAT(refusal_of_drive(R"({"speeed": 1})"), HasSubstr("did you mean 'speed'"));
+  EXPECT_THAT(refusal_of_drive(R"({"laser": {"step": 0}})"), HasSubstr("drive.laser.step = 0 is outside"));
+  EXPECT_THAT(refusal_of_drive(R"({"route": "waypoints"})"), HasSubstr("drive.waypoints is missing"));
+  EXPECT_THAT(refusal_of_drive(R"({"waypoints": [[1, 2], [3]]})"),
               HasSubstr("drive.waypoints[1] must be [east, north]"));
-  EXPECT_THAT(refusal(R"({"vehicle": "tank"})"), HasSubstr("must be one of rover, harvester"));
+  EXPECT_THAT(refusal_of_drive(R"({"vehicle": "tank"})"), HasSubstr("must be one of rover, harvester"));
 }
 
 TEST(DriveSection, ComesBackAsItWasWritten) {

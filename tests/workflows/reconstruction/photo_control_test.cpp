@@ -35,7 +35,7 @@ Photos pictures(double lon = 9, double lat = 48) {
   return photos;
 }
 
-std::string refusal(const std::string& text, const std::string& crs = "") {
+std::string refusal_of_control(const std::string& text, const std::string& crs = "") {
   return message_of([&] { photo_control({.points = list_file(text), .crs = crs}, pictures()); });
 }
 
@@ -78,12 +78,12 @@ TEST(PhotoControl, MarksOutsideTheImageAreLeftOut) {
 }
 
 TEST(PhotoControl, SaysWhatIsWrongWithTheFrame) {
-  EXPECT_THAT(refusal("EPSG:4326\n48 109 300 10 20 a.jpg P\n"),
+  EXPECT_THAT(refusal_of_control("EPSG:4326\n48 109 300 10 20 a.jpg P\n"),
               HasSubstr("longitude comes first, then latitude"));
-  EXPECT_THAT(refusal("EPSG:4326\n48 9 300 10 20 a.jpg P\n"),
+  EXPECT_THAT(refusal_of_control("EPSG:4326\n48 9 300 10 20 a.jpg P\n"),
               HasSubstr("coordinates of the control points are exchanged"));
-  EXPECT_THAT(refusal("EPSG:32632\n5316285 500000 300 10 20 a.jpg P\n"), HasSubstr("exchanged"));
-  EXPECT_THAT(refusal("EPSG:32632\n500000 5316285 300 10 20 a.jpg P\n", "EPSG:4326"),
+  EXPECT_THAT(refusal_of_control("EPSG:32632\n5316285 500000 300 10 20 a.jpg P\n"), HasSubstr("exchanged"));
+  EXPECT_THAT(refusal_of_control("EPSG:32632\n500000 5316285 300 10 20 a.jpg P\n", "EPSG:4326"),
               HasSubstr("is in degrees"));
 }
 

@@ -50,7 +50,7 @@ std::vector<unsigned char> blocks(int columns, int rows, std::uint64_t seed) {
   return grey;
 }
 
-std::string refusal(const fs::path& folder) {
+std::string refusal_of_photos(const fs::path& folder) {
   return message_of(
       [&] { pose_photos({.images = {(folder / "images").string()}, .folder = (folder / "out").string()}); });
 }
@@ -59,7 +59,7 @@ TEST(PosePhotos, OneImageIsTooFew) {
   const fs::path folder = fresh_folder("one");
   write_pgm(folder / "images" / "a.pgm", 200, 160, blocks(200, 160, 1));
   std::ofstream(folder / "images" / "notes.txt") << "no image";
-  EXPECT_THAT(refusal(folder),
+  EXPECT_THAT(refusal_of_photos(folder),
               testing::AllOf(testing::HasSubstr("1 usable image"), testing::HasSubstr("two or more")));
 }
 
@@ -67,14 +67,14 @@ TEST(PosePhotos, ADamagedImageIsNamed) {
   const fs::path folder = fresh_folder("damaged");
   write_pgm(folder / "images" / "a.pgm", 200, 160, blocks(200, 160, 1));
   std::ofstream(folder / "images" / "b.jpg") << "not a picture";
-  EXPECT_THAT(refusal(folder), testing::HasSubstr("b.jpg"));
+  EXPECT_THAT(refusal_of_photos(folder), testing::HasSubstr("b.jpg"));
 }
 
 TEST(PosePhotos, CopiesHaveNoParallax) {
   const fs::path folder = fresh_folder("copies");
   for (const char* name : {"a.pgm", "b.pgm"})
     write_pgm(folder / "images" / name, 240, 200, blocks(240, 200, 1));
-  EXPECT_THAT(refusal(folder),
+  EXPECT_THAT(refusal_of_photos(folder),
               testing::AllOf(testing::HasSubstr("no parallax"), testing::HasSubstr("copies")));
 }
 
@@ -82,14 +82,15 @@ TEST(PosePhotos, ImagesOfOneColourAreNamed) {
   const fs::path folder = fresh_folder("black");
   for (const char* name : {"a.pgm", "b.pgm"})
     write_pgm(folder / "images" / name, 240, 200, std::vector<unsigned char>(240 * 200, 0));
-  EXPECT_THAT(refusal(folder), testing::AllOf(testing::HasSubstr("a.pgm"), testing::HasSubstr("one value")));
+  EXPECT_THAT(refusal_of_photos(folder),
+              testing::AllOf(testing::HasSubstr("a.pgm"), testing::HasSubstr("one value")));
 }
 
 TEST(PosePhotos, StrangersDoNotMatch) {
   const fs::path folder = fresh_folder("strangers");
   write_pgm(folder / "images" / "a.pgm", 240, 200, blocks(240, 200, 1));
   write_pgm(folder / "images" / "b.pgm", 240, 200, blocks(240, 200, 2));
-  EXPECT_THAT(refusal(folder),
+  EXPECT_THAT(refusal_of_photos(folder),
               testing::AllOf(testing::HasSubstr("no two of them match"), testing::HasSubstr("overlap")));
 }
 

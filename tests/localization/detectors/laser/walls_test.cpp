@@ -12,6 +12,7 @@
 #include "localization/detectors/wall_features.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "tests/localization/made_rooms.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 namespace {
@@ -19,8 +20,6 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kDegree = kRadiansPerDegree;
-constexpr double kRight = std::numbers::pi / 2;
-
 // A room of 6 x 4 m, its lower left corner in the origin.
 const std::vector<MadeWall> kRoom = chain({{0, 0}, {6, 0}, {6, 4}, {0, 4}, {0, 0}});
 
@@ -38,7 +37,7 @@ TEST(WallCorners, OfARoomAreConcaveAndFaceItsMiddle) {
     const Pose2 at = sensor * Pose2{corner.at.x(), corner.at.y(), corner.direction};
     EXPECT_NEAR(std::abs(at.x - 3), 3, 1e-3);
     EXPECT_NEAR(std::abs(at.y - 2), 2, 1e-3);
-    EXPECT_NEAR(corner.opening_angle, kRight, 1e-3);
+    EXPECT_NEAR(corner.opening_angle, kRightAngle, 1e-3);
     const double middle = std::atan2(2 - at.y > 0 ? 1 : -1, 3 - at.x > 0 ? 1 : -1);
     EXPECT_NEAR(wrap_angle(at.yaw - middle), 0, 1e-3);
   }
@@ -53,7 +52,7 @@ TEST(WallCorners, OfABlockAreConvexAndFaceAwayFromIt) {
   const auto convex =
       std::ranges::find_if(corners, [](const WallCorner& c) { return c.opening_angle > 3.2; });
   ASSERT_NE(convex, corners.end());
-  EXPECT_NEAR(convex->opening_angle, 3 * kRight, 1e-3);
+  EXPECT_NEAR(convex->opening_angle, 3 * kRightAngle, 1e-3);
   EXPECT_NEAR((sensor.at() + convex->at).norm(), 0, 2e-3);
   EXPECT_NEAR(convex->direction, -3 * std::numbers::pi / 4, 1e-3);
 }
@@ -62,15 +61,15 @@ TEST(WallCorners, OfABlockAreConvexAndFaceAwayFromIt) {
 TEST(WallEnds, LieHalfABeamBeyondTheLastHit) {
   std::vector<MadeWall> walls = kRoom;
   walls.push_back({{0, 2.5}, {2, 2.5}});
-  const Pose2 sensor{2.4, 0.5, kRight};
+  const Pose2 sensor{2.4, 0.5, kRightAngle};
   const LaserScan scan = scan_walls(walls, sensor, 361, std::numbers::pi);
   const auto ends = find_wall_ends(scan, find_wall_lines(scan));
   ASSERT_EQ(ends.size(), 1u);
   const Pose2 at = sensor * Pose2{ends[0].at.x(), ends[0].at.y(), ends[0].direction};
   EXPECT_NEAR(at.x, 2, 0.01);
   EXPECT_NEAR(at.y, 2.5, 1e-3);
-  EXPECT_NEAR(at.yaw, -kRight, 1e-3);  // its seen face looks at the robot
-  EXPECT_EQ(ends[0].side, 1);          // the partition is on the left
+  EXPECT_NEAR(at.yaw, -kRightAngle, 1e-3);  // its seen face looks at the robot
+  EXPECT_EQ(ends[0].side, 1);               // the partition is on the left
 }
 
 TEST(Doors, AreGapsOfOneWall) {
@@ -78,7 +77,7 @@ TEST(Doors, AreGapsOfOneWall) {
     std::vector<MadeWall> walls = chain({{-4, -3}, {4, -3}, {4, 5}, {-4, 5}, {-4, -3}});
     walls.push_back({{-4, 1}, {0, 1}});
     walls.push_back({{width, 1}, {4, 1}});
-    const LaserScan scan = scan_walls(walls, {0.2, -1, kRight}, 721, std::numbers::pi);
+    const LaserScan scan = scan_walls(walls, {0.2, -1, kRightAngle}, 721, std::numbers::pi);
     return find_doors(scan, find_wall_lines(scan));
   };
   const auto doors = doors_of_gap(0.9);
@@ -127,7 +126,7 @@ RC_GTEST_PROP(WallCorners, AreMirroredWithTheScan, ()) {
 TEST(WallLines, AreThoseOfLeastSquares) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<MadeWall> wall = chain({{2, -1.5}, {2.7, 1.5}});
-    const LaserScan scan = scan_walls(wall, {}, 91, kRight, 0.02, seed);
+    const LaserScan scan = scan_walls(wall, {}, 91, kRightAngle, 0.02, seed);
     const auto lines = find_wall_lines(scan, {.tolerance = 0.2});
     ASSERT_EQ(lines.size(), 1u) << seed;
     const WallLine& line = lines[0];
@@ -244,7 +243,7 @@ RC_GTEST_PROP(Detectors, GiveCornersTheirDirectionInTheMap, ()) {
     const double x = sensor.x + *s.range * std::cos(along), y = sensor.y + *s.range * std::sin(along);
     const double azimuth = std::atan2(x < 3 ? 1 : -1, y < 2 ? 1 : -1);  // clockwise from north, into the room
     RC_ASSERT(std::abs(wrap_angle(mapped.value[0] - azimuth)) < 0.01);
-    RC_ASSERT(std::abs(mapped.value[1] - kRight) < 0.01);
+    RC_ASSERT(std::abs(mapped.value[1] - kRightAngle) < 0.01);
   }
 }
 

@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kWork = "WAYMARK_TEST_WORK";
-constexpr std::int64_t kTiles = 60;
+constexpr std::int64_t kLongTiles = 60;
 
 Pipeline long_pipeline(const Registry& registry) {
   Pipeline pipeline = toy_pipeline(registry);
-  pipeline.set("list_numbers.tiles=" + std::to_string(kTiles));
+  pipeline.set("list_numbers.tiles=" + std::to_string(kLongTiles));
   return pipeline;
 }
 
@@ -97,15 +97,15 @@ TEST_F(KilledRun, GoesOnWhereItWas) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 8'000));
     child.kill();
     child.wait();
-    const bool too_quick = results() > kTiles;
+    const bool too_quick = results() > kLongTiles;
     if (too_quick && round < kRounds) fs::remove_all(work / "square_number");  // start over
   }
   const int left = results();
   EXPECT_GT(left, 0);
   ran();
   EXPECT_EQ(resumed_sum(), expected);
-  EXPECT_LT(ran()[1], kTiles) << "killed runs have left results";
-  EXPECT_EQ(run(long_pipeline(registry), {.work = work}).report.stages[1].reused, kTiles);
+  EXPECT_LT(ran()[1], kLongTiles) << "killed runs have left results";
+  EXPECT_EQ(run(long_pipeline(registry), {.work = work}).report.stages[1].reused, kLongTiles);
   EXPECT_EQ(leftovers(), 0);
 }
 

@@ -45,14 +45,14 @@ using namespace pipeline;
 
 namespace {
 
-constexpr std::int64_t kTiles = 200;
+constexpr std::int64_t kTileCount = 200;
 
-struct NoOptions {
+struct NoScratchOptions {
   void describe(OptionVisitor&) {}
 };
 
 struct MakeHeavy {
-  using Options = NoOptions;
+  using Options = NoScratchOptions;
   static constexpr In<Number> number{"number"};
   static constexpr Out<Heavy> heavy{"heavy"};
   static StageSpec spec() {
@@ -68,7 +68,7 @@ struct MakeHeavy {
 };
 
 struct DoubleHeavy {
-  using Options = NoOptions;
+  using Options = NoScratchOptions;
   static constexpr In<Heavy> heavy{"heavy"};
   static constexpr Out<Heavy> doubled{"doubled"};
   static StageSpec spec() {
@@ -90,12 +90,12 @@ class AsideTest : public testing::Test {
     registry.add<MakeHeavy>();
     registry.add<DoubleHeavy>();
     pipeline.add("list_numbers").add("make_heavy").add("double_heavy");
-    pipeline.set("list_numbers.tiles=" + std::to_string(kTiles));
+    pipeline.set("list_numbers.tiles=" + std::to_string(kTileCount));
     Heavy::most = 0;
   }
   static void expect_doubled(RunResult result) {
     const auto readers = result.take_readers<Heavy>("doubled");
-    ASSERT_EQ(readers.size(), kTiles);
+    ASSERT_EQ(readers.size(), kTileCount);
     for (int again = 0; again < 2; ++again)
       for (std::size_t i = 0; i < readers.size(); ++i)
         ASSERT_EQ(readers[i]()->number, 2 * (3 + static_cast<std::int64_t>(i)));
@@ -110,7 +110,7 @@ TEST_F(AsideTest, FewResultsOfTilesAreInMemory) {
   for (const std::size_t held : {std::size_t{0}, std::size_t{50'000}, std::size_t{1} << 30}) {
     expect_doubled(run(pipeline, {.threads = 2, .scratch = folder, .max_bytes_in_memory = held}));
     EXPECT_EQ(Heavy::living, 0);
-    EXPECT_LE(Heavy::most, 8) << "a few for each of two threads, of " << kTiles;
+    EXPECT_LE(Heavy::most, 8) << "a few for each of two threads, of " << kTileCount;
   }
 }
 
@@ -118,7 +118,7 @@ TEST_F(AsideTest, AWorkFolderHoldsThem) {
   const RunOptions options{.work = folder, .threads = 2, .scratch = "/nowhere", .max_bytes_in_memory = 0};
   expect_doubled(run(pipeline, options));
   RunResult again = run(pipeline, options);
-  EXPECT_EQ(again.report.stages[2].reused, kTiles);
+  EXPECT_EQ(again.report.stages[2].reused, kTileCount);
   expect_doubled(std::move(again));
   EXPECT_LE(Heavy::most, 8);
 }

@@ -15,16 +15,16 @@ namespace waymark::test {
 using namespace pipeline;
 namespace {
 
-const TypeId kRock = kTypes.id("rock");
+const TypeId kRockId = kTypes.id("rock");
 
 Observation rock_in(int image, Random& random) {
   Observation o;
-  o.type = kRock;
+  o.type = kRockId;
   o.source = "image " + std::to_string(image);
   o.position.xyz << random.normal(10, 0.1), random.normal(20, 0.1), 0;
   o.covariance = Eigen::Vector3d(0.01, 0.01, 0.04).asDiagonal();
   o.confidence = 0.8;
-  o.features.resize(kTypes[kRock].features.size());
+  o.features.resize(kTypes[kRockId].features.size());
   o.features[0] = {random.normal(1, 0.05), 0, 1};
   return o;
 }
@@ -33,7 +33,7 @@ Observation rock_in(int image, Random& random) {
 Landmark rock_of(std::vector<Observation> seen) {
   Landmark rock = merge_observations(std::move(seen), kTypes, Crs::local()).landmarks.at(0);
   for (std::size_t f = 0; f < rock.features.size(); ++f) {
-    const FeatureSpec& spec = kTypes[kRock].features[f];
+    const FeatureSpec& spec = kTypes[kRockId].features[f];
     rock.quality.feature_confidences[f] = spread_confidence(rock.features[f], spec.scale, spec.reference);
   }
   rock.quality.visible = rock.quality.seen;
@@ -101,10 +101,10 @@ TEST_F(LandmarkFusion, MissesOfOneImageCountOnce) {
 
 TEST_F(LandmarkFusion, ErrorsThatAllImagesShareStay) {
   const double gsd = 0.1;
-  add_common_errors(a_, kTypes[kRock], gsd);
-  add_common_errors(b_, kTypes[kRock], gsd);
+  add_common_errors(a_, kTypes[kRockId], gsd);
+  add_common_errors(b_, kTypes[kRockId], gsd);
   Landmark whole = rock_of(all_);
-  add_common_errors(whole, kTypes[kRock], gsd);
+  add_common_errors(whole, kTypes[kRockId], gsd);
   EXPECT_NEAR(fuse({.finest_gsd = gsd}).features[0].variance, whole.features[0].variance, 1e-9);
 }
 

@@ -37,8 +37,8 @@ HeightFunction hills(std::uint64_t seed) {
   };
 }
 
-CoarseHeights dem_of(const HeightFunction& height, double cell, std::int64_t size, double west = 0,
-                     double south = 0) {
+CoarseHeights coarse_dem_of(const HeightFunction& height, double cell, std::int64_t size, double west = 0,
+                            double south = 0) {
   CoarseHeights dem{.grid = {.west = west,
                              .north = south + cell * double(size),
                              .cell = cell,
@@ -98,18 +98,18 @@ RoughMap rough_map(const HeightFunction& height, std::uint64_t seed, double erro
     return (height(at.x(), at.y()) - out.truth.lift) / scale;
   };
   const double side = 800 / scale;
-  out.dem = dem_of(seen, side / kCells, kCells, -side / 2, -side / 2);
+  out.dem = coarse_dem_of(seen, side / kCells, kCells, -side / 2, -side / 2);
   const Grid<float> noise = smooth_noise(random, length / scale / out.dem.grid.cell);
   for (std::int64_t r = 0; r < kCells; ++r)
     for (std::int64_t c = 0; c < kCells; ++c) out.dem.heights(c, r) += float(error / scale) * noise(c, r);
   return out;
 }
 
-struct Errors {
+struct PlacementErrors {
   double squares = 0, largest = 0;  // over the covariance; of the corners, metres
 };
 
-Errors errors_of(const HeightRegistration& found, const RoughMap& map) {
+PlacementErrors errors_of(const HeightRegistration& found, const RoughMap& map) {
   const LevelSimilarity& s = found.reference_from_map;
   const double turn = std::remainder(s.yaw - map.truth.yaw, 2 * 3.14159265358979323846);
   // the middle of the cells is that of the grid
@@ -120,7 +120,7 @@ Errors errors_of(const HeightRegistration& found, const RoughMap& map) {
   const Eigen::Vector3d off = s * middle - map.truth * middle;
   Eigen::Matrix<double, 5, 1> error;
   error << off.x(), off.y(), turn, s.log_scale - map.truth.log_scale, off.z();
-  Errors out{.squares = error.dot(found.covariance.ldlt().solve(error))};
+  PlacementErrors out{.squares = error.dot(found.covariance.ldlt().solve(error))};
   for (const double sx : {-1, 1})
     for (const double sy : {-1, 1}) {
       const Eigen::Vector3d corner = middle + half * Eigen::Vector3d(sx, sy, 0);
@@ -136,9 +136,9 @@ TEST(RegisterHeights, FindsThePlaceWithItsAccuracy) {
     for (std::uint64_t seed = 17; seed <= 26; ++seed) {
       const HeightFunction height = hills(seed);
       const RoughMap map = rough_map(height, seed, 1, length);
-      const HeightRegistrationResult result = register_heights(map.dem, dem_of(height, 10, 300));
+      const HeightRegistrationResult result = register_heights(map.dem, coarse_dem_of(height, 10, 300));
       ASSERT_TRUE(result.found) << "seed " << seed << ": " << result.message;
-      const Errors errors = errors_of(*result.found, map);
+      const PlacementErrors errors = errors_of(*result.found, map);
       EXPECT_LT(errors.largest, 10) << "a cell of the reference, seed " << seed;
       EXPECT_LT(errors.squares, 40) << "seed " << seed;
       squares += errors.squares;
@@ -152,20 +152,21 @@ TEST(RegisterHeights, FindsThePlaceWithItsAccuracy) {
 TEST(RegisterHeights, OtherTerrainIsRefused) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     const RoughMap map = rough_map(hills(seed), seed, 1, 40);
-    const HeightRegistrationResult result = register_heights(map.dem, dem_of(hills(seed + 100), 10, 300));
+    const HeightRegistrationResult result =
+        register_heights(map.dem, coarse_dem_of(hills(seed + 100), 10, 300));
     EXPECT_FALSE(result.found) << "seed " << seed;
   }
 }
 
 TEST(RegisterHeights, FlatTerrainIsRefused) {
   const HeightFunction flat = [](double, double) { return 12.0; };
-  EXPECT_FALSE(register_heights(rough_map(flat, 1, 1, 40).dem, dem_of(flat, 10, 300)).found);
+  EXPECT_FALSE(register_heights(rough_map(flat, 1, 1, 40).dem, coarse_dem_of(flat, 10, 300)).found);
 }
 
 TEST(RegisterHeights, AReferenceWithLargeCellsIsRefused) {
   const HeightFunction height = hills(1);
   const HeightRegistrationResult result =
-      register_heights(rough_map(height, 1, 1, 40).dem, dem_of(height, 300, 10));
+      register_heights(rough_map(height, 1, 1, 40).dem, coarse_dem_of(height, 300, 10));
   EXPECT_FALSE(result.found);
   EXPECT_THAT(result.message, HasSubstr("10 cells of the reference are 3e+03 m"));
 }
@@ -177,7 +178,7 @@ TEST(RegisterHeights, UnknownCellsAreLeftOut) {
     for (std::int64_t c = 0; c < kCells; ++c)
       if (std::hypot(double(c) - 100, double(r) - 60) < 30)
         map.dem.heights(c, r) = std::numeric_limits<float>::quiet_NaN();
-  const HeightRegistrationResult result = register_heights(map.dem, dem_of(height, 10, 300));
+  const HeightRegistrationResult result = register_heights(map.dem, coarse_dem_of(height, 10, 300));
   ASSERT_TRUE(result.found) << result.message;
   EXPECT_LT(errors_of(*result.found, map).largest, 10);
 }
@@ -186,7 +187,7 @@ TEST(RegisterHeights, AMapWithoutHeightsIsRefused) {
   RoughMap map = rough_map(hills(1), 1, 1, 40);
   for (std::int64_t r = 0; r < kCells; ++r)
     for (std::int64_t c = 0; c < kCells; ++c) map.dem.heights(c, r) = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(register_heights(map.dem, dem_of(hills(1), 10, 300)).message, "the map has no heights");
+  EXPECT_EQ(register_heights(map.dem, coarse_dem_of(hills(1), 10, 300)).message, "the map has no heights");
 }
 
 }  // namespace

@@ -8,12 +8,11 @@
 #include <numbers>
 
 #include "tests/pipeline/reconstruction/made_pictures.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ImageMatches matched(const MadeGround& ground, const std::vector<PosedCamera>& views,
                      double focal_sd = 0.01) {

@@ -8,12 +8,12 @@
 
 #include "core/random.hpp"
 #include "pipeline/reconstruction/matching/focal_vote.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFocal = 1000;  // pixels: noise of 0.5 px is 0.5e-3 rad
 
 struct RayScene {

@@ -11,12 +11,11 @@
 #include "pipeline/reconstruction/poses/resection.hpp"
 #include "pipeline/reconstruction/poses/thin_tracks.hpp"
 #include "tests/pipeline/reconstruction/made_pictures.hpp"
+#include "tests/support/angles.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct Solved {
   SolvedPoses poses;

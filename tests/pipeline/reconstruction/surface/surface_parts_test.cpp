@@ -20,7 +20,7 @@ namespace waymark::test {
 using namespace pipeline;
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
 std::vector<SurfaceView> row_of_views(int count, double apart) {
   std::vector<SurfaceView> views;
@@ -86,12 +86,12 @@ TEST(ChooseViews, SunsThatMovedAreNotCompared) {
 
 TEST(SurfaceGrid, GapsAreFilledAndTheRestStays) {
   Grid<float> heights(9, 7, 5);
-  heights(4, 3) = heights(5, 3) = kNone;
+  heights(4, 3) = heights(5, 3) = kNoHeight;
   heights(0, 0) = 9;
   const Grid<float> filled = fill_gaps(heights);
   EXPECT_FLOAT_EQ(filled(4, 3), 5);
   EXPECT_FLOAT_EQ(filled(0, 0), 9);
-  const Grid<float> none(4, 4, kNone);
+  const Grid<float> none(4, 4, kNoHeight);
   EXPECT_TRUE(std::isnan(fill_gaps(none)(2, 2)));
 }
 
@@ -122,7 +122,7 @@ TEST(HeightChecks, ASpikeIsOffThePlaneAndACliffIsNot) {
 }
 
 TEST(HeightChecks, PatchesOfUpTo25CellsAreIslands) {
-  Grid<float> heights(20, 20, kNone);
+  Grid<float> heights(20, 20, kNoHeight);
   for (int j = 0; j < 5; ++j)
     for (int i = 0; i < 5; ++i) heights(i, j) = 1;                   // 25 cells
   for (int i = 0; i < 13; ++i) heights(i, 10) = heights(i, 11) = 2;  // 26 cells

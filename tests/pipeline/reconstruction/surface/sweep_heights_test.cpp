@@ -22,12 +22,12 @@ SweepPlan plan_of(const std::vector<SurfaceView>& views) {
   return plan;
 }
 
-struct Errors {
+struct HeightErrors {
   double nmad = 0, rmse = 0, bad = 0, z_variance = 0, kept = 0;
 };
 
 // Against the mean of the terrain in each cell; in ground sample distances of 0.43 m.
-Errors errors_of(const SurfaceHeights& dem, const Terrain& truth) {
+HeightErrors errors_of(const SurfaceHeights& dem, const Terrain& truth) {
   std::vector<double> errors;
   double squares = 0, z = 0, bad = 0;
   for (std::int64_t r = 0; r < dem.grid.rows; ++r)
@@ -81,7 +81,7 @@ std::vector<SurfaceView>* SweepHeights::views_ = nullptr;
 SurfaceHeights* SweepHeights::dem_ = nullptr;
 
 TEST_F(SweepHeights, AgreeWithTheTestbed) {
-  const Errors errors = errors_of(*dem_, scene_->terrain);
+  const HeightErrors errors = errors_of(*dem_, scene_->terrain);
   EXPECT_LT(errors.nmad, 0.7);
   EXPECT_LT(errors.rmse, 1.5);
   EXPECT_LT(errors.bad, 0.01);
@@ -138,7 +138,7 @@ TEST_F(SweepHeights, ACoarseDemStartsTheSearch) {
       heights(c, r) =
           static_cast<float>(scene_->terrain.height(coarse.x(double(c)), coarse.y(double(r))).value());
   plan.coarse = CoarseHeights{.grid = coarse, .heights = heights, .sd = 1};
-  const Errors errors = errors_of(sweep_heights(*views_, plan), scene_->terrain);
+  const HeightErrors errors = errors_of(sweep_heights(*views_, plan), scene_->terrain);
   EXPECT_LT(errors.nmad, 0.7);
 }
 
