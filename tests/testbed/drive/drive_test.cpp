@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/motion_model.hpp"
+#include "localization/persistent_errors.hpp"
 #include "testbed/drive/drive_log.hpp"
 #include "testbed/drive/drive_route.hpp"
 #include "testbed/drive/odometry_errors.hpp"
