@@ -5,8 +5,8 @@ namespace waymark::localization {
 
 void FrameErrors::describe(OptionVisitor& option) {
   option("map_shift_sd", map_shift_sd,
-         {.help = "Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the "
-                  "accuracy that an imported map states, and none for other maps",
+         {.help = "Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of "
+                  "imported maps the part of the stated accuracy that sightings do not show, of others none",
           .min = -1,
           .max = 1000});
   option("map_shift_distance", map_shift_distance,

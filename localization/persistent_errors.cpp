@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/covariance.hpp"
+#include "localization/independent_fraction.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -18,10 +19,9 @@ constexpr int kShift = 5, kMount = 7, kMountYaw = 9;
 constexpr double kMaxJump = 25;  // squared Mahalanobis distance beyond which an update is a new start
 
 Errors variances(const OdometryDrift& d, const FrameErrors& f) {
-  const double shift = std::max(0.0, f.map_shift_sd);
   Errors sd;
-  sd << d.scale_sd, d.slip_sd, d.sideways_sd, d.yaw_rate_sd, d.curvature_sd, shift, shift, f.mount_sd,
-      f.mount_sd, f.mount_yaw_sd;
+  sd << d.scale_sd, d.slip_sd, d.sideways_sd, d.yaw_rate_sd, d.curvature_sd, f.map_shift_sd, f.map_shift_sd,
+      f.mount_sd, f.mount_sd, f.mount_yaw_sd;
   return sd.cwiseAbs2();
 }
 
@@ -59,7 +59,22 @@ struct PersistentErrors::Robot {
 };
 
 PersistentErrors::PersistentErrors(const OdometryDrift& drift, const FrameErrors& frames)
-    : drift_(drift), frames_(frames), covariance_(variances(drift, frames).asDiagonal()) {}
+    : drift_(drift), frames_(frames) {
+  frames_.map_shift_sd = frames.shift_is_learnt()
+                             ? frames.survey_sd * std::sqrt(1 - IndependentFraction().mean())
+                             : std::max(0.0, frames.map_shift_sd);
+  covariance_ = variances(drift_, frames_).asDiagonal();
+}
+
+void PersistentErrors::scale_shift(double sd) {
+  if (!(frames_.map_shift_sd > 0)) return;
+  Errors scale = Errors::Ones();
+  scale[kShift] = scale[kShift + 1] = sd / frames_.map_shift_sd;
+  frames_.map_shift_sd = sd;
+  mean_ = mean_.cwiseProduct(scale);
+  with_pose_ = with_pose_ * scale.asDiagonal();
+  covariance_ = scale.asDiagonal() * covariance_ * scale.asDiagonal();
+}
 
 BodyMotion PersistentErrors::correct(const PoseEstimate& pose, const BodyMotion& motion, double seconds) {
   const Pose2& odometry = motion.step;

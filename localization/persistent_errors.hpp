@@ -45,6 +45,9 @@ class PersistentErrors {
   void learn(const GnssFix& fix, const PoseEstimate& before, const PoseEstimate& after);
   void learn(const HeadingFix& fix, const PoseEstimate& before, const PoseEstimate& after);
 
+  /// Changes the standard deviation of the shift. What was learnt keeps its place in standard deviations.
+  void scale_shift(double sd);
+
   /// Keeps the errors, with their first variance, and takes the pose for a new one: after relocalization.
   void restart();
 

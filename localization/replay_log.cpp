@@ -2,6 +2,7 @@
 #include "localization/replay_log.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "localization/identification/joint_evidence.hpp"
@@ -111,6 +112,12 @@ void LogReplay::learn_errors(const PoseEstimate& prior) {
     errors_.consider(prior, localizer_.estimate());
 }
 
+void LogReplay::learn_shift(const SightingSet& seen, const PoseEstimate& prior) {
+  if (!options_.frames.shift_is_learnt() || localizer_.status() != LocalizationStatus::tracking) return;
+  independent_.learn(seen, matches_, prior);
+  errors_.scale_shift(options_.frames.survey_sd * std::sqrt(1 - independent_.mean()));
+}
+
 bool LogReplay::take(SightingSet seen, TrackRow& row) {
   for (SeenLandmark& s : seen.sightings) {
     s.bearing_sd *= options_.sensor_noise;
@@ -122,6 +129,7 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
   matches_ = localizer_.update(seen);
   if (clock_) track_.seconds += row.seconds = clock_() - before;
   learn_errors(prior);
+  learn_shift(seen, prior);
   ++track_.updates;
   JointEvidence evidence;
   for (std::size_t i = 0; i < matches_.size(); ++i) {

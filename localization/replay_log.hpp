@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include "localization/independent_fraction.hpp"
 #include "localization/persistent_errors.hpp"
 #include "localization/robot_log.hpp"
 #include "localization/terrain_pose.hpp"
@@ -54,6 +55,7 @@ class LogReplay {
   void drive(BodyMotion motion, double seconds);
   void predict(const BodyMotion& motion);
   void learn_errors(const PoseEstimate& prior);
+  void learn_shift(const SightingSet& seen, const PoseEstimate& prior);
   void update_terrain_pose(const Pose2& pose);
   bool take(const TwistReading& reading, TrackRow& row);
   bool take(const CarReading& reading, TrackRow& row);
@@ -70,6 +72,7 @@ class LogReplay {
   Ackermann car_;
   OdometryNoise odometry_;
   PersistentErrors errors_;
+  IndependentFraction independent_;  // of the accuracy that the map states
   ScanDetector detect_;
   TimeSource clock_;
   TerrainHeight ground_;

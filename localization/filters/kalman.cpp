@@ -42,7 +42,7 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
     strange = strange || match.verdict == Verdict::nothing_near || match.verdict == Verdict::too_far;
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
-    match.key = landmark.key;
+    name_landmark(match, landmark);
     uses.push_back({&seen.sightings[i], &landmark, noise_divisor(landmark, matcher_.options())});
   }
   if (posterior && doubtful) {

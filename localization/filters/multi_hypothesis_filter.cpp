@@ -241,7 +241,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);
       const MapLandmark& landmark = map[match.pairing.landmark];
-      match.key = landmark.key;
+      name_landmark(match, landmark);
       const SeenLandmark& s = seen.sightings[places[k]];
       match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
                                            landmark.covariance, noise_divisor(landmark, identification));

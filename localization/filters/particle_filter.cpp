@@ -193,7 +193,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) {
-      match.key = map[match.pairing.landmark].key;
+      name_landmark(match, map[match.pairing.landmark]);
       uses_[match.key] = {map_error_factor(match.key), driven_};
     }
     match.pairing.evidence = {};  // of the estimate after the update: residuals, not innovations

@@ -105,12 +105,19 @@ struct Candidates {
 /// ident(d) of eq. 9: the landmark of a sighting, or why it has none.
 struct Match {
   Verdict verdict = Verdict::nothing_near;
-  CandidatePair pairing;   ///< only valid if matched
-  LandmarkKey key = 0;     ///< of the landmark; 0 unless matched
+  CandidatePair pairing;                         ///< only valid if matched
+  LandmarkKey key = 0;                           ///< of the landmark; 0 unless matched
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();  ///< its position on the map, unless the method moved it
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< of `at`; 0 unless matched with the map
   double probability = 1;  ///< of the pairing, if the map is right; only from `joint`
   /// Probability that the sighting shows no landmark of the map; 0 or 1 by the verdict but for `joint`.
   double unmapped = 1;
 };
+
+/// Sets the key, the position and its covariance of the landmark that was matched.
+inline void name_landmark(Match& match, const MapLandmark& landmark) {
+  match.key = landmark.key, match.at = landmark.at, match.covariance = landmark.covariance;
+}
 
 /// Data association of a set of sightings.
 struct Identification {

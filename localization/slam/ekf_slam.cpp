@@ -269,6 +269,10 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
     matches[p.sighting].verdict = Verdict::matched;
     matches[p.sighting].key = landmarks_[p.landmark].key.value_or(p.landmark + 1);
     matches[p.sighting].pairing.squares = p.squares;
+    if (landmarks_[p.landmark].was_mapped) {
+      matches[p.sighting].at = landmarks_[p.landmark].at;
+      matches[p.sighting].covariance = landmarks_[p.landmark].covariance;
+    }
     last_[p.sighting] = p.landmark;
   }
   match(seen, chosen);

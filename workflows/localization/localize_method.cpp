@@ -87,7 +87,7 @@ LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& m
 }
 
 void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play) {
-  if (play.frames.map_shift_sd < 0) play.frames.map_shift_sd = map.survey_sd;
+  play.frames.survey_sd = map.survey_sd;
 }
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {

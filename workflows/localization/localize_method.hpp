@@ -109,7 +109,7 @@ class MethodTable {
   std::vector<std::unique_ptr<LocalizeMethod>> methods_;
 };
 
-/// Sets the shift of the map to the accuracy of a survey, unless it is set.
+/// Sets the accuracy that an imported map states.
 void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play);
 
 struct LocalizeRequest;
