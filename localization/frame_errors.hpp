@@ -8,7 +8,7 @@ namespace waymark::localization {
 /// robot.
 struct FrameErrors {
   double map_shift_sd = -1;         ///< m, of each coordinate; negative: what sightings leave of `survey_sd`
-  double map_shift_distance = 100;  ///< m driven until the shift has fallen to 1/e
+  double map_shift_distance = 1000;  ///< m driven until the shift has fallen to 1/e
   double mount_sd = 0;              ///< m, forward and left, of all sensors alike, constant
   double mount_yaw_sd = 0;          ///< rad, of all sensors alike, constant
 

@@ -10,7 +10,8 @@ namespace waymark::localization {
 /// The rest is a shift that neighbours share, which leaves no difference between what is seen and the map.
 /// - Likelihood of the innovations of each landmark's first sighting,, on a grid of fractions.
 ///   Later sightings repeat the error of the landmark.
-/// - A sensor with larger noise than stated makes the fraction too large.
+/// - The sensor's noise may be half to twice as large as stated, so that only errors of the map larger than
+///   it decide.
 class IndependentFraction {
  public:
   /// Learns from a set's sightings with a range. `before`: pose relative to landmarks before the update.
@@ -19,8 +20,11 @@ class IndependentFraction {
   double mean() const;
 
  private:
-  static constexpr int kSteps = 10;
-  std::array<double, kSteps + 1> log_likelihood_{};  // of the fractions 0 to 1
+  static constexpr int kSteps = 10, kNoises = 5;
+  template <class Value>
+  using Grid = std::array<std::array<Value, kSteps + 1>, kNoises>;  // by noise; fractions from 0 to 1
+
+  Grid<double> log_likelihood_{};
   std::unordered_set<LandmarkKey> known_;
 };
 

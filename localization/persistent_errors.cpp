@@ -205,9 +205,13 @@ void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows
   const Eigen::Matrix<double, Rows, Rows> noise = Eigen::Matrix<double, Rows, Rows>::Identity() * variance,
                                           s = h * all * h.transpose() + noise;
   Eigen::Matrix<double, kAll, Rows> gain = all * h.transpose() * s.inverse();
-  mean_ += gain.template bottomRows<kCount>() * difference;
+  const Eigen::Matrix<double, 3, Rows> robot_gain = by_all * gain;
   gain.template topRows<3>() =
       ((before.covariance - after.covariance) * update->inverse).template middleCols<Rows>(first_row);
+  // The shift takes what the localizer's gain is too large or too small for the robot's position.
+  if (frames_.map_shift_sd > 0)
+    gain.template middleRows<2>(3 + kShift) += (by_all * gain - robot_gain).template topRows<2>();
+  mean_ += gain.template bottomRows<kCount>() * difference;
   const Eigen::Matrix<double, kAll, kAll> keep = Eigen::Matrix<double, kAll, kAll>::Identity() - gain * h;
   all = (keep * all * keep.transpose() + gain * noise * gain.transpose()).eval();
   // The localizer took its part of the fix for independent, so its covariance is another one. The errors

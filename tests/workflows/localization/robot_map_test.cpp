@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "workflows/localization/robot_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/atomic_file.hpp"
+#include "core/locked_folder.hpp"
+#include "geodb/write_map.hpp"
+#include "workflows/mapping/import_landmarks.hpp"
+#include "workflows/registries.hpp"
+
+namespace waymark::test {
+using namespace workflows;
+namespace {
+
+class SurveyAccuracy : public ::testing::Test {
+ protected:
+  double of_table(const std::string& table) const {
+    write_file(file("table.csv"), table);
+    ImportRequest import{.table = file("table.csv"), .map = file("map.gpkg")};
+    import.options.table_crs = "local";
+    import_landmarks(import);
+    return open_robot_map(file("map.gpkg"), nullptr).map.survey_sd;
+  }
+  std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  LockedFolder folder_{std::filesystem::temp_directory_path()};
+};
+
+TEST_F(SurveyAccuracy, IsTheMedianOfAnImportedMap) {
+  EXPECT_NEAR(of_table("type,x,y,position_sd\ntree,0,0,0.1\ntree,9,0,0.3\ntree,0,9,8\n"), 0.3, 1e-6);
+}
+
+// A wall is known across, not along.
+TEST_F(SurveyAccuracy, IsThatAcrossAnElongatedEllipse) {
+  EXPECT_NEAR(of_table("type,x,y,x_sd,y_sd\ntree,0,0,5,0.2\ntree,9,0,0.2,5\n"), 0.2, 1e-6);
+}
+
+TEST_F(SurveyAccuracy, IsZeroIfTheTableStatesNone) {
+  EXPECT_EQ(of_table("type,x,y\ntree,0,0\ntree,9,0\n"), 0);
+}
+
+TEST_F(SurveyAccuracy, IsZeroOfAMapThatWasNotImported) {
+  geodb::MapContents contents;
+  contents.types = all_types();
+  Landmark tree;
+  tree.type = all_types().id("tree");
+  tree.uid = "t";
+  tree.covariance = Eigen::Matrix3d::Identity();
+  tree.features.resize(all_types()[tree.type].features.size());
+  tree.attributes.resize(all_types()[tree.type].attributes.size());
+  tree.quality.feature_confidences.resize(tree.features.size());
+  contents.landmarks = {tree};
+  geodb::write_map(file("made.gpkg"), contents);
+  EXPECT_EQ(open_robot_map(file("made.gpkg"), nullptr).map.survey_sd, 0);
+}
+
+}  // namespace
+}  // namespace waymark::test
