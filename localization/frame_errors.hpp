@@ -7,10 +7,10 @@ namespace waymark::localization {
 /// in the reference frame: a shift that neighbouring landmarks share, and the place of the sensors on the
 /// robot.
 struct FrameErrors {
-  double map_shift_sd = -1;         ///< m, of each coordinate; negative: what sightings leave of `survey_sd`
+  double map_shift_sd = -1;          ///< m, of each coordinate; negative: what sightings leave of `survey_sd`
   double map_shift_distance = 1000;  ///< m driven until the shift has fallen to 1/e
-  double mount_sd = 0;              ///< m, forward and left, of all sensors alike, constant
-  double mount_yaw_sd = 0;          ///< rad, of all sensors alike, constant
+  double mount_sd = 0;               ///< m, forward and left, of all sensors alike, constant
+  double mount_yaw_sd = 0;           ///< rad, of all sensors alike, constant
 
   double survey_sd = 0;  ///< m: accuracy of a landmark that an imported map states; no option
 

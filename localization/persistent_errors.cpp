@@ -189,7 +189,7 @@ HeadingFix PersistentErrors::relative_to_map(const HeadingFix& fix, const PoseEs
           std::sqrt(fix.sd * fix.sd + robot.rest(2, 2))};
 }
 
-// Joseph form for the gain that the localizer used and the Kalman gain of the errors.
+// Joseph form for the gain of the localizer by relative_to_map() and the Kalman gain of the errors.
 template <int Rows>
 void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows>& difference,
                                  double variance, const PoseEstimate& before, const PoseEstimate& after) {
@@ -206,8 +206,14 @@ void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows
                                           s = h * all * h.transpose() + noise;
   Eigen::Matrix<double, kAll, Rows> gain = all * h.transpose() * s.inverse();
   const Eigen::Matrix<double, 3, Rows> robot_gain = by_all * gain;
+  // Not of the covariances before and after: those of particles have noise larger than the gain of a poor
+  // fix.
+  const auto moved = before.covariance.middleCols<Rows>(first_row);
+  const Eigen::Matrix<double, Rows, Rows> separating =
+      robot.rest.block<Rows, Rows>(first_row, first_row).trace() / Rows *
+      Eigen::Matrix<double, Rows, Rows>::Identity();
   gain.template topRows<3>() =
-      ((before.covariance - after.covariance) * update->inverse).template middleCols<Rows>(first_row);
+      moved * (moved.template middleRows<Rows>(first_row) + noise + separating).inverse();
   // The shift takes what the localizer's gain is too large or too small for the robot's position.
   if (frames_.map_shift_sd > 0)
     gain.template middleRows<2>(3 + kShift) += (by_all * gain - robot_gain).template topRows<2>();
