@@ -65,7 +65,7 @@ class EkfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -149,7 +149,7 @@ class GlobalSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -233,7 +233,7 @@ class GraphSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -333,7 +333,7 @@ class OdometrySettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -405,7 +405,7 @@ class PfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -489,7 +489,7 @@ class SlamSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
@@ -585,7 +585,7 @@ class UkfSettings(TypedDict, total=False):
     drift_distance: float  # Metres driven until slip and sideways drift have fallen to 1/e
     yaw_rate_sd: float  # Standard deviation of the bias of the turn rate, rad/s, that lasts the drive
     curvature_sd: float  # Standard deviation of yaw per metre driven, rad/m, that lasts the drive
-    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: the accuracy that an imported map states, and none for other maps
+    map_shift_sd: float  # Standard deviation, metres, of a shift that neighbouring landmarks share; negative: of imported maps the part of the stated accuracy that sightings do not show, of others none
     map_shift_distance: float  # Metres driven until the shift of the map has fallen to 1/e
     mount_sd: float  # Standard deviation, metres, of the sensors' place on the robot, forward and left
     mount_yaw_sd: float  # Standard deviation, radians, of the sensors' direction on the robot
