@@ -7,6 +7,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "planning/sd_bounds.hpp"
+
 namespace waymark::test {
 namespace {
 

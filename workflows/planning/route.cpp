@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numbers>
@@ -18,6 +19,7 @@
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
+#include "planning/sd_bounds.hpp"
 #include "planning/world_beliefs.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/path_clearance.hpp"
@@ -57,6 +59,7 @@ void check(const RouteRequest& request) {
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
 }
 
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr int kTrials = 8;      // searches for the limit of a search
 constexpr double kJust = 0.95;  // of a limit: a route that reaches it is not longer than needed
 
@@ -106,8 +109,8 @@ struct Planner {
 
   /// A route of the search, which takes all errors of the odometry as independent and all misses of a
   /// landmark.
-  std::optional<planning::Route> search_white(double max_sd, double weight, int labels) const {
-    return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
+  std::optional<planning::Route> search_white(const planning::SigmaSearch& wanted) const {
+    return planning::search_by_sigma(problem, wanted);
   }
   /// The same route with the belief over worlds.
   planning::Route with_belief(planning::Route route) const {
@@ -115,18 +118,21 @@ struct Planner {
     planning::follow_route(beliefs, problem, landmarks, sensing, route);
     return route;
   }
-  std::optional<planning::Route> search(double max_sd, double weight, int labels) const {
-    auto route = search_white(max_sd, weight, labels);
+  std::optional<planning::Route> search(const planning::SigmaSearch& wanted) const {
+    auto route = search_white(wanted);
     return route ? std::optional(with_belief(std::move(*route))) : std::nullopt;
   }
 
-  /// Grows the number of labels until the cost stops to fall.
-  std::optional<planning::Route> best(double max_sd, double weight) {
-    std::optional<planning::Route> route;
-    for (const int labels : {1, 4, 8}) {
-      auto next = search(max_sd, weight, labels);
-      if (next && route && !(next->cost < route->cost - 1e-9)) break;
-      if (next) route = std::move(next);
+  /// Returns the cheapest route. On small maps the number of labels grows until the cost stops to fall: by
+  /// 0.2 % at most where it was measured, in ten times the time.
+  planning::Route best(double weight) {
+    problem.min_sd = planning::relaxed_sd(problem, kUnlimited);
+    planning::Route route = *search({.weight = weight, .labels = 1});
+    if (problem.field.cells.count() > kManyLabels) return route;
+    for (const int labels : {4, 8}) {
+      auto next = search({.weight = weight, .labels = labels, .max_cost = route.cost * (1 + 1e-9)});
+      if (!next || !(next->cost < route.cost - 1e-9)) break;
+      route = std::move(*next);
     }
     return route;
   }
@@ -135,7 +141,7 @@ struct Planner {
   std::vector<planning::Route> weighted() const {
     std::vector<planning::Route> routes;
     for (const double weight : {0.3, 1.0, 3.0, 10.0})
-      if (auto route = search(1e9, weight, 1)) routes.push_back(std::move(*route));
+      if (auto route = search({.weight = weight, .labels = 1})) routes.push_back(std::move(*route));
     return routes;
   }
 
@@ -147,7 +153,7 @@ struct Planner {
     std::optional<planning::Route> kept;
     double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
     for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
-      auto route = search(asked, 0, labels);
+      auto route = search({.max_sd = asked, .labels = labels});
       // The search is too cautious at most where errors persist; else what it refuses cannot be kept.
       if (!route && i == 0 && (!odometry.drift.any() || min_limit(limit) > limit)) return {};
       const bool keeps = route && route->worst_sd <= limit;
@@ -164,12 +170,12 @@ struct Planner {
   /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
   /// routes that weigh the sd.
   planning::Route min_sd_route() const {
-    const planning::Route shortest = *search_white(1e9, 0, 1);
+    const planning::Route shortest = *search_white({.labels = 1});
     planning::Route best = with_belief(shortest);
     double low = position_sd(problem.start), high = shortest.worst_sd;
     while (high > 1.01 * low) {
       const double middle = std::sqrt(low * high);
-      auto route = search_white(middle, 0, 1);
+      auto route = search_white({.max_sd = middle, .labels = 1});
       if (!route) {
         low = middle;
         continue;
@@ -215,7 +221,7 @@ struct Planner {
   }
 
   [[noreturn]] void fail_impossible(double min_kept) const {
-    const planning::Route shortest = *search(1e9, 0, 1);
+    const planning::Route shortest = *search({.labels = 1});
     throw Error(
         ErrorCode::input,
         fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma), request.map,
@@ -249,8 +255,8 @@ struct Planner {
       planning::Route safest = min_sd_route();
       if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
       return safest;
-    } else if (auto route = best(1e9, request.weight)) {
-      return *route;
+    } else {
+      return best(request.weight);
     }
     throw Error(ErrorCode::input, "the search found no route", request.map, "");
   }
@@ -375,7 +381,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   };
 
   RouteResult result;
-  result.shortest = planner.describe(legs_with([&] { return *planner.search(1e9, 0, 1); }));
+  result.shortest = planner.describe(legs_with([&] { return *planner.search({.labels = 1}); }));
   result.routes.push_back(planner.describe(legs_with([&] { return planner.leg(); })));
   for (std::int64_t i = 1; i < request.alternatives; ++i) {
     // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
@@ -384,7 +390,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     const auto legs = legs_with([&] {
       auto route = planner.keep(limit);
       found = found && route;
-      return route ? *route : *planner.search(1e9, 0, 1);
+      return route ? *route : *planner.search({.labels = 1});
     });
     if (!found) break;
     result.routes.push_back(planner.describe(legs));
