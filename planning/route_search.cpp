@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
 #include <queue>
 #include <utility>
 
@@ -19,9 +22,16 @@ struct Label {
   std::int64_t cell;
   std::int32_t parent;
   int heading;
-  std::int32_t closed_before = -1;  // of the same cell and heading
+  std::int32_t closed_before = 0;  // of the same node, as in Node
 
   std::size_t node() const { return slot(cell * kHeadings + heading); }
+};
+
+/// Labels of a cell and heading, numbered from 1; 0 is none.
+struct Node {
+  std::int32_t closed;    // the last; each has the one before it
+  std::int32_t kept;      // number of them
+  std::int32_t cheapest;  // that was opened
 };
 
 /// Returns lower bounds of the cost to the goal.
@@ -52,27 +62,26 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
   if (to_go[slot(problem.from)] == kInfinity || !(first_sd <= search.max_sd)) return {};
   const double scale = (1 + search.tolerance) * (1 + search.tolerance);
   std::vector<Label> labels;
-  // The closed labels of a cell and heading are a list: the last one here, the one before it in the label.
-  const std::size_t nodes = slot(cells.count() * kHeadings);
-  std::vector<std::int32_t> closed(nodes, -1);
-  std::vector<std::int32_t> kept(nodes, 0);       // their number
+  // Memory of calloc costs nothing until it is touched: most searches touch a small part of the nodes.
+  const std::unique_ptr<Node[], decltype(&std::free)> nodes(
+      static_cast<Node*>(std::calloc(slot(cells.count() * kHeadings), sizeof(Node))), &std::free);
+  if (!nodes) throw std::bad_alloc();
   using Entry = std::pair<double, std::int32_t>;  // equal costs: the earlier label first
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   // Without a limit, the first label that a node opens at the least cost is the one it keeps.
   const bool has_limit = std::isfinite(search.max_sd), keeps_cheapest = !has_limit && search.labels == 1;
-  std::vector<double> cheapest(keeps_cheapest ? nodes : 0, kInfinity);
   const auto is_dominated_at = [&](const Label& label, int heading, double turn_noise) {
-    for (std::int32_t i = closed[slot(label.cell * kHeadings + heading)]; i >= 0;
-         i = labels[slot(i)].closed_before) {
-      if (!(labels[slot(i)].cost <= label.cost)) continue;
-      Symmetric3 earlier = labels[slot(i)].covariance;
+    for (std::int32_t i = nodes[slot(label.cell * kHeadings + heading)].closed; i > 0;
+         i = labels[slot(i - 1)].closed_before) {
+      if (!(labels[slot(i - 1)].cost <= label.cost)) continue;
+      Symmetric3 earlier = labels[slot(i - 1)].covariance;
       earlier.tt += turn_noise;
       if (earlier == label.covariance || exceeds(label.covariance, earlier, scale)) return true;
     }
     return false;
   };
   const auto is_dominated = [&](const Label& label) {
-    if (kept[label.node()] >= search.labels || is_dominated_at(label, label.heading, 0)) return true;
+    if (nodes[label.node()].kept >= search.labels || is_dominated_at(label, label.heading, 0)) return true;
     if (!has_limit) return false;
     // A turn costs no way: a label of another heading dominates if it does so after the turn to this one.
     // What keeps a limit depends on covariances more than on cost, so places are left for smaller ones.
@@ -86,11 +95,13 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
   const auto push = [&](const Label& label) {
     const double whole = label.cost + to_go[slot(label.cell)];
     if (whole > search.max_cost || labels.size() >= search.max_labels || is_dominated(label)) return;
+    const auto index = static_cast<std::int32_t>(labels.size());
     if (keeps_cheapest) {
-      if (!(label.cost < cheapest[label.node()])) return;
-      cheapest[label.node()] = label.cost;
+      std::int32_t& cheapest = nodes[label.node()].cheapest;
+      if (cheapest > 0 && !(label.cost < labels[slot(cheapest - 1)].cost)) return;
+      cheapest = index + 1;
     }
-    open.emplace(whole, static_cast<std::int32_t>(labels.size()));
+    open.emplace(whole, index);
     labels.push_back(label);
   };
   for (int h = 0; h < kHeadings; ++h)
@@ -101,11 +112,13 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
     const Label label = labels[slot(at)];
     if (is_dominated(label)) continue;
     if (label.cell == problem.to) return trace(labels, at);
-    labels[slot(at)].closed_before = std::exchange(closed[label.node()], at);
-    ++kept[label.node()];
+    Node& node = nodes[label.node()];
+    labels[slot(at)].closed_before = std::exchange(node.closed, at + 1);
+    ++node.kept;
     for (int h = 0; h < kHeadings; ++h) {
       const std::int64_t next = neighbour(cells, problem.passable, label.cell, h);
-      if (next < 0 || to_go[slot(next)] == kInfinity || kept[slot(next * kHeadings + h)] >= search.labels)
+      if (next < 0 || to_go[slot(next)] == kInfinity ||
+          nodes[slot(next * kHeadings + h)].kept >= search.labels)
         continue;
       const bool first = label.parent < 0 && !problem.heading;
       if (first && h != label.heading) continue;  // any start heading has its own label

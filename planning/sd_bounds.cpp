@@ -18,17 +18,16 @@ constexpr double kStraight = 0.92387953;
 
 /// Returns the largest variance of the position that a drive from the nearest cell with information, or from
 /// the start, has at least.
-std::vector<double> variance_far_from_information(const RouteProblem& problem,
-                                                  const std::vector<double>& rate) {
+std::vector<double> variance_far_from_information(const RouteProblem& problem, const BestDrive& best) {
   const RouteCells& cells = problem.field.cells;
   std::vector<std::int64_t> known{problem.from};
   for (std::int64_t i = 0; i < cells.count(); ++i)
-    if (rate[slot(i)] > 0 && i != problem.from) known.push_back(i);
+    if (best.rate[slot(i)] > 0 && i != problem.from) known.push_back(i);
   std::vector<double> variance = distances_to(cells, std::vector<char>(slot(cells.count()), 1), known);
-  const double position = std::min(problem.noise.along_per_metre, problem.noise.across_per_metre);
+  const double position = std::min(best.noise.along_per_metre, best.noise.across_per_metre);
   for (double& v : variance) {
     const double d = kStraight * v;
-    v = position * d + problem.noise.yaw_per_metre * d * d * d / 3;
+    v = position * d + best.noise.yaw_per_metre * d * d * d / 3;
   }
   return variance;
 }
@@ -46,23 +45,21 @@ double start_variance(const Symmetric3& p) {
 std::vector<double> max_rate(const InformationField& field) {
   std::vector<double> rate(slot(field.cells.count()), 0);
   for (std::int64_t i = 0; i < field.cells.count(); ++i)
-    for (int h = 0; h < field.headings; ++h) {
-      const double sd = position_sd(field.get(i, h).rate);
-      rate[slot(i)] = std::max(rate[slot(i)], sd * sd);
-    }
+    for (int h = 0; h < field.headings; ++h)
+      rate[slot(i)] = std::max(rate[slot(i)], max_rate(field.get(i, h).rate));
   return rate;
 }
 
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd) {
-  return relaxed_sd(problem, max_sd, max_rate(problem.field));
+  return relaxed_sd(problem, max_sd, {problem.noise, max_rate(problem.field)});
 }
 
-std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate) {
+std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const BestDrive& best) {
   // Given the yaw, the largest variance of the position obeys v <- 1 / (1 / (v + q L) + j L): q is the
   // smaller of the odometry's variances, j the largest information in any direction. Both are bounds.
   const RouteCells& cells = problem.field.cells;
-  const double q = std::min(problem.noise.along_per_metre, problem.noise.across_per_metre);
-  const std::vector<double> far = variance_far_from_information(problem, rate);
+  const double q = std::min(best.noise.along_per_metre, best.noise.across_per_metre);
+  const std::vector<double> far = variance_far_from_information(problem, best);
   std::vector<double> variance(slot(cells.count()), std::numeric_limits<double>::infinity());
   variance[slot(problem.from)] = start_variance(problem.start);
   std::deque<std::int64_t> open{problem.from};
@@ -75,7 +72,7 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const
       const std::int64_t next = neighbour(cells, problem.passable, cell, h);
       if (next < 0 || far[slot(next)] > max_sd * max_sd) continue;
       const double length = step_length(cells, h);
-      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + rate[slot(next)] * length);
+      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + best.rate[slot(next)] * length);
       if (!(v <= max_sd * max_sd) || !(v < variance[slot(next)])) continue;
       variance[slot(next)] = v;
       if (!is_open[slot(next)]) open.push_back(next), is_open[slot(next)] = 1;

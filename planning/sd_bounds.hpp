@@ -4,6 +4,11 @@
 #include "planning/route_problem.hpp"
 namespace waymark::planning {
 
+/// Returns the largest information per metre in any direction, 1/m^3.
+inline double max_rate(const Symmetric3& rate) {
+  const double root = position_sd(rate);
+  return root * root;
+}
 /// Returns the largest information per metre of each cell, in any direction and at any heading, 1/m^3.
 std::vector<double> max_rate(const InformationField& field);
 
@@ -16,8 +21,13 @@ std::vector<double> max_rate(const InformationField& field);
 ///   to the other, the distance still to go takes every value up to D.
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd);
 
-/// Returns the same bound from the max_rate() of the field, for several limits.
-std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const std::vector<double>& rate);
+/// The least noise and the most information that a drive can have.
+struct BestDrive {
+  const localization::OdometryNoise& noise;
+  const std::vector<double>& rate;  ///< largest information per metre, by cell, 1/m^3
+};
+/// Returns the same bound for drives that are at best as given; the problem's noise and field do not count.
+std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const BestDrive& best);
 
 /// Returns a lower bound of the cost to the goal from each cell, where a metre driven to a cell costs
 /// 1 + `weight` x its sd, which is at least `min_sd`; infinity if there is no way. Dijkstra, O(n log n).

@@ -139,7 +139,7 @@ TEST(RouteSearch, GivenDistancesChangeNothing) {
   const auto weighted = search_by_sigma(problem, {.weight = 2});
   problem.min_sd = relaxed_sd(problem, std::numeric_limits<double>::infinity());
   EXPECT_EQ(weighted->cost, search_by_sigma(problem, {.weight = 2})->cost);
-  EXPECT_EQ(relaxed_sd(problem, 1.2), relaxed_sd(problem, 1.2, max_rate(problem.field)));
+  EXPECT_EQ(relaxed_sd(problem, 1.2), relaxed_sd(problem, 1.2, {problem.noise, max_rate(problem.field)}));
 }
 
 TEST(RouteSearch, MoreLabelsAreNeverLongerAndTheLimitIsKept) {
