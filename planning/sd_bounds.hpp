@@ -29,8 +29,9 @@ struct BestDrive {
 /// Returns the same bound for drives that are at best as given; the problem's noise and field do not count.
 std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const BestDrive& best);
 
-/// Returns a lower bound of the cost to the goal from each cell, where a metre driven to a cell costs
-/// 1 + `weight` x its sd, which is at least `min_sd`; infinity if there is no way. Dijkstra, O(n log n).
+/// Returns a lower bound of the cost to the goal from each cell; infinity if there is no way.
+/// - A metre driven to a cell costs 1 + `weight` x its sd, which is at least `min_sd`.
+/// - Dijkstra, O(n log n).
 std::vector<double> cost_to_go(const RouteProblem& problem, double weight, const std::vector<double>& min_sd);
 
 }  // namespace waymark::planning

@@ -69,7 +69,7 @@ std::vector<double> WorldBeliefs::position_sds() const {
 std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::vector<char>& passable,
                                           const localization::LandmarkGrid& map,
                                           const LandmarkSensing& sensing) {
-  std::vector<double> most(slot(cells.count()), 0);
+  std::vector<double> max_rates(slot(cells.count()), 0);
   visit_cells(cells, passable, sensing, [&](std::int64_t cell, int heading, const LandmarkSensing& here) {
     const localization::Pose2 pose = heading_pose(cells.x(cell), cells.y(cell), heading);
     Symmetric3 sum;
@@ -78,9 +78,9 @@ std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::ve
           detection_probability(sensing.coverage, (map[i].at - pose.at()).norm(), map[i].diameter);
       if (detection > 0) add(sum, information, 1 - kRepeated + kRepeated / detection);
     });
-    most[slot(cell)] = std::max(most[slot(cell)], max_rate(sum));
+    max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sum));
   });
-  return most;
+  return max_rates;
 }
 
 std::vector<double> follow_route(WorldBeliefs& beliefs, const RouteProblem& problem,

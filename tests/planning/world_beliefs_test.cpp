@@ -86,8 +86,8 @@ TEST(WorldBeliefs, MaxInformationBoundsEveryWorld) {
   problem.start = {0.01, 0, 0.01, 0, 0, 3e-4};
   Route route;
   for (std::int64_t cell = 0; cell < 16; ++cell) route.nodes.push_back({cell, 0, {}});
-  const std::vector<double> most = max_rate_in_any_world(cells, problem.passable, map, sensing);
-  const double bound = relaxed_sd(problem, 1e6, {problem.noise, most})[15];
+  const std::vector<double> max_rates = max_rate_in_any_world(cells, problem.passable, map, sensing);
+  const double bound = relaxed_sd(problem, 1e6, {problem.noise, max_rates})[15];
   double least = 1e9;
   for (std::int64_t seed = 1; seed <= 40; ++seed) {
     WorldBeliefs beliefs(problem.start, {}, map, 1, seed);

@@ -98,10 +98,10 @@ Route LegPlanner::min_sd_route() const {
 }
 
 std::vector<double> LegPlanner::min_sd_in_any_world(double limit) const {
-  if (most_.empty())
-    most_ = planning::max_rate_in_any_world(problem.field.cells, problem.passable, landmarks, sensing);
+  if (max_rates_.empty())
+    max_rates_ = planning::max_rate_in_any_world(problem.field.cells, problem.passable, landmarks, sensing);
   // Persistent errors may be known: they bound nothing.
-  return planning::relaxed_sd(problem, limit, {odometry.noise, most_});
+  return planning::relaxed_sd(problem, limit, {odometry.noise, max_rates_});
 }
 
 /// Returns a lower bound of the limits that a route can keep in any world, to 1 %; `limit` if the relaxed
@@ -133,8 +133,8 @@ void LegPlanner::fail_impossible(double min_kept) const {
                   min_kept, std::ceil(shortest.worst_sd * 1000) / 1000));
 }
 
-void LegPlanner::fail_limit(double least_sd) const {
-  std::string hint = fmt::format("the least worst sd that was found is {:.2f} m", least_sd);
+void LegPlanner::fail_limit(double min_sd) const {
+  std::string hint = fmt::format("the least worst sd that was found is {:.2f} m", min_sd);
   if (worlds_agree)
     hint += fmt::format("; at the goal it cannot be below {:.2f} m",
                         min_sd_in_any_world(kUnlimited)[slot(problem.to)]);

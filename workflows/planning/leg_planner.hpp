@@ -38,9 +38,9 @@ struct LegPlanner {
   planning::Route min_sd_route() const;
   double min_limit(double limit) const;
   [[noreturn]] void fail_impossible(double min_kept) const;
-  [[noreturn]] void fail_limit(double least_sd) const;
+  [[noreturn]] void fail_limit(double min_sd) const;
 
-  mutable std::vector<double> most_;                             // largest information in any world, by cell
+  mutable std::vector<double> max_rates_;                        // largest information in any world, by cell
   mutable std::optional<std::pair<double, double>> last_bound_;  // limit of the first leg, its bound
 };
 
