@@ -8,7 +8,7 @@ namespace waymark::localization {
 
 /// Options of landmark detection in laser scans.
 struct ScanDetectionOptions {
-  /// Names of detectors, separated by commas. `auto`: those of whose types the map has landmarks; `stems`
+  /// Names of detectors, separated by commas. `auto`: those whose types have landmarks in the map; `stems`
   /// without a type if there are none.
   std::string find = "auto";
   bool features = true;  ///< give diameters, radii and angles to the sightings
