@@ -13,9 +13,9 @@ class Detectors final : public Command {
         .group = Group::look_up,
         .summary = "List the detectors of landmarks in scans, or describe one",
         .about =
-            "A detector turns the scans of a log into sightings of landmarks. `localize` and `map` choose "
-            "them by the types of the map; `--set scans=NAME,NAME` names them. Detectors in images and "
-            "elevation models are stages: `waymark stages`.",
+            "A detector turns the scans of a log into sightings of landmarks. `localize` chooses them by "
+            "the types of the landmarks in the map, or takes those of `--set scans=NAME,NAME`; `map` takes "
+            "those of `--scans`. Detectors in images and elevation models are stages: `waymark stages`.",
         .arguments = reference_arguments(what_, localization::scan_detectors().names()),
         .examples = {{"waymark detectors walls", "The record it reads and the types it makes"},
                      {"waymark detectors --format json", "All of them for a script"}}};

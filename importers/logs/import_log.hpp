@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 #include "core/landmark.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "landmarks/sensor_profile.hpp"
@@ -21,6 +23,8 @@ struct LogImport {
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
   /// waymark, csv: its standard deviations are those of sightings for which the log gives none.
   std::optional<SensorCoverage> sensor = {};
+  /// Types that the map holds: only these are detected in 3-D scans. Empty: all of `types`.
+  std::vector<TypeId> held_types = {};
 };
 
 /// Reads a log of any format. `types` maps the types of the sightings to ids; other types become kNoSuchType.
@@ -29,9 +33,10 @@ localization::RobotLog import_log(const std::filesystem::path& path, const TypeR
                                   const LogImport& how = {});
 
 /// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md). `sensor` gives the
-/// standard deviations of sightings that state none.
+/// standard deviations of sightings that state none; `held` is as in LogImport.
 localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
-                                          const std::optional<SensorCoverage>& sensor = {});
+                                          const std::optional<SensorCoverage>& sensor = {},
+                                          std::span<const TypeId> held = {});
 
 /// Reads a text table with a time per line, and readings in its columns (docs/reference/log_format.md).
 /// `columns` assigns expressions to targets: "t=stamp/1000,v=speed,omega=rad(rate)"; columns named like a
@@ -71,10 +76,11 @@ localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 localization::RobotLog import_bag_log(const std::filesystem::path& path);
 
 /// Reads a folder of 3-D scans (point_files.hpp), or its subfolder `velodyne`, in the order of their names:
-/// each becomes sightings by the detectors whose types the map has, so that one scan is in memory at a time.
-/// `times.txt` gives their seconds. There is no odometry: poses come from elsewhere, as in `waymark map
+/// each becomes sightings by the detectors whose types the map holds, so that one scan is in memory at a
+/// time. `times.txt` gives their seconds. There is no odometry: poses come from elsewhere, as in `waymark map
 /// --poses`.
-localization::RobotLog import_point_log(const std::filesystem::path& folder, const TypeRegistry& types);
+localization::RobotLog import_point_log(const std::filesystem::path& folder, const TypeRegistry& types,
+                                        std::span<const TypeId> held = {});
 /// Returns whether a folder holds 3-D scans.
 bool is_point_log(const std::filesystem::path& folder);
 

@@ -16,10 +16,11 @@ struct LogRecord {
 };
 
 /// Reads records (docs/reference/log_format.md). `file` is named in errors and must outlive the call.
-/// `sensor` gives the standard deviations of sightings that state none. Throws Error{input} with file and
-/// line.
+/// `sensor` gives the standard deviations of sightings that state none; `held` is as in LogImport. Throws
+/// Error{input} with file and line.
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
                                         const TypeRegistry& types,
-                                        const std::optional<SensorCoverage>& sensor = {});
+                                        const std::optional<SensorCoverage>& sensor = {},
+                                        std::span<const TypeId> held = {});
 
 }  // namespace waymark::importers

@@ -52,14 +52,15 @@ bool is_point_log(const fs::path& folder) {
   return fs::is_directory(folder) && !scans_in(folder).empty();
 }
 
-localization::RobotLog import_point_log(const fs::path& folder, const TypeRegistry& types) {
+localization::RobotLog import_point_log(const fs::path& folder, const TypeRegistry& types,
+                                        std::span<const TypeId> held) {
   const std::vector<fs::path> files = scans_in(folder);
   if (files.empty())
     throw Error(ErrorCode::input, "the folder has no 3-D scans", folder.string(),
                 "scans are .bin files of KITTI or .ply files, in it or in its folder velodyne");
   localization::RobotLog log;
   const std::vector<double> times = times_of(folder, files.size(), log.remarks);
-  const localization::PointDetector detect = localization::make_point_detector(types);
+  const localization::PointDetector detect = localization::make_point_detector(types, held);
   for (std::size_t i = 0; i < files.size(); ++i)
     log.events.push_back({times[i], detect({.robot_from_sensor = {}, .points = read_point_file(files[i])})});
   localization::clean_log(log);

@@ -48,8 +48,8 @@ class NumberReader final : public OptionVisitor {
 
 class Reader {
  public:
-  Reader(const TypeRegistry& types, const std::optional<SensorCoverage>& sensor)
-      : types_(types), sensor_(sensor) {}
+  Reader(const TypeRegistry& types, const std::optional<SensorCoverage>& sensor, std::span<const TypeId> held)
+      : types_(types), held_(held), sensor_(sensor) {}
 
   void read(const LogLine& line) {
     const std::string kind = line.text("kind");
@@ -222,7 +222,7 @@ class Reader {
   }
 
   localization::SightingSet points(const LogLine& line) {
-    if (!detect_) detect_ = localization::make_point_detector(types_);
+    if (!detect_) detect_ = localization::make_point_detector(types_, held_);
     const std::filesystem::path file = line.text("file");
     return detect_({.robot_from_sensor = line.mount(),
                     .points = read_point_file(file.is_absolute() ? file : line.file().parent_path() / file)});
@@ -288,6 +288,7 @@ class Reader {
   double last_truth_yaw_ = 0;
   localization::PointDetector detect_;
   const TypeRegistry& types_;
+  std::span<const TypeId> held_;
   std::optional<SensorCoverage> sensor_;         // absent: assumed deviations
   std::optional<double> range_sd_, bearing_sd_;  // of the header, m and rad
   localization::RobotLog log_;
@@ -298,15 +299,17 @@ class Reader {
 
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
                                         const TypeRegistry& types,
-                                        const std::optional<SensorCoverage>& sensor) {
+                                        const std::optional<SensorCoverage>& sensor,
+                                        std::span<const TypeId> held) {
   if (records.empty()) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
-  Reader reader(types, sensor);
+  Reader reader(types, sensor, held);
   for (const LogRecord& record : records) reader.read({file, record.line, record.json});
   return reader.take();
 }
 
 localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
-                                          const std::optional<SensorCoverage>& sensor) {
+                                          const std::optional<SensorCoverage>& sensor,
+                                          std::span<const TypeId> held) {
   std::istringstream text(read_text(file, "the file"));
   std::vector<LogRecord> records;
   std::size_t number = 0;
@@ -314,7 +317,7 @@ localization::RobotLog import_waymark_log(const std::filesystem::path& file, con
     ++number;
     if (line.find_first_not_of(" \t\r") != std::string::npos) records.push_back({number, std::move(line)});
   }
-  return read_log_records(file, records, types, sensor);
+  return read_log_records(file, records, types, sensor, held);
 }
 
 }  // namespace waymark::importers

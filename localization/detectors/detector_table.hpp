@@ -27,7 +27,7 @@ struct DetectorSpec {
   std::vector<std::string>
       types;  ///< landmark types that it makes; those of them that the map lacks are left out
   /// Rank among detectors of single objects before their background, which would all take the same hits.
-  /// `auto` uses those of the lowest rank whose types are in the map; absent: it always uses the detector.
+  /// `auto` uses those of the lowest rank whose types the map holds; absent: it always uses the detector.
   std::optional<int> single_object_rank = {};
   /// Returns the detector for the types of a map, of the record "laser".
   std::function<LaserDetector(const TypeRegistry& types)> make = {};

@@ -11,11 +11,21 @@
 namespace waymark::localization {
 namespace {
 
-bool makes_type_of(const DetectorSpec& detector, const TypeRegistry& types) {
-  return std::ranges::any_of(detector.types, [&](const std::string& name) { return types.find(name); });
+/// Types of a map: those of its tables, and those of them that have landmarks.
+struct MapTypes {
+  const TypeRegistry& listed;
+  std::span<const TypeId> held;  ///< empty: all that are listed
+
+  bool holds(TypeId type) const { return held.empty() || std::ranges::find(held, type) != held.end(); }
+  bool holds(std::string_view name) const { return listed.find(name) && holds(listed.id(name)); }
+};
+
+bool makes_type_of(const DetectorSpec& detector, const MapTypes& types) {
+  return std::ranges::any_of(detector.types, [&](const std::string& name) { return types.holds(name); });
 }
 
-std::vector<const DetectorSpec*> detectors_for(const TypeRegistry& types) {
+/// Returns the detectors for `auto`; none if no detector makes a type that the map holds.
+std::vector<const DetectorSpec*> detectors_for(const MapTypes& types) {
   std::optional<int> rank;
   for (const DetectorSpec& detector : laser_detectors())
     if (detector.single_object_rank && makes_type_of(detector, types))
@@ -25,8 +35,26 @@ std::vector<const DetectorSpec*> detectors_for(const TypeRegistry& types) {
     if (makes_type_of(detector, types) &&
         (!detector.single_object_rank || detector.single_object_rank == rank))
       chosen.push_back(&detector);
-  if (chosen.empty()) chosen.push_back(laser_detectors().find("stems"));
   return chosen;
+}
+
+/// Returns the detectors as one, whose sightings of types that the map does not hold are left out.
+template <class Scan>
+std::function<SightingSet(const Scan&)> detect_held(
+    std::vector<std::function<SightingSet(const Scan&)>> detectors, const MapTypes& types) {
+  std::vector<char> is_held(types.listed.size());
+  for (TypeId type = 0; type < is_held.size(); ++type) is_held[type] = types.holds(type);
+  return [detectors = std::move(detectors), is_held = std::move(is_held)](const Scan& scan) {
+    SightingSet all{scan.robot_from_sensor, {}};
+    for (const auto& detect : detectors)
+      for (const SeenLandmark& s : detect(scan).sightings)
+        if (!s.type || is_held.at(*s.type)) all.sightings.push_back(s);
+    return all;
+  };
+}
+
+LaserDetector stems_of_no_type() {
+  return laser_detectors().find("stems")->make({});
 }
 
 std::vector<const DetectorSpec*> named_detectors(std::string_view list) {
@@ -51,7 +79,7 @@ void ScanDetectionOptions::describe(OptionVisitor& option) {
   option("scans", find,
          {.help =
               fmt::format("Detectors of landmarks in laser scans, separated by commas: {}; auto: those whose "
-                          "types the map has",
+                          "types have landmarks in the map",
                           fmt::join(laser_detectors().names(), ", "))});
   option("scan_features", features, {.help = "Use the diameters, radii and angles measured in scans"});
 }
@@ -84,31 +112,25 @@ const DetectorTable& scan_detectors() {
   return table;
 }
 
-PointDetector make_point_detector(const TypeRegistry& types) {
+PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held) {
+  const MapTypes of_map{types, held};
   std::vector<PointDetector> detectors;
   for (const DetectorSpec& detector : point_detectors())
-    if (makes_type_of(detector, types)) detectors.push_back(detector.make_points(types));
-  return [detectors = std::move(detectors)](const PointCloud& cloud) {
-    SightingSet all{cloud.robot_from_sensor, {}};
-    for (const PointDetector& detect : detectors) {
-      SightingSet some = detect(cloud);
-      all.sightings.insert(all.sightings.end(), some.sightings.begin(), some.sightings.end());
-    }
-    return all;
-  };
+    if (makes_type_of(detector, of_map)) detectors.push_back(detector.make_points(types));
+  return detect_held(std::move(detectors), of_map);
 }
 
-LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options) {
+LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options,
+                                  std::span<const TypeId> held) {
+  const bool by_map = options.find == "auto";
+  const MapTypes wanted{types, by_map ? held : std::span<const TypeId>()};
   std::vector<LaserDetector> detectors;
-  for (const DetectorSpec* detector :
-       options.find == "auto" ? detectors_for(types) : named_detectors(options.find))
+  for (const DetectorSpec* detector : by_map ? detectors_for(wanted) : named_detectors(options.find))
     detectors.push_back(detector->make(types));
-  return [detectors = std::move(detectors), with_features = options.features](const LaserScan& scan) {
-    SightingSet all{scan.robot_from_sensor, {}};
-    for (const LaserDetector& detect : detectors) {
-      SightingSet some = detect(scan);
-      all.sightings.insert(all.sightings.end(), some.sightings.begin(), some.sightings.end());
-    }
+  if (detectors.empty()) detectors.push_back(stems_of_no_type());
+  return [detect = detect_held(std::move(detectors), wanted),
+          with_features = options.features](const LaserScan& scan) {
+    SightingSet all = detect(scan);
     if (!with_features)
       for (SeenLandmark& s : all.sightings) s.features = {};
     return all;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <span>
 #include <string>
 #include "core/options.hpp"
 #include "localization/detectors/detector_table.hpp"
@@ -7,8 +8,8 @@ namespace waymark::localization {
 
 /// Options of landmark detection in laser scans.
 struct ScanDetectionOptions {
-  /// Names of detectors, separated by commas. `auto`: those whose types are in the map; `stems` without a
-  /// type if there are none.
+  /// Names of detectors, separated by commas. `auto`: those whose types have landmarks in the map; `stems`
+  /// without a type if there are none.
   std::string find = "auto";
   bool features = true;  ///< give diameters, radii and angles to the sightings
 
@@ -23,11 +24,13 @@ const DetectorTable& point_detectors();
 /// Returns the detectors for both.
 const DetectorTable& scan_detectors();
 
-/// Returns the detectors for 3-D scans whose types a map has, as one.
-PointDetector make_point_detector(const TypeRegistry& types);
+/// Returns the detectors for 3-D scans of the types that a map holds, as one. `types` are those of its
+/// tables, `held` those of its landmarks; empty: all of `types`.
+PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held = {});
 
-/// Returns the detectors that the options name, for the types of a map, as one. Throws Error{usage} for an
-/// unknown name.
-LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options);
+/// Returns the detectors that the options name, for the types of a map, as one. `auto` detects only types
+/// that the map holds, as above. Throws Error{usage} for an unknown name.
+LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options,
+                                  std::span<const TypeId> held = {});
 
 }  // namespace waymark::localization

@@ -47,7 +47,8 @@ LiveLocalizer::LiveLocalizer(const LocalizeRequest& request, const std::string& 
         fmt::format("--method {} needs the whole log, and does not localize while driving", request.method),
         "", "use ekf, ukf or pf");
   replay_ = std::make_unique<localization::LogReplay>(
-      log_, *localizer_, settings_->play, localization::make_laser_detector(map_->types(), settings_->scans),
+      log_, *localizer_, settings_->play,
+      localization::make_laser_detector(map_->types(), settings_->scans, map_->held_types),
       localization::TimeSource{}, task_->ground);
 }
 
@@ -58,7 +59,8 @@ localization::RobotLog LiveLocalizer::read(const std::string& lines) const {
   for (std::string line; std::getline(text, line);)
     if (!line.empty()) records.push_back({records.size() + 1, line});
   localization::RobotLog log = importers::read_log_records(
-      name, records, map_->types(), sensor_ ? std::optional(sensor_->coverage) : std::nullopt);
+      name, records, map_->types(), sensor_ ? std::optional(sensor_->coverage) : std::nullopt,
+      map_->held_types);
   localization::convert_to_map_frame(log, map_->frame);
   return log;
 }

@@ -144,6 +144,7 @@ localization::RobotLog read_log(const LocalizeRequest& request, const SensorProf
                                 const RobotMap& map, const Callbacks& callbacks) {
   importers::LogImport how = request.log_format;
   if (sensor) how.sensor = sensor->coverage;
+  how.held_types = map.held_types;
   localization::RobotLog log = importers::import_log(request.log, map.types(), how);
   check_crs(log, map, request.log);
   localization::convert_to_map_frame(log, map.frame);

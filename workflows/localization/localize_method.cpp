@@ -93,7 +93,7 @@ void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play)
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
   return localization::replay(
       task.log, localizer, task.settings.play,
-      localization::make_laser_detector(task.map.map.types(), task.settings.scans),
+      localization::make_laser_detector(task.map.map.types(), task.settings.scans, task.map.map.held_types),
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       },

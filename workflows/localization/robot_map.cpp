@@ -76,6 +76,16 @@ double survey_sd(const geodb::MapStore& store) {
   return *middle;
 }
 
+/// Returns the types that have a landmark of that confidence.
+std::vector<TypeId> held_types(const geodb::MapStore& store, double min_confidence) {
+  std::vector<TypeId> held;
+  for (TypeId type = 0; type < store.types().size(); ++type)
+    if (!store.query({.types = {store.types()[type].name}, .min_confidence = min_confidence, .limit = 1})
+             .empty())
+      held.push_back(type);
+  return held;
+}
+
 /// Tiles of a DEM, read when the robot reaches them.
 class DemTiles {
  public:
@@ -165,6 +175,7 @@ OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, b
   RobotMap map{.store = store,
                .frame = LocalFrame(store->crs(), frame_origin(*store)),
                .landmarks = store->count(),
+               .held_types = held_types(*store, min_confidence),
                .min_confidence = min_confidence,
                .unsound_covariances = 0,
                .survey_sd = survey_sd(*store),

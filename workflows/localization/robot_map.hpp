@@ -12,6 +12,7 @@ struct RobotMap {
   std::shared_ptr<const geodb::MapStore> store;
   LocalFrame frame;  ///< about the middle of the map; in a local CRS about its origin, so that both agree
   std::int64_t landmarks = 0;
+  std::vector<TypeId> held_types = {};   ///< those with landmarks of `min_confidence`; others may have tables
   double min_confidence = 0;             ///< less probable landmarks are not read
   std::int64_t unsound_covariances = 0;  ///< of the landmarks read: not positive definite, repaired
   double survey_sd = 0;        ///< m, of an imported map: accuracy that half of the landmarks have; else 0

@@ -147,7 +147,8 @@ localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
   else if (scans.find == "auto" && task.map.map.landmarks == 0)
     scans.find = "rocks";
   return localization::replay(
-      task.log, localizer, setup.play, localization::make_laser_detector(task.map.map.types(), scans), [] {
+      task.log, localizer, setup.play,
+      localization::make_laser_detector(task.map.map.types(), scans, task.map.map.held_types), [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       });
 }

@@ -33,11 +33,12 @@ void check(const SensorFitRequest& request) {
 
 void append_sightings(const std::string& file, const RobotMap& map,
                       std::vector<localization::SightingsAtTruth>& sets) {
-  localization::RobotLog log = importers::import_log(file, map.types());
+  localization::RobotLog log = importers::import_log(file, map.types(), {.held_types = map.held_types});
   localization::convert_to_map_frame(log, map.frame);
   if (log.truth.empty())
     throw Error(ErrorCode::input, "the log has no true poses", file, "a sensor is fitted to known poses");
-  const localization::LaserDetector detect = localization::make_laser_detector(map.types(), {});
+  const localization::LaserDetector detect =
+      localization::make_laser_detector(map.types(), {}, map.held_types);
   for (const localization::LogEvent& event : log.events) {
     const auto pose = localization::pose_at(log.truth, event.t);
     if (!pose) continue;

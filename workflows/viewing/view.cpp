@@ -106,7 +106,9 @@ std::vector<exporters::PosedImageFile> read_cameras(const ViewPageRequest& reque
 
 localization::RobotLog read_view_log(const ViewPageRequest& request, const RobotMap& map,
                                      const Callbacks& callbacks) {
-  localization::RobotLog log = importers::import_log(request.log, map.types(), request.log_format);
+  importers::LogImport how = request.log_format;
+  how.held_types = map.held_types;
+  localization::RobotLog log = importers::import_log(request.log, map.types(), how);
   localization::convert_to_map_frame(log, map.frame);
   for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
   return log;

@@ -323,5 +323,29 @@ TEST_F(Localize, ATrueYawMayGoOnTurning) {
   EXPECT_LT(score()["heading_rmse_deg"], 3);
 }
 
+// A table with a column `type` gives a map with tables of all types, most of them empty.
+TEST_F(Localize, ScansAreSearchedForTheTypesThatTheMapHolds) {
+  write_text(folder_.path() / "street.json",
+             R"({"waymark_scenario":1,"name":"street","seed":4,"street":{"length":60}})");
+  ASSERT_EQ(waymark({"simulate", folder_ / "street.json", "-o", folder_ / "drive"}).code, 0);
+  std::istringstream truth(text_of(folder_ / "drive/truth/landmarks.csv"));
+  std::string table, row;
+  std::getline(truth, table);
+  while (std::getline(truth, row))
+    if (row.starts_with("pole,")) table += "\n" + row;
+  write_text(folder_.path() / "survey.csv", table + "\n");
+  const std::string map = folder_ / "survey.gpkg", log = folder_ / "drive/log.jsonl";
+  ASSERT_EQ(waymark({"import", folder_ / "survey.csv", "-o", map, "--crs", "local"}).code, 0);
+  for (const std::string method : {"ekf", "slam"}) {
+    const auto track_by = [&](const std::string& scans) {
+      const Outcome said = waymark({"localize", map, log, "-o", track_, "--method", method, "--ids",
+                                    "unknown", "--start", "truth", "--set", "scans=" + scans});
+      EXPECT_EQ(said.code, 0) << said.err;
+      return text_of(track_);
+    };
+    EXPECT_TRUE(track_by("auto") == track_by("poles")) << method;
+  }
+}
+
 }  // namespace
 }  // namespace waymark::test

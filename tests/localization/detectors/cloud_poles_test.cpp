@@ -142,6 +142,10 @@ TEST(CloudPoles, TheDetectorGivesSightingsOfTheMapsTypes) {
   EXPECT_NEAR(*seen.sightings[0].range, 10, 0.05);
   EXPECT_NEAR(seen.sightings[0].bearing, std::atan2(6, 8), 0.005);
   EXPECT_TRUE(seen.sightings[0].is_valid());
+  const TypeId pole = types.id("pole"), tree = types.id("tree");
+  EXPECT_EQ(make_point_detector(types, std::vector{pole})(cloud).sightings.size(), 1U);
+  EXPECT_TRUE(make_point_detector(types, std::vector{tree})(cloud).sightings.empty())
+      << "listed, but not held";
   TypeRegistry trees;
   trees.add(LandmarkType{types[types.id("tree")]});
   EXPECT_TRUE(make_point_detector(trees)(cloud).sightings.empty());

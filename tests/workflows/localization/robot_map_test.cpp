@@ -15,18 +15,32 @@ namespace waymark::test {
 using namespace workflows;
 namespace {
 
-class SurveyAccuracy : public ::testing::Test {
+class ImportedMap : public ::testing::Test {
  protected:
-  double of_table(const std::string& table) const {
+  RobotMap of_table(const std::string& table, double min_confidence = 0) const {
     write_file(file("table.csv"), table);
     ImportRequest import{.table = file("table.csv"), .map = file("map.gpkg")};
     import.options.table_crs = "local";
     import_landmarks(import);
-    return open_robot_map(file("map.gpkg"), nullptr).map.survey_sd;
+    return open_robot_map(file("map.gpkg"), nullptr, false, min_confidence).map;
   }
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
 
   LockedFolder folder_{std::filesystem::temp_directory_path()};
+};
+
+class SurveyAccuracy : public ImportedMap {
+ protected:
+  double of_table(const std::string& table) const { return ImportedMap::of_table(table).survey_sd; }
+};
+
+class HeldTypes : public ImportedMap {
+ protected:
+  static std::vector<std::string> names(const RobotMap& map) {
+    std::vector<std::string> all;
+    for (const TypeId type : map.held_types) all.push_back(map.types()[type].name);
+    return all;
+  }
 };
 
 TEST_F(SurveyAccuracy, IsTheMedianOfAnImportedMap) {
@@ -55,6 +69,21 @@ TEST_F(SurveyAccuracy, IsZeroOfAMapThatWasNotImported) {
   contents.landmarks = {tree};
   geodb::write_map(file("made.gpkg"), contents);
   EXPECT_EQ(open_robot_map(file("made.gpkg"), nullptr).map.survey_sd, 0);
+}
+
+TEST_F(HeldTypes, AreThoseOfTheLandmarksNotOfTheTables) {
+  const RobotMap map = of_table("type,x,y,confidence\ntree,0,0,0.9\npole,9,0,0.4\n");
+  EXPECT_TRUE(map.types().find("rock"));
+  EXPECT_EQ(names(map), (std::vector<std::string>{"pole", "tree"}));
+}
+
+TEST_F(HeldTypes, AreThoseOfTheLandmarksThatAreRead) {
+  EXPECT_EQ(names(of_table("type,x,y,confidence\ntree,0,0,0.9\npole,9,0,0.4\n", 0.5)),
+            std::vector<std::string>{"tree"});
+}
+
+TEST(EmptyRobotMap, HoldsNoTypes) {
+  EXPECT_TRUE(make_empty_robot_map().map.held_types.empty());
 }
 
 }  // namespace

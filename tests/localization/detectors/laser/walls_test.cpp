@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <set>
 
 #include "core/error.hpp"
 #include "core/units.hpp"
@@ -216,6 +217,30 @@ TEST(Detectors, AreChosenByTheTypesOfTheMap) {
   const LaserScan room = scan_walls(kRoom, {2.5, 1.7, 0}, 361);
   EXPECT_GE(types_seen(room, {"wall_corner", "tree"}).size(), 3u);
   EXPECT_TRUE(types_seen(room, {"tree"}).empty());
+}
+
+TEST(Detectors, AreThoseOfTheTypesThatTheMapHolds) {
+  LaserScan post{.robot_from_sensor = {},
+                 .first_angle = -1.5,
+                 .angle_step = 0.01,
+                 .ranges = std::vector<float>(301, 81.0F),
+                 .max_range = 80};
+  for (const std::size_t i : {150, 151, 152, 153, 154}) post.ranges[i] = 4;
+  TypeRegistry types;
+  register_landmark_types(types);
+  const auto seen = [&](const LaserScan& scan, const std::string& find, const std::vector<TypeId>& held) {
+    std::set<std::optional<TypeId>> all;
+    for (const SeenLandmark& s : make_laser_detector(types, {.find = find}, held)(scan).sightings)
+      all.insert(s.type);
+    return all;
+  };
+  using Types = std::set<std::optional<TypeId>>;
+  for (const char* name : {"pole", "tree"})
+    EXPECT_EQ(seen(post, "auto", {types.id(name)}), Types{types.id(name)});
+  EXPECT_EQ(seen(post, "poles", {types.id("tree")}), Types{types.id("pole")}) << "named, so asked for";
+  EXPECT_EQ(seen(post, "auto", {types.id("beacon")}), Types{std::nullopt}) << "stems of no type";
+  EXPECT_EQ(seen(scan_walls(kRoom, {2.5, 1.7, 0}, 361), "auto", {types.id("wall_corner")}),
+            Types{types.id("wall_corner")});
 }
 
 TEST(Detectors, WithUnknownNamesAreRefusedWithTheKnownOnes) {
