@@ -71,7 +71,7 @@ struct InformationField {
     return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
   }
 };
-/// Calls `visit` for each passable cell and each heading of which the information differs, with the sensing
+/// Calls `visit` for each passable cell and each heading that has information of its own, with the sensing
 /// there. Rows run in parallel, but for a line of sight: it reads the DEM through a cache of one thread.
 using VisitCell = std::function<void(std::int64_t cell, int heading, const LandmarkSensing& here)>;
 void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,

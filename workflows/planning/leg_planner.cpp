@@ -22,6 +22,12 @@ using planning::slot;
 
 }  // namespace
 
+void LegPlanner::begin_leg(std::int64_t from, std::int64_t to) {
+  problem.from = from, problem.to = to;
+  problem.to_go = planning::distances_to(problem.field.cells, problem.passable, to);
+  problem.min_sd.clear();
+}
+
 Route LegPlanner::with_belief(Route route) const {
   planning::WorldBeliefs beliefs = *before;
   planning::follow_route(beliefs, problem, landmarks, sensing, route);
@@ -37,7 +43,11 @@ std::optional<Route> LegPlanner::search(const planning::SigmaSearch& wanted) con
 /// % at most where it was measured, in ten times the time.
 Route LegPlanner::cheapest(double weight) {
   problem.min_sd = planning::relaxed_sd(problem, kUnlimited);
-  Route route = *search({.weight = weight, .labels = 1});
+  auto first = search({.weight = weight, .labels = 1});
+  if (!first)  // there is a way, so the search has run out of labels
+    throw Error(ErrorCode::input, "the map has too many cells for a route with a weight", request.map,
+                "make --cell coarser");
+  Route route = std::move(*first);
   if (problem.field.cells.count() > kManyLabels) return route;
   for (const int labels : {4, 8}) {
     auto next = search({.weight = weight, .labels = labels, .max_cost = route.cost * (1 + 1e-9)});

@@ -19,6 +19,8 @@ struct LegPlanner {
   std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
   bool worlds_agree = true;                           ///< at the start of the leg: all have problem.start
 
+  /// Begins a leg between two cells at problem.start: what bounds another leg is forgotten.
+  void begin_leg(std::int64_t from, std::int64_t to);
   /// Returns a route of the search with the belief over worlds; `std::nullopt` if there is none. The search
   /// takes all errors of the odometry and all misses of a landmark as independent.
   std::optional<planning::Route> search(const planning::SigmaSearch& wanted) const;

@@ -192,9 +192,8 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     if (points[0].yaw)
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      problem.from = stops[i], problem.to = stops[i + 1];
+      planner.begin_leg(stops[i], stops[i + 1]);
       planner.worlds_agree = i == 0;
-      problem.to_go = planning::distances_to(cells, problem.passable, problem.to);
       if (!std::isfinite(problem.to_go[planning::slot(problem.from)]))
         fail_between(request, points[i], points[i + 1]);
       legs.push_back(search());
