@@ -93,11 +93,7 @@ void visit_cells(const RouteCells& cells, const std::vector<char>& passable, con
       for (int h = 0; h < headings; ++h) visit(i, h, here);
     }
   };
-  if (sensing.visible) {
-    for (std::int64_t row = 0; row < cells.rows; ++row) visit_row(row);
-  } else {
-    tbb::parallel_for(std::int64_t{0}, cells.rows, visit_row);
-  }
+  tbb::parallel_for(std::int64_t{0}, cells.rows, visit_row);
 }
 
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,

@@ -15,7 +15,7 @@ struct LandmarkSensing {
   double sightings_per_metre = 1;          ///< of each landmark in view
   double correlation_per_range = 0.4;      ///< length over which a landmark's map error repeats, in ranges
   double min_confidence = 0.5;             ///< less probable landmarks count as absent
-  localization::LineOfSight visible = {};  ///< empty: always free
+  localization::LineOfSight visible = {};  ///< empty: always free; must be thread-safe
 };
 
 /// Calls `visit` with the index of each landmark that the sensor sees from a pose and its information per
@@ -72,7 +72,7 @@ struct InformationField {
   }
 };
 /// Calls `visit` for each passable cell and each heading that has information of its own, with the sensing
-/// there. Rows run in parallel, but for a line of sight: it reads the DEM through a cache of one thread.
+/// there. Rows run in parallel.
 using VisitCell = std::function<void(std::int64_t cell, int heading, const LandmarkSensing& here)>;
 void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,
                  const VisitCell& visit);

@@ -2,7 +2,6 @@
 #include "workflows/planning/observability.hpp"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <cmath>
 #include <filesystem>
@@ -136,14 +135,8 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
   std::optional<importers::Area> area;
   if (!request.aoi.empty()) area = importers::read_area_of_interest(request.aoi, map.crs());
   const GridGeometry grid = grid_of(map, landmarks, rules.sensing.coverage.range, area, request);
-  // Terrain is read through a cache that one thread may use.
-  tbb::enumerable_thread_specific<planning::ObservabilityRules> rules_of_thread([&] {
-    planning::ObservabilityRules own = rules;
-    own.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
-                                                              {.sensor_height = request.sensor_height});
-    return own;
-  });
-  const bool hides = static_cast<bool>(rules_of_thread.local().sensing.visible);
+  rules.sensing.visible = planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
+  const bool hides = static_cast<bool>(rules.sensing.visible);
   std::vector<exporters::CogStream::Band> bands;
   for (const auto& [name, unit] : planning::kObservabilityBands)
     bands.push_back({std::string(name), std::string(unit)});
@@ -151,9 +144,7 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
   SdCounts counts;
   write_tiles(
       grid, {request.tile_cells, request.threads, "observability"},
-      [&](const Window& window) {
-        return compute_tile(window, grid, map, landmarks, area, rules_of_thread.local());
-      },
+      [&](const Window& window) { return compute_tile(window, grid, map, landmarks, area, rules); },
       [&](const std::vector<Grid<float>>& tile) { counts.add(tile); }, file, callbacks);
   file.commit({{"WAYMARK_VERSION", program_version()},
                {"SENSOR", sensor->name},

@@ -168,8 +168,8 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   for (const Waypoint& point : points)
     stops.push_back(
         cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
-  planner.sensing.visible = localization::terrain_line_of_sight(open_terrain(map, request.dem),
-                                                                {.sensor_height = request.sensor_height});
+  planner.sensing.visible =
+      planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
   problem.field =
       planning::make_information_field(cells, problem.passable, planner.landmarks, planner.sensing);
   double sd = 0.1, yaw_sd = 2 * kRadiansPerDegree;
