@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/atomic_file.hpp"
-#include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "exporters/raster/copy_as_cog.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -47,22 +47,10 @@ GDALDatasetUniquePtr memory_raster(const std::vector<RasterBand>& bands, const G
 void write_cog(const std::filesystem::path& path, const std::vector<RasterBand>& bands,
                const Georeference& where, const std::map<std::string, std::string>& metadata) {
   AtomicFile aside(path);
-  {
-    GdalMessages messages;
-    const GDALDatasetUniquePtr raster = memory_raster(bands, where);
-    for (const auto& [key, value] : metadata) raster->SetMetadataItem(key.c_str(), value.c_str());
-    const std::array<const char*, 6> options{
-        "COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_RESAMPLING=NEAREST",
-        "BIGTIFF=IF_SAFER", "NUM_THREADS=1", nullptr};
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
-    const GDALDatasetUniquePtr written(driver->CreateCopy(aside.path().c_str(), raster.get(), FALSE,
-                                                          const_cast<char**>(options.data()),
-                                                          stop_after_failure, &messages));
-    if (written) written->FlushCache(true);
-    if (!written || !messages.failures().empty())
-      fail_output(path, messages.cause("not all of it was written"));
-  }
-  aside.commit();
+  GdalMessages messages;
+  const GDALDatasetUniquePtr raster = memory_raster(bands, where);
+  for (const auto& [key, value] : metadata) raster->SetMetadataItem(key.c_str(), value.c_str());
+  copy_as_cog(*raster, aside, path, messages);
 }
 
 }  // namespace waymark::exporters

@@ -10,6 +10,7 @@
 #include "core/atomic_file.hpp"
 #include "core/output_error.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "exporters/raster/copy_as_cog.hpp"
 
 namespace waymark::exporters {
 
@@ -74,18 +75,8 @@ void CogStream::commit(const std::map<std::string, std::string>& metadata) {
   file_->raster->FlushCache(false);
   if (!file_->messages.failures().empty())
     fail_output(file_->path, file_->messages.cause("not all of it was written"));
-  const std::array<const char*, 6> options{"COMPRESS=DEFLATE", "PREDICTOR=YES", "OVERVIEW_RESAMPLING=NEAREST",
-                                           "BIGTIFF=IF_SAFER", "NUM_THREADS=1", nullptr};
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
-  GDALDatasetUniquePtr written(driver->CreateCopy(file_->aside.path().c_str(), file_->raster.get(), FALSE,
-                                                  const_cast<char**>(options.data()), stop_after_failure,
-                                                  &file_->messages));
-  if (written) written->FlushCache(true);
-  if (!written || !file_->messages.failures().empty())
-    fail_output(file_->path, file_->messages.cause("not all of it was written"));
-  written.reset();
+  copy_as_cog(*file_->raster, file_->aside, file_->path, file_->messages);
   file_->raster.reset();
-  file_->aside.commit();
 }
 
 }  // namespace waymark::exporters
