@@ -113,7 +113,8 @@ HazardTile HazardMap::compute(const Window& window) const {
   const std::span near = std::span(objects_).subspan(
       static_cast<std::size_t>(first), static_cast<std::size_t>(std::max(last - first, std::ptrdiff_t{0})));
   HazardTile tile;
-  tile.fill(Grid<float>(window.columns, window.rows, std::numeric_limits<float>::quiet_NaN()));
+  for (Grid<float>& band : tile)
+    band = Grid<float>(window.columns, window.rows, std::numeric_limits<float>::quiet_NaN());
   const auto band = [&](HazardBand b) -> Grid<float>& { return tile[static_cast<std::size_t>(b)]; };
   band(HazardBand::object) = object_hazard(near, window, where, request_.vehicle.base_radius());
 
