@@ -47,7 +47,7 @@ struct ImageRecord {
 struct LandmarkParts {
   std::size_t count = 0;
   std::function<std::shared_ptr<const std::vector<Landmark>>(std::size_t part)> landmarks = {};
-  /// Observations of the landmarks of that part; none is rejected.
+  /// Observations of the landmarks of that part, none rejected; null: none.
   std::function<std::shared_ptr<const std::vector<Observation>>(std::size_t part)> evidence = {};
   /// Rejected observations, divided into the same number of parts; null: none.
   std::function<std::shared_ptr<const std::vector<Observation>>(std::size_t part)> rejected = {};

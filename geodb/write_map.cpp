@@ -76,7 +76,7 @@ constexpr std::int64_t kLarge = 50'000;  // landmarks of a large map
 
 // In kB. A larger cache does not write a map faster. SQLite's sorter works in runs of its size, which a
 // second thread sorts while the first one scans.
-constexpr const char* kCache = "PRAGMA cache_size = -8192";
+constexpr const char* kCache = "PRAGMA cache_size = -4096";
 
 // Large pages save a quarter of the time for large maps; small pages save space for small maps. SQLite
 // converts the cache size to pages when it is set, so it is set again after the page size.

@@ -83,7 +83,7 @@ void LandmarkOrder::visit(const std::function<void(const Landmark&, std::int64_t
 }
 
 void LandmarkOrder::visit_evidence(const std::function<void(const Observation&, std::int64_t)>& take) const {
-  if (contents_->parts.count == 0) return;
+  if (contents_->parts.count == 0 || !contents_->parts.evidence) return;
   struct Piece {
     std::int64_t row_index;
     std::uint32_t index;  // in its part

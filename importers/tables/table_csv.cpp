@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
 #include "core/error.hpp"
 #include "importers/gdal_session.hpp"
@@ -14,38 +16,49 @@
 namespace waymark::importers {
 namespace {
 
-constexpr GIntBig kMaxBytes = GIntBig{4} << 30;  // bytes of a text table
+constexpr std::size_t kPiece = std::size_t{1} << 20;  // bytes that are read together
 
-std::string read_text(const std::string& path) {
-  const GdalListener quiet;
-  const std::string name = path.ends_with(".gz") && !path.starts_with("/vsi") ? "/vsigzip/" + path : path;
-  VSIStatBufL status;
-  if (VSIStatL(name.c_str(), &status) != 0)
-    throw Error(ErrorCode::input, "there is no such file", path, "check the path");
-  if (VSI_ISDIR(status.st_mode))
-    throw Error(ErrorCode::input, "this is a folder, not a table", path, "name a file in it");
-  GByte* bytes = nullptr;
-  vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, name.c_str(), &bytes, &size, kMaxBytes))
-    throw Error(ErrorCode::input, "the table cannot be read: " + quiet.error_about(path), path,
-                "check its permissions; split tables above 4 GB, or store them as a GeoPackage");
-  std::string text(bytes, bytes + size);
-  VSIFree(bytes);
-  return text;
-}
+/// Text of a file, piece by piece.
+class TextPieces {
+ public:
+  explicit TextPieces(const std::string& path) : path_(path) {
+    const GdalListener quiet;
+    const std::string name = path.ends_with(".gz") && !path.starts_with("/vsi") ? "/vsigzip/" + path : path;
+    VSIStatBufL status;
+    if (VSIStatL(name.c_str(), &status) != 0)
+      throw Error(ErrorCode::input, "there is no such file", path, "check the path");
+    if (VSI_ISDIR(status.st_mode))
+      throw Error(ErrorCode::input, "this is a folder, not a table", path, "name a file in it");
+    file_.reset(VSIFOpenL(name.c_str(), "rb"));
+    if (!file_) refuse(quiet);
+  }
 
-/// Refuses only encodings that cannot be read at all: other ones garble names, but never numbers.
-void check_text(std::string& text, const std::string& path) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
-    throw Error(ErrorCode::input, "the table is in UTF-16", path,
-                "convert it: iconv -f UTF-16 -t UTF-8 TABLE > utf8.csv");
-  if (text.find('\0') != std::string::npos)
-    throw Error(ErrorCode::input, "this is no text table: it holds zero bytes", path,
-                "pass --from ogr for a vector layer that GDAL reads");
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-    throw Error(ErrorCode::input, "the table is empty", path, "fetch or write it again");
-}
+  /// Appends a piece; false at the end of the file.
+  bool append_to(std::string& text) {
+    const GdalListener quiet;
+    const std::size_t before = text.size();
+    text.resize(before + kPiece);
+    const std::size_t got = VSIFReadL(text.data() + before, 1, kPiece, file_.get());
+    text.resize(before + got);
+    if (got < kPiece && !quiet.error_about(path_).empty()) refuse(quiet);
+    if (text.find('\0', before) != std::string::npos)
+      throw Error(ErrorCode::input, "this is no text table: it holds zero bytes", path_,
+                  "pass --from ogr for a vector layer that GDAL reads");
+    return got > 0;
+  }
+
+ private:
+  struct Close {
+    void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+  };
+  [[noreturn]] void refuse(const GdalListener& heard) const {
+    throw Error(ErrorCode::input, "the table cannot be read: " + heard.error_about(path_), path_,
+                "check its permissions, and fetch it again if it is cut off");
+  }
+
+  std::string path_;
+  std::unique_ptr<VSILFILE, Close> file_;
+};
 
 bool is_blank(char c) {
   return c == ' ' || c == '\t';
@@ -75,17 +88,22 @@ std::string without_apostrophe(std::string cell) {
 
 class CsvTable final : public TableSource {
  public:
-  explicit CsvTable(const std::string& path) : text_(read_text(path)) {
+  explicit CsvTable(const std::string& path) : pieces_(path) {
     header_.path = path;
     header_.layer = std::filesystem::path(path).stem().string();
-    check_text(text_, path);
+    begin_text();
     read_header();
   }
 
   const TableHeader& header() const override { return header_; }
 
   bool next(TableRow& row) override {
-    if (!read_row(row)) return false;
+    if (first_row_) {
+      row = std::move(*first_row_);
+      first_row_.reset();
+      return true;
+    }
+    if (!read_whole_row(row)) return false;
     const std::size_t wanted = header_.columns.size();
     if (row.cells.size() == wanted + 1 && row.cells.back().empty()) row.cells.pop_back();
     if (row.cells.size() != wanted)
@@ -96,13 +114,48 @@ class CsvTable final : public TableSource {
   }
 
  private:
+  /// Reads the first pieces. Refuses only encodings that cannot be read at all: other ones garble names, but
+  /// never numbers.
+  void begin_text() {
+    while (text_.find_first_not_of(" \t\r\n") == std::string::npos && !ended_) {
+      ended_ = !pieces_.append_to(text_);
+      if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+      if (text_.starts_with("\xFF\xFE") || text_.starts_with("\xFE\xFF"))
+        throw Error(ErrorCode::input, "the table is in UTF-16", header_.path,
+                    "convert it: iconv -f UTF-16 -t UTF-8 TABLE > utf8.csv");
+    }
+    if (text_.find_first_not_of(" \t\r\n") == std::string::npos)
+      throw Error(ErrorCode::input, "the table is empty", header_.path, "fetch or write it again");
+  }
+
+  /// Doubles the text. Returns false if that was all.
+  bool read_more() {
+    for (const std::size_t wanted = 2 * text_.size() + 1; !ended_ && text_.size() < wanted;)
+      ended_ = !pieces_.append_to(text_);
+    return !ended_;
+  }
+
+  /// Reads a row again with more text while it reaches the end of what was read.
+  bool read_whole_row(TableRow& row) {
+    for (;;) {
+      const std::size_t start = at_;
+      const std::int64_t line = line_;
+      const bool found = read_row(row);
+      if (at_ < text_.size() || ended_) return found;
+      text_.erase(0, start);
+      at_ = 0, line_ = line;
+      read_more();
+    }
+  }
+
   void read_header() {
-    TableRow first;
-    skip_comments();
-    const std::size_t start = at_;
-    const std::int64_t line = line_;
+    do {
+      at_ = 0, line_ = 1;
+      skip_comments();
+    } while (text_.find('\n', at_) == std::string::npos && read_more());
     separator_ = separator_of(std::string_view(text_).substr(at_, text_.find('\n', at_) - at_));
-    if (!read_row(first))
+    TableRow first;
+    if (!read_whole_row(first))
       throw Error(ErrorCode::input, "the table has comments, but no row", header_.path,
                   "fetch or write it again");
     header_.decimal_comma = separator_ != ',';
@@ -115,8 +168,7 @@ class CsvTable final : public TableSource {
       return;
     }
     for (std::size_t i = 1; i <= first.cells.size(); ++i) header_.columns.push_back(fmt::format("c{}", i));
-    at_ = start;
-    line_ = line;
+    first_row_ = std::move(first);
   }
 
   /// Skips empty lines and comments between rows.
@@ -165,9 +217,11 @@ class CsvTable final : public TableSource {
       else
         break;
     }
-    if (at_ >= text_.size())
+    if (at_ >= text_.size()) {
+      if (!ended_) return cell;
       throw Error(ErrorCode::input, "a quote is opened and never closed", row_location(row),
                   "close it, or double the quotes inside a value");
+    }
     ++at_;
     while (at_ < text_.size() && text_[at_] != separator_ && text_[at_] != '\n') ++at_;
     return without_apostrophe(std::move(cell));
@@ -186,8 +240,11 @@ class CsvTable final : public TableSource {
     return false;
   }
 
-  std::string text_;
+  TextPieces pieces_;
+  std::string text_;    ///< not yet read as rows, but for `at_` bytes
+  bool ended_ = false;  ///< all of the file is or was in the text
   TableHeader header_;
+  std::optional<TableRow> first_row_;  ///< of a table without names, not yet returned
   char separator_ = ',';
   std::size_t at_ = 0;
   std::int64_t line_ = 1;
