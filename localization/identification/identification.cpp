@@ -255,6 +255,10 @@ std::string_view IdentificationOptions::chosen_association() const {
   return association != "auto" ? association : distance == "paper" ? "nearest" : "joint";
 }
 
+bool IdentificationOptions::may_be_mapped(const SeenLandmark& seen) const {
+  return !seen.type || held_types.empty() || std::ranges::find(held_types, *seen.type) != held_types.end();
+}
+
 bool IdentificationOptions::distance_applies() const {
   return distance != "paper" || (association != "joint" && association != "jcbb");
 }
@@ -296,6 +300,8 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     const auto found = map.find(*seen.identity);
     if (!found) return {Verdict::unknown_type, {}};
     reach = {*found};
+  } else if (!options.may_be_mapped(seen)) {
+    return {Verdict::unknown_type, {}};
   } else {
     reach = landmarks_in_reach(seen, sensor, robot, map, scales, options);
     if (options.use_terrain)

@@ -302,6 +302,25 @@ TEST(Identify, SaysWhyNot) {
   EXPECT_EQ(verdict(s), Verdict::unknown_type);
 }
 
+// Of an object of a type that the map lacks, no fit is expected, so it is no sign of a wrong pose.
+TEST(Identify, KnowsTheTypesThatTheMapHolds) {
+  MapLandmark near = landmark_at(10, 0, 1), far = landmark_at(90, 0, 2);
+  far.type = TypeId{2};
+  const LandmarkGrid map({near, far});
+  IdentificationOptions options{.held_types = {TypeId{0}, TypeId{2}}};
+  const auto verdict = [&](TypeId type, std::optional<LandmarkKey> identity = {}) {
+    SeenLandmark s = seen_at(10, 0);
+    s.type = type, s.identity = identity;
+    return identify({{}, {s}}, {}, map, {}, options).matches[0].verdict;
+  };
+  EXPECT_EQ(verdict(0), Verdict::matched);
+  EXPECT_EQ(verdict(1), Verdict::unknown_type);
+  EXPECT_EQ(verdict(2), Verdict::nothing_near);
+  EXPECT_EQ(verdict(1, 1), Verdict::matched) << "its identity is known";
+  options.held_types = {};
+  EXPECT_EQ(verdict(1), Verdict::nothing_near) << "what the map holds is not known";
+}
+
 TEST(Identify, TwinsAreAmbiguousUntilFeaturesDiffer) {
   MapLandmark small = landmark_at(10, 0.1, 1), large = landmark_at(10, -0.1, 2);
   small.features.value[0] = 0.3;
