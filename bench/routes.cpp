@@ -4,10 +4,12 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/random.hpp"
 #include "planning/observability.hpp"
 #include "planning/route_search.hpp"
+#include "planning/sd_bounds.hpp"
 
 namespace waymark::bench {
 namespace {
@@ -84,6 +86,19 @@ void route(benchmark::State& state) {
   state.counters["limit"] = limit;
 }
 BENCHMARK(route)->ArgsProduct({{1, 4}, {100, 50, 25}})->Unit(benchmark::kMillisecond);
+
+void weighted_route(benchmark::State& state) {
+  const auto map = clustered_landmarks();
+  RouteProblem problem = square_kilometre(map);
+  problem.min_sd = relaxed_sd(problem, std::numeric_limits<double>::infinity());
+  for (auto _ : state) {
+    const auto found = search_by_sigma(
+        problem, {.weight = double(state.range(1)) / 10, .labels = static_cast<int>(state.range(0))});
+    state.counters["metres"] = found ? found->length : 0;
+    state.counters["cost"] = found ? found->cost : 0;
+  }
+}
+BENCHMARK(weighted_route)->ArgsProduct({{1, 4}, {1, 10, 100}})->Unit(benchmark::kMillisecond);
 
 void relaxed_test(benchmark::State& state) {
   const auto map = clustered_landmarks();

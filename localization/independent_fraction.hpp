@@ -8,7 +8,7 @@ namespace waymark::localization {
 
 /// Estimates which fraction of the variance that a map states for its landmarks is independent between them.
 /// The rest is a shift that neighbours share, which leaves no difference between what is seen and the map.
-/// - Likelihood of the innovations of each landmark's first sighting,, on a grid of fractions.
+/// - Likelihood of the innovations of each landmark's first sighting, on a grid of fractions.
 ///   Later sightings repeat the error of the landmark.
 /// - The sensor's noise may be half to twice as large as stated, so that only errors of the map larger than
 ///   it decide.

@@ -83,25 +83,32 @@ std::int64_t RouteCells::index(double px, double py) const {
   return static_cast<std::int64_t>(r) * columns + static_cast<std::int64_t>(c);
 }
 
-InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
-                                        const localization::LandmarkGrid& map,
-                                        const LandmarkSensing& sensing) {
-  InformationField field{cells, sensing.coverage.view < 360 ? kHeadings : 1, {}};
-  field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
-  const auto fill_row = [&](std::int64_t row) {
+void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,
+                 const VisitCell& visit) {
+  const int headings = informative_headings(sensing);
+  const auto visit_row = [&](std::int64_t row) {
     for (std::int64_t i = row * cells.columns; i < (row + 1) * cells.columns; ++i) {
       if (!passable[static_cast<std::size_t>(i)]) continue;
       const LandmarkSensing here = sensing_at_one_position(sensing);
-      for (int h = 0; h < field.headings; ++h)
-        field.at[static_cast<std::size_t>(i * field.headings + h)] =
-            information_at(heading_pose(cells.x(i), cells.y(i), h), map, here);
+      for (int h = 0; h < headings; ++h) visit(i, h, here);
     }
   };
-  if (sensing.visible) {  // a line of sight reads the DEM through a cache of one thread
-    for (std::int64_t row = 0; row < cells.rows; ++row) fill_row(row);
+  if (sensing.visible) {
+    for (std::int64_t row = 0; row < cells.rows; ++row) visit_row(row);
   } else {
-    tbb::parallel_for(std::int64_t{0}, cells.rows, fill_row);
+    tbb::parallel_for(std::int64_t{0}, cells.rows, visit_row);
   }
+}
+
+InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
+                                        const localization::LandmarkGrid& map,
+                                        const LandmarkSensing& sensing) {
+  InformationField field{cells, informative_headings(sensing), {}};
+  field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
+  visit_cells(cells, passable, sensing, [&](std::int64_t i, int h, const LandmarkSensing& here) {
+    field.at[static_cast<std::size_t>(i * field.headings + h)] =
+        information_at(heading_pose(cells.x(i), cells.y(i), h), map, here);
+  });
   return field;
 }
 

@@ -56,6 +56,11 @@ struct RouteCells {
   std::int64_t index(double x, double y) const;
 };
 
+/// Returns the number of headings at which the information differs: 1 if the sensor sees all round.
+inline int informative_headings(const LandmarkSensing& sensing) {
+  return sensing.coverage.view < 360 ? kHeadings : 1;
+}
+
 /// Information in every cell and heading.
 struct InformationField {
   RouteCells cells;
@@ -66,6 +71,12 @@ struct InformationField {
     return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
   }
 };
+/// Calls `visit` for each passable cell and each heading that has information of its own, with the sensing
+/// there. Rows run in parallel, but for a line of sight: it reads the DEM through a cache of one thread.
+using VisitCell = std::function<void(std::int64_t cell, int heading, const LandmarkSensing& here)>;
+void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,
+                 const VisitCell& visit);
+
 /// Computes the field of the cells that are `passable`; others are empty. Threads do not change it.
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
                                         const localization::LandmarkGrid& map,

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/random.hpp"
+#include "planning/sd_bounds.hpp"
 
 namespace waymark::planning {
 namespace {
@@ -65,25 +66,21 @@ std::vector<double> WorldBeliefs::position_sds() const {
   return sds;
 }
 
-InformationField max_information_field(const RouteCells& cells, const std::vector<char>& passable,
-                                       const localization::LandmarkGrid& map,
-                                       const LandmarkSensing& sensing) {
-  InformationField field{cells, sensing.coverage.view < 360 ? kHeadings : 1, {}};
-  field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
-  for (std::int64_t cell = 0; cell < cells.count(); ++cell) {
-    if (!passable[static_cast<std::size_t>(cell)]) continue;
-    const LandmarkSensing here = sensing_at_one_position(sensing);
-    for (int h = 0; h < field.headings; ++h) {
-      const localization::Pose2 pose = heading_pose(cells.x(cell), cells.y(cell), h);
-      Information& sum = field.at[static_cast<std::size_t>(cell * field.headings + h)];
-      visit_information(pose, map, here, [&](std::uint32_t i, const Symmetric3& information) {
-        const double detection =
-            detection_probability(sensing.coverage, (map[i].at - pose.at()).norm(), map[i].diameter);
-        if (detection > 0) add(sum.rate, information, 1 - kRepeated + kRepeated / detection);
-      });
-    }
-  }
-  return field;
+std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::vector<char>& passable,
+                                          const localization::LandmarkGrid& map,
+                                          const LandmarkSensing& sensing) {
+  std::vector<double> max_rates(slot(cells.count()), 0);
+  visit_cells(cells, passable, sensing, [&](std::int64_t cell, int heading, const LandmarkSensing& here) {
+    const localization::Pose2 pose = heading_pose(cells.x(cell), cells.y(cell), heading);
+    Symmetric3 sum;
+    visit_information(pose, map, here, [&](std::uint32_t i, const Symmetric3& information) {
+      const double detection =
+          detection_probability(sensing.coverage, (map[i].at - pose.at()).norm(), map[i].diameter);
+      if (detection > 0) add(sum, information, 1 - kRepeated + kRepeated / detection);
+    });
+    max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sum));
+  });
+  return max_rates;
 }
 
 std::vector<double> follow_route(WorldBeliefs& beliefs, const RouteProblem& problem,

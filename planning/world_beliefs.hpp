@@ -33,9 +33,11 @@ class WorldBeliefs {
   std::vector<std::vector<Draw>> draws_;  // per world and landmark
 };
 
-/// Returns the most information that any world can draw in every cell: all landmarks exist and are seen well.
-InformationField max_information_field(const RouteCells& cells, const std::vector<char>& passable,
-                                       const localization::LandmarkGrid& map, const LandmarkSensing& sensing);
+/// Returns the largest information per metre that any world can draw in each cell, as max_rate() has it: all
+/// landmarks exist and are seen well.
+std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::vector<char>& passable,
+                                          const localization::LandmarkGrid& map,
+                                          const LandmarkSensing& sensing);
 
 /// Follows a route, whose covariances become those over all worlds. Returns the largest sd in each world.
 std::vector<double> follow_route(WorldBeliefs& beliefs, const RouteProblem& problem,

@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
+#include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <set>
+
+#include "planning/sd_bounds.hpp"
+#include "tests/support/small_routes.hpp"
 
 namespace waymark::test {
 namespace {
@@ -15,60 +19,6 @@ namespace {
 using namespace planning;
 using localization::LandmarkGrid;
 using localization::MapLandmark;
-
-MapLandmark landmark(double x, double y, double sd = 0.1) {
-  MapLandmark l;
-  l.at = {x, y};
-  l.covariance = Eigen::Matrix2d::Identity() * sd * sd;
-  return l;
-}
-
-LandmarkSensing sensing(double range, double view = 360) {
-  return {.coverage = {.range = range, .view = view, .range_sd = 0.1, .bearing_sd = 0.6}};
-}
-
-RouteProblem problem_of(std::int64_t columns, std::int64_t rows, const LandmarkGrid& map,
-                        const LandmarkSensing& sensor, double cell = 2) {
-  RouteProblem problem;
-  const RouteCells cells{.cell = cell, .columns = columns, .rows = rows};
-  problem.passable.assign(static_cast<std::size_t>(cells.count()), 1);
-  problem.field = make_information_field(cells, problem.passable, map, sensor);
-  problem.to = cells.count() - 1;
-  problem.start = {0.01, 0, 0.01, 0, 0, 0.001};
-  return problem;
-}
-
-/// The cheapest of all paths that visit no cell twice.
-double by_enumeration(const RouteProblem& problem, double max_sd) {
-  const RouteCells& cells = problem.field.cells;
-  double best = std::numeric_limits<double>::infinity();
-  std::vector<char> visited(static_cast<std::size_t>(cells.count()), 0);
-  const std::function<void(std::int64_t, int, const Symmetric3&, double)> visit =
-      [&](std::int64_t cell, int heading, const Symmetric3& p, double length) {
-        if (length >= best) return;
-        if (cell == problem.to) {
-          best = length;
-          return;
-        }
-        visited[static_cast<std::size_t>(cell)] = 1;
-        for (int h = 0; h < kHeadings; ++h) {
-          const double angle = h * std::numbers::pi / 4;
-          const std::int64_t c = cell % cells.columns + std::lround(std::cos(angle)),
-                             r = cell / cells.columns + std::lround(std::sin(angle));
-          if (c < 0 || r < 0 || c >= cells.columns || r >= cells.rows) continue;
-          const std::int64_t next = r * cells.columns + c;
-          if (visited[static_cast<std::size_t>(next)]) continue;
-          const double turn =
-              heading < 0 ? 0 : std::abs(localization::wrap_angle((h - heading) * std::numbers::pi / 4));
-          const Symmetric3 after = step_belief(problem, p, next, h, turn);
-          if (position_sd(after) > max_sd) continue;
-          visit(next, h, after, length + cells.cell * (h % 2 ? std::numbers::sqrt2 : 1));
-        }
-        visited[static_cast<std::size_t>(cell)] = 0;
-      };
-  visit(problem.from, -1, problem.start, 0);
-  return best;
-}
 
 TEST(RouteSearch, ExactSearchEqualsEnumeration) {
   int limited = 0, infeasible = 0;
@@ -101,55 +51,79 @@ TEST(RouteSearch, ExactSearchEqualsEnumeration) {
   EXPECT_GT(infeasible, 3);
 }
 
-/// Relaxes every step until nothing changes (Bellman and Ford).
-std::vector<double> by_relaxation(const RouteCells& cells, const std::vector<char>& passable,
-                                  std::int64_t to) {
-  const auto is_open = [&](std::int64_t c, std::int64_t r) {
-    return c >= 0 && r >= 0 && c < cells.columns && r < cells.rows &&
-           passable[static_cast<std::size_t>(r * cells.columns + c)];
+TEST(RouteSearch, ExactWeightedSearchEqualsEnumeration) {
+  int longer = 0;
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::vector<MapLandmark> marks;
+    for (int i = 0; i < 2; ++i) marks.push_back(landmark(24 * uniform(random), 24 * uniform(random)));
+    const RouteProblem problem = problem_of(4, 4, LandmarkGrid(marks), sensing(7, seed % 2 ? 90 : 360), 8);
+    const double weight = std::pow(10, 2 * uniform(random));
+    const auto route = search_by_sigma(problem, {.weight = weight, .labels = 100000, .tolerance = 0});
+    ASSERT_TRUE(route) << "seed " << seed;
+    // A search may visit a cell twice and be cheaper for it; without that both are equal.
+    std::set<std::int64_t> cells;
+    for (const RouteNode& node : route->nodes) cells.insert(node.cell);
+    const double expected = by_enumeration(problem, 1e9, weight);
+    EXPECT_LE(route->cost, expected * (1 + 1e-12)) << "seed " << seed;
+    const bool simple = cells.size() == route->nodes.size();
+    EXPECT_TRUE(!simple || std::abs(route->cost - expected) < 1e-9 * expected) << "seed " << seed;
+    longer += route->length > 3 * 8 * std::numbers::sqrt2 + 1e-9;
+  }
+  EXPECT_GT(longer, 3);  // the cases are not all trivial
+}
+
+/// Keeps the first label of each cell and heading that is taken from one ordered list, without bounds.
+double cost_with_one_label(const RouteProblem& problem, double weight) {
+  struct Open {
+    double cost;
+    int heading;
+    Symmetric3 covariance;
+    bool is_start;
   };
-  std::vector<double> distance(static_cast<std::size_t>(cells.count()),
-                               std::numeric_limits<double>::infinity());
-  distance[static_cast<std::size_t>(to)] = 0;
-  for (bool changes = true; changes;) {
-    changes = false;
-    for (std::int64_t i = 0; i < cells.count(); ++i)
-      for (int dc = -1; dc <= 1; ++dc)
-        for (int dr = -1; dr <= 1; ++dr) {
-          const std::int64_t c = i % cells.columns, r = i / cells.columns;
-          if ((!dc && !dr) || !is_open(c + dc, r + dr) || !is_open(c + dc, r) || !is_open(c, r + dr))
-            continue;
-          const double there =
-              distance[static_cast<std::size_t>(i)] + cells.cell * (dc && dr ? std::numbers::sqrt2 : 1);
-          double& best = distance[static_cast<std::size_t>((r + dr) * cells.columns + c + dc)];
-          if (there < best) best = there, changes = true;
-        }
+  std::multimap<double, std::pair<std::int64_t, Open>> open;
+  const std::vector<double> to_go =
+      cost_to_go(problem, weight, relaxed_sd(problem, std::numeric_limits<double>::infinity()));
+  for (int h = 0; h < kHeadings; ++h)
+    open.emplace(to_go[0], std::pair(problem.from, Open{0, h, problem.start, true}));
+  std::set<std::pair<std::int64_t, int>> closed;
+  while (!open.empty()) {
+    const auto [cell, label] = open.begin()->second;
+    open.erase(open.begin());
+    if (!closed.emplace(cell, label.heading).second) continue;
+    if (cell == problem.to) return label.cost;
+    for (int h = 0; h < kHeadings; ++h) {
+      const std::int64_t next = neighbour(problem.field.cells, problem.passable, cell, h);
+      if (next < 0 || (label.is_start && h != label.heading)) continue;
+      const Symmetric3 p = step_belief(problem, label.covariance, next, h, turn_between(label.heading, h));
+      const double cost = label.cost + step_length(problem.field.cells, h) * (1 + weight * position_sd(p));
+      open.emplace(cost + to_go[slot(next)], std::pair(next, Open{cost, h, p, false}));
+    }
   }
-  return distance;
+  return std::numeric_limits<double>::infinity();
 }
 
-TEST(RouteSearch, DistancesEqualRelaxationToTheLastBit) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  for (int round = 0; round < 60; ++round) {
-    const RouteCells cells{
-        .cell = 0.1 + 3 * uniform(random), .columns = 1 + round % 23, .rows = 1 + round * 7 % 31};
-    std::vector<char> passable(static_cast<std::size_t>(cells.count()));
-    const double open = 0.5 + 0.5 * uniform(random);
-    for (char& p : passable) p = uniform(random) < open;
-    const auto to = static_cast<std::int64_t>(uniform(random) * static_cast<double>(cells.count()));
-    passable[static_cast<std::size_t>(to)] = 1;
-    EXPECT_EQ(distances_to(cells, passable, to), by_relaxation(cells, passable, to)) << "round " << round;
+TEST(RouteSearch, OneLabelIsTheFirstOfItsCellAndHeading) {
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const LandmarkGrid map = scattered_landmarks(seed);
+    const RouteProblem problem = problem_of(41, 41, map, sensing(12, seed % 2 ? 360 : 120));
+    const double weight = seed;
+    const auto route = search_by_sigma(problem, {.weight = weight, .labels = 1});
+    ASSERT_TRUE(route);
+    EXPECT_EQ(route->cost, cost_with_one_label(problem, weight)) << "seed " << seed;
   }
 }
 
-/// Returns 25 landmarks in a square of 80 m.
-LandmarkGrid scattered_landmarks(unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<MapLandmark> marks;
-  for (int i = 0; i < 25; ++i) marks.push_back(landmark(80 * uniform(random), 80 * uniform(random)));
-  return LandmarkGrid(marks);
+TEST(RouteSearch, MaxCostDropsOnlyDearerRoutes) {
+  const LandmarkGrid map = scattered_landmarks(6);
+  const RouteProblem problem = problem_of(41, 41, map, sensing(12));
+  const auto free = search_by_sigma(problem, {.weight = 3});
+  ASSERT_TRUE(free);
+  const auto bounded = search_by_sigma(problem, {.weight = 3, .max_cost = free->cost * (1 + 1e-9)});
+  ASSERT_TRUE(bounded);
+  EXPECT_EQ(bounded->cost, free->cost);
+  EXPECT_FALSE(search_by_sigma(problem, {.weight = 3, .max_cost = free->cost * 0.99}));
 }
 
 TEST(RouteSearch, GivenDistancesChangeNothing) {
@@ -162,7 +136,10 @@ TEST(RouteSearch, GivenDistancesChangeNothing) {
   if (!own) return;
   EXPECT_EQ(own->length, given->length);
   EXPECT_EQ(own->worst_sd, given->worst_sd);
-  EXPECT_EQ(relaxed_sd(problem, 1.2), relaxed_sd(problem, 1.2, max_rate(problem.field)));
+  const auto weighted = search_by_sigma(problem, {.weight = 2});
+  problem.min_sd = relaxed_sd(problem, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(weighted->cost, search_by_sigma(problem, {.weight = 2})->cost);
+  EXPECT_EQ(relaxed_sd(problem, 1.2), relaxed_sd(problem, 1.2, {problem.noise, max_rate(problem.field)}));
 }
 
 TEST(RouteSearch, MoreLabelsAreNeverLongerAndTheLimitIsKept) {

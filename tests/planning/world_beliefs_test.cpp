@@ -7,6 +7,8 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "planning/sd_bounds.hpp"
+
 namespace waymark::test {
 namespace {
 
@@ -79,12 +81,13 @@ TEST(WorldBeliefs, MaxInformationBoundsEveryWorld) {
   RouteProblem problem;
   const RouteCells cells{.cell = 2, .columns = 16, .rows = 1};
   problem.passable.assign(16, 1);
-  problem.field = max_information_field(cells, problem.passable, map, sensing);
+  problem.field = make_information_field(cells, problem.passable, map, sensing);
   problem.to = 15;
   problem.start = {0.01, 0, 0.01, 0, 0, 3e-4};
   Route route;
   for (std::int64_t cell = 0; cell < 16; ++cell) route.nodes.push_back({cell, 0, {}});
-  const double bound = relaxed_sd(problem, 1e6)[15];
+  const std::vector<double> max_rates = max_rate_in_any_world(cells, problem.passable, map, sensing);
+  const double bound = relaxed_sd(problem, 1e6, {problem.noise, max_rates})[15];
   double least = 1e9;
   for (std::int64_t seed = 1; seed <= 40; ++seed) {
     WorldBeliefs beliefs(problem.start, {}, map, 1, seed);

@@ -52,7 +52,8 @@ struct Times {
   IntegerEncoder steps{32, 9};
 
   void put(ArithmeticEncoder& into, std::int64_t next) {
-    const std::int64_t wide = next - time;
+    const auto wide =  // modulo 2^64, as readers add it
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(next) - static_cast<std::uint64_t>(time));
     const auto change = static_cast<std::int32_t>(wide);
     if (change != wide) {
       step == 0 ? into.symbol(starts, 2) : into.symbol(multiples, 512);

@@ -18,8 +18,8 @@
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
-#include "planning/world_beliefs.hpp"
 #include "workflows/localization/robot_map.hpp"
+#include "workflows/planning/leg_planner.hpp"
 #include "workflows/planning/path_clearance.hpp"
 #include "workflows/planning/planning_sensor.hpp"
 #include "workflows/planning/route_cells.hpp"
@@ -57,15 +57,6 @@ void check(const RouteRequest& request) {
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
 }
 
-constexpr int kTrials = 8;      // searches for the limit of a search
-constexpr double kJust = 0.95;  // of a limit: a route that reaches it is not longer than needed
-
-constexpr std::int64_t kManyLabels = 50'000;  // cells up to which each trial has four labels
-
-std::size_t slot(std::int64_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Returns the odometry that a log states. Sets the start's uncertainty if the log has it.
 planning::Odometry read_odometry(const RouteRequest& request, const RobotMap& map, double& start_sd,
                                  double& start_yaw_sd) {
@@ -92,219 +83,63 @@ planning::Odometry read_odometry(const RouteRequest& request, const RobotMap& ma
                   (has_hazards ? ", or pass --hazards none" : ", or the area larger"));
 }
 
-/// Everything that legs of one request share.
-struct Planner {
-  const RouteRequest& request;
-  const RobotMap& map;
-  localization::LandmarkGrid landmarks;
-  planning::LandmarkSensing sensing;
-  planning::RouteProblem problem;
-  std::map<std::uint64_t, std::string> uids;
-  planning::Odometry odometry = {};
-  std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
-  bool worlds_agree = true;                           ///< at the start of the leg: all have problem.start
+using Uids = std::map<std::uint64_t, std::string>;
 
-  /// A route of the search, which takes all errors of the odometry as independent and all misses of a
-  /// landmark.
-  std::optional<planning::Route> search_white(double max_sd, double weight, int labels) const {
-    return planning::search_by_sigma(problem, {.max_sd = max_sd, .weight = weight, .labels = labels});
-  }
-  /// The same route with the belief over worlds.
-  planning::Route with_belief(planning::Route route) const {
-    planning::WorldBeliefs beliefs = *before;
-    planning::follow_route(beliefs, problem, landmarks, sensing, route);
-    return route;
-  }
-  std::optional<planning::Route> search(double max_sd, double weight, int labels) const {
-    auto route = search_white(max_sd, weight, labels);
-    return route ? std::optional(with_belief(std::move(*route))) : std::nullopt;
-  }
+/// Returns the uids of the three landmarks that inform most at a pose.
+std::vector<std::string> important_landmarks(const LegPlanner& planner, const Uids& uids,
+                                             const localization::Pose2& pose) {
+  const localization::LandmarkGrid& landmarks = planner.landmarks;
+  const planning::LandmarkSensing& sensing = planner.sensing;
+  std::vector<std::pair<double, std::string>> found;
+  planning::visit_information(pose, landmarks, sensing, [&](std::uint32_t i, const planning::Symmetric3& j) {
+    if (landmarks[i].quality < sensing.min_confidence) return;
+    const auto uid = uids.find(landmarks[i].key);
+    found.emplace_back(-(j.xx + j.yy) * landmarks[i].quality, uid == uids.end() ? "" : uid->second);
+  });
+  std::ranges::sort(found);
+  std::vector<std::string> first;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, found.size()); ++i) first.push_back(found[i].second);
+  return first;
+}
 
-  /// Grows the number of labels until the cost stops to fall.
-  std::optional<planning::Route> best(double max_sd, double weight) {
-    std::optional<planning::Route> route;
-    for (const int labels : {1, 4, 8}) {
-      auto next = search(max_sd, weight, labels);
-      if (next && route && !(next->cost < route->cost - 1e-9)) break;
-      if (next) route = std::move(next);
-    }
-    return route;
+PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids& uids,
+                      const std::vector<planning::Route>& legs) {
+  const planning::RouteProblem& problem = planner.problem;
+  PlannedRoute route;
+  const planning::RouteCells& cells = problem.field.cells;
+  std::vector<planning::RouteNode> nodes;
+  planning::Route whole;
+  for (const planning::Route& leg : legs) {
+    route.length += leg.length, route.outside += leg.outside;
+    nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
   }
-
-  /// Routes that weigh the sd, which the search for a limit does not beyond the limit.
-  std::vector<planning::Route> weighted() const {
-    std::vector<planning::Route> routes;
-    for (const double weight : {0.3, 1.0, 3.0, 10.0})
-      if (auto route = search(1e9, weight, 1)) routes.push_back(std::move(*route));
-    return routes;
+  whole.nodes = nodes;
+  planning::WorldBeliefs beliefs(problem.start, planner.odometry, planner.landmarks, planner.request.worlds,
+                                 planner.request.seed);
+  std::vector<double> worst =
+      planning::follow_route(beliefs, problem, planner.landmarks, planner.sensing, whole);
+  nodes = whole.nodes;
+  route.worst_sd = whole.worst_sd;
+  double distance = 0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const planning::RouteNode& node = nodes[k];
+    const double x = cells.x(node.cell), y = cells.y(node.cell);
+    const double length = k ? std::hypot(x - cells.x(nodes[k - 1].cell), y - cells.y(nodes[k - 1].cell)) : 0;
+    distance += length;
+    const localization::Pose2 pose = planning::heading_pose(x, y, node.heading);
+    const planning::Information& seen = problem.field.get(node.cell, node.heading);
+    if (seen.landmarks == 0) route.without_landmarks += length;
+    route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance, pose.yaw,
+                              node.covariance, position_sd(node.covariance), seen.landmarks,
+                              important_landmarks(planner, uids, pose)});
   }
-
-  /// Returns the shortest route found that keeps a limit. The limit of the search is moved until the route
-  /// with the belief over worlds just keeps it.
-  std::optional<planning::Route> keep(double limit) const {
-    const double shortest = problem.to_go[slot(problem.from)];
-    const int labels = problem.field.cells.count() <= kManyLabels ? 4 : 1;
-    std::optional<planning::Route> kept;
-    double low = 0, high = std::numeric_limits<double>::infinity(), asked = limit;
-    for (int i = 0; i < kTrials && !(high < 1.02 * low); ++i) {
-      auto route = search(asked, 0, labels);
-      // The search is too cautious at most where errors persist; else what it refuses cannot be kept.
-      if (!route && i == 0 && (!odometry.drift.any() || min_limit(limit) > limit)) return {};
-      const bool keeps = route && route->worst_sd <= limit;
-      (route && !keeps ? high : low) = asked;
-      if (keeps && (!kept || route->length < kept->length)) kept = std::move(route);
-      if (kept && (kept->length < shortest + 1e-6 || kept->worst_sd > kJust * limit)) return kept;
-      asked = !(low > 0) ? high / 1.5 : std::isfinite(high) ? std::sqrt(low * high) : 1.5 * low;
-    }
-    for (planning::Route& route : weighted())
-      if (route.worst_sd <= limit && (!kept || route.length < kept->length)) kept = std::move(route);
-    return kept;
-  }
-
-  /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
-  /// routes that weigh the sd.
-  planning::Route min_sd_route() const {
-    const planning::Route shortest = *search_white(1e9, 0, 1);
-    planning::Route best = with_belief(shortest);
-    double low = position_sd(problem.start), high = shortest.worst_sd;
-    while (high > 1.01 * low) {
-      const double middle = std::sqrt(low * high);
-      auto route = search_white(middle, 0, 1);
-      if (!route) {
-        low = middle;
-        continue;
-      }
-      high = std::min(middle, route->worst_sd);
-      planning::Route known = with_belief(std::move(*route));
-      if (known.worst_sd < best.worst_sd) best = std::move(known);
-    }
-    for (planning::Route& route : weighted())
-      if (route.worst_sd < best.worst_sd) best = std::move(route);
-    return best;
-  }
-
-  /// Returns a lower bound of the limits that a route can keep in any world, to 1 %; `limit` if the relaxed
-  /// test does not exclude it. Beliefs over worlds that start apart have no such bound. A refused limit is
-  /// asked for twice, so the last answer is kept.
-  double min_limit(double limit) const {
-    if (!worlds_agree) return limit;
-    if (!last_bound || last_bound->first != limit) last_bound = {limit, compute_min_limit(limit)};
-    return last_bound->second;
-  }
-  mutable std::optional<std::pair<double, double>> last_bound = {};  ///< limit of the first leg, its bound
-
-  double compute_min_limit(double limit) const {
-    planning::RouteProblem relaxed = problem;
-    relaxed.noise = odometry.noise;  // persistent errors may be known: they bound nothing
-    std::vector<double> rate = planning::max_rate(relaxed.field);
-    const auto excludes = [&](double sd) {
-      return !std::isfinite(planning::relaxed_sd(relaxed, sd, rate)[slot(problem.to)]);
-    };
-    if (!excludes(limit)) return limit;  // the field of the search has less information
-    relaxed.field =
-        planning::max_information_field(problem.field.cells, problem.passable, landmarks, sensing);
-    rate = planning::max_rate(relaxed.field);
-    if (!excludes(limit)) return limit;
-    double low = limit, high = 2 * limit;
-    while (excludes(high)) low = high, high *= 2;
-    while (high > 1.01 * low) {
-      const double middle = std::sqrt(low * high);
-      (excludes(middle) ? low : high) = middle;
-    }
-    return low;
-  }
-
-  [[noreturn]] void fail_impossible(double min_kept) const {
-    const planning::Route shortest = *search(1e9, 0, 1);
-    throw Error(
-        ErrorCode::input,
-        fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma), request.map,
-        fmt::format("no limit below {:.3g} m can be kept, even if every landmark is seen; the shortest route "
-                    "keeps {:.3g} m; --least-sigma seeks the least",
-                    min_kept, std::ceil(shortest.worst_sd * 1000) / 1000));
-  }
-
-  [[noreturn]] void fail_limit(double least_sd) const {
-    planning::RouteProblem independent = problem;  // persistent errors can be known: they bound nothing
-    independent.noise = odometry.noise;
-    const double bound = planning::relaxed_sd(independent, 1e6)[slot(problem.to)];
-    throw Error(ErrorCode::input,
-                fmt::format("no route keeps the sd of the position below {:g} m", request.limit_sigma),
-                request.map,
-                fmt::format("the least worst sd that was found is {:.2f} m; at the goal it cannot be below "
-                            "{:.2f} m",
-                            least_sd, bound));
-  }
-
-  planning::Route leg() {
-    if (request.keep_landmarks > 0) {
-      if (auto route = planning::search_by_landmarks(problem, request.keep_landmarks, request.by_quality))
-        return with_belief(*route);
-    } else if (request.min_sigma) {
-      return min_sd_route();
-    } else if (request.limit_sigma > 0) {
-      if (auto route = keep(request.limit_sigma)) return *route;
-      if (const double min_kept = min_limit(request.limit_sigma); min_kept > request.limit_sigma)
-        fail_impossible(min_kept);
-      planning::Route safest = min_sd_route();
-      if (!(safest.worst_sd <= request.limit_sigma)) fail_limit(safest.worst_sd);
-      return safest;
-    } else if (auto route = best(1e9, request.weight)) {
-      return *route;
-    }
-    throw Error(ErrorCode::input, "the search found no route", request.map, "");
-  }
-
-  std::vector<std::string> important(const localization::Pose2& pose) const {
-    std::vector<std::pair<double, std::string>> found;
-    planning::visit_information(
-        pose, landmarks, sensing, [&](std::uint32_t i, const planning::Symmetric3& j) {
-          if (landmarks[i].quality < sensing.min_confidence) return;
-          const auto uid = uids.find(landmarks[i].key);
-          found.emplace_back(-(j.xx + j.yy) * landmarks[i].quality, uid == uids.end() ? "" : uid->second);
-        });
-    std::ranges::sort(found);
-    std::vector<std::string> first;
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, found.size()); ++i) first.push_back(found[i].second);
-    return first;
-  }
-
-  PlannedRoute describe(const std::vector<planning::Route>& legs) const {
-    PlannedRoute route;
-    const planning::RouteCells& cells = problem.field.cells;
-    std::vector<planning::RouteNode> nodes;
-    planning::Route whole;
-    for (const planning::Route& leg : legs) {
-      route.length += leg.length, route.outside += leg.outside;
-      nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
-    }
-    whole.nodes = nodes;
-    planning::WorldBeliefs beliefs(problem.start, odometry, landmarks, request.worlds, request.seed);
-    std::vector<double> worst = planning::follow_route(beliefs, problem, landmarks, sensing, whole);
-    nodes = whole.nodes;
-    route.worst_sd = whole.worst_sd;
-    double distance = 0;
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const planning::RouteNode& node = nodes[k];
-      const double x = cells.x(node.cell), y = cells.y(node.cell);
-      const double length =
-          k ? std::hypot(x - cells.x(nodes[k - 1].cell), y - cells.y(nodes[k - 1].cell)) : 0;
-      distance += length;
-      const localization::Pose2 pose = planning::heading_pose(x, y, node.heading);
-      const planning::Information& seen = problem.field.get(node.cell, node.heading);
-      if (seen.landmarks == 0) route.without_landmarks += length;
-      route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance, pose.yaw,
-                                node.covariance, position_sd(node.covariance), seen.landmarks,
-                                important(pose)});
-    }
-    route.final_sd = route.stations.back().sd;
-    std::ranges::sort(worst, std::greater<>());
-    for (const double sd : worst) route.worlds_mean += sd / double(worst.size());
-    const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
-    for (std::size_t i = 0; i < tenth; ++i) route.worlds_worst_tenth += worst[i] / double(tenth);
-    return route;
-  }
-};
+  route.final_sd = route.stations.back().sd;
+  std::ranges::sort(worst, std::greater<>());
+  for (const double sd : worst) route.worlds_mean += sd / double(worst.size());
+  const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
+  for (std::size_t i = 0; i < tenth; ++i) route.worlds_worst_tenth += worst[i] / double(tenth);
+  return route;
+}
 
 }  // namespace
 
@@ -321,14 +156,10 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   std::optional<HazardClasses> hazards;
   if (request.hazards != "none") hazards.emplace(request.hazards, map);
   const HazardClasses* classes = hazards ? &*hazards : nullptr;
-  Planner planner{.request = request,
-                  .map = map,
-                  .landmarks = localization::LandmarkGrid(all_landmarks(map, sensor.get())),
-                  .sensing = {.coverage = coverage},
-                  .problem = {},
-                  .uids = {}};
+  LegPlanner planner(request, localization::LandmarkGrid(all_landmarks(map, sensor.get())), coverage);
+  Uids uids;
   for (const Landmark& landmark : map.store->query({}))
-    planner.uids[localization::landmark_key(landmark.uid)] = landmark.uid;
+    uids[localization::landmark_key(landmark.uid)] = landmark.uid;
   const planning::RouteCells cells = cells_for(points, request.cell, coverage.range);
   planning::RouteProblem& problem = planner.problem;
   problem.passable = passable_cells(cells, classes);
@@ -361,10 +192,10 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     if (points[0].yaw)
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      problem.from = stops[i], problem.to = stops[i + 1];
+      planner.begin_leg(stops[i], stops[i + 1]);
       planner.worlds_agree = i == 0;
-      problem.to_go = planning::distances_to(cells, problem.passable, problem.to);
-      if (!std::isfinite(problem.to_go[slot(problem.from)])) fail_between(request, points[i], points[i + 1]);
+      if (!std::isfinite(problem.to_go[planning::slot(problem.from)]))
+        fail_between(request, points[i], points[i + 1]);
       legs.push_back(search());
       planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
       problem.start = legs.back().nodes.back().covariance;
@@ -375,8 +206,8 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   };
 
   RouteResult result;
-  result.shortest = planner.describe(legs_with([&] { return *planner.search(1e9, 0, 1); }));
-  result.routes.push_back(planner.describe(legs_with([&] { return planner.leg(); })));
+  result.shortest = describe(planner, map, uids, legs_with([&] { return *planner.search({.labels = 1}); }));
+  result.routes.push_back(describe(planner, map, uids, legs_with([&] { return planner.leg(); })));
   for (std::int64_t i = 1; i < request.alternatives; ++i) {
     // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
     const double limit = 0.9 * result.routes.back().worst_sd;
@@ -384,10 +215,10 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     const auto legs = legs_with([&] {
       auto route = planner.keep(limit);
       found = found && route;
-      return route ? *route : *planner.search(1e9, 0, 1);
+      return route ? *route : *planner.search({.labels = 1});
     });
     if (!found) break;
-    result.routes.push_back(planner.describe(legs));
+    result.routes.push_back(describe(planner, map, uids, legs));
   }
   if (request.limit_sigma > 0) {
     // Cells that the relaxed test excludes cannot lie on the route.
@@ -395,12 +226,10 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       problem.from = stops[i], problem.to = stops[i + 1];
       std::vector<char> reached = problem.passable;
       if (i == 0) {
-        planning::RouteProblem independent = problem;
-        independent.noise = planner.odometry.noise;  // persistent errors may be known: they bound nothing
-        const std::vector<double> bound = planning::relaxed_sd(independent, request.limit_sigma);
+        const std::vector<double> bound = planner.min_sd_in_any_world(request.limit_sigma);
         for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
       }
-      result.lower_bound += planning::distances_to(cells, reached, problem.to)[slot(problem.from)];
+      result.lower_bound += planning::distances_to(cells, reached, problem.to)[planning::slot(problem.from)];
     }
   }
   const std::string clearance = add_clearance(request, map, result);

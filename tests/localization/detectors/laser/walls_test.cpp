@@ -200,13 +200,18 @@ std::vector<std::optional<TypeId>> types_seen(const LaserScan& scan, const std::
   return seen;
 }
 
-TEST(Detectors, AreChosenByTheTypesOfTheMap) {
-  LaserScan post{.robot_from_sensor = {},
+LaserScan scan_of_a_post() {
+  LaserScan scan{.robot_from_sensor = {},
                  .first_angle = -1.5,
                  .angle_step = 0.01,
                  .ranges = std::vector<float>(301, 81.0F),
                  .max_range = 80};
-  for (const std::size_t i : {150, 151, 152, 153, 154}) post.ranges[i] = 4;
+  for (const std::size_t i : {150, 151, 152, 153, 154}) scan.ranges[i] = 4;
+  return scan;
+}
+
+TEST(Detectors, AreChosenByTheTypesOfTheMap) {
+  const LaserScan post = scan_of_a_post();
   const auto first = std::vector{std::optional<TypeId>(TypeId{0})};
   EXPECT_EQ(types_seen(post, {"tree"}), first);
   EXPECT_EQ(types_seen(post, {"pole"}), first);
@@ -220,12 +225,7 @@ TEST(Detectors, AreChosenByTheTypesOfTheMap) {
 }
 
 TEST(Detectors, AreThoseOfTheTypesThatTheMapHolds) {
-  LaserScan post{.robot_from_sensor = {},
-                 .first_angle = -1.5,
-                 .angle_step = 0.01,
-                 .ranges = std::vector<float>(301, 81.0F),
-                 .max_range = 80};
-  for (const std::size_t i : {150, 151, 152, 153, 154}) post.ranges[i] = 4;
+  const LaserScan post = scan_of_a_post();
   TypeRegistry types;
   register_landmark_types(types);
   const auto seen = [&](const LaserScan& scan, const std::string& find, const std::vector<TypeId>& held) {
