@@ -45,7 +45,7 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
   const double along = sensor.yaw + seen.bearing;
   const auto keep = [&](std::uint32_t i) {
-    if (!seen.type || *seen.type == map[i].type) found.push_back(i);
+    if (seen.may_be(map[i].type)) found.push_back(i);
   };
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
@@ -256,7 +256,8 @@ std::string_view IdentificationOptions::chosen_association() const {
 }
 
 bool IdentificationOptions::may_be_mapped(const SeenLandmark& seen) const {
-  return !seen.type || held_types.empty() || std::ranges::find(held_types, *seen.type) != held_types.end();
+  return held_types.empty() ||
+         std::ranges::any_of(held_types, [&](TypeId type) { return seen.may_be(type); });
 }
 
 bool IdentificationOptions::distance_applies() const {
@@ -316,13 +317,16 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
   const WidestGate widest(seen, robot_from_sensor, robot, options);
   for (const std::uint32_t i : reach) {
     const MapLandmark& landmark = map[i];
-    if (!known && seen.type && *seen.type != landmark.type) continue;
+    if (!known && !seen.may_be(landmark.type)) continue;
     // `too_far` is final: only landmarks inside the gate still count.
     if (result.verdict == Verdict::too_far && widest.excludes(landmark)) continue;
     FeatureComparison features;
-    if (seen.type && *seen.type == landmark.type)
+    if (seen.type == landmark.type)
       features = compare_features(scales, landmark.type, seen_features, landmark.features,
                                   options.feature_tolerance);
+    else if (const KnownFeatures* possible = seen.features_as(landmark.type))
+      features =
+          compare_features(scales, landmark.type, *possible, landmark.features, options.feature_tolerance);
     if (!known && (paper ? features.largest_weighted : features.largest) > options.feature_limit) {
       if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
       continue;
