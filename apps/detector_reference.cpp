@@ -15,10 +15,9 @@ using localization::DetectorSpec;
 
 /// When `auto` uses the detector.
 std::string selection(const DetectorSpec& detector) {
-  if (!detector.single_object_rank) return "whenever the map has one of these types";
-  return fmt::format(
-      "if the map has one of these types and none of a detector of single objects with a rank below {}",
-      *detector.single_object_rank);
+  const std::string of_types = "if the map holds one of these types";
+  if (!detector.finds_single_objects) return of_types;
+  return of_types + "; an object that other such detectors find, too, is one sighting";
 }
 
 std::string as_text(const DetectorSpec& detector) {
@@ -41,7 +40,7 @@ std::string as_json(const DetectorSpec& detector) {
               {"summary", detector.summary},
               {"record", detector.record},
               {"types", detector.types}};
-  object["single_object_rank"] = detector.single_object_rank ? Json(*detector.single_object_rank) : Json();
+  object["finds_single_objects"] = detector.finds_single_objects;
   return object.dump(2);
 }
 

@@ -58,12 +58,12 @@ void RepeatedSightings::widen(SightingSet& seen, double t) {
     const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
     const Last now{.at = seen.robot_from_sensor.at() + r.col(0) * *s.range,
                    .covariance = r * sd.cwiseAbs2().asDiagonal() * r.transpose(),
-                   .type = s.type,
+                   .seen = s,
                    .t = t};
     std::optional<std::size_t> nearest;
     double min_squares = kSameSquares;
     for (std::size_t i = 0; i < before; ++i) {
-      if (taken[i] || last_[i].type != s.type) continue;
+      if (taken[i] || !may_share_type(last_[i].seen, s)) continue;
       const Eigen::Vector2d d = last_[i].at - now.at;
       const double squares = d.dot((last_[i].covariance + now.covariance).inverse() * d);
       if (squares <= min_squares) min_squares = squares, nearest = i;

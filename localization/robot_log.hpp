@@ -42,7 +42,7 @@ class RepeatedSightings {
   struct Last {
     Eigen::Vector2d at;  // from the robot
     Eigen::Matrix2d covariance;
-    std::optional<TypeId> type;
+    SeenLandmark seen;
     double t = 0;
   };
 

@@ -69,7 +69,7 @@ std::vector<std::optional<std::uint32_t>> nearest_landmarks(const SightingsAtTru
     const Eigen::Vector2d direction(std::cos(along), std::sin(along));
     const auto consider = [&](std::uint32_t i) {
       const MapLandmark& l = map[i];
-      if (s.type && *s.type != l.type) return;
+      if (!s.may_be(l.type)) return;
       if (s.identity && *s.identity != l.key && map.find(*s.identity)) return;
       const Eigen::Vector2d to = l.at - sensor.at();
       const double distance =

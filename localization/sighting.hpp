@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <vector>
 #include "localization/identification/known_features.hpp"
@@ -10,24 +11,49 @@ namespace waymark::localization {
 /// Type of a sighting whose landmark type is not in the map.
 inline constexpr TypeId kNoSuchType = 0xFFFF;
 
+/// A landmark type that a sighting may be of, with its features in the order of that type.
+struct PossibleType {
+  TypeId type = 0;
+  KnownFeatures features;
+};
+
 /// A sighting of one landmark: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
 /// the left. Ranges are metres on the ground to the landmark's centre, absent for a camera that measures
 /// directions only. Features are in the order of the type.
 struct SeenLandmark {
-  std::optional<TypeId> type;  ///< absent: any type; features are not compared then
+  std::optional<TypeId> type;  ///< absent: one of `possible_types`, or any type if there are none
   double bearing = 0, bearing_sd = 0.02;
   std::optional<double> range;
   double range_sd = 0.1;  ///< m; ignored without a range
   /// rad above the horizontal, of a summit on the horizon; absent otherwise.
   std::optional<double> elevation = {};
   double elevation_sd = 0.002;
-  KnownFeatures features;
+  KnownFeatures features;               ///< of `type`; not compared without it
   std::optional<LandmarkKey> identity;  ///< of a landmark that identifies itself, e.g. a bar code
   double confidence = 1;                ///< probability that it is a landmark, (0, 1]
+  /// Types between which the sensor cannot decide, without `type`. Their features have no angles.
+  std::vector<PossibleType> possible_types = {};
 
   /// Returns whether every number can be used: finite, range > 0, standard deviations > 0.
   bool is_valid() const;
+  /// Returns whether its landmark may have this type.
+  bool may_be(TypeId of) const;
+  /// Returns whether its landmark may have any type.
+  bool may_be_anything() const { return !type && possible_types.empty(); }
+  /// Returns the features that a landmark of this type is compared with; null if there are none.
+  const KnownFeatures* features_as(TypeId of) const;
 };
+
+/// Returns the types that a sighting may have; none if it may have any.
+inline std::vector<TypeId> types_of(const SeenLandmark& seen) {
+  if (seen.type) return {*seen.type};
+  std::vector<TypeId> types;
+  for (const PossibleType& possible : seen.possible_types) types.push_back(possible.type);
+  return types;
+}
+
+/// Returns whether two sightings may be of one type. One that may be anything equals only another such.
+bool may_share_type(const SeenLandmark& a, const SeenLandmark& b);
 
 /// Sightings of one sensor at one time. They belong to different landmarks.
 struct SightingSet {
@@ -40,6 +66,23 @@ inline bool SeenLandmark::is_valid() const {
   return std::isfinite(bearing) && std::isfinite(bearing_sd) && bearing_sd > 0 && confidence > 0 &&
          confidence <= 1 &&
          (!range || (std::isfinite(*range) && *range > 0 && std::isfinite(range_sd) && range_sd > 0));
+}
+
+inline bool SeenLandmark::may_be(TypeId of) const {
+  return may_be_anything() || features_as(of);
+}
+
+inline const KnownFeatures* SeenLandmark::features_as(TypeId of) const {
+  if (type) return *type == of ? &features : nullptr;
+  for (const PossibleType& possible : possible_types)
+    if (possible.type == of) return &possible.features;
+  return nullptr;
+}
+
+inline bool may_share_type(const SeenLandmark& a, const SeenLandmark& b) {
+  if (a.may_be_anything() || b.may_be_anything()) return a.may_be_anything() && b.may_be_anything();
+  if (a.type) return b.may_be(*a.type);
+  return std::ranges::any_of(a.possible_types, [&](const PossibleType& p) { return b.may_be(p.type); });
 }
 
 }  // namespace waymark::localization

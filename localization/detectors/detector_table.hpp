@@ -26,9 +26,9 @@ struct DetectorSpec {
   std::string record;   ///< kind of the log's records that it reads: "laser" or "points"
   std::vector<std::string>
       types;  ///< landmark types that it makes; those of them that the map lacks are left out
-  /// Rank among detectors of single objects before their background, which would all take the same hits.
-  /// `auto` uses those of the lowest rank whose types the map holds; absent: it always uses the detector.
-  std::optional<int> single_object_rank = {};
+  /// Whether it finds single objects before their background. Several such detectors take the same hits;
+  /// `auto` makes one sighting of theirs.
+  bool finds_single_objects = false;
   /// Returns the detector for the types of a map, of the record "laser".
   std::function<LaserDetector(const TypeRegistry& types)> make = {};
   /// The same of the record "points".

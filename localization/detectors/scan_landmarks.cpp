@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "localization/detectors/merge_sightings.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -24,20 +25,6 @@ bool makes_type_of(const DetectorSpec& detector, const MapTypes& types) {
   return std::ranges::any_of(detector.types, [&](const std::string& name) { return types.holds(name); });
 }
 
-/// Returns the detectors for `auto`; none if no detector makes a type that the map holds.
-std::vector<const DetectorSpec*> detectors_for(const MapTypes& types) {
-  std::optional<int> rank;
-  for (const DetectorSpec& detector : laser_detectors())
-    if (detector.single_object_rank && makes_type_of(detector, types))
-      rank = std::min(rank.value_or(*detector.single_object_rank), *detector.single_object_rank);
-  std::vector<const DetectorSpec*> chosen;
-  for (const DetectorSpec& detector : laser_detectors())
-    if (makes_type_of(detector, types) &&
-        (!detector.single_object_rank || detector.single_object_rank == rank))
-      chosen.push_back(&detector);
-  return chosen;
-}
-
 /// Returns the detectors as one, whose sightings of types that the map does not hold are left out.
 template <class Scan>
 std::function<SightingSet(const Scan&)> detect_held(
@@ -51,6 +38,23 @@ std::function<SightingSet(const Scan&)> detect_held(
         if (!s.type || is_held.at(*s.type)) all.sightings.push_back(s);
     return all;
   };
+}
+
+/// Returns the detectors for `auto`: those of a type that the map holds, with those of single objects as one.
+std::vector<LaserDetector> detectors_of_map(const TypeRegistry& types, const MapTypes& of_map) {
+  std::vector<LaserDetector> all, single_objects;
+  for (const DetectorSpec& detector : laser_detectors())
+    if (makes_type_of(detector, of_map))
+      (detector.finds_single_objects ? single_objects : all)
+          .push_back(detect_held(std::vector{detector.make(types)}, of_map));
+  if (!single_objects.empty())
+    all.push_back(
+        [detectors = std::move(single_objects), scales = FeatureScales(types)](const LaserScan& scan) {
+          std::vector<SightingSet> sets;
+          for (const LaserDetector& detect : detectors) sets.push_back(detect(scan));
+          return merge_sightings(sets, scales);
+        });
+  return all;
 }
 
 LaserDetector stems_of_no_type() {
@@ -125,14 +129,20 @@ LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetection
   const bool by_map = options.find == "auto";
   const MapTypes wanted{types, by_map ? held : std::span<const TypeId>()};
   std::vector<LaserDetector> detectors;
-  for (const DetectorSpec* detector : by_map ? detectors_for(wanted) : named_detectors(options.find))
-    detectors.push_back(detector->make(types));
+  if (by_map)
+    detectors = detectors_of_map(types, wanted);
+  else
+    for (const DetectorSpec* detector : named_detectors(options.find))
+      detectors.push_back(detector->make(types));
   if (detectors.empty()) detectors.push_back(stems_of_no_type());
   return [detect = detect_held(std::move(detectors), wanted),
           with_features = options.features](const LaserScan& scan) {
     SightingSet all = detect(scan);
     if (!with_features)
-      for (SeenLandmark& s : all.sightings) s.features = {};
+      for (SeenLandmark& s : all.sightings) {
+        s.features = {};
+        for (PossibleType& possible : s.possible_types) possible.features = {};
+      }
     return all;
   };
 }

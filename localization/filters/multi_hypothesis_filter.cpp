@@ -212,9 +212,11 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     const SeenLandmark& s = seen.sightings[i];
     if (!some.sightings.empty() && (objects[i].metres >= 0) != (some_objects.back().metres >= 0)) flush();
     const bool named = identification.use_identities && s.identity;
-    matches[i].verdict = !s.is_valid()                                                ? Verdict::unsound
-                         : s.type == kNoSuchType || (named && !map.find(*s.identity)) ? Verdict::unknown_type
-                                                                                      : Verdict::matched;
+    const bool is_known = s.type != kNoSuchType &&
+                          (named ? map.find(*s.identity).has_value() : identification.may_be_mapped(s));
+    matches[i].verdict = !s.is_valid() ? Verdict::unsound
+                         : is_known    ? Verdict::matched
+                                       : Verdict::unknown_type;
     if (matches[i].verdict != Verdict::matched) continue;
     places.push_back(i);
     some.sightings.push_back(s);

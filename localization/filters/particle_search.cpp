@@ -19,7 +19,7 @@ std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const 
   if (!s.is_valid() || map.empty()) return {};
   const auto known = matcher_.options().use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
   const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.uniform_index(map.size()));
-  if (!known && s.type && *s.type != map[l].type) return {};
+  if (!known && !s.may_be(map[l].type)) return {};
   const double range = s.range
                            ? std::max(0.0, *s.range + s.range_sd * random.normal())
                            : matcher_.options().reach_of(s, matcher_.scales()) * std::sqrt(random.uniform());

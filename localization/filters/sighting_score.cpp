@@ -128,7 +128,8 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
           p.candidates.push_back(
               {*l, map[*l].at, map_covariance(*l), GateBounds(p, largest_sd(map_covariance(*l))), *alike});
     }
-    if (s.type && std::ranges::find(types_, *s.type) == types_.end()) types_.push_back(*s.type);
+    for (const TypeId type : types_of(s))
+      if (std::ranges::find(types_, type) == types_.end()) types_.push_back(type);
     prepared_.push_back(std::move(p));
   }
 }
@@ -181,11 +182,12 @@ std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const P
                                                                          std::uint32_t landmark,
                                                                          const KnownFeatures& seen) const {
   const MapLandmark& l = (*map_)[landmark];
-  if (!p.known && p.seen.type && *p.seen.type != l.type) return {};
-  const bool comparable = p.seen.type && *p.seen.type == l.type;
-  const FeatureComparison features =
-      comparable ? compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance)
-                 : FeatureComparison{};
+  if (!p.known && !p.seen.may_be(l.type)) return {};
+  FeatureComparison features;
+  if (p.seen.type == l.type)
+    features = compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance);
+  else if (const KnownFeatures* possible = p.seen.features_as(l.type))
+    features = compare_features(*scales_, l.type, *possible, l.features, identification_.feature_tolerance);
   if ((paper_ ? features.largest_weighted : features.largest) > identification_.feature_limit) return {};
   // A missing feature counts 1, which is what matching features count on average.
   const double alike = std::exp((features.used - features.squares) / 2);
@@ -255,7 +257,7 @@ SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& v
   }
   map_->near(centre, p.radius, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
-    if (p.seen.type && *p.seen.type != l.type) return;
+    if (!p.seen.may_be(l.type)) return;
     const auto there = match_position(p, l.at, map_covariance(i), view);
     if (!(there.squares <= p.gate)) return;
     if (const auto alike = pose_free_terms(p, i)) take(there, *alike, i);

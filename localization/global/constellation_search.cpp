@@ -73,6 +73,9 @@ std::size_t ConstellationSearch::count_named() const {
 void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   const SeenLandmark& s = seen.sightings[i];
   if (!s.is_valid() || !s.range || s.type == kNoSuchType) return;
+  const bool is_named = o_.identification.use_identities && s.identity;
+  const auto may_be = [&](TypeId type) { return s.may_be(type); };
+  if (!is_named && std::ranges::none_of(index_.types_, may_be)) return;
   Seen p{.index = i,
          .sighting = &s,
          .features = s.type ? features_without_angles(index_.scales_, *s.type, s.features) : s.features,
@@ -90,7 +93,7 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   const Eigen::Matrix2d r = rotation(along);
   p.covariance = r * sd.cwiseAbs2().asDiagonal() * r.transpose();
   p.sd = sd.maxCoeff();
-  if (o_.identification.use_identities && s.identity) {
+  if (is_named) {
     const auto found = index_.by_key_.find(*s.identity);
     if (found == index_.by_key_.end()) return;
     p.named = found->second;
@@ -101,9 +104,11 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
 bool ConstellationSearch::alike(const Seen& s, std::uint32_t landmark) const {
   if (s.named) return *s.named == landmark;
   const MapLandmark& l = index_.landmarks_[landmark];
-  if (!s.sighting->type) return true;
-  if (*s.sighting->type != l.type) return false;
-  return compare_features(index_.scales_, l.type, s.features, l.features, o_.identification.feature_tolerance)
+  if (s.sighting->may_be_anything()) return true;
+  const KnownFeatures* const possible = s.sighting->features_as(l.type);
+  if (!possible) return false;
+  return compare_features(index_.scales_, l.type, s.sighting->type ? s.features : *possible, l.features,
+                          o_.identification.feature_tolerance)
              .largest <= o_.identification.feature_limit;
 }
 
@@ -246,12 +251,8 @@ std::vector<std::array<TypeId, 3>> ConstellationSearch::possible_types(
   for (std::size_t i = 0; i < 3; ++i) {
     std::vector<std::array<TypeId, 3>> next;
     for (auto types : all) {
-      if (c[i]->sighting->type) {
-        types[i] = *c[i]->sighting->type;
-        next.push_back(types);
-        continue;
-      }
       for (const TypeId type : index_.types_) {
+        if (!c[i]->sighting->may_be(type)) continue;
         types[i] = type;
         next.push_back(types);
       }

@@ -25,7 +25,7 @@ constexpr double kMaxError = 1;      // m, standard deviation of a recalled obje
 
 bool may_be_same(const SeenLandmark& a, const SeenLandmark& b, const FeatureScales& scales) {
   if (a.identity || b.identity) return a.identity == b.identity;
-  if (a.type != b.type) return false;
+  if (!may_share_type(a, b)) return false;
   for (std::size_t i = 0; i < kMaxFeatures; ++i) {
     if (!a.features.known(i) || !b.features.known(i)) continue;
     const double larger = std::max(std::abs(a.features.value[i]), std::abs(b.features.value[i]));

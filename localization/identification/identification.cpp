@@ -45,7 +45,7 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
   const double along = sensor.yaw + seen.bearing;
   const auto keep = [&](std::uint32_t i) {
-    if (!seen.type || *seen.type == map[i].type) found.push_back(i);
+    if (seen.may_be(map[i].type)) found.push_back(i);
   };
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
@@ -255,6 +255,11 @@ std::string_view IdentificationOptions::chosen_association() const {
   return association != "auto" ? association : distance == "paper" ? "nearest" : "joint";
 }
 
+bool IdentificationOptions::may_be_mapped(const SeenLandmark& seen) const {
+  return held_types.empty() ||
+         std::ranges::any_of(held_types, [&](TypeId type) { return seen.may_be(type); });
+}
+
 bool IdentificationOptions::distance_applies() const {
   return distance != "paper" || (association != "joint" && association != "jcbb");
 }
@@ -296,6 +301,8 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     const auto found = map.find(*seen.identity);
     if (!found) return {Verdict::unknown_type, {}};
     reach = {*found};
+  } else if (!options.may_be_mapped(seen)) {
+    return {Verdict::unknown_type, {}};
   } else {
     reach = landmarks_in_reach(seen, sensor, robot, map, scales, options);
     if (options.use_terrain)
@@ -310,13 +317,16 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
   const WidestGate widest(seen, robot_from_sensor, robot, options);
   for (const std::uint32_t i : reach) {
     const MapLandmark& landmark = map[i];
-    if (!known && seen.type && *seen.type != landmark.type) continue;
+    if (!known && !seen.may_be(landmark.type)) continue;
     // `too_far` is final: only landmarks inside the gate still count.
     if (result.verdict == Verdict::too_far && widest.excludes(landmark)) continue;
     FeatureComparison features;
-    if (seen.type && *seen.type == landmark.type)
+    if (seen.type == landmark.type)
       features = compare_features(scales, landmark.type, seen_features, landmark.features,
                                   options.feature_tolerance);
+    else if (const KnownFeatures* possible = seen.features_as(landmark.type))
+      features =
+          compare_features(scales, landmark.type, *possible, landmark.features, options.feature_tolerance);
     if (!known && (paper ? features.largest_weighted : features.largest) > options.feature_limit) {
       if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
       continue;

@@ -39,8 +39,9 @@ struct IdentificationOptions {
   bool learn_clutter = true;
   double bearing_reach = 0;  ///< m: largest range of a sighting without range; 0: that of its type and sensor
   double sensor_range = 0;   ///< m: of a sensor that measures bearings alone; 0: unknown. No option
-  std::int64_t node_limit = 20000;  ///< of a joint search; beyond it `hungarian` is used
-  bool use_identities = true;       ///< use the identities of landmarks
+  std::int64_t node_limit = 20000;      ///< of a joint search; beyond it `hungarian` is used
+  bool use_identities = true;           ///< use the identities of landmarks
+  std::vector<TypeId> held_types = {};  ///< types of the map's landmarks; empty: not known. No option
   /// Landmarks that the terrain hides are no candidates, unless the log identifies them.
   bool use_terrain = false;
   LineOfSight visible = {};  ///< over the terrain, for `use_terrain`; no option
@@ -66,6 +67,8 @@ struct IdentificationOptions {
   double bearing_clutter() const { return clutter * clutter_reach(); }
   /// Returns the metres over which the density of false sightings without range is spread.
   double clutter_reach() const;
+  /// Returns whether the map may have a landmark of the sighting's type.
+  bool may_be_mapped(const SeenLandmark& seen) const;
   /// Returns whether the association uses `distance`: not `paper` with one that has its own evidence.
   bool distance_applies() const;
 };

@@ -77,9 +77,9 @@ double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& 
                                           const LandmarkGrid& map) {
   for (const SeenLandmark& s : seen.sightings) {
     if (options_.use_identities && s.identity) return 0;
-    any_type_ = any_type_ || !s.type;
-    if (s.type && std::ranges::find(seen_types_, *s.type) == seen_types_.end())
-      seen_types_.push_back(*s.type);
+    any_type_ = any_type_ || s.may_be_anything();
+    for (const TypeId type : types_of(s))
+      if (std::ranges::find(seen_types_, type) == seen_types_.end()) seen_types_.push_back(type);
   }
   const Pose2 sensor = robot * seen.robot_from_sensor;
   double count = 0;

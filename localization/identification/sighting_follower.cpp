@@ -40,13 +40,14 @@ std::vector<SightingFollower::Seen> SightingFollower::follow(const SightingSet& 
       const Object& o = objects_[i];
       const double metres = driven_ - o.driven, distance = (o.at - at).norm();
       const double sd = std::hypot(std::hypot(s.range_sd, *s.range * s.bearing_sd), kSlip * metres, kCentre);
-      if (taken[i] || o.type != s.type || distance > kSigmas * sd || (nearest && distance >= min_distance))
+      if (taken[i] || !may_share_type(o.seen, s) || distance > kSigmas * sd ||
+          (nearest && distance >= min_distance))
         continue;
       nearest = i, min_distance = distance;
     }
     if (!nearest) {
       result.push_back(fresh());
-      objects_.push_back({result.back().object, at, s.type, driven_});
+      objects_.push_back({result.back().object, at, s, driven_});
       continue;
     }
     Object& object = objects_[*nearest];

@@ -26,8 +26,8 @@ class SightingFollower {
   struct Object {
     int number = 0;
     Eigen::Vector2d at;  // in the frame of odometry
-    std::optional<TypeId> type;
-    double driven = 0;  // at its last sighting
+    SeenLandmark seen;   // at first
+    double driven = 0;   // at its last sighting
   };
   Pose2 odometry_;
   double driven_ = 0;

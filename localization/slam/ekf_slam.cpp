@@ -148,10 +148,11 @@ std::vector<EkfSlam::Near> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
 /// Returns the squared distance of the features less its mean; infinite if they exclude each other.
 double EkfSlam::feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const {
   constexpr double kNever = std::numeric_limits<double>::infinity();
-  if (!seen.type || !landmark.type) return 0;
-  if (*seen.type != *landmark.type) return kNever;
+  if (seen.may_be_anything() || !landmark.type) return 0;
+  const KnownFeatures* const features = seen.features_as(*landmark.type);
+  if (!features) return kNever;
   const FeatureComparison c =
-      compare_features(scales_, *seen.type, seen.features, landmark.features, options_.feature_tolerance);
+      compare_features(scales_, *landmark.type, *features, landmark.features, options_.feature_tolerance);
   return c.largest > options_.feature_limit ? kNever : c.squares - c.used;
 }
 
@@ -364,9 +365,9 @@ void EkfSlam::match(const SightingSet& seen, const std::vector<Pair>& chosen) {
     l.log_odds = std::min(l.log_odds + options_.seen, kSurestLogOdds);
     ++l.matches;
     if (!l.type) l.type = s.type;
-    if (s.type) {
-      merge_signature(scales_, *s.type, l.features, s.features, options_.feature_tolerance);
-      if (l.feature_samples.size() < 100) l.feature_samples.push_back(s.features);
+    if (const KnownFeatures* const features = l.type ? s.features_as(*l.type) : nullptr) {
+      merge_signature(scales_, *l.type, l.features, *features, options_.feature_tolerance);
+      if (l.feature_samples.size() < 100) l.feature_samples.push_back(*features);
     }
   }
   state_.update(corrections);

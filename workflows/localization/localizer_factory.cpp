@@ -48,6 +48,7 @@ localization::LandmarkMatcher make_matcher(LocalizeTask& task) {
   localization::FeatureScales scales(task.map.map.types());
   set_alphas(scales, task.map.map.types(), task.settings.identification.alpha);
   localization::IdentificationOptions options = task.settings.identification;
+  options.held_types = task.map.map.held_types;
   if (options.use_terrain) options.visible = line_of_sight(task);
   return localization::LandmarkMatcher(std::move(task.map.window), std::move(scales), std::move(options));
 }

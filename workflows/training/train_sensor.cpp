@@ -54,9 +54,11 @@ std::vector<FeatureWeight> equal_weights(const std::vector<localization::Sightin
   std::set<std::pair<TypeId, std::size_t>> measured;
   for (const localization::SightingsAtTruth& set : sets)
     for (const localization::SeenLandmark& s : set.seen.sightings)
-      if (s.type && *s.type < types.size())
-        for (std::size_t i = 0; i < std::min(types[*s.type].features.size(), localization::kMaxFeatures); ++i)
-          if (s.features.known(i)) measured.emplace(*s.type, i);
+      for (const TypeId type : localization::types_of(s)) {
+        if (type >= types.size()) continue;
+        for (std::size_t i = 0; i < std::min(types[type].features.size(), localization::kMaxFeatures); ++i)
+          if (s.features_as(type)->known(i)) measured.emplace(type, i);
+      }
   std::vector<FeatureWeight> weights;
   for (const auto& [type, feature] : measured)
     weights.push_back({types[type].name, types[type].features[feature].name, 1});

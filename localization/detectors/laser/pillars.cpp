@@ -10,7 +10,7 @@ void register_laser_pillars(DetectorTable& detectors) {
                  .summary = "Round columns from 0.3 to 2 m wide, free on both sides",
                  .record = "laser",
                  .types = {"pillar"},
-                 .single_object_rank = 2,
+                 .finds_single_objects = true,
                  .make = [](const TypeRegistry& types) -> LaserDetector {
                    LaserStemOptions options = pillar_options();
                    options.type = type_in_map(types, "pillar");

@@ -10,7 +10,7 @@ void register_laser_poles(DetectorTable& detectors) {
                  .summary = "Posts from 4 to 30 cm wide, free on both sides",
                  .record = "laser",
                  .types = {"pole"},
-                 .single_object_rank = 2,
+                 .finds_single_objects = true,
                  .make = [](const TypeRegistry& types) -> LaserDetector {
                    LaserStemOptions options = post_options();
                    options.type = type_in_map(types, "pole");

@@ -10,7 +10,7 @@ void register_laser_rocks(DetectorTable& detectors) {
                  .summary = "Rocks, by a scanner close above the ground",
                  .record = "laser",
                  .types = {"rock"},
-                 .single_object_rank = 0,
+                 .finds_single_objects = true,
                  .make = [](const TypeRegistry& types) -> LaserDetector {
                    return [rock = type_in_map(types, "rock")](const LaserScan& scan) {
                      return sightings_of_rocks(scan, {.type = rock});

@@ -10,7 +10,7 @@ void register_laser_stems(DetectorTable& detectors) {
                  .summary = "Stems of trees; like those of a park unless the log has the width of the beams",
                  .record = "laser",
                  .types = {"tree"},
-                 .single_object_rank = 1,
+                 .finds_single_objects = true,
                  .make = [](const TypeRegistry& types) -> LaserDetector {
                    return [tree = type_in_map(types, "tree")](const LaserScan& scan) {
                      LaserStemOptions options = scan.beam_width ? forest_stem_options() : LaserStemOptions{};

@@ -347,5 +347,42 @@ TEST_F(Localize, ScansAreSearchedForTheTypesThatTheMapHolds) {
   }
 }
 
+// A thin post is a stem, too: in a map of both it is one sighting, which fits either.
+TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
+  write_text(folder_.path() / "street.json",
+             R"({"waymark_scenario":1,"name":"street","seed":5,"street":{"length":60,"tree_spacing":12}})");
+  ASSERT_EQ(waymark({"simulate", folder_ / "street.json", "-o", folder_ / "drive"}).code, 0);
+  std::istringstream truth(text_of(folder_ / "drive/truth/landmarks.csv"));
+  std::string table, row;
+  std::getline(truth, table);
+  while (std::getline(truth, row))
+    if (row.starts_with("pole,") || row.starts_with("tree,")) table += "\n" + row;
+  write_text(folder_.path() / "survey.csv", table + "\n");
+  const std::string map = folder_ / "survey.gpkg", log = folder_ / "drive/log.jsonl";
+  ASSERT_EQ(waymark({"import", folder_ / "survey.csv", "-o", map, "--crs", "local"}).code, 0);
+  struct Sums {
+    int matched = 0, rejected = 0;
+  };
+  for (const std::string method : {"ekf", "pf", "slam"}) {
+    const auto sums_by = [&](const std::string& scans) {
+      const Outcome said = waymark({"localize", map, log, "-o", track_, "--method", method, "--ids",
+                                    "unknown", "--start", "truth", "--set", "scans=" + scans});
+      EXPECT_EQ(said.code, 0) << said.err;
+      Sums sums;
+      std::istringstream track(text_of(track_));
+      std::string line;
+      for (std::getline(track, line); std::getline(track, line);) {
+        const std::size_t last = line.rfind(','), before = line.rfind(',', last - 1);
+        sums.matched += std::stoi(line.substr(before + 1, last - before - 1));
+        sums.rejected += std::stoi(line.substr(last + 1));
+      }
+      return sums;
+    };
+    const Sums stems = sums_by("stems"), poles = sums_by("poles"), all = sums_by("auto");
+    EXPECT_GT(all.matched, 1.2 * std::max(stems.matched, poles.matched)) << method;
+    EXPECT_LT(all.rejected, 0.1 * all.matched) << method << ": each object is one sighting";
+  }
+}
+
 }  // namespace
 }  // namespace waymark::test

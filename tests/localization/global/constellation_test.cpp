@@ -271,6 +271,30 @@ TEST(Constellation, TwoNamesAreEnough) {
   EXPECT_LT((answer.fix->pose().pose.at() - Eigen::Vector2d(3, 4)).norm(), 1);
 }
 
+// Only the nearest sightings are searched: those of types that the map lacks are not among them.
+TEST(Constellation, SightingsOfOtherTypesDoNotCrowdOutThoseOfTheMap) {
+  const Stars stars = strewn_rocks(500, 100, 17);
+  const ConstellationIndex index(stars.map, {});
+  Random random(3);
+  auto seen = look(stars.map, stars.positions, {}, {3, 4, 0.5}, {.reach = 15, .clutter = 0}, random);
+  ASSERT_TRUE(index.find(seen.set).fix);
+  for (int i = 0; i < 60; ++i) {
+    SeenLandmark tree = seen.set.sightings[0];
+    tree.type = static_cast<TypeId>(*seen.set.sightings[0].type + 1);
+    tree.range = random.uniform(0.5, 3), tree.bearing = random.uniform(-3, 3);
+    seen.set.sightings.push_back(tree);
+  }
+  const auto answer = index.find(seen.set);
+  ASSERT_TRUE(answer.fix) << answer.reason;
+  EXPECT_LT((answer.fix->pose().pose.at() - Eigen::Vector2d(3, 4)).norm(), 1);
+  for (SeenLandmark& s : seen.set.sightings) {  // rocks or trees, trees or something else
+    const TypeId type = *s.type;
+    s.possible_types = {{type, s.features}, {static_cast<TypeId>(type + 1), {}}};
+    s.type = {}, s.features = {};
+  }
+  ASSERT_TRUE(index.find(seen.set).fix);
+}
+
 TEST(Constellation, NothingToGoByHasAReason) {
   const Stars stars = strewn_rocks(500, 100, 19);
   const ConstellationIndex index(stars.map, {}), none(std::vector<MapLandmark>{}, {});

@@ -216,7 +216,7 @@ TEST(Detectors, AreChosenByTheTypesOfTheMap) {
   EXPECT_EQ(types_seen(post, {"tree"}), first);
   EXPECT_EQ(types_seen(post, {"pole"}), first);
   EXPECT_EQ(types_seen(post, {"beacon"}), std::vector{std::optional<TypeId>()});  // stems of no type
-  EXPECT_EQ(types_seen(post, {"tree", "pole"}), first) << "one object is one sighting";
+  EXPECT_EQ(types_seen(post, {"tree", "pole"}), std::vector{std::optional<TypeId>()}) << "one object";
   EXPECT_TRUE(types_seen(post, {"wall_corner"}).empty());
   EXPECT_EQ(types_seen(post, {"tree", "pole"}, "stems,poles").size(), 2u);
   const LaserScan room = scan_walls(kRoom, {2.5, 1.7, 0}, 361);
@@ -241,6 +241,31 @@ TEST(Detectors, AreThoseOfTheTypesThatTheMapHolds) {
   EXPECT_EQ(seen(post, "auto", {types.id("beacon")}), Types{std::nullopt}) << "stems of no type";
   EXPECT_EQ(seen(scan_walls(kRoom, {2.5, 1.7, 0}, 361), "auto", {types.id("wall_corner")}),
             Types{types.id("wall_corner")});
+}
+
+// Of 5 beams 0.2 m wide, of 15 beams 0.6 m.
+TEST(Detectors, MakeOneSightingOfAnObject) {
+  const TypeRegistry types = types_named({"pole", "rock", "tree", "wall_corner"});
+  const auto seen = [&](std::size_t beams, const std::vector<TypeId>& held, bool with_features = true) {
+    LaserScan scan = scan_of_a_post();
+    for (std::size_t i = 0; i < beams; ++i) scan.ranges[150 + i] = 4;
+    const SightingSet set =
+        make_laser_detector(types, {.find = "auto", .features = with_features}, held)(scan);
+    EXPECT_EQ(set.sightings.size(), 1u);
+    return set.sightings.at(0);
+  };
+  const TypeId pole = types.id("pole"), rock = types.id("rock"), tree = types.id("tree");
+  const std::vector<TypeId> both{pole, tree}, all{pole, rock, tree, types.id("wall_corner")};
+  EXPECT_EQ(types_of(seen(5, both)), both);
+  EXPECT_EQ(types_of(seen(15, both)), std::vector{tree}) << "too wide for a pole";
+  EXPECT_EQ(types_of(seen(5, {pole})), std::vector{pole}) << "the map holds no trees";
+  EXPECT_EQ(types_of(seen(5, all)), (std::vector{pole, rock, tree}));
+  const SeenLandmark either = seen(5, both);
+  for (const TypeId type : both) {
+    const std::size_t diameter = feature_index(types[type], "diameter");
+    EXPECT_NEAR(either.features_as(type)->value[diameter], 0.2, 0.03);
+    EXPECT_FALSE(seen(5, both, false).features_as(type)->known(diameter));
+  }
 }
 
 TEST(Detectors, WithUnknownNamesAreRefusedWithTheKnownOnes) {
