@@ -101,6 +101,7 @@ TEST_F(CsvLog, SaysWhatIsWrong) {
   EXPECT_THAT(refusal_of(csv, "v=speed,omega=rate"),
               AllOf(HasSubstr("recognised as t"), HasSubstr("stamp, speed")));
   EXPECT_THAT(refusal_of(csv, "t=stamp,v=speed"), HasSubstr("also need omega"));
+  EXPECT_THAT(refusal_of(csv, "t=stamp,range_sd=rate"), HasSubstr("also need bearing or range"));
   EXPECT_THAT(refusal_of(csv, "t=stamp,v=sped,omega=rate"), HasSubstr("speed"));
   EXPECT_THAT(refusal_of(csv, "t=stamp,omga=rate"), HasSubstr("did you mean 'omega'?"));
   EXPECT_THAT(refusal_of(csv, "t=stamp"), HasSubstr("no column of the log is recognised as a reading"));
