@@ -96,6 +96,7 @@ class CsvLog {
         ++without_time_;
         continue;
       }
+      if (!set_.empty() && set_["t"] != t) flush();
       for (const char* kind : {"truth", "odometry", "car", "step", "gnss", "compass", "sightings"})
         add(row, t, kind);
     }
@@ -198,7 +199,6 @@ class CsvLog {
 
   // Sightings of one time are one set.
   void add_sighting(std::size_t line, double t, ordered_json item) {
-    if (!set_.empty() && set_["t"] != t) flush();
     if (set_.empty()) {
       set_ = {{"kind", "sightings"}, {"t", t}, {"items", ordered_json::array()}};
       set_line_ = line;

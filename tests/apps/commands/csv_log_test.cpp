@@ -117,6 +117,15 @@ TEST_F(CsvLog, IncompleteRecordsAreCounted) {
                               HasSubstr("1 lines without a time")));
 }
 
+TEST_F(CsvLog, ReadingsOfSeveralSensorsMayShareATable) {
+  const Outcome said =
+      run("t,v,omega,range,landmark\n0,1,0,,\n0,,,4,r1\n0,,,5,r2\n1,1,0,,\n1,,,4,r1\n2,1,0,,\n",
+          {"--start", "0,0,0", "--method", "ekf"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, testing::Not(HasSubstr("run backwards")));
+  EXPECT_THAT(said.err + said.out, HasSubstr("3 no such landmark in the map"));
+}
+
 TEST_F(CsvLog, TracksForOtherTools) {
   const std::string drive = "t,v,omega\n0,1,0.1\n1,1,0.1\n2,1,0.1\n";
   for (const char* name : {"a.csv", "a.tum", "a.kitti", "a.g2o"})

@@ -35,31 +35,34 @@ LandmarkMatcher matcher_of(const std::vector<MapLandmark>& map) {
   return LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)});
 }
 
-using MakeFilter =
+using MakeRangeFilter =
     std::function<std::unique_ptr<Localizer>(const PoseEstimate& start, const std::vector<MapLandmark>& map)>;
 
-std::unique_ptr<Localizer> ekf(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
+std::unique_ptr<Localizer> ekf_of_ranges(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
   return std::make_unique<ExtendedKalman>(start, matcher_of(map));
 }
-std::unique_ptr<Localizer> ukf(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
+std::unique_ptr<Localizer> ukf_of_ranges(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
   return std::make_unique<UnscentedKalman>(start, matcher_of(map));
 }
-std::unique_ptr<Localizer> particles(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
+std::unique_ptr<Localizer> particles_of_ranges(const PoseEstimate& start,
+                                               const std::vector<MapLandmark>& map) {
   return std::make_unique<ParticleFilter>(start, matcher_of(map));
 }
-std::unique_ptr<Localizer> gaussians(const PoseEstimate& start, const std::vector<MapLandmark>& map) {
+std::unique_ptr<Localizer> gaussians_of_ranges(const PoseEstimate& start,
+                                               const std::vector<MapLandmark>& map) {
   IdentificationOptions options;
   options.use_identities = false;
   return std::make_unique<MultiHypothesisFilter>(
       start, LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)}, {}, options));
 }
 
-struct Result {
+struct RangeScore {
   double rmse = 0, anees = 0, matched = 0, wrong = 0;
 };
 
 /// Drives 200 steps, two rounds, per seed.
-Result drive_all(const MakeFilter& make, const BeaconSettings& settings, std::uint64_t first, int seeds) {
+RangeScore drive_by_ranges(const MakeRangeFilter& make, const BeaconSettings& settings, std::uint64_t first,
+                           int seeds) {
   double squares = 0, sum = 0, seen = 0, matched = 0, wrong = 0;
   int rows = 0;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(seeds); ++seed) {
@@ -232,8 +235,10 @@ TEST(Ranges, ARingThroughTwoLandmarksIsAmbiguous) {
 constexpr std::uint64_t kSeeds = 101;
 
 TEST(Ranges, FiltersAreConsistentOnDrives) {
-  const std::pair<const char*, MakeFilter> filters[] = {
-      {"ekf", ekf}, {"ukf", ukf}, {"particles", particles}, {"gaussians", gaussians}};
+  const std::pair<const char*, MakeRangeFilter> filters[] = {{"ekf", ekf_of_ranges},
+                                                             {"ukf", ukf_of_ranges},
+                                                             {"particles", particles_of_ranges},
+                                                             {"gaussians", gaussians_of_ranges}};
   const std::pair<const char*, BeaconSettings> cases[] = {{"plain", {}},
                                                           {"mount", {.mount = {0.8, -0.5, 1.2}}},
                                                           {"outliers", {.outliers = 0.1}},
@@ -243,7 +248,7 @@ TEST(Ranges, FiltersAreConsistentOnDrives) {
   for (const auto& [what, settings] : cases)
     for (const auto& [name, make] : filters) {
       if ((name == std::string("gaussians")) == settings.named) continue;
-      const Result r = drive_all(make, settings, kSeeds, 10);
+      const RangeScore r = drive_by_ranges(make, settings, kSeeds, 10);
       std::printf("%-10s %-10s rmse %.3f m, anees %.2f, matched %.3f, wrong %.4f\n", what, name, r.rmse,
                   r.anees, r.matched, r.wrong);
       EXPECT_LT(r.rmse, settings.map_sd > 0.1 ? 0.32 : 0.2) << what << ' ' << name;
@@ -256,7 +261,7 @@ TEST(Ranges, FiltersAreConsistentOnDrives) {
 /// A world turned and shifted.
 TEST(Ranges, AnotherFrameChangesNothing) {
   const Pose2 frame{300, -120, 2.1};
-  for (const MakeFilter& make : {MakeFilter(ekf), MakeFilter(ukf)}) {
+  for (const MakeRangeFilter& make : {MakeRangeFilter(ekf_of_ranges), MakeRangeFilter(ukf_of_ranges)}) {
     BeaconDrive drive(5, {.mount = {0.5, 0.2, 1}});
     const PoseEstimate start = drive.start();
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
@@ -275,7 +280,8 @@ TEST(Ranges, AnotherFrameChangesNothing) {
     }
     const PoseEstimate a = here->estimate(), b = there->estimate();
     const Pose2 expected = frame * a.pose;
-    EXPECT_LT((expected.at() - b.pose.at()).norm(), 0.02);  // the symmetric points of ukf follow the axes
+    EXPECT_LT((expected.at() - b.pose.at()).norm(),
+              0.02);  // the symmetric points of ukf follow the axes
     EXPECT_LT(std::abs(wrap_angle(expected.yaw - b.pose.yaw)), 2e-3);
   }
 }
@@ -292,7 +298,7 @@ TEST(Ranges, ParticlesFindTheRobotOrSayThatTheyAreLost) {
       const PoseFinder finder = [&](const SightingSet& seen) { return resect(seen.earlier_ranges, map); };
       LocatingFilter filter(
           std::make_unique<ParticleFilter>(std::nullopt, matcher_of(drive.map()), ParticleOptions{}, finder),
-          [&](const PoseEstimate& at) { return particles(at, drive.map()); });
+          [&](const PoseEstimate& at) { return particles_of_ranges(at, drive.map()); });
       int since = 0;
       for (int i = 0; i < (straight ? 40 : 200); ++i) {
         filter.predict(drive.drive());

@@ -12,13 +12,13 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-struct Search {
+struct RangeSearch {
   int accepted = 0, wrong = 0;
   double squares = 0;
 };
 
-Search search(const BeaconSettings& settings, int steps, std::uint64_t first, int seeds) {
-  Search result;
+RangeSearch search_by_ranges(const BeaconSettings& settings, int steps, std::uint64_t first, int seeds) {
+  RangeSearch result;
   for (std::uint64_t seed = first; seed < first + static_cast<std::uint64_t>(seeds); ++seed) {
     BeaconDrive drive(seed, settings);
     RangeMemory memory;
@@ -50,7 +50,7 @@ TEST(RangeResection, FindsThePoseOnlyIfItIsTheOnlyOne) {
                         {"one beacon", {.beacons = 1}, 100, 0, 0},
                         {"few ranges", {}, 3, 0, 2}};
   for (const Case& c : cases) {
-    const Search s = search(c.settings, c.steps, 1001, kSeeds);
+    const RangeSearch s = search_by_ranges(c.settings, c.steps, 1001, kSeeds);
     std::printf("%-22s accepted %d of %d, wrong %d, nees %.2f\n", c.what, s.accepted, kSeeds, s.wrong,
                 s.squares / std::max(1, s.accepted));
     EXPECT_EQ(s.wrong, 0) << c.what;
