@@ -37,13 +37,14 @@ class ScoredLocalizer final : public localization::Localizer {
       bool possible = false, right = false;
       const auto fits = [&](const localization::MapLandmark& l) {
         const double wide = std::max(1.0, 1.2 * (l.features.known(0) ? l.features.value[0] : 0));
-        if (s.range) {
-          const double a = sensor.yaw + s.bearing;
+        if (s.has_position()) {
+          const double a = sensor.yaw + *s.bearing;
           return (sensor.at() + *s.range * Eigen::Vector2d(std::cos(a), std::sin(a)) - l.at).norm() < wide;
         }
         const Eigen::Vector2d to = l.at - sensor.at();
+        if (s.range) return std::abs(to.norm() - *s.range) < wide;
         return to.norm() < 25 &&
-               std::abs(localization::wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw - s.bearing)) <
+               std::abs(localization::wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw - *s.bearing)) <
                    std::max(0.02, wide / to.norm() / 2);
       };
       map_.near(sensor.at(), 27, [&](std::uint32_t l) {

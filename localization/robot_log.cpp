@@ -52,8 +52,14 @@ void RepeatedSightings::widen(SightingSet& seen, double t) {
   std::vector<bool> taken(last_.size(), false);
   const std::size_t before = last_.size();
   for (SeenLandmark& s : seen.sightings) {
-    if (!s.is_valid() || !s.range) continue;
-    const double along = seen.robot_from_sensor.yaw + s.bearing;
+    if (!s.is_valid()) continue;
+    if (!s.bearing && s.identity) {
+      const auto [last, first] = last_ranges_.try_emplace(*s.identity, t);
+      if (!first) s.range_sd *= widening(std::max(0.0, t - last->second), memory_.range);
+      last->second = t;
+    }
+    if (!s.has_position()) continue;
+    const double along = seen.robot_from_sensor.yaw + *s.bearing;
     const Eigen::Matrix2d r = Eigen::Rotation2Dd(along).toRotationMatrix();
     const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
     const Last now{.at = seen.robot_from_sensor.at() + r.col(0) * *s.range,

@@ -29,7 +29,8 @@ struct ErrorMemory {
 /// all localizers.
 ///
 /// Sightings of one landmark are associated by position alone, predicted by odometry, never by identities.
-/// Bearings without range are not associated and stay as they are.
+/// Ranges without bearing are associated by their identities, since they have no position. Other sightings
+/// without position stay as they are.
 class RepeatedSightings {
  public:
   explicit RepeatedSightings(const ErrorMemory& memory) : memory_(memory) {}
@@ -48,6 +49,7 @@ class RepeatedSightings {
 
   ErrorMemory memory_;
   std::vector<Last> last_;
+  std::unordered_map<LandmarkKey, double> last_ranges_;  // s, of ranges without bearing
 };
 
 /// Speeds of a differential drive, valid until the next reading.

@@ -23,7 +23,7 @@ constexpr std::size_t kMinMatches = 30;  // a standard deviation is known to an 
 struct SensorResidual {
   double range = 0, bearing = 0;  // of the landmark, from the sensor
   std::optional<double> range_error;
-  double bearing_error = 0;
+  std::optional<double> bearing_error = {};
   double along = 0, across = 0;  // m^2, variances of the map's position
 };
 
@@ -65,7 +65,9 @@ std::vector<std::optional<std::uint32_t>> nearest_landmarks(const SightingsAtTru
   for (std::size_t k = 0; k < set.seen.sightings.size(); ++k) {
     const SeenLandmark& s = set.seen.sightings[k];
     if (!s.is_valid() || s.type == kNoSuchType) continue;
-    const double along = sensor.yaw + s.bearing;
+    // A range alone shows a landmark only by its identity.
+    if (!s.bearing && !(s.identity && map.find(*s.identity))) continue;
+    const double along = sensor.yaw + s.bearing.value_or(0);
     const Eigen::Vector2d direction(std::cos(along), std::sin(along));
     const auto consider = [&](std::uint32_t i) {
       const MapLandmark& l = map[i];
@@ -73,12 +75,15 @@ std::vector<std::optional<std::uint32_t>> nearest_landmarks(const SightingsAtTru
       if (s.identity && *s.identity != l.key && map.find(*s.identity)) return;
       const Eigen::Vector2d to = l.at - sensor.at();
       const double distance =
-          s.range ? (to - *s.range * direction).norm()
-                  : (to.dot(direction) > 0 ? std::abs(to.x() * direction.y() - to.y() * direction.x())
-                                           : std::numeric_limits<double>::infinity());
+          !s.bearing ? std::abs(to.norm() - *s.range)
+          : s.range  ? (to - *s.range * direction).norm()
+                     : (to.dot(direction) > 0 ? std::abs(to.x() * direction.y() - to.y() * direction.x())
+                                              : std::numeric_limits<double>::infinity());
       if (distance <= max_error) pairs.push_back({distance, k, i});
     };
-    if (s.range)
+    if (!s.bearing)
+      map.near(sensor.at(), *s.range + max_error, consider);
+    else if (s.range)
       map.near(sensor.at() + *s.range * direction, max_error, consider);
     else
       map.near(sensor.at(), bearing_reach, consider);
@@ -96,7 +101,7 @@ SensorResidual residual_of(const SeenLandmark& s, const Pose2& sensor, const Map
   SensorResidual r{
       .range = to.norm(), .bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw), .range_error = {}};
   if (s.range) r.range_error = *s.range - r.range;
-  r.bearing_error = wrap_angle(s.bearing - r.bearing);
+  if (s.bearing) r.bearing_error = wrap_angle(*s.bearing - r.bearing);
   const Eigen::Vector2d u = to / std::max(r.range, 1e-6), w(-u.y(), u.x());
   r.along = u.dot(l.covariance * u);
   r.across = w.dot(l.covariance * w) / std::max(r.range * r.range, 1e-6);
@@ -148,7 +153,7 @@ SensorFit fit_sensor(std::span<const SightingsAtTruth> sets, const LandmarkGrid&
   for (const SensorResidual& r : residuals) {
     ranges.push_back(r.range), bearings.push_back(std::abs(r.bearing));
     if (r.range_error) range_errors.push_back(*r.range_error);
-    bearing_errors.push_back(r.bearing_error);
+    if (r.bearing_error) bearing_errors.push_back(*r.bearing_error);
     along += r.along / static_cast<double>(residuals.size());
     across += r.across / static_cast<double>(residuals.size());
   }
@@ -161,7 +166,8 @@ SensorFit fit_sensor(std::span<const SightingsAtTruth> sets, const LandmarkGrid&
   coverage.range = enclosing_value(ranges);
   coverage.view = std::min(360.0, 2 * half_view / std::numbers::pi * 180);
   coverage.range_sd = range_errors.size() < kMinMatches ? 0 : noise(range_errors, along);
-  coverage.bearing_sd = noise(bearing_errors, across) / std::numbers::pi * 180;
+  if (bearing_errors.size() >= kMinMatches)
+    coverage.bearing_sd = noise(bearing_errors, across) / std::numbers::pi * 180;
 
   std::vector<DetectionTrial> trials;
   std::size_t detected = 0;

@@ -25,13 +25,14 @@ Eigen::Vector2d moved(const localization::Pose2& a_from_b, const Eigen::Vector2d
 
 HazardObject hazard_seen(const localization::SeenLandmark& seen, const localization::Pose2& robot_from_sensor,
                          const TypeRegistry& types, const Vehicle& vehicle, double min_height) {
-  if (!seen.type || *seen.type >= types.size() || !seen.range || !seen.is_valid()) return {.probability = 0};
+  if (!seen.type || *seen.type >= types.size() || !seen.has_position() || !seen.is_valid())
+    return {.probability = 0};
   const LandmarkType& type = types[*seen.type];
   Landmark landmark;
   landmark.type = *seen.type;
   landmark.confidence = seen.confidence;
-  const Eigen::Vector2d at =
-      moved(robot_from_sensor, *seen.range * Eigen::Vector2d(std::cos(seen.bearing), std::sin(seen.bearing)));
+  const Eigen::Vector2d at = moved(
+      robot_from_sensor, *seen.range * Eigen::Vector2d(std::cos(*seen.bearing), std::sin(*seen.bearing)));
   landmark.position.xyz.head<2>() = at;
   landmark.features.resize(type.features.size());
   std::optional<double> radius;

@@ -41,10 +41,10 @@ ViewScan view_sightings(double t, const localization::SightingSet& seen, std::si
   ViewScan view{.t = t, .is_laser = false, .rays = {}};
   view.mount = Eigen::Vector2d(seen.robot_from_sensor.x, seen.robot_from_sensor.y).cast<float>();
   for (const localization::SeenLandmark& one : seen.sightings)
-    if (one.range && *one.range > 0 && std::isfinite(*one.range) && std::isfinite(one.bearing) &&
-        view.rays.size() < max_rays)
+    if (one.range && *one.range > 0 && std::isfinite(*one.range) && one.bearing &&
+        std::isfinite(*one.bearing) && view.rays.size() < max_rays)
       view.rays.push_back(
-          {static_cast<float>(seen.robot_from_sensor.yaw + one.bearing), static_cast<float>(*one.range)});
+          {static_cast<float>(seen.robot_from_sensor.yaw + *one.bearing), static_cast<float>(*one.range)});
   return view;
 }
 

@@ -18,38 +18,44 @@ namespace {
 
 using nlohmann::ordered_json;
 
+enum class Need {
+  optional,
+  needed,
+  one_of_several,  // a record needs at least one of these fields of its kind
+};
+
 // A target of --columns: a field of a record. A record is made of a row that has all of its needed fields.
 struct CsvField {
   const char *target, *kind, *field;
-  bool needed = false;
+  Need need = Need::optional;
   bool word = false;
 };
 
 constexpr std::array kCsvFields{
-    CsvField{"v", "odometry", "v", true},
-    CsvField{"omega", "odometry", "omega", true},
+    CsvField{"v", "odometry", "v", Need::needed},
+    CsvField{"omega", "odometry", "omega", Need::needed},
     CsvField{"sideways", "odometry", "sideways"},
-    CsvField{"wheel_v", "car", "v", true},
-    CsvField{"steering", "car", "steering", true},
-    CsvField{"dx", "step", "dx", true},
-    CsvField{"dy", "step", "dy", true},
-    CsvField{"dyaw", "step", "dyaw", true},
-    CsvField{"gnss_x", "gnss", "x", true},
-    CsvField{"gnss_y", "gnss", "y", true},
+    CsvField{"wheel_v", "car", "v", Need::needed},
+    CsvField{"steering", "car", "steering", Need::needed},
+    CsvField{"dx", "step", "dx", Need::needed},
+    CsvField{"dy", "step", "dy", Need::needed},
+    CsvField{"dyaw", "step", "dyaw", Need::needed},
+    CsvField{"gnss_x", "gnss", "x", Need::needed},
+    CsvField{"gnss_y", "gnss", "y", Need::needed},
     CsvField{"gnss_sd", "gnss", "sd"},
-    CsvField{"compass", "compass", "yaw", true},
+    CsvField{"compass", "compass", "yaw", Need::needed},
     CsvField{"compass_sd", "compass", "sd"},
-    CsvField{"bearing", "sightings", "bearing", true},
+    CsvField{"bearing", "sightings", "bearing", Need::one_of_several},
     CsvField{"bearing_sd", "sightings", "bearing_sd"},
-    CsvField{"range", "sightings", "range"},
+    CsvField{"range", "sightings", "range", Need::one_of_several},
     CsvField{"range_sd", "sightings", "range_sd"},
     CsvField{"elevation", "sightings", "elevation"},
     CsvField{"elevation_sd", "sightings", "elevation_sd"},
     CsvField{"confidence", "sightings", "confidence"},
-    CsvField{"landmark", "sightings", "landmark", false, true},
-    CsvField{"type", "sightings", "type", false, true},
-    CsvField{"truth_x", "truth", "x", true},
-    CsvField{"truth_y", "truth", "y", true},
+    CsvField{"landmark", "sightings", "landmark", Need::optional, true},
+    CsvField{"type", "sightings", "type", Need::optional, true},
+    CsvField{"truth_x", "truth", "x", Need::needed},
+    CsvField{"truth_y", "truth", "y", Need::needed},
     CsvField{"truth_yaw", "truth", "yaw"},
 };
 
@@ -90,6 +96,7 @@ class CsvLog {
         ++without_time_;
         continue;
       }
+      if (!set_.empty() && set_["t"] != t) flush();
       for (const char* kind : {"truth", "odometry", "car", "step", "gnss", "compass", "sightings"})
         add(row, t, kind);
     }
@@ -135,12 +142,19 @@ class CsvLog {
 
   // Some, but not all, of the needed fields of a kind: a forgotten column.
   void check_kinds() const {
-    std::map<std::string, std::vector<std::string>> missing;
-    std::map<std::string, int> present;
+    std::map<std::string, std::vector<std::string>> missing, choices;
+    std::map<std::string, int> present, chosen;
     for (const CsvField& field : kCsvFields) {
-      present[field.kind] += bound_.contains(field.target);
-      if (field.needed && !bound_.contains(field.target)) missing[field.kind].push_back(field.target);
+      const bool bound = bound_.contains(field.target);
+      present[field.kind] += bound;
+      if (field.need == Need::needed && !bound) missing[field.kind].push_back(field.target);
+      if (field.need == Need::one_of_several)
+        choices[field.kind].push_back(field.target), chosen[field.kind] += bound;
     }
+    for (const auto& [kind, targets] : choices)
+      if (present[kind] > 0 && chosen[kind] == 0)
+        refuse(fmt::format("records of the kind '{}' also need {}", kind, fmt::join(targets, " or ")),
+               fmt::format("--columns {}=COLUMN", targets[0]));
     bool any = false;
     for (const auto& [kind, count] : present) {
       any = any || count > 0;
@@ -154,10 +168,12 @@ class CsvLog {
   void add(const TableRow& row, double t, const std::string& kind) {
     ordered_json values;
     int needed = 0, known = 0;
+    bool choice = false, chosen = false;
     for (const CsvField& field : kCsvFields) {
       const auto bound = kind == field.kind ? bound_.find(field.target) : bound_.end();
       if (bound == bound_.end()) continue;
-      needed += field.needed;
+      needed += field.need == Need::needed;
+      choice = choice || field.need == Need::one_of_several;
       if (field.word) {
         if (const std::string& word = bound->second.word(row); !word.empty()) values[field.field] = word;
         continue;
@@ -165,8 +181,10 @@ class CsvLog {
       const double value = bound->second.value(row, *table_);
       if (std::isnan(value)) continue;
       values[field.field] = value;
-      known += field.needed;
+      known += field.need == Need::needed;
+      chosen = chosen || field.need == Need::one_of_several;
     }
+    needed += choice, known += chosen;
     if (needed == 0 || values.empty() || known == 0) return;
     if (known < needed) {
       ++incomplete_[kind];
@@ -181,7 +199,6 @@ class CsvLog {
 
   // Sightings of one time are one set.
   void add_sighting(std::size_t line, double t, ordered_json item) {
-    if (!set_.empty() && set_["t"] != t) flush();
     if (set_.empty()) {
       set_ = {{"kind", "sightings"}, {"t", t}, {"items", ordered_json::array()}};
       set_line_ = line;

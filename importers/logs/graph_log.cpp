@@ -22,8 +22,10 @@ localization::SeenLandmark sighting_of(const localization::SightingEdge& edge, s
         edge.value.x() / (range * range);
     covariance = to_polar * covariance * to_polar.transpose();
   }
-  seen.bearing = value[1];
-  seen.bearing_sd = std::sqrt(covariance(1, 1));
+  if (edge.kind != localization::SightingKind::range) {
+    seen.bearing = value[1];
+    seen.bearing_sd = std::sqrt(covariance(1, 1));
+  }
   if (edge.kind != localization::SightingKind::bearing) {
     seen.range = value[0];
     seen.range_sd = std::sqrt(covariance(0, 0));

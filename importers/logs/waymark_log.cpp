@@ -150,12 +150,11 @@ class Reader {
 
   localization::SeenLandmark sighting(const LogLine& line) {
     localization::SeenLandmark s;
-    if (!line.has("bearing"))
-      line.fail(
-          "has a sighting without \"bearing\": a range alone is not used to localize, directions are needed");
-    s.bearing = line.angle("bearing");
-    if (!(std::abs(s.bearing) <= 2 * std::numbers::pi + 1e-6))
-      line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", s.bearing));
+    if (!line.has("bearing") && !line.has("range"))
+      line.fail("has a sighting with neither \"bearing\" nor \"range\": give at least one of them");
+    if (line.has("bearing")) s.bearing = line.angle("bearing");
+    if (s.bearing && !(std::abs(*s.bearing) <= 2 * std::numbers::pi + 1e-6))
+      line.fail(fmt::format("\"bearing\" is {}: angles are radians, at most one turn", *s.bearing));
     s.bearing_sd = line.positive("bearing_sd", bearing_sd_ ? *bearing_sd_
                                                : sensor_   ? to_radians(Degrees{sensor_->bearing_sd}).value
                                                            : 0.02);
@@ -167,6 +166,7 @@ class Reader {
     s.confidence = line.number("confidence", 1);
     if (!(s.confidence > 0 && s.confidence <= 1)) line.fail("\"confidence\" must be within (0, 1]");
     if (line.has("elevation")) {
+      if (!s.bearing) line.fail("has an \"elevation\" without \"bearing\"");
       s.elevation = line.angle("elevation");
       if (!(std::abs(*s.elevation) <= std::numbers::pi / 2))
         line.fail(fmt::format("\"elevation\" is {}: angles are radians, within a quarter turn of the horizon",

@@ -12,8 +12,8 @@ constexpr double kSameObject = 0.3;  // m: the smallest jump in range between tw
 using ObjectSightings = std::vector<SeenLandmark>;  // at most one of each detector
 
 double distance(const SeenLandmark& a, const SeenLandmark& b) {
-  const double x = *a.range * std::cos(a.bearing) - *b.range * std::cos(b.bearing);
-  const double y = *a.range * std::sin(a.bearing) - *b.range * std::sin(b.bearing);
+  const double x = *a.range * std::cos(*a.bearing) - *b.range * std::cos(*b.bearing);
+  const double y = *a.range * std::sin(*a.bearing) - *b.range * std::sin(*b.bearing);
   return std::hypot(x, y);
 }
 
@@ -26,7 +26,7 @@ void add_sightings(std::vector<ObjectSightings>& objects, const std::vector<Seen
   std::vector<Pair> pairs;
   for (std::size_t o = 0; o < objects.size(); ++o)
     for (std::size_t s = 0; s < sightings.size(); ++s)
-      if (objects[o][0].range && sightings[s].range)
+      if (objects[o][0].has_position() && sightings[s].has_position())
         if (const double d = distance(objects[o][0], sightings[s]); d < kSameObject)
           pairs.push_back({d, o, s});
   std::ranges::sort(pairs, {}, [](const Pair& p) { return std::tuple(p.distance, p.object, p.sighting); });

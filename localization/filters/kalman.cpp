@@ -36,6 +36,10 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   matcher_.learn(matches, seen, before.pose, map);
   std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
+  // Ranges to landmarks that identify themselves compete with echoes alone: each is associated by itself.
+  const bool apart = std::ranges::all_of(seen.sightings, [&](const SeenLandmark& s) {
+    return !s.bearing && s.identity && matcher_.options().use_identities;
+  });
   for (std::size_t i = 0; i < matches.size(); ++i) {
     Match& match = matches[i];
     doubtful = doubtful || match.verdict == Verdict::ambiguous || match.probability < kCertain;
@@ -43,9 +47,10 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
     if (match.verdict != Verdict::matched) continue;
     const MapLandmark& landmark = map[match.pairing.landmark];
     name_landmark(match, landmark);
-    uses.push_back({&seen.sightings[i], &landmark, noise_divisor(landmark, matcher_.options())});
+    uses.push_back({&seen.sightings[i], &landmark, noise_divisor(landmark, matcher_.options()),
+                    apart ? match.probability : 1});
   }
-  if (posterior && doubtful) {
+  if (posterior && doubtful && !apart) {
     missed_ = 0;
     replace(*posterior);
   } else if (!uses.empty()) {
@@ -96,7 +101,8 @@ void ExtendedKalman::predict(const BodyMotion& motion) {
 
 void ExtendedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
   for (const MatchedSighting& use : uses)
-    estimate_ = errors_.correct(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust);
+    estimate_ = errors_.correct_probably(estimate_, *use.seen, robot_from_sensor, *use.landmark, use.trust,
+                                         use.probability);
 }
 
 void ExtendedKalman::replace(const PoseEstimate& estimate) {
@@ -112,17 +118,18 @@ void ExtendedKalman::widen(double factor) {
   errors_.clear();
 }
 
-PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& seen,
+PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& measured,
                         const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust) {
+  std::optional<SeenLandmark> corrected;
+  if (!measured.bearing) corrected = correct_curvature(measured, estimate, robot_from_sensor, landmark.at);
+  const SeenLandmark& seen = corrected ? *corrected : measured;
   const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, landmark.at);
   Eigen::Matrix<double, 2, 3> h = e.by_pose;
   Eigen::Matrix2d r =
       (sensor_noise(seen) + e.by_landmark * landmark.covariance * e.by_landmark.transpose()) / trust;
   const Eigen::Vector2d v = innovation(seen, e.value);
-  if (!seen.range) {  // the range row carries no information
-    h.row(0).setZero();
-    r(0, 1) = r(1, 0) = 0;
-  }
+  Eigen::Matrix2d by_landmark = e.by_landmark;
+  omit_missing(seen, h, by_landmark, r);
   const Eigen::Matrix3d& p = estimate.covariance;
   const Eigen::Matrix<double, 3, 2> ph = p * h.transpose();
   const Eigen::Matrix2d s = h * ph + r;

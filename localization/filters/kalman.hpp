@@ -33,6 +33,7 @@ class KalmanLocalizer : public Localizer {
     const SeenLandmark* seen = nullptr;
     const MapLandmark* landmark = nullptr;
     double trust = 1;
+    double probability = 1;  ///< that it shows the landmark
   };
   virtual void correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) = 0;
   virtual void replace(const PoseEstimate& estimate) = 0;

@@ -77,9 +77,13 @@ void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
   for (Entry& e : errors_) e.covariance = change * e.covariance;
 }
 
-PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& seen,
+PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& measured,
                                 const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
                                 bool unscented) {
+  std::optional<SeenLandmark> corrected;
+  if (!measured.bearing && !unscented)
+    corrected = correct_curvature(measured, before, robot_from_sensor, landmark.at);
+  const SeenLandmark& seen = corrected ? *corrected : measured;
   const LinearSighting line = unscented ? by_regression(before, robot_from_sensor, landmark.at)
                                         : by_derivatives(before, robot_from_sensor, landmark.at);
   const auto at = std::ranges::lower_bound(errors_, landmark.key, {}, &Entry::key);
@@ -89,10 +93,7 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
       known ? limit_correlation(at->covariance, before.covariance, map_error) : WithLandmark::Zero();
   Eigen::Matrix<double, 2, 3> h = line.by_pose;
   Eigen::Matrix2d b = line.by_landmark, r = sensor_noise(seen) / trust + line.residual;
-  if (!seen.range) {  // the range row carries no information
-    h.row(0).setZero(), b.row(0).setZero();
-    r(0, 1) = r(1, 0) = 0;
-  }
+  omit_missing(seen, h, b, r);
   const Eigen::Matrix3d& p = before.covariance;
   const Eigen::Matrix<double, 3, 2> with_map = with * b.transpose();  // of pose and the map's part
   const Eigen::Matrix<double, 3, 2> with_seen = p * h.transpose() + with_map;
@@ -114,6 +115,20 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
   }
   return {pose_of(before.pose.vector() + gain * innovation(seen, line.value)),
           (after + after.transpose()) / 2};
+}
+
+PoseEstimate MapErrors::correct_probably(const PoseEstimate& before, const SeenLandmark& seen,
+                                         const Pose2& robot_from_sensor, const MapLandmark& landmark,
+                                         double trust, double probability, bool unscented) {
+  if (!(probability < 1)) return correct(before, seen, robot_from_sensor, landmark, trust, unscented);
+  const MapErrors without = *this;
+  const PoseEstimate after = correct(before, seen, robot_from_sensor, landmark, trust, unscented);
+  mix(without, 1 - probability);
+  const Eigen::Vector3d back(before.pose.x - after.pose.x, before.pose.y - after.pose.y,
+                             wrap_angle(before.pose.yaw - after.pose.yaw));
+  return {pose_of(after.pose.vector() + (1 - probability) * back),
+          probability * after.covariance + (1 - probability) * before.covariance +
+              probability * (1 - probability) * back * back.transpose()};
 }
 
 void MapErrors::mix(const MapErrors& other, double other_weight) {

@@ -24,6 +24,11 @@ class MapErrors {
   /// linear regression over sigma points instead of derivatives.
   PoseEstimate correct(const PoseEstimate& before, const SeenLandmark& seen, const Pose2& robot_from_sensor,
                        const MapLandmark& landmark, double trust, bool unscented = false);
+  /// Returns the same for a sighting that shows the landmark with a probability: the mixture of the poses
+  /// with and without the correction, as one Gaussian (probabilistic data association).
+  PoseEstimate correct_probably(const PoseEstimate& before, const SeenLandmark& seen,
+                                const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
+                                double probability, bool unscented = false);
   /// Becomes those of a mixture of two poses, with weights 1 - `other_weight` and `other_weight`.
   void mix(const MapErrors& other, double other_weight);
   /// Forgets all: the pose is a new one.

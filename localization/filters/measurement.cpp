@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/filters/measurement.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <numbers>
 
 namespace waymark::localization {
 
@@ -21,12 +23,42 @@ ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, cons
 }
 
 Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expected) {
-  return {seen.range ? *seen.range - expected[0] : 0, wrap_angle(seen.bearing - expected[1])};
+  return {seen.range ? *seen.range - expected[0] : 0,
+          seen.bearing ? wrap_angle(*seen.bearing - expected[1]) : 0};
 }
 
 Eigen::Matrix2d sensor_noise(const SeenLandmark& seen) {
-  return Eigen::Vector2d(seen.range ? seen.range_sd * seen.range_sd : 1, seen.bearing_sd * seen.bearing_sd)
+  return Eigen::Vector2d(seen.range ? seen.range_sd * seen.range_sd : 1,
+                         seen.bearing ? seen.bearing_sd * seen.bearing_sd : 1)
       .asDiagonal();
+}
+
+SeenLandmark correct_curvature(const SeenLandmark& seen, const PoseEstimate& robot,
+                               const Pose2& robot_from_sensor, const Eigen::Vector2d& landmark) {
+  if (seen.bearing) return seen;
+  const Eigen::Vector2d lever = (robot.pose * robot_from_sensor).at() - robot.pose.at();
+  const Eigen::Vector2d to = landmark - robot.pose.at() - lever;
+  const double range = to.norm();
+  const Eigen::Vector2d across =
+      range > 0 ? Eigen::Vector2d(-to.y() / range, to.x() / range) : Eigen::Vector2d(0, 1);
+  Eigen::Matrix<double, 2, 3> by_pose;
+  by_pose << 1, 0, -lever.y(), 0, 1, lever.x();
+  const Eigen::Vector3d h = by_pose.transpose() * across;
+  const double variance = std::max(0.0, h.dot(robot.covariance * h));
+  // Second derivative of the range across the line of sight: 1 / range. Nearer than the spread, the series
+  // fails.
+  const double curvature = variance > 0 ? variance / std::max(range, std::sqrt(variance)) : 0;
+  SeenLandmark corrected = seen;
+  *corrected.range -= curvature / 2;
+  corrected.range_sd = std::hypot(seen.range_sd, curvature / std::numbers::sqrt2);
+  return corrected;
+}
+
+double squared_distance(const SeenLandmark& seen, const Eigen::Vector2d& innovation,
+                        const Eigen::Matrix2d& covariance) {
+  if (seen.has_position()) return innovation.dot(covariance.inverse() * innovation);
+  const int row = seen.range ? 0 : 1;
+  return innovation[row] * innovation[row] / covariance(row, row);
 }
 
 }  // namespace waymark::localization

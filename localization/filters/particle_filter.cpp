@@ -200,7 +200,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
   }
   if (convergence_)
     convergence_->count(matched_fraction(matches), chance_ ? chance_(seen, summary_, matches) : 0,
-                        !searching_);
+                        !searching_, has_bearing(seen));
   return matches;
 }
 

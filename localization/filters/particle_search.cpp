@@ -24,7 +24,9 @@ std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const 
                            ? std::max(0.0, *s.range + s.range_sd * random.normal())
                            : matcher_.options().reach_of(s, matcher_.scales()) * std::sqrt(random.uniform());
   const double from = random.uniform(-std::numbers::pi, std::numbers::pi);  // landmark to sensor
-  const double yaw = wrap_angle(from + std::numbers::pi - s.bearing + s.bearing_sd * random.normal());
+  const double yaw = s.bearing
+                         ? wrap_angle(from + std::numbers::pi - *s.bearing + s.bearing_sd * random.normal())
+                         : random.uniform(-std::numbers::pi, std::numbers::pi);
   const Pose2 sensor{map[l].at.x() + range * std::cos(from), map[l].at.y() + range * std::sin(from), yaw};
   return sensor * inverse(seen.robot_from_sensor);
 }
@@ -46,7 +48,8 @@ void ParticleFilter::query_finder(const SightingSet& seen) {
   // Restarts if the pose found is not that of the particles.
   if (found.accepted && convergence_ && !searching_) {
     convergence_->confirm(*found.accepted, summary_);
-    searching_ = !convergence_->found();
+    // Particles that ranges alone have gathered may face another way.
+    searching_ = !convergence_->found() || !has_bearing(seen);
   }
   if (found.accepted && searching_) {
     poses_.clear();

@@ -76,7 +76,7 @@ SightingScore::GateBounds::GateBounds(const Prepared& p, double sd) {
   const double nearest = p.seen.range ? std::max(0.0, *p.seen.range - off) : 0;
   const double farthest = p.seen.range ? *p.seen.range + off : kNone;
   min_square = nearest * nearest, max_square = farthest * farthest;
-  near = gate * sd * sd, widening = gate * p.bearing_variance;
+  near = p.seen.bearing ? gate * sd * sd : kNone, widening = gate * p.bearing_variance;
 }
 
 template <class T>
@@ -108,15 +108,18 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
     if (!s.is_valid()) continue;
     const double far = s.range ? *s.range : identification.reach_of(s, scales);
     Prepared p{.seen = s,
-               .cosine = std::cos(s.bearing),
-               .sine = std::sin(s.bearing),
+               .cosine = std::cos(s.bearing.value_or(0)),
+               .sine = std::sin(s.bearing.value_or(0)),
+               .ahead = s.has_position() ? *s.range : 0,
                .range_variance = s.range ? s.range_sd * s.range_sd : 0,
                .bearing_variance = s.bearing_sd * s.bearing_sd,
                .radius = far,
-               .clutter = s.range ? identification.clutter : identification.bearing_clutter(),
+               .clutter = identification.clutter_of(s),
                .gate = gate,
                .candidates = {}};
-    if (s.range)
+    if (!s.bearing)
+      p.radius = far + sigmas * (s.range_sd + map.largest_sd());
+    else if (s.range)
       p.radius = sigmas * std::max(s.range_sd, far * std::min(s.bearing_sd, 1.0)) + sigmas * map.largest_sd();
     p.known = identification.use_identities && s.identity;
     if (s.type)
@@ -192,9 +195,9 @@ std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const P
   // A missing feature counts 1, which is what matching features count on average.
   const double alike = std::exp((features.used - features.squares) / 2);
   const double turns = 2 * std::numbers::pi;
-  return PoseFreeTerms{
-      .scale = quality(landmark) * p.seen.confidence * alike / (p.seen.range ? turns : std::sqrt(turns)),
-      .features = features.weighted_squares};
+  return PoseFreeTerms{.scale = quality(landmark) * p.seen.confidence * alike /
+                                (p.seen.has_position() ? turns : std::sqrt(turns)),
+                       .features = features.weighted_squares};
 }
 
 template <class T>
@@ -206,6 +209,11 @@ SightingScore::PositionMatch<T> SightingScore::match_position(const Prepared& p,
   const T ahead = view.cosine * dx + view.sine * dy, left = view.cosine * dy - view.sine * dx;
   const T range = at_least(T(sqrt(dx * dx + dy * dy)), 1e-3), inverse = 1 / range;
   const T nx = dx * inverse, ny = dy * inverse, xx = nx * nx, xy = nx * ny, yy = ny * ny;
+  if (!p.seen.bearing) {
+    const T off = *p.seen.range - range;
+    const T inverse_a = 1 / (p.range_variance + xx * c(0, 0) + 2 * c(0, 1) * xy + yy * c(1, 1));
+    return {off * off * (paper_ ? T(0 * off + 1 / p.range_variance) : inverse_a), inverse_a};
+  }
   const T turn = small_angle(left, ahead);
   const T across = yy * c(0, 0) - 2 * c(0, 1) * xy + xx * c(1, 1);
   const T d = p.bearing_variance + across * (inverse * inverse);
@@ -243,8 +251,7 @@ SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& v
     const double v = value(there, alike);
     if (paper_ ? v < best.value : v > best.value) best = {v, landmark};
   };
-  const double range = p.seen.range.value_or(0);
-  const Eigen::Vector2d centre(view.x + range * view.cosine, view.y + range * view.sine);
+  const Eigen::Vector2d centre(view.x + p.ahead * view.cosine, view.y + p.ahead * view.sine);
   if (p.known || (in_cloud && p.prefetched)) {
     for (const Candidate& c : p.candidates) {
       const double dx = c.at.x() - view.x, dy = c.at.y() - view.y;
@@ -284,8 +291,8 @@ void SightingScore::score_lanes(const Pose2* poses, double* fit) const {
     const double forward = mount_cosine * p.cosine - mount_sine * p.sine,
                  left = mount_sine * p.cosine + mount_cosine * p.sine;
     const View<Lanes> view{x, y, cosine * forward - sine * left, sine * forward + cosine * left};
-    const double range = p.seen.range.value_or(0), square = p.known ? kNone : p.radius * p.radius;
-    const Lanes centre_x = x + range * view.cosine, centre_y = y + range * view.sine;
+    const double square = p.known ? kNone : p.radius * p.radius;
+    const Lanes centre_x = x + p.ahead * view.cosine, centre_y = y + p.ahead * view.sine;
     Lanes best = Lanes::Zero();
     for (const Candidate& l : p.candidates) {
       const Lanes dx = l.at.x() - x, dy = l.at.y() - y;

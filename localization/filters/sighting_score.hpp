@@ -70,8 +70,9 @@ class SightingScore {
   struct Prepared {
     SeenLandmark seen;
     double cosine, sine;  ///< of the bearing
+    double ahead;         ///< m along the bearing to the expected position; 0: that is not known
     double range_variance, bearing_variance;
-    double radius;   ///< m about the expected position; about the sensor without a range
+    double radius;   ///< m about the expected position; about the sensor if `ahead` is 0
     double clutter;  ///< density of false sightings
     double gate;
     bool known = false;  ///< it has an identity

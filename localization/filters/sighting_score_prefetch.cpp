@@ -43,13 +43,13 @@ void SightingScore::prefetch(std::span<const Pose2> poses) {
 // `sensor`: that of the cloud's middle; the others are within `radius` metres of it.
 void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
   p.candidates.clear();
-  const double swing = p.seen.range ? *p.seen.range * std::min(cloud_.turn, 2.0) : 0;
+  const double swing = p.ahead * std::min(cloud_.turn, 2.0);
   // Each particle of a wide cloud has its own landmarks.
   p.prefetched = radius + swing < 4 * p.radius;
   if (!p.prefetched) return;
-  const double along = sensor.yaw + p.seen.bearing;
+  const double along = sensor.yaw + p.seen.bearing.value_or(0);
   const Eigen::Vector2d out(std::cos(along), std::sin(along));
-  const Eigen::Vector2d centre = sensor.at() + p.seen.range.value_or(0) * out;
+  const Eigen::Vector2d centre = sensor.at() + p.ahead * out;
   map_->near(centre, p.radius + radius + swing, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     const Eigen::Vector2d d = l.at - sensor.at();
@@ -59,7 +59,7 @@ void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
     const double sd = largest_sd(covariance);
     const GateBounds bounds(p, sd);
     if (p.seen.range && std::abs(away - *p.seen.range) > bounds.off + radius) return;
-    if (away > 2 * radius) {
+    if (p.seen.bearing && away > 2 * radius) {
       const double nearest_sd = sd / (away - radius);
       const double max_turn = std::sqrt(p.gate * (p.bearing_variance + nearest_sd * nearest_sd)) +
                               cloud_.turn + std::asin(radius / away) + kSlack;

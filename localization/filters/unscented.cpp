@@ -85,7 +85,8 @@ void UnscentedKalman::predict(const BodyMotion& motion) {
 void UnscentedKalman::correct(const std::vector<MatchedSighting>& uses, const Pose2& robot_from_sensor) {
   PoseEstimate at = estimate();
   for (const MatchedSighting& use : uses)
-    at = errors_.correct(at, *use.seen, robot_from_sensor, *use.landmark, use.trust, true);
+    at = errors_.correct_probably(at, *use.seen, robot_from_sensor, *use.landmark, use.trust, use.probability,
+                                  true);
   pose_ = at.pose, root_ = square_root(at.covariance);
 }
 

@@ -72,7 +72,7 @@ std::size_t ConstellationSearch::count_named() const {
 
 void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
   const SeenLandmark& s = seen.sightings[i];
-  if (!s.is_valid() || !s.range || s.type == kNoSuchType) return;
+  if (!s.is_valid() || !s.has_position() || s.type == kNoSuchType) return;
   const bool is_named = o_.identification.use_identities && s.identity;
   const auto may_be = [&](TypeId type) { return s.may_be(type); };
   if (!is_named && std::ranges::none_of(index_.types_, may_be)) return;
@@ -87,7 +87,7 @@ void ConstellationSearch::add(const SightingSet& seen, std::size_t i) {
          .rarity = 1,
          .named = {}};
   const Pose2& mount = seen.robot_from_sensor;
-  const double along = mount.yaw + s.bearing;
+  const double along = mount.yaw + *s.bearing;
   p.at = mount.at() + *s.range * Eigen::Vector2d(std::cos(along), std::sin(along));
   const Eigen::Vector2d sd(s.range_sd, *s.range * std::min(s.bearing_sd, 1.0));
   const Eigen::Matrix2d r = rotation(along);

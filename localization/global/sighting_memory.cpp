@@ -61,12 +61,13 @@ Eigen::MatrixXd free_network(const Eigen::MatrixXd& covariance, const Pose2& rob
 }
 
 bool is_usable(const SeenLandmark& s) {
-  return s.is_valid() && s.range && s.type != kNoSuchType;
+  return s.is_valid() && s.has_position() && s.type != kNoSuchType;
 }
 
 }  // namespace
 
 void SightingMemory::add(const SightingSet& seen) {
+  ranges_.add(seen);
   stored_.emplace_back(std::exchange(motion_, {}), seen);
   if (stored_.size() <= kMaxStored) return;
   stored_.pop_front();
@@ -111,7 +112,7 @@ void SightingMemory::integrate(const BodyMotion& motion, const SightingSet& set)
     if (s.type)  // angles are kept as azimuths of the memory's frame
       s.features =
           features_in_map(scales_, *s.type, s.features, state_->pose().yaw + set.robot_from_sensor.yaw);
-    if (is_usable(s)) reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
+    if (is_usable(s)) reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(*s.bearing));
   }
   std::vector<bool> is_new(seen.sightings.size(), true), used = std::vector<bool>(is_new.size(), false);
   for (const SlamState::Slot slot : state_->active()) ++objects_[slot].missed;
@@ -143,7 +144,7 @@ void SightingMemory::integrate(const BodyMotion& motion, const SightingSet& set)
 
 void SightingMemory::insert(const SeenLandmark& seen, const Pose2& mount) {
   const Pose2 sensor = state_->pose() * mount;
-  const double along = sensor.yaw + seen.bearing;
+  const double along = sensor.yaw + *seen.bearing;
   const Eigen::Vector2d at = sensor.at() + *seen.range * Eigen::Vector2d(std::cos(along), std::sin(along));
   const ExpectedSighting e = expect(state_->pose(), mount, at);
   const Eigen::Matrix2d back = e.by_landmark.inverse(), noise = back * sensor_noise(seen) * back.transpose();
@@ -231,8 +232,11 @@ std::vector<SlamState::Slot> SightingMemory::nearest_objects(const SlamState& st
 
 PoseSearchResult SightingMemory::find(const PoseFinder& finder, const SightingSet& seen) {
   RememberedSightings remembered = recall();
-  PoseSearchResult found = finder(add_bearings(std::move(remembered.set), seen));
-  const BodyMotion error{{}, remembered.robot_covariance};
+  SightingSet all = add_bearings(std::move(remembered.set), seen);
+  all.earlier_ranges = ranges_.recall();
+  const bool by_ranges = all.sightings.empty() && !all.earlier_ranges.empty();
+  PoseSearchResult found = finder(all);
+  const BodyMotion error{{}, by_ranges ? Eigen::Matrix3d::Zero() : remembered.robot_covariance};
   if (found.accepted) found.accepted = predict_pose(*found.accepted, error);
   for (PoseEstimate& candidate : found.candidates) candidate = predict_pose(candidate, error);
   return found;
@@ -249,7 +253,7 @@ std::optional<PoseEstimate> SightingMemory::check(const PoseCheck& check, const 
 SightingSet add_bearings(SightingSet remembered, const SightingSet& seen) {
   for (SeenLandmark s : seen.sightings) {
     if (s.range) continue;
-    s.bearing = wrap_angle(s.bearing + seen.robot_from_sensor.yaw);
+    if (s.bearing) s.bearing = wrap_angle(*s.bearing + seen.robot_from_sensor.yaw);
     remembered.sightings.push_back(s);
   }
   return remembered;

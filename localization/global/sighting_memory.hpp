@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 #include "localization/global/pose_finder.hpp"
+#include "localization/global/range_memory.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "localization/sighting.hpp"
 #include "localization/slam/slam_state.hpp"
@@ -27,12 +28,16 @@ class SightingMemory {
   /// `scales` name the features that turn with the robot, which are not remembered.
   explicit SightingMemory(FeatureScales scales = {}) : scales_(std::move(scales)) {}
 
-  void predict(const BodyMotion& motion) { motion_ = compose(motion_, motion); }
+  void predict(const BodyMotion& motion) {
+    motion_ = compose(motion_, motion);
+    ranges_.predict(motion);
+  }
   void add(const SightingSet& seen);
   /// Returns at most `max_count` objects, those seen repeatedly first, then the nearest.
   RememberedSightings recall(std::size_t max_count = 40);
-  /// Calls the finder on what is remembered and the bearings of the present set. Adds the error of the robot
-  /// in the submap to the poses found.
+  /// Calls the finder on what is remembered, the bearings of the present set and recent ranges without
+  /// bearing. Adds the error of the robot in the submap to the poses found; ranges are relative to the robot
+  /// itself.
   PoseSearchResult find(const PoseFinder& finder, const SightingSet& seen);
   /// Calls the check in the same way.
   std::optional<PoseEstimate> check(const PoseCheck& check, const SightingSet& seen,
@@ -57,6 +62,7 @@ class SightingMemory {
   std::vector<SlamState::Slot> nearest_objects(const SlamState& state, std::size_t max_count) const;
 
   FeatureScales scales_;
+  RangeMemory ranges_;
   BodyMotion motion_;                                      // since the last set
   std::deque<std::pair<BodyMotion, SightingSet>> stored_;  // not yet in the submap, with the motion before
   std::optional<SlamState> state_;                         // the submap, in the frame of its first set

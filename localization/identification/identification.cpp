@@ -43,13 +43,20 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double noise = trusts ? 1 / std::sqrt(std::max(map.min_quality(), options.quality_floor)) : 1;
   const double apex = sigmas * std::hypot(place, noise * map.largest_sd());
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
-  const double along = sensor.yaw + seen.bearing;
+  const double along = sensor.yaw + seen.bearing.value_or(0);
   const auto keep = [&](std::uint32_t i) {
     if (seen.may_be(map[i].type)) found.push_back(i);
   };
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
   };
+  if (!seen.bearing) {  // a ring
+    const double width = apex + sigmas * noise * seen.range_sd;
+    map.near(sensor.at(), *seen.range + width, [&](std::uint32_t i) {
+      if (std::abs((map[i].at - sensor.at()).norm() - *seen.range) <= width) keep(i);
+    });
+    return found;
+  }
   if (seen.range) {
     const double chord = 2 * *seen.range * std::sin(std::min(half, 3.14) / 2);
     map.near(at(*seen.range), apex + sigmas * noise * seen.range_sd + chord, keep);
@@ -84,7 +91,7 @@ class WidestGate {
         place_(largest_sd(robot.covariance.topLeftCorner<2, 2>())),
         turn_(std::sqrt(std::max(0.0, robot.covariance(2, 2)))),
         lever_(robot_from_sensor.at().norm()) {
-    const double along = robot.pose.yaw + robot_from_sensor.yaw + seen.bearing;
+    const double along = robot.pose.yaw + robot_from_sensor.yaw + seen.bearing.value_or(0);
     cosine_ = std::cos(along), sine_ = std::sin(along);
   }
 
@@ -96,7 +103,8 @@ class WidestGate {
     const double left = cosine_ * to.y() - sine_ * to.x();
     const double sideways = place_ + (range + lever_) * turn_, ahead = place_ + lever_ * turn_;
     const double bearing = seen_.bearing_sd * seen_.bearing_sd;
-    if (left * left > gate_ * ((bearing * square + map_error) / trust + sideways * sideways)) return true;
+    if (seen_.bearing && left * left > gate_ * ((bearing * square + map_error) / trust + sideways * sideways))
+      return true;
     if (!seen_.range) return false;
     const double off = std::abs(*seen_.range - range) - kMinRange;
     return off > 0 &&
@@ -113,7 +121,8 @@ class WidestGate {
 };
 
 double paper_distance(const SeenLandmark& seen, const Eigen::Vector2d& v, const FeatureComparison& features) {
-  const double range = seen.range ? v[0] / seen.range_sd : 0, bearing = v[1] / seen.bearing_sd;
+  const double range = seen.range ? v[0] / seen.range_sd : 0,
+               bearing = seen.bearing ? v[1] / seen.bearing_sd : 0;
   return range * range + bearing * bearing + features.weighted_squares;
 }
 
@@ -213,7 +222,9 @@ void IdentificationOptions::describe(OptionVisitor& option) {
   option("certainty", certainty,
          {.help = "joint: pairings less probable are rejected as ambiguous", .min = 0, .max = 1});
   option("bearing_certainty", bearing_certainty,
-         {.help = "joint: the same for sightings without a range, if it is more", .min = 0, .max = 1});
+         {.help = "joint: the same for sightings without a range or a bearing, if it is more",
+          .min = 0,
+          .max = 1});
   option("ambiguity", ambiguity,
          {.help = "Other associations: lead in squared distance a landmark needs over the next", .min = 0});
   option("feature_tolerance", feature_tolerance,
@@ -334,7 +345,10 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
     const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
     CandidatePair p{
         .landmark = i,
-        .evidence = evidence_of(seen, expected, landmark.covariance, noise_divisor(landmark, options))};
+        .evidence = seen.bearing
+                        ? evidence_of(seen, expected, landmark.covariance, noise_divisor(landmark, options))
+                        : evidence_of(correct_curvature(seen, robot, robot_from_sensor, landmark.at),
+                                      expected, landmark.covariance, noise_divisor(landmark, options))};
     // Angles depend on the heading as bearings do: they are rows of the innovation, not features apart.
     if (!paper && seen.type && *seen.type == landmark.type && scales.has_angles(landmark.type)) {
       for (const AngleFix& fix :

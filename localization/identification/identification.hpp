@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,7 +27,7 @@ struct IdentificationOptions {
   std::string association = "auto";
   double gate = 0.99;               ///< probability that a right pairing passes
   double certainty = 0.6;           ///< `joint`: smallest probability of an accepted pairing
-  double bearing_certainty = 0.95;  ///< the same for a sighting without range
+  double bearing_certainty = 0.95;  ///< the same for a sighting without range or without bearing
   double ambiguity = 0;             ///< others: smallest lead in squared distance over the next landmark
   double feature_tolerance = 0.15;  ///< relative standard deviation between two sensors
   double feature_limit = 9;         ///< squared standard deviations by which one feature may differ
@@ -55,8 +56,8 @@ struct IdentificationOptions {
   std::string_view chosen_association() const;
   /// Returns the smallest probability of an accepted pairing of a sighting.
   double required_certainty(const SeenLandmark& seen) const {
-    const bool is_bearing = !seen.range && !seen.elevation && !(use_identities && seen.identity);
-    return is_bearing ? std::max(certainty, bearing_certainty) : certainty;
+    const bool is_line = !seen.has_position() && !seen.elevation && !(use_identities && seen.identity);
+    return is_line ? std::max(certainty, bearing_certainty) : certainty;
   }
   /// Returns the largest range of a sighting without range. What is seen on the horizon, such as summits, is
   /// seen beyond the range of a sensor.
@@ -65,6 +66,12 @@ struct IdentificationOptions {
   /// range of the sensor, or 100 m. Objects confused with landmarks are near, so it does not grow with the
   /// reach of a type.
   double bearing_clutter() const { return clutter * clutter_reach(); }
+  /// Returns the density of false sightings without bearing, per metre: those of a full turn.
+  double range_clutter() const { return clutter * 2 * std::numbers::pi; }
+  /// Returns the density of false sightings of this kind: per metre and radian, per radian or per metre.
+  double clutter_of(const SeenLandmark& seen) const {
+    return seen.has_position() ? clutter : seen.range ? range_clutter() : bearing_clutter();
+  }
   /// Returns the metres over which the density of false sightings without range is spread.
   double clutter_reach() const;
   /// Returns whether the map may have a landmark of the sighting's type.
@@ -76,7 +83,7 @@ struct IdentificationOptions {
 /// Result of the data association of a sighting.
 enum class Verdict {
   matched,
-  unsound,          ///< not a number, no range, a standard deviation of 0
+  unsound,          ///< not a number, neither range nor bearing, a standard deviation of 0
   unknown_type,     ///< the map has no landmark of its type, or no such identity
   nothing_near,     ///< no landmark within reach
   features_differ,  ///< landmarks within reach have other features

@@ -21,7 +21,7 @@ JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expe
       (sensor_noise(seen) + expected.by_landmark * landmark_covariance * expected.by_landmark.transpose()) /
       trust;
   JointEvidence e;
-  if (seen.range) {
+  if (seen.has_position()) {
     const Eigen::Matrix2d inverse = r.inverse();
     const Eigen::Matrix<double, 3, 2> weighted = expected.by_pose.transpose() * inverse;
     e.information = weighted * expected.by_pose;
@@ -30,11 +30,12 @@ JointEvidence evidence_of(const SeenLandmark& seen, const ExpectedSighting& expe
     e.log_det = std::log(r.determinant());
     e.rows = 2;
   } else {
-    const Eigen::Vector3d h = expected.by_pose.row(1).transpose();
-    e.information = h * h.transpose() / r(1, 1);
-    e.information_vector = h * v[1] / r(1, 1);
-    e.squares = v[1] * v[1] / r(1, 1);
-    e.log_det = std::log(r(1, 1));
+    const int row = seen.range ? 0 : 1;
+    const Eigen::Vector3d h = expected.by_pose.row(row).transpose();
+    e.information = h * h.transpose() / r(row, row);
+    e.information_vector = h * v[row] / r(row, row);
+    e.squares = v[row] * v[row] / r(row, row);
+    e.log_det = std::log(r(row, row));
     e.rows = 1;
   }
   return e;

@@ -124,10 +124,10 @@ class HypothesisList {
     return std::log(existence_prior(map_[p.landmark], options_) * seen_.sightings[sighting].confidence) -
            p.features / 2;
   }
-  // A sighting without range is clutter anywhere along its bearing.
+  // A sighting without range is clutter anywhere along its bearing, one without bearing on its circle.
   double unpaired(std::size_t sighting) const {
     const auto& pairings = sets_[sighting].pairings;
-    return std::log(seen_.sightings[sighting].range ? options_.clutter : options_.bearing_clutter()) -
+    return std::log(options_.clutter_of(seen_.sightings[sighting])) -
            0.5 * (pairings.empty() ? 0 : typical_features(pairings));
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace waymark::localization {
 namespace {
@@ -13,12 +14,13 @@ constexpr double kPrior = 1;                      // sightings of the map, and n
 }  // namespace
 
 void ClutterEstimate::add_sightings(const SightingSet& seen) {
-  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &squared_bearing_}) *sum *= kKept;
+  for (double* sum : {&sets_, &sightings_, &ranged_, &squared_range_, &directed_, &squared_bearing_})
+    *sum *= kKept;
   ++sets_;
   for (const SeenLandmark& s : seen.sightings) {
     if (!s.is_valid()) continue;
     ++sightings_;
-    squared_bearing_ += s.bearing * s.bearing;
+    if (s.bearing) ++directed_, squared_bearing_ += *s.bearing * *s.bearing;
     if (!s.range) continue;
     ++ranged_;
     squared_range_ += *s.range * *s.range;
@@ -47,7 +49,8 @@ double ClutterEstimate::view_range() const {
 }
 
 double ClutterEstimate::view_bearing() const {
-  return sightings_ > 0 ? std::sqrt(3 * squared_bearing_ / sightings_) : 0;
+  if (!(sightings_ > 0)) return 0;
+  return directed_ > 0 ? std::sqrt(3 * squared_bearing_ / directed_) : std::numbers::pi;
 }
 
 const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, const PoseEstimate& robot,
@@ -87,7 +90,7 @@ double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& 
     if (!any_type_ && std::ranges::find(seen_types_, map[i].type) == seen_types_.end()) return;
     const Eigen::Vector2d to = map[i].at - sensor.at();
     const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
-    if (std::abs(bearing) < clutter_.view_bearing()) count += existence_prior(map[i], options_);
+    if (std::abs(bearing) <= clutter_.view_bearing()) count += existence_prior(map[i], options_);
   });
   return count;
 }

@@ -21,7 +21,8 @@ class ClutterEstimate {
   /// Adds a set's expected number of sightings that are not of the map, of `count` matched ones.
   void add_unmapped(double unmapped, double count);
   /// Returns the density per metre of range and radian of bearing. Half of the sightings count as unmapped
-  /// until matches are known. Bearings without range are taken as spread over `bearing_reach` metres.
+  /// until matches are known. Bearings without range are taken as spread over `bearing_reach` metres, ranges
+  /// without bearing over a full turn.
   double density(double bearing_reach) const;
   /// Adds the number of landmarks of the map in view of the set whose matches were added last.
   void add_in_view(double landmarks) { in_view_ = kKept * in_view_ + landmarks; }
@@ -32,9 +33,9 @@ class ClutterEstimate {
   double view_bearing() const;
 
  private:
-  static constexpr double kKept = 1 - 1.0 / 50;                  // of the past, per set
-  double sets_ = 0, sightings_ = 0;                              // discounted numbers
-  double ranged_ = 0, squared_range_ = 0, squared_bearing_ = 0;  // sums
+  static constexpr double kKept = 1 - 1.0 / 50;                                 // of the past, per set
+  double sets_ = 0, sightings_ = 0;                                             // discounted numbers
+  double ranged_ = 0, squared_range_ = 0, directed_ = 0, squared_bearing_ = 0;  // sums
   double unmapped_ = 0, matched_ = 0, in_view_ = 0;
 };
 

@@ -27,11 +27,11 @@ std::vector<SightingFollower::Seen> SightingFollower::follow(const SightingSet& 
   std::vector<Seen> result;
   for (const SeenLandmark& s : seen.sightings) {
     const auto fresh = [&] { return Seen{count_++, -1}; };
-    if (!s.range || !s.is_valid()) {
+    if (!s.has_position() || !s.is_valid()) {
       result.push_back(fresh());
       continue;
     }
-    const double direction = sensor.yaw + s.bearing;
+    const double direction = sensor.yaw + *s.bearing;
     const Eigen::Vector2d at =
         sensor.at() + *s.range * Eigen::Vector2d(std::cos(direction), std::sin(direction));
     std::optional<std::size_t> nearest;

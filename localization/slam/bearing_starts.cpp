@@ -110,7 +110,7 @@ std::vector<BearingStarts::Start> BearingStarts::add(const SightingSet& seen,
   std::vector<Look> looks;
   for (const std::size_t i : unmatched) {
     const SeenLandmark& s = seen.sightings[i];
-    looks.push_back({{}, seen.robot_from_sensor, s.bearing, s.bearing_sd});
+    looks.push_back({{}, seen.robot_from_sensor, *s.bearing, s.bearing_sd});
   }
   const auto fits = [&](std::size_t k, const Object& o) {
     const SeenLandmark& s = seen.sightings[unmatched[k]];

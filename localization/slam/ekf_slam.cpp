@@ -119,7 +119,8 @@ void EkfSlam::focus() {
 // Returns the distance, m, up to which landmarks are compared with sightings. Not more than the sensor has
 // shown: every active landmark costs time.
 double EkfSlam::reach() const {
-  return (sees_bearings_ ? options_.max_range : std::min(options_.max_range, reach_)) + kRangeMargin;
+  const double seen = sees_bearings_ ? options_.max_range : std::min(options_.max_range, reach_);
+  return std::max(seen, heard_) + kRangeMargin;
 }
 
 // Returns active landmarks, and those of the map nearby that were not seen yet.
@@ -186,15 +187,22 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
 }
 
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
+  const auto named = [&](const SeenLandmark& s) {
+    return options_.identification.use_identities && s.identity;
+  };
   const auto usable = [&](const SeenLandmark& s) {
-    return s.is_valid() && s.type != kNoSuchType && (!s.range || *s.range <= options_.max_range);
+    if (!s.is_valid() || s.type == kNoSuchType) return false;
+    // A beacon that identifies itself is heard farther than landmarks are seen.
+    return !s.range || *s.range <= options_.max_range || (!s.bearing && named(s));
   };
   for (const SeenLandmark& s : set.sightings) {
     if (!usable(s)) continue;
-    if (s.range)
-      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(s.bearing));
-    else
+    if (!s.range)
       sees_bearings_ = true;
+    else if (!s.bearing)
+      heard_ = std::max(heard_, *s.range);
+    else
+      reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(*s.bearing));
   }
   apply_pending_motion();
   const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
@@ -209,9 +217,6 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   std::vector<Pair> pairs;
   std::vector<double> lowest(matches.size(), 1e9), closest(matches.size(), 1e9);
   std::vector<bool> differs(matches.size(), false);
-  const auto named = [&](const SeenLandmark& s) {
-    return options_.identification.use_identities && s.identity;
-  };
   const std::vector<Near> near = landmarks_in_reach(seen);
   std::vector<bool> found(landmarks_.size(), false);
   const Eigen::Matrix3d robot = state_.covariance();
@@ -233,12 +238,13 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
         if (landmark.key != s.identity) continue;
         // An identity is accepted unless the landmark lies where it cannot be.
         const Eigen::Matrix2d wide = base + sensor_noise(s);
-        const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
+        const double squares = squared_distance(s, v, wide);
         lowest[k] = squares, closest[k] = 0;
         if (squares < options_.fresh) pairs.push_back({squares, k, l});
         continue;
       }
       if (options_.identification.use_identities && landmark.key && !landmark.was_mapped) continue;
+      if (!s.bearing && !landmark.was_mapped) continue;  // many landmarks may lie on its circle
       if (std::abs(v[0]) > 10 || std::abs(v[1]) > 1) continue;
       const double features = feature_distance(s, landmark);
       if (std::isinf(features)) {
@@ -247,7 +253,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
       }
       closest[k] = std::min(closest[k], std::hypot(v[0], v[1] * e.value[0]));
       const Eigen::Matrix2d wide = base + sensor_noise(s);
-      const double squares = s.range ? v.dot(wide.inverse() * v) : v[1] * v[1] / wide(1, 1);
+      const double squares = squared_distance(s, v, wide);
       lowest[k] = std::min(lowest[k], squares);
       if (landmark.was_mapped && in_map[k] != landmark.key) continue;
       if (squares < options_.match) pairs.push_back({squares + std::max(features, 0.0), k, l});
@@ -288,12 +294,15 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
       matches[k].verdict = Verdict::unsound;
     else if (s.type == kNoSuchType)
       matches[k].verdict = Verdict::unknown_type;
-    else if (s.range && *s.range > options_.max_range)
+    else if (!usable(s))
       matches[k].verdict = Verdict::too_far;
     else if (!s.range && is_new) {
       new_bearings.push_back(k);
       matches[k].verdict = Verdict::nothing_near;
-    } else if (s.range && is_new) {
+    } else if (!s.bearing && is_new) {  // its position is not known
+      ++unplaced_ranges_;
+      matches[k].verdict = Verdict::nothing_near;
+    } else if (is_new) {
       add(s, seen.robot_from_sensor);
       last_[k] = landmarks_.size() - 1;
       matches[k].verdict = differs[k] ? Verdict::features_differ : Verdict::nothing_near;
@@ -324,10 +333,7 @@ SlamState::Correction EkfSlam::correction(const SightingSet& seen, const Pair& p
                           .by_pose = e.by_pose,
                           .by_landmark = e.by_landmark,
                           .noise = sensor_noise(s) / l.noise_divisor};
-  if (!s.range) {
-    c.by_pose.row(0).setZero(), c.by_landmark.row(0).setZero();
-    c.innovation[0] = 0;
-  }
+  omit_missing(s, c.by_pose, c.by_landmark, c.noise);
   return c;
 }
 
@@ -337,7 +343,7 @@ std::vector<EkfSlam::Pair> EkfSlam::jointly_compatible(const SightingSet& seen, 
   int rows = 0;
   for (const Pair& p : chosen) {
     corrections.push_back(correction(seen, p));
-    rows += seen.sightings[p.sighting].range ? 2 : 1;
+    rows += seen.sightings[p.sighting].has_position() ? 2 : 1;
   }
   while (chosen.size() > 1 &&
          state_.joint_squares(corrections) > chi_square_quantile(kJointGate, static_cast<double>(rows))) {
@@ -348,7 +354,7 @@ std::vector<EkfSlam::Pair> EkfSlam::jointly_compatible(const SightingSet& seen, 
       rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
       if (const double squares = state_.joint_squares(rest); squares < lowest) lowest = squares, worst = k;
     }
-    rows -= seen.sightings[chosen[worst].sighting].range ? 2 : 1;
+    rows -= seen.sightings[chosen[worst].sighting].has_position() ? 2 : 1;
     chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(worst));
     corrections.erase(corrections.begin() + static_cast<std::ptrdiff_t>(worst));
   }
@@ -375,7 +381,7 @@ void EkfSlam::match(const SightingSet& seen, const std::vector<Pair>& chosen) {
 
 void EkfSlam::add(const SeenLandmark& seen, const Pose2& mount) {
   const Pose2 sensor = state_.pose() * mount;
-  const double along = sensor.yaw + seen.bearing;
+  const double along = sensor.yaw + *seen.bearing;
   SlamLandmark fresh;
   fresh.at = sensor.at() + *seen.range * Eigen::Vector2d(std::cos(along), std::sin(along));
   const ExpectedSighting e = expect(state_.pose(), mount, fresh.at);

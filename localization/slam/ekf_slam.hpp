@@ -66,6 +66,8 @@ struct SlamLandmark {
 ///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
 ///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
 /// - Bearings without a range start a landmark once they have been seen from two sides (BearingStarts).
+/// Ranges
+///   without a bearing correct by known landmarks and start none.
 /// - A pair with a landmark of the map must also be certain (0.9) among all others and an object that the
 ///   map lacks (LandmarkMatcher): after a gap several landmarks are inside the gate. Where it is not, a sum
 ///   of Gaussians that keeps several associations (MultiHypothesisFilter on the map alone) may decide it.
@@ -97,6 +99,8 @@ class EkfSlam final : public Localizer {
   /// Returns the landmark index of each sighting of the last set, new ones included; `std::nullopt` for
   /// unused sightings.
   const std::vector<std::optional<std::size_t>>& last() const { return last_; }
+  /// Returns the number of ranges without bearing that showed no known landmark. They start none.
+  std::size_t unplaced_ranges() const { return unplaced_ranges_; }
   /// Returns the detection probability of a landmark that exists and is in view.
   double detection() const { return (1 + hits_) / (2 + chances_); }
 
@@ -152,9 +156,11 @@ class EkfSlam final : public Localizer {
   Eigen::Vector2d centre_;                                    ///< centre of the active neighbourhood
   double focused_ = std::numeric_limits<double>::infinity();  ///< m about `centre_`: all in it is active
   double reach_ = 0, view_ = 0;                               ///< largest range and bearing seen so far
+  double heard_ = 0;                                          ///< m, largest range without bearing
   bool sees_bearings_ = false;                                ///< a sighting had no range
   BearingStarts starts_;
   double hits_ = 0, chances_ = 0;
+  std::size_t unplaced_ranges_ = 0;
   std::optional<SlamRelocalization> search_;
   std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial
   std::unique_ptr<MultiHypothesisFilter> tracker_;  ///< follows the robot in the map as given

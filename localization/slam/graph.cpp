@@ -60,11 +60,12 @@ SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const 
     e = {expected.value - edge.value, expected.by_pose, expected.by_landmark};
     e.value[1] = wrap_angle(e.value[1]);
   }
-  if (edge.kind == SightingKind::bearing) {
-    e.value[0] = 0;
-    e.by_pose.row(0).setZero();
-    e.by_landmark.row(0).setZero();
-    const double root = edge.root(1, 1);
+  if (edge.kind == SightingKind::bearing || edge.kind == SightingKind::range) {
+    const int measured = edge.kind == SightingKind::range ? 0 : 1, other = 1 - measured;
+    e.value[other] = 0;
+    e.by_pose.row(other).setZero();
+    e.by_landmark.row(other).setZero();
+    const double root = edge.root(measured, measured);
     return {root * e.value, root * e.by_pose, root * e.by_landmark};
   }
   return {edge.root * e.value, edge.root * e.by_pose, edge.root * e.by_landmark};
@@ -100,7 +101,8 @@ Eigen::Matrix2d information_root(const Eigen::Matrix2d& information) {
 
 std::size_t residual_count(const PoseGraph& graph) {
   std::size_t count = 3 * (graph.steps.size() + graph.pose_priors.size()) + 2 * graph.landmark_priors.size();
-  for (const SightingEdge& e : graph.sightings) count += e.kind == SightingKind::bearing ? 1 : 2;
+  for (const SightingEdge& e : graph.sightings)
+    count += e.kind == SightingKind::bearing || e.kind == SightingKind::range ? 1 : 2;
   return count;
 }
 

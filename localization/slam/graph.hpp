@@ -35,6 +35,7 @@ enum class SightingKind {
   position,       ///< x forward, y left, m
   range_bearing,  ///< m, rad to the left
   bearing,        ///< rad; the first of the two values is not used
+  range,          ///< m; the second of the two values is not used
 };
 
 /// A sighting of a landmark from a pose.
@@ -42,7 +43,8 @@ struct SightingEdge {
   std::size_t pose = 0, landmark = 0;
   SightingKind kind = SightingKind::position;
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d root = Eigen::Matrix2d::Identity();  ///< as of StepEdge; a bearing uses the last entry
+  Eigen::Matrix2d root =
+      Eigen::Matrix2d::Identity();  ///< as of StepEdge; a bearing or range uses its own entry
   Pose2 robot_from_sensor;
 };
 

@@ -47,7 +47,7 @@ struct Neighbours {
 }  // namespace
 
 std::optional<Eigen::Vector2d> landmark_position(const SightingEdge& edge, const Pose2& pose) {
-  if (edge.kind == SightingKind::bearing) return {};
+  if (edge.kind == SightingKind::bearing || edge.kind == SightingKind::range) return {};
   const Pose2 sensor = pose * edge.robot_from_sensor;
   const Eigen::Vector2d there =
       edge.kind == SightingKind::position

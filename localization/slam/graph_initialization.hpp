@@ -8,7 +8,7 @@ namespace waymark::localization {
 /// first pose. Throws Error{input} naming the first id that is not, or std::out_of_range.
 void check_connected(const PoseGraph& graph);
 
-/// Returns the position of a landmark by one sighting; `std::nullopt` for a bearing.
+/// Returns the position of a landmark by one sighting; `std::nullopt` for a bearing or a range.
 std::optional<Eigen::Vector2d> landmark_position(const SightingEdge& edge, const Pose2& pose);
 
 /// A pose to initialise, and the edge that does so.

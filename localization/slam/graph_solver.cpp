@@ -204,9 +204,14 @@ class IncrementalProblem {
       place(e.landmark, graph_.landmarks[e.landmark].at);
     else if (const auto at = landmark_position(e, pose_of(at_[e.pose])))
       place(e.landmark, *at);
-    else if (const auto crossing =
-                 intersect_rays(ray(waiting_[e.landmark].front()), ray(waiting_[e.landmark].back())))
-      place(e.landmark, *crossing);
+    else if (e.kind == SightingKind::bearing)
+      if (const auto crossing = intersect_rays(ray(first_bearing(waiting_[e.landmark])), ray(s)))
+        place(e.landmark, *crossing);
+  }
+
+  std::size_t first_bearing(const std::vector<std::size_t>& sightings) const {
+    return *std::ranges::find(sightings, SightingKind::bearing,
+                              [&](std::size_t i) { return graph_.sightings[i].kind; });
   }
 
   /// Returns the ray from the sensor along a bearing.
@@ -248,10 +253,12 @@ GraphSolution solve_incrementally(const PoseGraph& graph, const std::vector<Init
     solution.converged = summary.termination_type == ceres::CONVERGENCE;
   }
   if (const auto landmark = problem.undetermined_landmark())
-    throw Error(ErrorCode::input,
-                fmt::format("landmark {} of the graph has no position: its bearings do not cross",
-                            graph.landmarks[*landmark].id),
-                "", "remove it, or add sightings from other positions");
+    throw Error(
+        ErrorCode::input,
+        fmt::format(
+            "landmark {} of the graph has no position: its bearings do not cross, or it has ranges alone",
+            graph.landmarks[*landmark].id),
+        "", "remove it, or add sightings from other positions");
   solution.graph = problem.result();
   solution.chi2 = chi2(solution.graph);
   return solution;

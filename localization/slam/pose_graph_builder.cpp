@@ -60,8 +60,10 @@ std::vector<Match> PoseGraphBuilder::update(const SightingSet& seen) {
     SightingEdge e;
     e.pose = pose;
     e.landmark = *slam_.last()[k];
-    e.kind = s.range ? SightingKind::range_bearing : SightingKind::bearing;
-    e.value << s.range.value_or(0), s.bearing;
+    e.kind = s.has_position() ? SightingKind::range_bearing
+             : s.range        ? SightingKind::range
+                              : SightingKind::bearing;
+    e.value << s.range.value_or(0), s.bearing.value_or(0);
     e.root = Eigen::Vector2d(1 / s.range_sd, 1 / s.bearing_sd).asDiagonal();
     e.robot_from_sensor = seen.robot_from_sensor;
     graph_.sightings.push_back(e);

@@ -17,7 +17,7 @@ class EkfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -101,7 +101,7 @@ class GlobalSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -185,7 +185,7 @@ class GraphSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -285,7 +285,7 @@ class OdometrySettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -357,7 +357,7 @@ class PfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -441,7 +441,7 @@ class SlamSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ
@@ -537,7 +537,7 @@ class UkfSettings(TypedDict, total=False):
     association: str  # Data association of the sightings of one set
     gate: float  # Probability that a right pairing passes
     certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range, if it is more
+    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
     ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
     feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
     feature_limit: float  # Squared standard deviations by which one feature may differ

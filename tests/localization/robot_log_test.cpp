@@ -54,6 +54,21 @@ TEST(RepeatedSightings, FollowTheRobotsMotion) {
   EXPECT_EQ(bearing.sightings[0].bearing_sd, 0.02);
 }
 
+TEST(RepeatedSightings, RangesWithoutBearingAreThoseOfOneIdentity) {
+  RepeatedSightings repeated({.range = 3, .bearing = 1});
+  const auto range = [&](std::optional<LandmarkKey> identity, double t) {
+    SightingSet set = one(5, 0);
+    set.sightings[0].bearing.reset(), set.sightings[0].identity = identity;
+    repeated.widen(set, t);
+    return set.sightings[0].range_sd;
+  };
+  EXPECT_EQ(range(7, 0), 0.1);
+  EXPECT_EQ(range(8, 0.5), 0.1);
+  const double alike = std::exp(-1.0 / 3);
+  EXPECT_NEAR(range(7, 1), 0.1 * std::sqrt((1 + alike) / (1 - alike)), 1e-12);
+  EXPECT_EQ(range({}, 1.1), 0.1);
+}
+
 /// A robot that sees beacons four times a second, with errors of correlation time `memory`, s.
 RobotLog drive(std::uint64_t seed, double memory, const std::vector<MapLandmark>& beacons) {
   Random random(seed, "alike");

@@ -78,7 +78,7 @@ TEST(HazardSeen, HeightDecidesAndALineScannerSeesOnlyWhatIsHigher) {
   const Vehicle rover = find_vehicle("rover");  // passes 0.35 m
   localization::SeenLandmark rock;
   rock.type = types.id("rock");
-  rock.range = 5;
+  rock.range = 5, rock.bearing = 0;
   rock.features.value[0] = 0.3;
   const auto probability = [&](double min_height) {
     return hazard_seen(rock, {0.6, 0, 0}, types, rover, min_height).probability;

@@ -6,6 +6,7 @@
 #include "localization/detectors/detected_types.hpp"
 #include "localization/filters/locating_filter.hpp"
 #include "localization/filters/relocalizing_filter.hpp"
+#include "localization/global/range_resection.hpp"
 #include "localization/global/skyline_index.hpp"
 
 namespace waymark::workflows {
@@ -35,8 +36,8 @@ std::vector<localization::HorizonTop> horizon_tops(const localization::SightingS
                                                    std::optional<TypeId> mountain_top) {
   std::vector<localization::HorizonTop> tops;
   for (const localization::SeenLandmark& s : seen.sightings)
-    if (s.is_valid() && !s.range && s.elevation && (!s.type || s.type == mountain_top))
-      tops.push_back({.bearing = localization::wrap_angle(s.bearing + seen.robot_from_sensor.yaw),
+    if (s.is_valid() && s.bearing && !s.range && s.elevation && (!s.type || s.type == mountain_top))
+      tops.push_back({.bearing = localization::wrap_angle(*s.bearing + seen.robot_from_sensor.yaw),
                       .bearing_sd = s.bearing_sd,
                       .elevation = s.elevation,
                       .elevation_sd = s.elevation_sd});
@@ -68,7 +69,8 @@ struct PoseSearch {
 PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& search) {
   struct Known {
     localization::ConstellationIndex index;
-    std::optional<localization::SkylineIndex> skyline;  // made at the first sighting of tops of the horizon
+    std::optional<localization::LandmarkGrid> landmarks;  // made at the first range without bearing
+    std::optional<localization::SkylineIndex> skyline;    // made at the first sighting of tops of the horizon
     std::optional<TypeId> top_type;
   };
   const auto open_index = [map = task.map.map, sensor = task.sensor, settings = task.settings.identification,
@@ -81,6 +83,7 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
                                     map.landmarks));
     return Known{.index = localization::ConstellationIndex(std::move(landmarks),
                                                            localization::FeatureScales(map.types()), options),
+                 .landmarks = {},
                  .skyline = {},
                  .top_type = localization::detected_types(map.types()).mountain_top};
   };
@@ -98,9 +101,16 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
     return fix ? std::optional(fix->pose()) : std::nullopt;
   };
   const localization::PoseFinder find = [known, open_index, skyline, ground = task.ground,
-                                         map = task.map.map](const localization::SightingSet& seen) {
+                                         identities = task.settings.identification.use_identities,
+                                         map = task.map.map,
+                                         sensor = task.sensor](const localization::SightingSet& seen) {
     if (!*known) known->emplace(open_index());
     localization::PoseSearchResult found;
+    if (identities && !seen.earlier_ranges.empty()) {
+      if (!(*known)->landmarks) (*known)->landmarks.emplace(all_landmarks(map, sensor));
+      found = localization::resect(seen.earlier_ranges, *(*known)->landmarks);
+      if (found.accepted || seen.sightings.empty()) return found;
+    }
     const auto tops = horizon_tops(seen, (*known)->top_type);
     if (tops.size() >= 3 && ground) {
       if (!(*known)->skyline) (*known)->skyline.emplace(skyline_summits(map), ground, skyline);

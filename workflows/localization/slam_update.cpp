@@ -153,6 +153,14 @@ localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
       });
 }
 
+void warn_of_unplaced_ranges(const LocalizeTask& task, std::size_t count) {
+  if (count == 0) return;
+  task.callbacks.warning(fmt::format(
+      "{} ranges without bearing show no known landmark and are left out: SLAM starts none from ranges "
+      "alone; give a map of the beacons (waymark import BEACONS.csv -o MAP.gpkg --type beacon): {}",
+      count, task.log_file));
+}
+
 SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmarks, const RobotMap& map,
                             const localization::LandmarkNames& names, const std::string& source,
                             double confirmed) {

@@ -39,6 +39,9 @@ inline constexpr double kSlamRadius = 5000;  ///< m around the start, in a map t
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer);
 
+/// Warns of ranges without bearing that SLAM left out.
+void warn_of_unplaced_ranges(const LocalizeTask& task, std::size_t count);
+
 /// Carries out the task's `update_map` or `write_map`, if any, and sends a summary. The record of the run has
 /// the method, the log and all settings.
 void write_updated_map(const LocalizeTask& task, std::span<const localization::SlamLandmark> landmarks,

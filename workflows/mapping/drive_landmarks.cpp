@@ -27,7 +27,7 @@ constexpr double kMinCosine = 0.3;  // of the angle between the open side and th
 Observation observation_of(const SeenLandmark& s, const DriveLook& look, const TypeRegistry& types,
                            const localization::FeatureScales& scales, const DriveMappingOptions& options) {
   const localization::Pose2& sensor = look.map_from_sensor;
-  const double along = sensor.yaw + s.bearing;
+  const double along = sensor.yaw + *s.bearing;
   const Eigen::Rotation2Dd turn(along);
   const Eigen::Vector2d to = turn * Eigen::Vector2d(*s.range, 0);
   const double across = *s.range * *s.range * (s.bearing_sd * s.bearing_sd + options.yaw_sd * options.yaw_sd);
@@ -130,9 +130,9 @@ bool covers(const DriveLook& look, const Eigen::Vector2d& at, double direction, 
   const localization::LaserScan& scan = look.scan;
   if (scan.ranges.empty())  // within the bearings of the sightings
     return std::ranges::any_of(look.seen.sightings,
-                               [&](const SeenLandmark& s) { return s.bearing >= bearing; }) &&
+                               [&](const SeenLandmark& s) { return s.bearing && *s.bearing >= bearing; }) &&
            std::ranges::any_of(look.seen.sightings,
-                               [&](const SeenLandmark& s) { return s.bearing <= bearing; });
+                               [&](const SeenLandmark& s) { return s.bearing && *s.bearing <= bearing; });
   const double turn = std::remainder(bearing - scan.first_angle, 2 * std::numbers::pi);
   for (const double angle : {turn, turn + 2 * std::numbers::pi, turn - 2 * std::numbers::pi}) {
     const double beam = std::round(angle / scan.angle_step);
@@ -152,7 +152,8 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   for (std::size_t i = 0; i < looks.size(); ++i) {
     by_name.emplace(looks[i].name, i);
     for (const SeenLandmark& s : looks[i].seen.sightings) {
-      if (!s.is_valid() || !s.range || !s.type || *s.type >= types.size()) continue;
+      made.unplaced += s.is_valid() && !s.has_position();
+      if (!s.is_valid() || !s.has_position() || !s.type || *s.type >= types.size()) continue;
       if (*s.range <= options.max_range)
         observations.push_back(observation_of(s, looks[i], types, scales, options));
       else

@@ -78,6 +78,12 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   stage.counts.out = static_cast<std::int64_t>(contents.landmarks.size());
   if (made.improbable) stage.counts.rejected["landmark improbable"] = made.improbable;
   if (made.too_far) stage.counts.rejected["beyond max_range"] = made.too_far;
+  if (made.unplaced) {
+    stage.counts.rejected["no position"] = made.unplaced;
+    callbacks.warning(fmt::format(
+        "{} sightings have a bearing or a range alone, which gives no position: they are left out: {}",
+        made.unplaced, request.log));
+  }
   contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
   std::set<std::string> made_types;
   for (const localization::DetectorSpec& detector : localization::laser_detectors())

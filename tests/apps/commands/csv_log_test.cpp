@@ -101,6 +101,7 @@ TEST_F(CsvLog, SaysWhatIsWrong) {
   EXPECT_THAT(refusal_of(csv, "v=speed,omega=rate"),
               AllOf(HasSubstr("recognised as t"), HasSubstr("stamp, speed")));
   EXPECT_THAT(refusal_of(csv, "t=stamp,v=speed"), HasSubstr("also need omega"));
+  EXPECT_THAT(refusal_of(csv, "t=stamp,range_sd=rate"), HasSubstr("also need bearing or range"));
   EXPECT_THAT(refusal_of(csv, "t=stamp,v=sped,omega=rate"), HasSubstr("speed"));
   EXPECT_THAT(refusal_of(csv, "t=stamp,omga=rate"), HasSubstr("did you mean 'omega'?"));
   EXPECT_THAT(refusal_of(csv, "t=stamp"), HasSubstr("no column of the log is recognised as a reading"));
@@ -114,6 +115,15 @@ TEST_F(CsvLog, IncompleteRecordsAreCounted) {
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(said.err, AllOf(HasSubstr("1 lines have an incomplete record of the kind 'odometry'"),
                               HasSubstr("1 lines without a time")));
+}
+
+TEST_F(CsvLog, ReadingsOfSeveralSensorsMayShareATable) {
+  const Outcome said =
+      run("t,v,omega,range,landmark\n0,1,0,,\n0,,,4,r1\n0,,,5,r2\n1,1,0,,\n1,,,4,r1\n2,1,0,,\n",
+          {"--start", "0,0,0", "--method", "ekf"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, testing::Not(HasSubstr("run backwards")));
+  EXPECT_THAT(said.err + said.out, HasSubstr("3 no such landmark in the map"));
 }
 
 TEST_F(CsvLog, TracksForOtherTools) {

@@ -130,12 +130,35 @@ TEST_F(Localize, ATruthTooCoarseToInterpolateIsNamed) {
   EXPECT_THAT(waymark(words).err, HasSubstr("no time in common: 70.500 to 70.500 s and 0.000 to 2.000 s"));
 }
 
-TEST_F(Localize, ASightingNeedsABearing) {
+TEST_F(Localize, ASightingNeedsABearingOrARange) {
   std::string log = drive_log({});
-  for (std::size_t at; (at = log.find("\"bearing\"")) != std::string::npos;) log.replace(at, 9, "\"angle\"");
+  for (const std::string name : {"\"bearing\"", "\"range\""})
+    for (std::size_t at; (at = log.find(name)) != std::string::npos;)
+      log.replace(at, name.size(), "\"other\"");
   const Outcome said = localize(log, {"--method", "ekf"});
   EXPECT_EQ(said.code, 1);
-  EXPECT_THAT(said.err, AllOf(HasSubstr("a sighting without \"bearing\""), HasSubstr("a range alone")));
+  EXPECT_THAT(said.err, HasSubstr("a sighting with neither \"bearing\" nor \"range\""));
+}
+
+TEST_F(Localize, RangesAlonePlaceTheRobot) {
+  std::string ranges;
+  std::istringstream lines(drive_log({.features = false}));
+  for (std::string line; std::getline(lines, line);) {
+    nlohmann::json record = nlohmann::json::parse(line);
+    if (record["kind"] == "sightings")
+      for (nlohmann::json& item : record["items"]) item.erase("bearing"), item.erase("bearing_sd");
+    ranges += record.dump() + '\n';
+  }
+  for (const std::string method : {"ekf", "ukf", "pf", "slam", "graph"}) {
+    const Outcome said = localize(ranges, {"--method", method, "--start", "truth"});
+    ASSERT_EQ(said.code, 0) << method << said.err;
+    EXPECT_LT(score()["ate_rmse"].get<double>(), 0.3) << method;
+  }
+  for (const std::string method : {"pf", "ekf"}) {
+    ASSERT_EQ(localize(ranges, {"--method", method, "--start", "none"}).code, 0) << method;
+    const auto last = last_row();
+    EXPECT_EQ(last.at("lost"), 0) << method;
+  }
 }
 
 TEST_F(Localize, TracksKeepHowPlaceAndHeadingErrTogether) {

@@ -80,7 +80,7 @@ TEST_F(GraphFile, IsReadAsALogToo) {
   ASSERT_TRUE(log.graph);
   const auto& seen = std::get<SightingSet>(log.events[1].what).sightings.at(0);
   EXPECT_NEAR(*seen.range, 5, 1e-12);
-  EXPECT_NEAR(seen.bearing, std::atan2(4, 3), 1e-12);
+  EXPECT_NEAR(*seen.bearing, std::atan2(4, 3), 1e-12);
   EXPECT_NEAR(seen.range_sd, 0.1, 1e-12);
   EXPECT_NEAR(seen.bearing_sd, 0.02, 1e-12);
   EXPECT_EQ(seen.identity, landmark_key("5"));

@@ -72,6 +72,26 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
 }
 
+TEST_F(WaymarkLog, ASightingIsABearingARangeOrBoth) {
+  const RobotLog log = read(
+      R"({"kind":"sightings","t":0,"items":[{"range":4,"landmark":"N"},{"bearing":1},{"range":4,"bearing":null},{"range":4,"bearing":1}]})"
+      "\n");
+  const auto& seen = std::get<SightingSet>(log.events.at(0).what).sightings;
+  ASSERT_EQ(seen.size(), 4U);
+  EXPECT_EQ(seen[0].bearing, std::nullopt);
+  EXPECT_EQ(seen[0].range, 4);
+  EXPECT_NEAR(seen[0].range_sd, 0.13, 1e-12);
+  EXPECT_EQ(seen[0].identity, landmark_key("N"));
+  EXPECT_EQ(seen[1].range, std::nullopt);
+  EXPECT_EQ(seen[2].bearing, std::nullopt);
+  for (const SeenLandmark& s : seen) EXPECT_TRUE(s.is_valid());
+  EXPECT_TRUE(seen[3].has_position());
+  EXPECT_THAT(refusal(R"({"kind":"sightings","t":0,"items":[{"landmark":"N"}]})"),
+              HasSubstr("neither \"bearing\" nor \"range\""));
+  EXPECT_THAT(refusal(R"({"kind":"sightings","t":0,"items":[{"range":4,"elevation":0.1}]})"),
+              HasSubstr("has an \"elevation\" without \"bearing\""));
+}
+
 TEST_F(WaymarkLog, StatesTheNoiseOfItsOdometryAndSensors) {
   const std::string drive = R"(
 {"kind":"odometry","t":0,"v":1,"omega":0}

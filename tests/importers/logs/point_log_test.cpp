@@ -74,7 +74,7 @@ TEST_F(PointLog, ScansOfAFolderBecomeSightings) {
   const auto& seen = std::get<localization::SightingSet>(log.events[1].what);
   ASSERT_EQ(seen.sightings.size(), 1U);
   EXPECT_NEAR(*seen.sightings[0].range, 10, 0.03);
-  EXPECT_NEAR(seen.sightings[0].bearing, std::atan2(6, 8), 0.01);
+  EXPECT_NEAR(*seen.sightings[0].bearing, std::atan2(6, 8), 0.01);
 }
 
 TEST_F(PointLog, ARecordNamesAFileBesideTheLog) {

@@ -140,7 +140,7 @@ TEST(CloudPoles, TheDetectorGivesSightingsOfTheMapsTypes) {
   ASSERT_EQ(seen.sightings.size(), 1U);
   EXPECT_EQ(seen.sightings[0].type, types.id("pole"));
   EXPECT_NEAR(*seen.sightings[0].range, 10, 0.05);
-  EXPECT_NEAR(seen.sightings[0].bearing, std::atan2(6, 8), 0.005);
+  EXPECT_NEAR(*seen.sightings[0].bearing, std::atan2(6, 8), 0.005);
   EXPECT_TRUE(seen.sightings[0].is_valid());
   const TypeId pole = types.id("pole"), tree = types.id("tree");
   EXPECT_EQ(make_point_detector(types, std::vector{pole})(cloud).sightings.size(), 1U);

@@ -132,7 +132,7 @@ TEST(Directions, LeaveTheFilterConsistent) {
     MapLandmark face = face_at(8, 3, random.uniform(-3, 3));
     SeenLandmark s = sight_of(face, truth);
     *s.range += s.range_sd * random.normal();
-    s.bearing += s.bearing_sd * random.normal();
+    *s.bearing += s.bearing_sd * random.normal();
     s.features.value[0] += 0.01 * random.normal();
     face.at += 0.01 * Eigen::Vector2d(random.normal(), random.normal());
     face.features.value[0] += 0.01 * random.normal();

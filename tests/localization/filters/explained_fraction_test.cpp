@@ -83,6 +83,17 @@ TEST(Convergence, CoversTheMapUntilItIsProven) {
   EXPECT_TRUE(c.found());
   c.confirm({{80, 0, 1}, gathered.covariance}, gathered);
   EXPECT_FALSE(c.found());
+  c.confirm({{30, 0, -1}, gathered.covariance}, gathered);
+  EXPECT_FALSE(c.found()) << "of another heading";
+}
+
+TEST(Convergence, RangesAloneAreNoProof) {
+  Convergence c({}, true);
+  for (int i = 0; i < 300; ++i) c.count(1, 0, true, false);
+  EXPECT_FALSE(c.found());
+  c.accept();
+  for (int i = 0; i < 300; ++i) c.count(1, 0, true, false);
+  EXPECT_TRUE(c.found());
 }
 
 // The filter chose where most fits, and a robot at rest sees the same chance again and again.

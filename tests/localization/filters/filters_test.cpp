@@ -231,7 +231,7 @@ TEST(AllFilters, NumbersThatAreNoneAreRejectedWithAReason) {
   MadeDrive drive(1);
   SightingSet bad;
   SeenLandmark s;
-  s.range = NAN;
+  s.range = NAN, s.bearing = 0;
   bad.sightings.push_back(s);
   s.range = 3;
   s.bearing_sd = 0;

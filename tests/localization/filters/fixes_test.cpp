@@ -67,7 +67,7 @@ TEST(Fixes, AnImprobableHypothesisSurvivesUntilMoreIsSeen) {
   MultiHypothesisFilter filter({{0.6, 0, 0}, Eigen::Vector3d(0.25, 1e-4, 1e-6).asDiagonal()},
                                LandmarkMatcher(LandmarkWindow{LandmarkGrid(landmarks)}));
   SeenLandmark ahead;
-  ahead.range = 5;
+  ahead.range = 5, ahead.bearing = 0;
   ahead.range_sd = 0.01;
   filter.update({{}, {ahead}});  // from 0 or from 1.2, or it was none of them
   filter.fix(GnssFix{{1.2, 0}, 0.27});
@@ -200,7 +200,8 @@ TEST(SightingMemory, CarriesWhatWasSeenAlong) {
   EXPECT_GT(all.sightings.size(), drive.look().sightings.size());
   for (const SeenLandmark& s : all.sightings) {
     ASSERT_TRUE(s.is_valid());
-    const Pose2 at = drive.truth() * Pose2{*s.range * std::cos(s.bearing), *s.range * std::sin(s.bearing), 0};
+    const Pose2 at =
+        drive.truth() * Pose2{*s.range * std::cos(*s.bearing), *s.range * std::sin(*s.bearing), 0};
     EXPECT_LT((at.at() - drive.map()[*s.identity - 1].at).norm(), 0.6);
   }
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <numbers>
 
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
@@ -144,6 +145,10 @@ TEST(ClutterEstimate, IsTheDensityOfSightingsWithoutLandmark) {
   }
   for (int set = 0; set < 200; ++set) bearings.add_sightings(seen), bearings.add_unmapped(1, 2);
   EXPECT_NEAR(bearings.density(100), 1 / (100 * std::sqrt(3.0)), 1e-4);  // a view of 2 sqrt(3) 0.5 rad
+  ClutterEstimate ranges;
+  for (SeenLandmark& s : seen.sightings) s.range = 5, s.bearing.reset();
+  for (int set = 0; set < 200; ++set) ranges.add_sightings(seen), ranges.add_unmapped(1, 2);
+  EXPECT_NEAR(ranges.density(100), 1 / (5 * std::sqrt(3.0) * 2 * std::numbers::pi), 1e-4);  // a full turn
 }
 
 // Terrain hides nine of ten landmarks. One that is in view by chance then fits ten times too easily.

@@ -303,6 +303,7 @@ TEST(Constellation, NothingToGoByHasAReason) {
   SightingSet bad;
   for (int i = 0; i < 6; ++i) {
     SeenLandmark s;
+    s.bearing = 0;
     s.range = i % 2 ? NAN : -1;
     bad.sightings.push_back(s);
     s.range = {};  // a bearing alone

@@ -8,7 +8,7 @@
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
 #include "localization/slam/slam_relocalization.hpp"
-#include "tests/localization/made_world.hpp"
+#include "tests/localization/made_beacons.hpp"
 
 namespace waymark::test {
 using namespace localization;
@@ -134,8 +134,8 @@ TEST(SlamState, StaysSymmetricAndPositiveDefiniteForLong) {
       SlamState::Slot& slot = slot_of[*s.identity];
       if (slot == SlamState::Slot(-1)) {
         slot =
-            state.add(state.pose().at() + *s.range * Eigen::Vector2d(std::cos(s.bearing + state.pose().yaw),
-                                                                     std::sin(s.bearing + state.pose().yaw)),
+            state.add(state.pose().at() + *s.range * Eigen::Vector2d(std::cos(*s.bearing + state.pose().yaw),
+                                                                     std::sin(*s.bearing + state.pose().yaw)),
                       Eigen::Matrix2d::Identity() * 25);
       }
       const ExpectedSighting e = expect(state.pose(), {}, state.at(slot));
@@ -376,6 +376,33 @@ TEST(EkfSlam, ACheckedPoseIsNotSearchedInTheWholeMap) {
     else
       EXPECT_GE(calls, 5);
   }
+}
+
+TEST(EkfSlam, RangesCorrectByLandmarksOfTheMapAndStartNone) {
+  double sum = 0;
+  int rows = 0;
+  for (std::uint64_t seed = 101; seed <= 110; ++seed) {
+    BeaconDrive drive(seed, {.mount = {0.8, -0.5, 1.2}, .map_sd = 0.1});
+    const PoseEstimate start = drive.start();
+    EkfSlam slam(start, LandmarkGrid(drive.map()), {});
+    std::size_t strangers = 0;
+    for (int i = 0; i < 400; ++i) {
+      slam.predict(drive.drive());
+      SightingSet seen = drive.look();
+      SeenLandmark stranger;
+      stranger.range = 12, stranger.identity = 99;
+      seen.sightings.push_back(stranger);
+      EXPECT_EQ(slam.update(seen).back().verdict, Verdict::nothing_near);
+      EXPECT_EQ(slam.unplaced_ranges(), ++strangers);
+      if (i < 20) continue;
+      sum += nees(slam.estimate(), drive.truth()) / 3, ++rows;
+    }
+    EXPECT_LT((slam.estimate().pose.at() - drive.truth().at()).norm(), 0.5) << "seed " << seed;
+    EXPECT_EQ(slam.landmarks().size(), drive.map().size());
+  }
+  std::printf("slam by ranges: anees %.2f\n", sum / rows);
+  EXPECT_GT(sum / rows, 0.6);
+  EXPECT_LT(sum / rows, 1.6);
 }
 
 TEST(EkfSlam, NonsenseIsRefusedAndLeavesItAlone) {

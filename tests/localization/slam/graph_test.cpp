@@ -55,6 +55,8 @@ struct Dense {
         const double off = wrap_angle(std::atan2(there.y(), there.x()) - e.value[1]);
         if (e.kind == SightingKind::bearing)
           all.push_back(e.root(1, 1) * off);
+        else if (e.kind == SightingKind::range)
+          all.push_back(e.root(0, 0) * (there.norm() - e.value[0]));
         else
           add(Eigen::Vector2d(e.root * Eigen::Vector2d(there.norm() - e.value[0], off)));
       }
@@ -113,10 +115,11 @@ TEST(GraphError, DerivativesMatchNumericOnes) {
     StepEdge step{.from = 0, .to = 1, .step = pose()};
     step.root << 3, 0.2, -0.1, 0, 2, 0.4, 0, 0, 5;
     SightingEdge seen;
-    seen.kind = static_cast<SightingKind>(trial % 3);
+    seen.kind = static_cast<SightingKind>(trial % 4);
     seen.value << random.uniform(1, 9), random.uniform(-1, 1);
     seen.root << 3, 0.5, 0, 2;
-    if (seen.kind == SightingKind::bearing) seen.root(0, 1) = 0;
+    const bool bearing = seen.kind == SightingKind::bearing, range = seen.kind == SightingKind::range;
+    if (bearing || range) seen.root(0, 1) = 0;
     seen.robot_from_sensor = {0.5, -0.2, 0.3};
     const StepError a = step_error(step, g.poses[0].at, g.poses[1].at);
     const SightingError b = sighting_error(seen, g.poses[0].at, g.landmarks[0].at);
@@ -126,8 +129,7 @@ TEST(GraphError, DerivativesMatchNumericOnes) {
     if (numeric.cwiseAbs().maxCoeff() > 1e4) continue;  // the numeric one stepped over the wrap of an angle
     EXPECT_TRUE(numeric.block(0, 0, 3, 3).isApprox(a.by_from, 1e-5)) << trial;
     EXPECT_TRUE(numeric.block(0, 3, 3, 3).isApprox(a.by_to, 1e-5)) << trial;
-    const bool bearing = seen.kind == SightingKind::bearing;
-    const Eigen::Index rows = bearing ? 1 : 2, first = bearing ? 1 : 0;
+    const Eigen::Index rows = bearing || range ? 1 : 2, first = bearing ? 1 : 0;
     EXPECT_TRUE(numeric.block(3, 0, rows, 3).isApprox(b.by_pose.middleRows(first, rows), 1e-5)) << trial;
     EXPECT_TRUE(numeric.block(3, 6, rows, 2).isApprox(b.by_landmark.middleRows(first, rows), 1e-5)) << trial;
   }

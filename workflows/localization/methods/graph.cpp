@@ -90,6 +90,7 @@ class Graph final : public LocalizeMethod {
     enable_relocalization(slam, task, search_);
     localization::PoseGraphBuilder drive(setup.start, slam);
     localization::Track track = run_slam(task, setup, drive);
+    warn_of_unplaced_ranges(task, slam.unplaced_ranges());
     std::vector<localization::SlamLandmark> landmarks;
     localization::PoseGraph graph = drive.graph(landmarks);
     localization::GraphOptions options = options_;

@@ -32,6 +32,7 @@ class Slam final : public LocalizeMethod {
     localization::Track track = run_slam(task, setup, slam);
     const std::vector<localization::SlamLandmark> landmarks = slam.landmarks();
     summarize(landmarks, setup.options, task.callbacks);
+    warn_of_unplaced_ranges(task, slam.unplaced_ranges());
     write_updated_map(task, landmarks, setup.options.confirmed, name());
     return track;
   }

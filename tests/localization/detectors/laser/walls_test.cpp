@@ -289,7 +289,7 @@ RC_GTEST_PROP(Detectors, GiveCornersTheirDirectionInTheMap, ()) {
   RC_ASSERT(set.sightings.size() >= 3u);
   for (const SeenLandmark& s : set.sightings) {
     const KnownFeatures mapped = features_in_map(FeatureScales(types), 0, s.features, sensor.yaw);
-    const double along = sensor.yaw + s.bearing;
+    const double along = sensor.yaw + *s.bearing;
     const double x = sensor.x + *s.range * std::cos(along), y = sensor.y + *s.range * std::sin(along);
     const double azimuth = std::atan2(x < 3 ? 1 : -1, y < 2 ? 1 : -1);  // clockwise from north, into the room
     RC_ASSERT(std::abs(wrap_angle(mapped.value[0] - azimuth)) < 0.01);
