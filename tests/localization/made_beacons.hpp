@@ -20,7 +20,7 @@ struct BeaconSettings {
   double start_sd = 0.3;  ///< m
 };
 
-/// A robot on a loop of about 100 m inside four beacons, of which it measures ranges alone. Errors are drawn
+/// A robot on a loop of about 100 m inside four beacons that measures only ranges to them. Errors are drawn
 /// from the distributions that the filters assume.
 class BeaconDrive {
  public:

@@ -119,7 +119,7 @@ TEST_F(CsvLog, IncompleteRecordsAreCounted) {
 
 TEST_F(CsvLog, ReadingsOfSeveralSensorsMayShareATable) {
   const Outcome said =
-      run("t,v,omega,range,landmark\n0,1,0,,\n0,,,4,r1\n0,,,5,r2\n1,1,0,,\n1,,,4,r1\n2,1,0,,\n",
+      run("t,v,omega,range,landmark\n0,1,0,,\n0,,,4,x1\n0,,,5,x2\n1,1,0,,\n1,,,4,x1\n2,1,0,,\n",
           {"--start", "0,0,0", "--method", "ekf"});
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_THAT(said.err, testing::Not(HasSubstr("run backwards")));

@@ -141,21 +141,24 @@ TEST_F(Localize, ASightingNeedsABearingOrARange) {
 }
 
 TEST_F(Localize, RangesAlonePlaceTheRobot) {
-  std::string ranges;
-  std::istringstream lines(drive_log({.features = false}));
-  for (std::string line; std::getline(lines, line);) {
-    nlohmann::json record = nlohmann::json::parse(line);
-    if (record["kind"] == "sightings")
-      for (nlohmann::json& item : record["items"]) item.erase("bearing"), item.erase("bearing_sd");
-    ranges += record.dump() + '\n';
-  }
+  const auto ranges = [](bool named) {
+    std::string log;
+    std::istringstream lines(drive_log({.named = named, .features = false}));
+    for (std::string line; std::getline(lines, line);) {
+      nlohmann::json record = nlohmann::json::parse(line);
+      if (record["kind"] == "sightings")
+        for (nlohmann::json& item : record["items"]) item.erase("bearing"), item.erase("bearing_sd");
+      log += record.dump() + '\n';
+    }
+    return log;
+  };
   for (const std::string method : {"ekf", "ukf", "pf", "slam", "graph"}) {
-    const Outcome said = localize(ranges, {"--method", method, "--start", "truth"});
+    const Outcome said = localize(ranges(false), {"--method", method, "--start", "truth"});
     ASSERT_EQ(said.code, 0) << method << said.err;
     EXPECT_LT(score()["ate_rmse"].get<double>(), 0.3) << method;
   }
   for (const std::string method : {"pf", "ekf"}) {
-    ASSERT_EQ(localize(ranges, {"--method", method, "--start", "none"}).code, 0) << method;
+    ASSERT_EQ(localize(ranges(true), {"--method", method, "--start", "none"}).code, 0) << method;
     const auto last = last_row();
     EXPECT_EQ(last.at("lost"), 0) << method;
   }
