@@ -37,6 +37,8 @@ void ParticleFilter::query_finder(const SightingSet& seen) {
   queried_set_ = sets_;
   finder_samples_.clear();
   PoseSearchResult found = memory_.find(finder_, seen);
+  if (!found.accepted && convergence_ && !convergence_->found())  // odometry may have bent what is remembered
+    if (PoseSearchResult at_once = finder_(seen); at_once.accepted) found = std::move(at_once);
   if (found.accepted) found.candidates = {*found.accepted};
   Random random(static_cast<std::uint64_t>(options_.seed) + sets_, "hints");
   for (const PoseEstimate& e : found.candidates) {

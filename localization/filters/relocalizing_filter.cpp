@@ -53,7 +53,9 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
 bool RelocalizingFilter::relocate(const SightingSet& seen) {
   if (++sets_since_query_ < kWait) return false;
   sets_since_query_ = 0;
-  const PoseSearchResult found = memory_.find(finder_, seen);
+  PoseSearchResult found = memory_.find(finder_, seen);
+  // Odometry may have bent what is remembered. A robot that knows where it was has a better judge in it.
+  if (!located_ && !found.accepted) found = finder_(seen);
   if (!found.accepted) return false;
   if (located_ && claims_.judge(*found.accepted, reliable_) == PoseClaims::Verdict::open) {
     memory_ = SightingMemory(scales_);

@@ -389,7 +389,7 @@ TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
   struct Sums {
     int matched = 0, rejected = 0;
   };
-  for (const std::string method : {"ekf", "pf", "slam"}) {
+  for (const std::string method : {"ekf", "pf"}) {  // SLAM matches landmarks of its own, too
     const auto sums_by = [&](const std::string& scans) {
       const Outcome said = waymark({"localize", map, log, "-o", track_, "--method", method, "--ids",
                                     "unknown", "--start", "truth", "--set", "scans=" + scans});
@@ -397,10 +397,15 @@ TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
       Sums sums;
       std::istringstream track(text_of(track_));
       std::string line;
-      for (std::getline(track, line); std::getline(track, line);) {
-        const std::size_t last = line.rfind(','), before = line.rfind(',', last - 1);
-        sums.matched += std::stoi(line.substr(before + 1, last - before - 1));
-        sums.rejected += std::stoi(line.substr(last + 1));
+      std::getline(track, line);
+      EXPECT_TRUE(line.starts_with("t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected"));
+      while (std::getline(track, line)) {
+        std::istringstream cells(line);
+        std::string cell;
+        for (int column = 0; std::getline(cells, cell, ','); ++column) {
+          if (column == 11) sums.matched += std::stoi(cell);
+          if (column == 12) sums.rejected += std::stoi(cell);
+        }
       }
       return sums;
     };

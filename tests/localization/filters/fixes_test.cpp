@@ -311,6 +311,20 @@ TEST(ParticleFilter, OneSetOfIdentifiedLandmarksIsEnough) {
   EXPECT_LT(filter.estimate().covariance(0, 0), 0.1);
 }
 
+// Where the constellation of what is remembered is not in the map, that of the present set may be.
+TEST(ParticleFilter, IsFoundByThePresentSetBesideABentMemory) {
+  RocksAbout site(true);
+  int calls = 0;
+  const auto finder = [&calls, find = site.finder()](const SightingSet& seen) {
+    return ++calls == 1 ? PoseSearchResult{} : find(seen);
+  };
+  ParticleFilter filter({}, LandmarkMatcher(LandmarkWindow{LandmarkGrid(site.map)}, {}, site.id),
+                        {.threads = 1, .weight = {}}, finder);
+  filter.update(site.look(15, 4, true));
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(filter.status(), LocalizationStatus::tracking);
+}
+
 TEST(SightingMemory, SeenAgainIsOneObject) {
   RocksAbout site(false);
   SightingMemory memory;
