@@ -11,6 +11,8 @@ namespace {
 constexpr std::size_t kMaxSightings = 40;  // the nearest ones; more only cost time
 constexpr std::size_t kSeenNeighbours = 7;
 constexpr double kMaxCells = 3000;  // of one triangle; with more its lengths are too uncertain to look up
+constexpr double kRepeats = 0.05;   // expected chance poses below which a second pose is no chance
+constexpr double kUnmapped = 0.2;   // fraction of what is seen that the map may lack
 constexpr std::size_t kMaxGuesses = 30000;  // from the triangles with the fewest hits
 
 }  // namespace
@@ -277,7 +279,13 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
   if (fixes.empty()) return "no such constellation in the map";
   const std::string_view doubt = objection(fixes[0], named);
   if (!doubt.empty() || named >= 2 || fixes.size() == 1) return doubt;
-  return badness(fixes[1]) - badness(fixes[0]) > std::log(o_.lead) ? "" : "two poses fit alike";
+  const ConstellationFix &best = fixes[0], &next = fixes[1];
+  if (!(badness(next) - badness(best) > std::log(o_.lead))) return "two poses fit alike";
+  // Two places that chance does not explain repeat each other. What only one of them shows may be missing in
+  // the map at the other.
+  const double more = (best.matched - next.matched) * std::log((1 - kUnmapped) / kUnmapped);
+  const bool repeats = badness(next) < std::log(kRepeats);
+  return repeats && !(more > std::log(o_.lead)) ? "the map has two such places" : "";
 }
 
 ConstellationAnswer ConstellationIndex::find(const SightingSet& seen) const {

@@ -128,6 +128,27 @@ TEST(ChanceMatches, IsMoreThanTheFractionOfDrawsThatMatchAsWell) {
   EXPECT_GT(below, 0);
 }
 
+// Of two places that are alike, the map lacks landmarks of the one where the robot is, or of the other.
+TEST(Constellation, PlacesThatTheMapRepeatsAreUnknown) {
+  Stars real = strewn_rocks(300, 120, 3);
+  const std::size_t half = real.map.size();
+  for (std::size_t i = 0; i < half; ++i) {
+    MapLandmark twin = real.map[i];
+    twin.at = Eigen::Vector2d(400, 30) - twin.at;
+    real.map.push_back(twin);
+  }
+  real = on_plane(std::move(real.map));
+  Random random(5, "repeated");
+  std::vector<MapLandmark> mapped;
+  std::ranges::copy_if(real.map, std::back_inserter(mapped),
+                       [&](const MapLandmark&) { return !random.bernoulli(0.1); });
+  const ConstellationIndex index(mapped, FeatureScales{});
+  const Tally t = tally(real, index, {}, 200, 5, 8);
+  report("repeated places, a tenth unmapped", real, index, t);
+  EXPECT_LE(t.wrong, 1);
+  EXPECT_EQ(t.invented, 0);
+}
+
 TEST(Constellation, FindsRocksAnywhereInAMap) {
   const Stars stars = strewn_rocks(5000, 500, 3);
   const ConstellationIndex index(stars.map, {});
