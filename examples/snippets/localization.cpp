@@ -36,6 +36,18 @@ localization::SightingSet see_a() {
 }
 //! [sighting]
 
+void see_without_a_bearing_or_a_type() {
+  //! [open_sighting]
+  localization::SeenLandmark beacon = see_a().sightings[0];
+  beacon.bearing.reset();  // a radio measures a range alone
+  std::cout << (beacon.has_position() ? "position\n" : "ring\n");
+  localization::SeenLandmark trunk;  // a tree (type 1) or a pole (type 4)
+  trunk.possible_types = {{.type = 1, .features = {}}, {.type = 4, .features = {}}};
+  for (const TypeId type : types_of(trunk)) std::cout << "may be of type " << type << '\n';
+  std::cout << (may_share_type(trunk, beacon) ? "perhaps the same\n" : "not the same\n");
+  //! [open_sighting]
+}
+
 void follow(localization::Localizer& filter) {
   //! [filter]
   filter.predict(
@@ -168,5 +180,7 @@ void localize_log() {
 }  // namespace
 
 int main() {
-  for (const auto& step : {filters, move, find_anywhere, find_by_summits, localize_log}) step();
+  for (const auto& step :
+       {see_without_a_bearing_or_a_type, filters, move, find_anywhere, find_by_summits, localize_log})
+    step();
 }
