@@ -98,7 +98,8 @@ TEST(BearingReach, IsThatOfTheType) {
       MapLandmark exact = landmark(1, range, 0, type);
       exact.covariance *= 1e-3;  // an uncertain landmark is looked for farther away
       const LandmarkGrid map({exact});
-      const SeenLandmark seen{.type = types.id(type), .range = {}, .features = {}, .identity = {}};
+      const SeenLandmark seen{
+          .type = types.id(type), .bearing = 0, .range = {}, .features = {}, .identity = {}};
       const PoseEstimate robot{{}, Eigen::Matrix3d::Identity() * 1e-6};
       EXPECT_EQ(candidates(seen, {}, robot, map, scales, options).pairings.size(), range < reach ? 1u : 0u)
           << type << ' ' << range;
