@@ -76,6 +76,9 @@ class ConstellationIndex {
   ///   fitted, and every sighting is compared with the map.
   /// - A fix must be better than any other pose and too good for chance (a contrario: Desolneux, Moisan &
   ///   Morel 2000). Chance follows from the local density of landmarks and the rarity of their features.
+  /// - A second pose that chance does not explain either shows that the map repeats itself. The fix then
+  /// needs
+  ///   five matches more than it (one landmark in five may be missing in the map).
   ConstellationAnswer find(const SightingSet& seen) const;
   /// Returns the fix next to an expected pose of a planar map, if it is too good for chance in the whole map.
   /// Does not search for other poses.

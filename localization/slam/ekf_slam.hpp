@@ -66,8 +66,7 @@ struct SlamLandmark {
 ///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
 ///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
 /// - Bearings without a range start a landmark once they have been seen from two sides (BearingStarts).
-/// Ranges
-///   without a bearing correct by known landmarks and start none.
+/// - Ranges without a bearing correct by known landmarks and start none.
 /// - A pair with a landmark of the map must also be certain (0.9) among all others and an object that the
 ///   map lacks (LandmarkMatcher): after a gap several landmarks are inside the gate. Where it is not, a sum
 ///   of Gaussians that keeps several associations (MultiHypothesisFilter on the map alone) may decide it.

@@ -152,8 +152,11 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   for (std::size_t i = 0; i < looks.size(); ++i) {
     by_name.emplace(looks[i].name, i);
     for (const SeenLandmark& s : looks[i].seen.sightings) {
-      made.unplaced += s.is_valid() && !s.has_position();
-      if (!s.is_valid() || !s.has_position() || !s.type || *s.type >= types.size()) continue;
+      if (!s.is_valid()) continue;
+      const bool is_typed = s.type && *s.type < types.size();
+      made.unplaced += !s.has_position();
+      made.untyped += s.has_position() && !is_typed;
+      if (!s.has_position() || !is_typed) continue;
       if (*s.range <= options.max_range)
         observations.push_back(observation_of(s, looks[i], types, scales, options));
       else

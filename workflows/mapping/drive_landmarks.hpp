@@ -41,6 +41,7 @@ struct DriveLandmarks {
   std::int64_t improbable = 0;  ///< landmarks removed as too improbable
   std::int64_t too_far = 0;     ///< sightings beyond `max_range`
   std::int64_t unplaced = 0;    ///< sightings with a bearing or a range alone
+  std::int64_t untyped = 0;     ///< sightings without a type, or whose type is open
 };
 
 /// Merges the sightings of looks into landmarks and values them (Rossmann et al. 3.2 and 3.3, a look in place

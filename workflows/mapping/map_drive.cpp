@@ -84,6 +84,13 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
         "{} sightings have a bearing or a range alone, which gives no position: they are left out: {}",
         made.unplaced, request.log));
   }
+  if (made.untyped) {
+    stage.counts.rejected["no type"] = made.untyped;
+    callbacks.warning(fmt::format(
+        "{} sightings have no type, or one that several detectors leave open: they are left out; name one "
+        "detector of single objects, such as --scans poles: {}",
+        made.untyped, request.log));
+  }
   contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
   std::set<std::string> made_types;
   for (const localization::DetectorSpec& detector : localization::laser_detectors())

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <set>
@@ -48,19 +47,6 @@ bool before(const Landmark& a, const Landmark& b) {
   for (std::size_t i = 0; i < std::min(a.features.size(), b.features.size()); ++i)
     if (const double x = known(a.features[i].value), y = known(b.features[i].value); x != y) return x > y;
   return a.uid < b.uid;
-}
-
-template <typename Value>
-void add_to(pipeline::BucketFile& file, std::uint64_t hash, const Value& value) {
-  file.add(hash >> 56, {reinterpret_cast<const char*>(&value), sizeof value});
-}
-
-template <typename Value>
-std::vector<Value> read_bucket(const pipeline::BucketFile& file, std::size_t bucket) {
-  const std::string bytes = file.read(bucket);
-  std::vector<Value> values(bytes.size() / sizeof(Value));
-  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
-  return values;
 }
 
 /// Orders the keys of a bucket by type, position and row.
@@ -122,7 +108,7 @@ pipeline::BucketFile StagedLandmarks::make_keys(const Crs& crs) {
     Key key{at.x(), at.y(), 0, 0, row, landmark.type};
     key.uid = hash_of(0, make_uid(types_[landmark.type], crs, Point<MapCrs>{{at.x(), at.y(), 0}}));
     if (!landmark.uid.empty()) key.given = hash_of(landmark.type, landmark.uid);
-    add_to(keys, key.uid, key);
+    pipeline::add_value(keys, key.uid >> 56, key);
     Curve& curve = curves_[landmark.type];
     curve.counts.resize(kBins);
     ++curve.counts[geodb::hilbert_position(at.head<2>(), curve.extent) / kBinWidth];
@@ -134,7 +120,7 @@ pipeline::BucketFile StagedLandmarks::make_keys(const Crs& crs) {
 StagedLandmarks::OfRow StagedLandmarks::read_tied(const pipeline::BucketFile& all) const {
   OfRow tied;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-    auto keys = read_bucket<Key>(all, bucket);
+    auto keys = pipeline::read_values<Key>(all, bucket);
     sort_keys(keys);
     visit_tied(keys, [&](auto begin, auto end) {
       for (; begin != end; ++begin) tied[begin->row];
@@ -153,7 +139,7 @@ void StagedLandmarks::number_uids(const Crs& crs, const std::string& source) {
   const OfRow tied = read_tied(all);
   pipeline::BucketFile uids(scratch_, kBuckets, kBuffered);
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-    auto keys = read_bucket<Key>(all, bucket);
+    auto keys = pipeline::read_values<Key>(all, bucket);
     sort_keys(keys);
     visit_tied(keys, [&](auto begin, auto end) {
       std::stable_sort(begin, end,
@@ -166,12 +152,12 @@ void StagedLandmarks::number_uids(const Crs& crs, const std::string& source) {
       const std::uint64_t uid =
           key.given != 0 ? key.given
                          : hash_of(key.type, made_uid(key.type, {{key.x, key.y, 0}}, key.row, crs));
-      add_to(uids, uid, uid);
+      pipeline::add_value(uids, uid >> 56, uid);
     }
   }
   std::unordered_set<std::uint64_t> repeated;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket)
-    add_repeated(read_bucket<std::uint64_t>(uids, bucket), repeated);
+    add_repeated(pipeline::read_values<std::uint64_t>(uids, bucket), repeated);
   if (repeated.empty()) return;
   std::set<std::pair<TypeId, std::string>> seen;
   visit([&](Landmark&& landmark, std::uint32_t row) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 #include "pipeline/engine/store/scratch_file.hpp"
 namespace waymark::pipeline {
@@ -31,5 +33,22 @@ class BucketFile {
   std::vector<Bucket> buckets_;
   std::size_t piece_;  ///< bytes
 };
+
+/// Appends a value to a bucket, bit by bit.
+template <class Value>
+requires std::is_trivially_copyable_v<Value>
+void add_value(BucketFile& file, std::size_t bucket, const Value& value) {
+  file.add(bucket, {reinterpret_cast<const char*>(&value), sizeof value});
+}
+
+/// Returns the values of a bucket that has no others, in the order they were added.
+template <class Value>
+requires std::is_trivially_copyable_v<Value> std::vector<Value> read_values(const BucketFile& file,
+                                                                            std::size_t bucket) {
+  const std::string bytes = file.read(bucket);
+  std::vector<Value> values(bytes.size() / sizeof(Value));
+  std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(values.data()));
+  return values;
+}
 
 }  // namespace waymark::pipeline

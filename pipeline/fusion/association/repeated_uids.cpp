@@ -53,16 +53,14 @@ std::uint64_t RepeatedUids::hash(const Landmark& landmark) const {
 void RepeatedUids::add(std::uint32_t part, std::span<const Landmark> landmarks) {
   for (const Landmark& landmark : landmarks) {
     const UidKey key{hash(landmark), part, 0};
-    keys_.add(key.hash >> 56, {reinterpret_cast<const char*>(&key), sizeof key});
+    add_value(keys_, key.hash >> 56, key);
   }
 }
 
 RepeatedUids::Found RepeatedUids::find() const {
   Found found;
   for (std::size_t bucket = 0; bucket < kBuckets; ++bucket) {
-    const std::string bytes = keys_.read(bucket);
-    std::vector<UidKey> keys(bytes.size() / sizeof(UidKey));
-    std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<char*>(keys.data()));
+    auto keys = read_values<UidKey>(keys_, bucket);
     std::ranges::sort(keys, {}, [](const UidKey& key) { return std::pair(key.hash, key.part); });
     for (std::size_t i = 1; i < keys.size(); ++i)
       if (keys[i].hash == keys[i - 1].hash && keys[i].part != keys[i - 1].part)

@@ -7,13 +7,13 @@
 #include <numbers>
 #include <set>
 
-#include "core/error.hpp"
 #include "localization/chi_square.hpp"
 #include "localization/filters/resampling.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "localization/identification/assignment.hpp"
 #include "localization/identification/joint_search.hpp"
 #include "localization/identification/landmark_window.hpp"
+#include "tests/localization/made_types.hpp"
 #include "tests/localization/made_world.hpp"
 
 namespace waymark::test {
@@ -302,77 +302,6 @@ TEST(Identify, SaysWhyNot) {
   EXPECT_EQ(verdict(s), Verdict::unknown_type);
 }
 
-// Of an object of a type that the map lacks, no fit is expected, so it is no sign of a wrong pose.
-TEST(Identify, KnowsTheTypesThatTheMapHolds) {
-  MapLandmark near = landmark_at(10, 0, 1), far = landmark_at(90, 0, 2);
-  far.type = TypeId{2};
-  const LandmarkGrid map({near, far});
-  IdentificationOptions options{.held_types = {TypeId{0}, TypeId{2}}};
-  const auto verdict = [&](TypeId type, std::optional<LandmarkKey> identity = {}) {
-    SeenLandmark s = seen_at(10, 0);
-    s.type = type, s.identity = identity;
-    return identify({{}, {s}}, {}, map, {}, options).matches[0].verdict;
-  };
-  EXPECT_EQ(verdict(0), Verdict::matched);
-  EXPECT_EQ(verdict(1), Verdict::unknown_type);
-  EXPECT_EQ(verdict(2), Verdict::nothing_near);
-  EXPECT_EQ(verdict(1, 1), Verdict::matched) << "its identity is known";
-  options.held_types = {};
-  EXPECT_EQ(verdict(1), Verdict::nothing_near) << "what the map holds is not known";
-}
-
-// What may be a pole of 0.1 m or a tree of 0.1 m is compared with each landmark as one of its type.
-TEST(Identify, ComparesEachPossibleType) {
-  constexpr TypeId kPole = 0, kTree = 1, kRock = 2;
-  const auto of = [](double x, double y, LandmarkKey key, TypeId type, double diameter) {
-    MapLandmark l = landmark_at(x, y, key);
-    l.type = type, l.features.value[type] = diameter;  // another place in each type
-    return l;
-  };
-  SeenLandmark s = seen_at(10, 0);
-  for (const TypeId type : {kPole, kTree}) {
-    KnownFeatures features;
-    features.value[type] = 0.1, features.variance[type] = 1e-4;
-    s.possible_types.push_back({type, features});
-  }
-  const auto match = [&](const MapLandmark& landmark) {
-    const LandmarkGrid map({landmark, of(10.1, 0.1, 9, kRock, 0.1)});
-    const Match found = identify({{}, {s}}, {}, map, {}, {.held_types = {kRock, landmark.type}}).matches[0];
-    return found.verdict == Verdict::matched && map[found.pairing.landmark].key != landmark.key
-               ? Verdict::taken
-               : found.verdict;
-  };
-  EXPECT_EQ(match(of(10, 0, 1, kPole, 0.1)), Verdict::matched);
-  EXPECT_EQ(match(of(10, 0, 1, kTree, 0.1)), Verdict::matched);
-  EXPECT_EQ(match(of(10, 0, 1, kTree, 0.6)), Verdict::features_differ);
-  EXPECT_EQ(match(of(10, 0, 1, kRock, 0.1)), Verdict::unknown_type) << "the map has neither";
-}
-
-// A possible type counts as the type itself.
-TEST(SightingScore, OfAPossibleTypeIsThatOfTheType) {
-  std::vector<MapLandmark> all = scatter_landmarks(60, 30, 5, 0.1);
-  Random random(5, "types");
-  for (MapLandmark& l : all)
-    l.type = static_cast<TypeId>(random.uniform_index(3)), l.features.value[0] = random.uniform(0.5, 1);
-  const LandmarkGrid map(all);
-  const FeatureScales scales;
-  SeenLandmark typed = seen_at(8, 0.3);
-  typed.type = TypeId{1};
-  typed.features.value[0] = 0.7, typed.features.variance[0] = 0.01;
-  SeenLandmark possible = typed;
-  possible.type = {}, possible.features = {};
-  possible.possible_types = {{TypeId{1}, typed.features}};
-  const WeightOptions options;
-  const IdentificationOptions identification{.use_identities = false};
-  const SightingSet typed_set{{}, {typed}}, possible_set{{}, {possible}};
-  const SightingScore by_type(typed_set, map, scales, options, identification);
-  const SightingScore by_possible(possible_set, map, scales, options, identification);
-  for (int i = 0; i < 50; ++i) {
-    const Pose2 robot{random.uniform(-10, 10), random.uniform(-10, 10), random.uniform(-3, 3)};
-    EXPECT_EQ(by_type(robot), by_possible(robot));
-  }
-}
-
 TEST(Identify, TwinsAreAmbiguousUntilFeaturesDiffer) {
   MapLandmark small = landmark_at(10, 0.1, 1), large = landmark_at(10, -0.1, 2);
   small.features.value[0] = 0.3;
@@ -446,15 +375,6 @@ TEST(Identify, SearchReachesWhatTheGateOfADoubtfulLandmarkAdmits) {
   EXPECT_NEAR(found.pairings[0].squares, 1.2 * 1.2 / variance, 1e-9);
 }
 
-TypeRegistry ellipses() {
-  TypeRegistry types;
-  types.add(
-      {.name = "ellipse",
-       .summary = "Something long",
-       .features = {{"orientation", "rad", Scale::axis, -4, 4, "Long axis, clockwise from north", 0.8}}});
-  return types;
-}
-
 // A map states an axis clockwise from north, a sensor from its own x axis to the left.
 TEST(Identify, AxesAreSeenInTheFrameOfTheSensor) {
   const FeatureScales scales(ellipses());
@@ -485,86 +405,6 @@ TEST(Identify, AxesAreSeenInTheFrameOfTheSensor) {
     same.prefetch(std::vector<Pose2>{robot, robot});
     EXPECT_EQ(same(robot), alone);
   }
-}
-
-TEST(Paper, DistanceExcludesAssociationsWithEvidenceOfTheirOwn) {
-  const LandmarkGrid map({landmark_at(10, 0, 1)});
-  const SightingSet twice{{}, {seen_at(10, 0), seen_at(10.1, 0.01)}};
-  IdentificationOptions options;
-  options.distance = "paper";
-  const auto matches = identify(twice, {}, map, {}, options).matches;
-  EXPECT_EQ(std::ranges::count(matches, Verdict::matched, &Match::verdict), 2) << "eq. 10: each alone";
-  for (const char* association : {"joint", "jcbb"}) {
-    options.association = association;
-    EXPECT_THROW(identify(twice, {}, map, {}, options), std::invalid_argument) << association;
-  }
-}
-
-TEST(Paper, DistanceIsEquation11) {
-  const LandmarkGrid map({landmark_at(10, 0, 1)});
-  IdentificationOptions options;
-  options.distance = "paper";
-  const auto found = candidates(seen_at(10.1, 0.02), {}, {}, map, {}, options);
-  ASSERT_EQ(found.pairings.size(), 1u);
-  EXPECT_NEAR(found.pairings[0].squares, 1 + 1, 1e-9);  // one standard deviation each
-}
-
-TypeRegistry rocks() {
-  TypeRegistry types;
-  types.add({.name = "rock",
-             .summary = "A rock",
-             .features = {{"radius", "m", Scale::ratio, 0.01, 100, ""},
-                          {"height", "m", Scale::ratio, 0.04, 25, ""}}});
-  return types;
-}
-
-// alpha_f of eq. 11 belongs to type and feature. The landmark's own variance must not change it, or of two
-// landmarks that differ as much the worse known would be the nearer.
-TEST(Paper, WeightsOfEquation11AreThoseOfTheType) {
-  FeatureScales scales(rocks());
-  EXPECT_NEAR(scales.alpha(0, 0, 0.2), 1 / (0.2 * 1), 1e-12) << "geometric mean of 0.01 and 100";
-  EXPECT_NEAR(scales.alpha(0, 1, 0.2), 1 / (0.2 * 1), 1e-12) << "of 0.04 and 25";
-  EXPECT_NEAR(FeatureScales(ellipses()).alpha(0, 0, 0.2), 1 / 0.8, 1e-12) << "the reference of an axis";
-  MapLandmark sure = landmark_at(10, 0, 1), vague = landmark_at(10, 0.01, 2);
-  sure.features.value[0] = vague.features.value[0] = 0.5;
-  sure.features.variance[0] = 1e-4, vague.features.variance[0] = 0.04;
-  SeenLandmark s = seen_at(10, 0);
-  s.type = TypeId{0};
-  s.features.value[0] = 0.7;
-  s.features.variance[0] = 0.01;
-  IdentificationOptions options;
-  options.distance = "paper";
-  for (const double alpha : {0.0, 3.0}) {
-    if (alpha > 0) set_alphas(scales, rocks(), "rock.radius=3,rock.height=1.5");
-    const double by_feature = std::pow(0.2 * (alpha > 0 ? alpha : 1 / 0.15), 2);
-    const auto found = candidates(s, {}, {}, LandmarkGrid({sure, vague}), scales, options).pairings;
-    ASSERT_EQ(found.size(), 2u);
-    EXPECT_NEAR(found[0].squares, by_feature, 1e-9);
-    EXPECT_NEAR(found[1].squares, by_feature + std::pow(0.001 / 0.02, 2), 1e-6);
-    WeightOptions weights;
-    weights.weights = "paper";
-    const LandmarkGrid map({vague});
-    EXPECT_NEAR(SightingScore({{}, {s}}, map, scales, weights, options)(Pose2{0, 0.01, 0}), by_feature, 1e-9);
-  }
-  EXPECT_NEAR(scales.alpha(0, 1, 0.2), 1.5, 1e-12);
-}
-
-TEST(Paper, WeightsOfEquation11AreRefusedWithAReason) {
-  const auto refusal = [](const char* list) -> std::string {
-    FeatureScales scales(rocks());
-    try {
-      set_alphas(scales, rocks(), list);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(refusal(""), "");
-  EXPECT_NE(refusal("rock").find("TYPE.FEATURE=VALUE, is 'rock'"), std::string::npos);
-  EXPECT_NE(refusal("stone.radius=1").find("no type 'stone'"), std::string::npos);
-  EXPECT_NE(refusal("rock.mass=1").find("rock has no feature 'mass'"), std::string::npos);
-  EXPECT_NE(refusal("rock.radius=-1").find("must be positive, is '-1'"), std::string::npos);
-  EXPECT_NE(refusal("rock.radius=1,rock.height=x").find("must be positive, is 'x'"), std::string::npos);
 }
 
 // Existence is the prior of a pairing and leaves the gate as it is; eq. 8 divides the noise.

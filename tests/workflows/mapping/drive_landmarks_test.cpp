@@ -77,6 +77,19 @@ TEST(DriveLandmarks, SightingsOutOfRangeAreCounted) {
   EXPECT_EQ(landmarks_of_looks(looks, all_types(), Crs::local()).too_far, 0);
 }
 
+TEST(DriveLandmarks, SightingsWithoutPositionOrTypeAreCounted) {
+  auto looks = made_looks();
+  const std::size_t all = landmarks_of_looks(looks, all_types(), Crs::local()).evidence.size();
+  std::vector<SeenLandmark>& seen = looks.at(3).seen.sightings;
+  ASSERT_GE(seen.size(), 2u);
+  seen[0].bearing.reset();
+  seen[1].type.reset(), seen[1].possible_types = {{.type = 0, .features = {}}, {.type = 1, .features = {}}};
+  const auto made = landmarks_of_looks(looks, all_types(), Crs::local());
+  EXPECT_EQ(made.unplaced, 1);
+  EXPECT_EQ(made.untyped, 1);
+  EXPECT_EQ(made.evidence.size(), all - 2);
+}
+
 // Both faces of the partition end at one position, and look in opposite directions.
 TEST(DriveLandmarks, OfTwoFacesOfOneWallStayTwo) {
   const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
