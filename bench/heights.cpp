@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heights from five images of 160 x 160 pixels of a cratered site: all threads and one; paths and
-// correlations alone.
+// Heights from five images of 160 x 160 pixels of a cratered site: all threads and one; paths, correlations
+// and refinement alone.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
+#include <numeric>
+
 #include "core/random.hpp"
+#include "pipeline/reconstruction/surface/refine_heights.hpp"
 #include "pipeline/reconstruction/surface/sweep_heights.hpp"
 #include "tests/pipeline/reconstruction/made_views.hpp"
 
@@ -48,6 +51,26 @@ void correlations(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * 32 * 32 * 16);
 }
 BENCHMARK(correlations)->Unit(benchmark::kMicrosecond);
+
+// 64 x 64 cells of 0.86 m, which five views see.
+void refinement(benchmark::State& state) {
+  const auto views = test::made_flight(test::made_site(5));
+  pipeline::ImageLevels images(views, std::size_t{1} << 30);
+  const pipeline::SurfaceGrid grid{.west = -27.5, .north = 27.5, .cell = 0.86, .columns = 64, .rows = 64};
+  std::vector<std::size_t> used(views.size());
+  std::iota(used.begin(), used.end(), std::size_t{0});
+  Random random(1);
+  Grid<float> heights(64, 64);
+  for (float& height : heights.cells()) height = static_cast<float>(0.3 * random.normal());
+  const Grid<float> sd(64, 64, 0.3f);
+  const auto at = [&](std::int64_t, std::int64_t) {
+    return pipeline::ComparedViews{views, images, used, 0.4};
+  };
+  for (auto _ : state)
+    benchmark::DoNotOptimize(pipeline::refine_heights(heights, sd, grid, {0, 0, 64, 64}, 16, at, {}));
+  state.SetItemsProcessed(state.iterations() * 64 * 64);
+}
+BENCHMARK(refinement)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench

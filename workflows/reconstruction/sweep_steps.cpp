@@ -50,7 +50,7 @@ void keep_chunks(pipeline::SweepPlan& plan, const std::vector<pipeline::SurfaceV
   plan.keep = [&kept, depends_on = key.hex()](const std::string& item,
                                               const std::function<pipeline::ChunkHeights()>& compute) {
     return kept.get<pipeline::ChunkHeights>(
-        {.name = "sweep_heights", .item = item, .version = 1, .depends_on = depends_on}, compute);
+        {.name = "sweep_heights", .item = item, .version = 2, .depends_on = depends_on}, compute);
   };
 }
 

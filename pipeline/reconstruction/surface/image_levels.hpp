@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <list>
 #include <map>
 #include <memory>
@@ -14,6 +17,23 @@ struct ImageLevel {
   Pixels pixels;
   double noise = 0;  ///< standard deviation of the noise of a pixel
 };
+
+/// Returns the bilinear brightness; NaN outside the image.
+inline float bilinear(const Pixels& image, float x, float y) {
+  const auto right = static_cast<float>(image.columns() - 1), bottom = static_cast<float>(image.rows() - 1);
+  if (!(x >= 0 && y >= 0 && x <= right && y <= bottom)) return std::numeric_limits<float>::quiet_NaN();
+  const auto i = std::min(static_cast<std::int64_t>(x), image.columns() - 2);
+  const auto j = std::min(static_cast<std::int64_t>(y), image.rows() - 2);
+  const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
+  const float upper = image(i, j) + a * (image(i + 1, j) - image(i, j));
+  const float lower = image(i, j + 1) + a * (image(i + 1, j + 1) - image(i, j + 1));
+  return upper + b * (lower - upper);
+}
+
+/// Returns the level whose pixels, of a ground sample distance at level 0, match a spacing best.
+inline int level_for(double gsd, double spacing) {
+  return std::clamp(static_cast<int>(std::lround(std::log2(spacing / gsd))), 0, 8);
+}
 
 /// Returns the standard deviation of pixel noise: the lower decile over blocks of 16 x 16 of the robust
 /// second mixed difference (Immerkaer 1996). At least 0.3, the rounding of integers, reduced by 2^level.

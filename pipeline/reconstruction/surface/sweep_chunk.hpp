@@ -6,6 +6,7 @@
 #include "pipeline/reconstruction/surface/choose_views.hpp"
 #include "pipeline/reconstruction/surface/image_levels.hpp"
 #include "pipeline/reconstruction/surface/path_costs.hpp"
+#include "pipeline/reconstruction/surface/refine_heights.hpp"
 #include "pipeline/reconstruction/surface/surface_grid.hpp"
 namespace waymark::pipeline {
 
@@ -40,11 +41,13 @@ struct SweepRules {
   double min_score = 0.5;
   double min_lead = 0.05;       ///< of the best score before the second peak
   double max_disagreement = 3;  ///< of the two halves, in standard deviations of their difference
-  double max_sd = 1.6;          ///< expected standard deviation, ground sample distances
+  double max_sd = 2.6;          ///< expected standard deviation before refinement, ground sample distances
+  double max_refined_sd = 1.7;  ///< the same after it
   double max_jump = 4;     ///< from the coarser surface, in the larger of node spacing and standard deviation
   double match_sd = 0.15;  ///< factor of the standard deviation from the curvature of the score
   double pixel_sd = 0.22;  ///< of a parallax, pixels: what the score does not show
   double relief_sd = 0.15;  ///< of the relief that windows smooth, node spacings
+  RefineRules refine = {};  ///< of the cells of the last pass
 };
 
 /// What one pass of the sweep works on.

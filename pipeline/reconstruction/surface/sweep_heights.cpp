@@ -12,6 +12,7 @@
 
 #include "pipeline/reconstruction/surface/height_checks.hpp"
 #include "pipeline/reconstruction/surface/pose_uncertainty.hpp"
+#include "pipeline/reconstruction/surface/sweep_scores.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -25,6 +26,8 @@ constexpr double kJumpLimit = 4;         // robust standard deviations
 
 struct UsedViews {
   std::vector<std::size_t> views;
+  double angle = 0;  // largest between two that are compared, radians
+  double gsd = 0;    // coarsest, metres
   Eigen::Matrix3d systematic = Eigen::Matrix3d::Zero();
 };
 
@@ -178,6 +181,7 @@ class HeightSweep {
                [&](const ChunkHeights& chunk) { join_nodes(chunk, base); });
     drop_hidden();
     drop_where(cells_off_plane(out_.height, out_.sd, kJumpLimit), NoHeight::jump);
+    refine();
     drop_where(cells_of_islands(out_.height, kMaxIsland, 3 * plan_.grid.cell), NoHeight::island);
     add_systematic();
     for (const std::uint8_t reason : out_.reason.cells()) ++out_.counts[reason];
@@ -200,6 +204,8 @@ class HeightSweep {
         UsedViews& block = used(c / 2, r / 2);
         if (c % kBlock != 0 || r % kBlock != 0) continue;
         block.views = chunk.blocks[chunk.block[node(0, 0)]].views;
+        block.angle = chunk.blocks[chunk.block[node(0, 0)]].angle;
+        block.gsd = chunk.blocks[chunk.block[node(0, 0)]].gsd;
         const std::int64_t mc = std::min(c + kBlock / 2, w.end_column() - 1),
                            mr = std::min(r + kBlock / 2, w.end_row() - 1);
         const SurfaceGrid grid = level_grid(0);
@@ -269,6 +275,32 @@ class HeightSweep {
       }
     });
     drop_where(hidden, NoHeight::hidden);
+  }
+
+  // Cells whose standard deviation stays too large are dropped.
+  void refine() {
+    constexpr std::int64_t kTile = kChunk / 2, kCellBlock = kBlock / 2;
+    const std::int64_t across = (plan_.grid.columns + kTile - 1) / kTile,
+                       down = (plan_.grid.rows + kTile - 1) / kTile;
+    const Grid<float> heights = out_.height, sd = out_.sd;
+    const ViewsAt views = [this](std::int64_t c, std::int64_t r) {
+      const UsedViews& block = used(c, r);
+      return ComparedViews{views_, images_, block.views, block.angle};
+    };
+    tbb::parallel_for(std::int64_t{0}, across * down, [&](std::int64_t n) {
+      const Window tile = clip_to_grid({n % across * kTile, n / across * kTile, kTile, kTile}, plan_.grid);
+      const std::vector<RefinedHeight> refined =
+          refine_heights(heights, sd, plan_.grid, tile, kCellBlock, views, plan_.rules.refine);
+      for (std::int64_t i = 0; i < tile.cells(); ++i) {
+        const std::int64_t c = tile.column + i % tile.columns, r = tile.row + i / tile.columns;
+        if (out_.reason(c, r) != 0) continue;
+        const RefinedHeight& cell = refined[static_cast<std::size_t>(i)];
+        out_.height(c, r) = cell.height;
+        out_.sd(c, r) = cell.sd;
+        if (!(static_cast<double>(cell.sd) <= plan_.rules.max_refined_sd * std::max(node_, used(c, r).gsd)))
+          drop(c, r, NoHeight::accuracy);
+      }
+    });
   }
 
   // Height error at a cell: that of the point, less what its horizontal error does on the slope.

@@ -13,17 +13,6 @@ namespace {
 constexpr float kNotSeen = std::numeric_limits<float>::quiet_NaN();
 constexpr int kSegment = 16;  // steps over which a projection is a parabola, within 0.01 px
 
-float bilinear(const Pixels& image, float x, float y) {
-  const auto right = static_cast<float>(image.columns() - 1), bottom = static_cast<float>(image.rows() - 1);
-  if (!(x >= 0 && y >= 0 && x <= right && y <= bottom)) return kNotSeen;
-  const auto i = std::min(static_cast<std::int64_t>(x), image.columns() - 2);
-  const auto j = std::min(static_cast<std::int64_t>(y), image.rows() - 2);
-  const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  const float upper = image(i, j) + a * (image(i + 1, j) - image(i, j));
-  const float lower = image(i, j + 1) + a * (image(i + 1, j + 1) - image(i, j + 1));
-  return upper + b * (lower - upper);
-}
-
 // Pixels of a view along the vertical through a node: a parabola in t, which is -1 and 1 at the ends of a
 // segment of steps. The level's own pixels.
 struct PixelPath {
@@ -94,8 +83,7 @@ class BlockScoring {
                 base_height(pass_, block.nodes.column + block.nodes.columns / 2,
                             block.nodes.row + block.nodes.rows / 2));
     for (const std::size_t v : block.chosen.views) {
-      const double gsd = ground_sample_distance(pass_.views[v].view, middle);
-      const int level = std::clamp(static_cast<int>(std::lround(std::log2(pass_.grid.cell / gsd))), 0, 8);
+      const int level = level_for(ground_sample_distance(pass_.views[v].view, middle), pass_.grid.cell);
       all.push_back({pass_.images.get(v, level), static_cast<double>(1 << level)});
     }
     return all;
