@@ -15,9 +15,9 @@ struct PlaneSmoothing {
 /// Cells beyond which heights have no effect on a cell.
 inline constexpr std::int64_t kSmoothingHalo = 7;
 
-/// Smooths heights by adaptive weights (Polzehl & Spokoiny 2000) with local planes: each round fits a plane
-/// to the neighbours whose former heights differ from the plane before by no more than their errors explain,
-/// so that jumps stay. Weights are 1 / sd^2. Cells without height stay so.
+/// Smooths heights by local planes with adaptive weights (Polzehl & Spokoiny 2000). Each round counts the
+/// neighbours whose former heights agree with the former plane within their errors, so that jumps stay. Weights
+/// are 1 / sd^2. Cells without height stay so.
 Grid<float> smooth_by_planes(const Grid<float>& heights, const Grid<float>& sd,
                              const PlaneSmoothing& rules = {});
 

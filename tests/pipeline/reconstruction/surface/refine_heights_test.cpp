@@ -64,14 +64,15 @@ class RefineHeights : public ::testing::Test {
   Grid<float> truth_, sd_;
 };
 
+// An error of 0.2 pixels of parallax is 0.18 m at 25 degrees.
 TEST_F(RefineHeights, ImagesGiveTheHeightsThatNoiseHides) {
-  EXPECT_LT(rms(refined(noisy(), {0, 0, 48, 48})), 0.15);
+  EXPECT_LT(rms(refined(noisy(), {0, 0, 48, 48})), 0.18);
 }
 
 TEST_F(RefineHeights, AShiftedSurfaceReturns) {
   Grid<float> raised = truth_;
   for (float& h : raised.cells()) h += 0.4f;
-  EXPECT_LT(rms(refined(raised, {0, 0, 48, 48})), 0.15);
+  EXPECT_LT(rms(refined(raised, {0, 0, 48, 48})), 0.18);
 }
 
 TEST_F(RefineHeights, StatedDeviationsAreThoseOfTheErrors) {
