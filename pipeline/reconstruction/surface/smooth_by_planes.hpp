@@ -16,8 +16,8 @@ struct PlaneSmoothing {
 inline constexpr std::int64_t kSmoothingHalo = 7;
 
 /// Smooths heights by local planes with adaptive weights (Polzehl & Spokoiny 2000). Each round counts the
-/// neighbours whose former heights agree with the former plane within their errors, so that jumps stay. Weights
-/// are 1 / sd^2. Cells without height stay so.
+/// neighbours whose former heights agree with the former plane within their errors, so that jumps stay.
+/// Weights are 1 / sd^2. Cells without height stay so.
 Grid<float> smooth_by_planes(const Grid<float>& heights, const Grid<float>& sd,
                              const PlaneSmoothing& rules = {});
 
