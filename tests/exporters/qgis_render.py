@@ -15,7 +15,7 @@ os.environ["GDAL_PAM_ENABLED"] = "NO"  # leave no statistics beside the DEM
 try:
     from osgeo import ogr
     from qgis.core import (QgsApplication, QgsHillshadeRenderer, QgsMapRendererSequentialJob, QgsMapSettings,
-                           QgsRasterLayer, QgsSingleSymbolRenderer, QgsVectorLayer)
+                           QgsRasterLayer, QgsRenderContext, QgsSingleSymbolRenderer, QgsVectorLayer)
     from qgis.PyQt.QtCore import QSize
     from qgis.PyQt.QtGui import QColor
 except ImportError as missing:
@@ -41,9 +41,26 @@ def complaints(layer):
         found.append("its CRS is not valid")
     renderer = layer.renderer()
     if isinstance(renderer, QgsSingleSymbolRenderer) and renderer.symbol().symbolLayer(0).layerType() == "SimpleMarker" \
-            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled():
+            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled() \
+            and layer.fields().indexOf("confidence") >= 0:
         found.append("the style of the map is not applied")
+    context = QgsRenderContext()
+    for symbol in renderer.symbols(context):
+        drawn = symbol.symbolLayer(0)
+        # A bowl has no fill, an outline has no colour of its own.
+        if max(drawn.color().alpha(), drawn.strokeColor().alpha()) < 100 or 0 < drawn.strokeColor().alpha() < 100:
+            found.append("a symbol cannot be seen")
+    renderer.startRender(context, layer.fields())
+    undrawn = sum(renderer.symbolForFeature(feature, context) is None for feature in layer.getFeatures())
+    renderer.stopRender(context)
+    if undrawn:
+        found.append(f"{undrawn} rows are in no class of the style")
     return found
+
+
+def rank(layer):
+    """Points are drawn over lines, lines over polygons."""
+    return layer.geometryType()
 
 
 def shaded_dem(path):
@@ -83,6 +100,7 @@ def main(path, picture, dem=None):
               f"{layer.renderer().type()}, labels {'on' if layer.labelsEnabled() else 'off'}")
         if layer.isValid() and layer.featureCount() > 0:
             layers.append(layer)
+    layers.sort(key=rank)
     if dem:
         layers.append(shaded_dem(dem))
     if not layers or not render(layers, picture):
