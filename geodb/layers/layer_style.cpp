@@ -54,14 +54,25 @@ bool is_to_scale(const LandmarkType& type) {
          (type.drawn_as == Solid::bowl || type.drawn_as == Solid::cylinder || type.drawn_as == Solid::sphere);
 }
 
+/// Returns by what QGIS's scale is too large or small. On a map in degrees it counts the distance across the
+/// pole of the Earth: its parallels shrink with the latitude, not with its cosine.
+std::string scale_correction(const Crs& crs) {
+  if (crs.kind() != CrsKind::geographic) return "";
+  constexpr double kQgisRadius = 6.37e6;
+  return fmt::format(
+      " * if(@map_extent_width &lt;= 400 and abs(y(@map_extent_center)) &lt;= 90, "
+      "{:.6g} * (1 - abs(y(@map_extent_center)) / 90), 1)",
+      kQgisRadius / crs.body().equatorial_radius);
+}
+
 // Millimetres: 1.6 for a feature of 0, one more for each power of ten; or the body's diameter at the map's
 // scale.
-std::string size_expression(const LandmarkType& type, double scale_factor) {
+std::string size_expression(const LandmarkType& type, const Crs& crs) {
   const std::string size =
       fmt::format("1.6 + coalesce(log10(1 + max(0, &quot;{}&quot;)), 0)", type.size_feature);
   if (!is_to_scale(type)) return size;
-  return fmt::format("max({}, coalesce({:.6g} * &quot;{}&quot; / @map_scale, 0))", size,
-                     2000 * type.body.radius_per_value * scale_factor, type.body.feature);
+  return fmt::format("max({}, coalesce({:.6g} * &quot;{}&quot; / @map_scale{}, 0))", size,
+                     2000 * type.body.radius_per_value, type.body.feature, scale_correction(crs));
 }
 
 // Large numbers, e.g. elevations, have no decimals.
@@ -69,10 +80,9 @@ std::string label_expression(const std::string& feature) {
   return fmt::format("round(&quot;{0}&quot;, if(abs(&quot;{0}&quot;) &lt; 100, 1, 0))", feature);
 }
 
-std::string qml_symbol(const LandmarkType& type, double scale_factor) {
+std::string qml_symbol(const LandmarkType& type, const Crs& crs) {
   const Marker marker = marker_of(type.drawn_as);
-  const std::string size =
-      type.size_feature.empty() ? "" : property("size", size_expression(type, scale_factor));
+  const std::string size = type.size_feature.empty() ? "" : property("size", size_expression(type, crs));
   return fmt::format(R"(  <renderer-v2 type="singleSymbol" forceraster="0" symbollevels="0" enableorderby="0">
     <symbols>
       <symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">
@@ -168,15 +178,11 @@ std::string qml_form(const LandmarkType& type) {
 }  // namespace
 
 std::string qml_style(const LandmarkType& type, const Crs& crs) {
-  // QGIS takes degrees of every body for the Earth's when it computes @map_scale.
-  constexpr double kQgisRadius = 6370997;
-  const double scale_factor =
-      crs.kind() == CrsKind::geographic ? kQgisRadius / crs.body().equatorial_radius : 1;
   return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
          "<qgis version=\"3.22\" "
          "styleCategories=\"Symbology|Labeling|Fields|Forms|MapTips|LayerConfiguration\"" +
          std::string(type.label_feature.empty() ? "" : " labelsEnabled=\"1\"") + ">\n" +
-         qml_symbol(type, scale_factor) + qml_labels(type) + qml_form(type) +
+         qml_symbol(type, crs) + qml_labels(type) + qml_form(type) +
          "  <layerGeometryType>0</layerGeometryType>\n</qgis>\n";
 }
 

@@ -31,6 +31,14 @@ TEST(QgisRender, DrawsAnEarthMapWithItsStyle) {
   expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
 }
 
+TEST(QgisRender, DrawsCratersToScale) {
+  const test::TemporaryFolder folder;
+  test::write_crater_map(folder / "mars.gpkg", "IAU_2015:49900", 77, 40, 1);
+  expect_qgis_draws(folder / "mars.gpkg", folder / "mars.png");
+  test::write_crater_map(folder / "local.gpkg", "local", 0, 0, 50'000);
+  expect_qgis_draws(folder / "local.gpkg", folder / "local.png");
+}
+
 TEST(QgisRender, DrawsStandsInClassesAndLines) {
   const test::TemporaryFolder folder;
   geodb::MapContents map = test::three_summits("EPSG:32632", 450'000, 5'050'000, 1000);
