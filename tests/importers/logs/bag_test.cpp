@@ -194,6 +194,24 @@ TEST_F(Bag, ReadsTheTopicWithTheMostMessagesAndNamesTheOthers) {
   EXPECT_EQ(std::get<StepReading>(log.events[0].what).step.x, 1);
 }
 
+TEST_F(Bag, ReadsTheTopicsThatAreAskedFor) {
+  write_rosbag2(file("made.db3"),
+                {made_odometry(false, 1, 0, 0, 0, "/wheel"), made_odometry(false, 2, 7, 0, 0, "/wheel"),
+                 made_odometry(false, 1, 0, 0, 0), made_odometry(false, 2, 1, 0, 0),
+                 made_odometry(false, 3, 9, 0, 0), made_scan(false, 1, 0, 0.1, {3, 2})});
+  const auto read = [&](std::vector<std::string> topics) {
+    return importers::import_log(file("made.db3"), {}, {.topics = std::move(topics)});
+  };
+  const RobotLog log = read({"/wheel"});
+  EXPECT_THAT(log.remarks, Contains(HasSubstr("odometry is read from /wheel, as asked; not from /odom")));
+  ASSERT_EQ(log.events.size(), 2u);  // the scan, too
+  EXPECT_EQ(std::get<StepReading>(log.events[1].what).step.x, 7);
+  EXPECT_THAT(message_of([&] { read({"/rear"}); }), HasSubstr("it has them of /odom, /wheel, /scan"));
+  EXPECT_THAT(message_of([&] { read({"/odom", "/wheel"}); }), HasSubstr("name one topic of odometry"));
+  const auto native = [&] { importers::import_log(write("a.jsonl", ""), {}, {.topics = {"/scan"}}); };
+  EXPECT_THAT(message_of(native), HasSubstr("only bags of ROS 2"));
+}
+
 TEST_F(Bag, RangesBelowTheMinimumAndWithoutReturnAreNone) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   const RobotLog log = read_rosbag2({made_scan(false, 1, 0, 0.1, {0.05f, none, 2})});
