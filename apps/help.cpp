@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <sstream>
 
 #include "apps/parse.hpp"
@@ -13,10 +17,18 @@
 namespace waymark::apps {
 namespace {
 
-constexpr std::size_t kWidth = 100, kTextColumn = 26;
+constexpr std::size_t kMaxWidth = 100, kMinWidth = 60, kTextColumn = 26;
 
-/// Wraps paragraphs at kWidth and indents every line by `indent` blanks.
+/// Returns the columns for text: those of the terminal, if standard output is one.
+std::size_t width() {
+  winsize size{};
+  const bool is_known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return is_known ? std::clamp<std::size_t>(size.ws_col, kMinWidth, kMaxWidth) : kMaxWidth;
+}
+
+/// Wraps paragraphs at the width of the terminal and indents every line by `indent` blanks.
 std::string wrapped(const std::string& text, std::size_t indent) {
+  const std::size_t columns = width();
   std::string result, line;
   const auto flush = [&] {
     if (!line.empty()) result += std::string(indent, ' ') + line + "\n";
@@ -27,7 +39,7 @@ std::string wrapped(const std::string& text, std::size_t indent) {
     if (paragraph.empty()) result += "\n";
     std::istringstream words(paragraph);
     for (std::string word; words >> word; line += (line.empty() ? "" : " ") + word)
-      if (indent + line.size() + 1 + word.size() > kWidth) flush();
+      if (indent + line.size() + 1 + word.size() > columns) flush();
   }
   return result;
 }

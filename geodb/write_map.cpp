@@ -157,7 +157,8 @@ class MapWriter {
                                 .changed = changed_});
     describe_columns(*database_, layout);
     create_evidence_links(*database_, type.name);
-    store_style(*database_, type.name, qml_style(type), sld_style(type), type.summary, changed_);
+    store_style(*database_, type.name, qml_style(type, contents_->crs), sld_style(type), type.summary,
+                changed_);
     whole_extent_.add(extent);
   }
 

@@ -62,10 +62,9 @@ StyleJson label_text(const WebLayer& layer) {
   if (feature != layer.features.end()) {
     const NumberFormat& format = feature->format;
     const std::string unit = format.unit.empty() ? "" : " " + format.unit;
-    const StyleJson number{
-        "number-format",
-        {"*", {"get", feature->name}, format.factor},
-        {{"min-fraction-digits", format.decimals}, {"max-fraction-digits", format.decimals}}};
+    StyleJson digits{{"min-fraction-digits", format.decimals}, {"max-fraction-digits", format.decimals}};
+    if (format.decimals == 0) digits["locale"] = "fr";  // thousands are parted by thin spaces, as on the page
+    const StyleJson number{"number-format", {"*", {"get", feature->name}, format.factor}, digits};
     text = {"case", {"has", feature->name}, {"concat", number, unit}, ""};
   }
   if (!named) return text;
@@ -192,6 +191,7 @@ StyleJson map_json(const WebLandmarks& landmarks, const WebStyle& about) {
             web_longitude(about.bounds.east), web_latitude(about.bounds.north)}},
           {"terrain", about.terrain_caption},
           {"height_factor", height_factor(about)},
+          {"lowest", about.terrain_lowest},
           {"outside", landmarks.outside},
           {"types", types}};
 }

@@ -15,6 +15,7 @@ struct WebStyle {
   WebBounds bounds = {};
   std::string terrain_caption = {};                   ///< empty: no terrain
   std::vector<Eigen::Vector2d> terrain_outline = {};  ///< on the world, not closed
+  double terrain_lowest = 0;                          ///< metres
   std::optional<HypsometricTint> tint = {};           ///< of the terrain
   std::string version = {};                           ///< of Waymark
 };

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "core/escape_markup.hpp"
 #include "geodb/layers/landmark_layout.hpp"
+#include "geodb/layers/qml_colour.hpp"
 
 namespace waymark::geodb {
 namespace {
@@ -35,13 +35,6 @@ Marker marker_of(Solid solid) {
   return {"circle", "circle", true};
 }
 
-// Returns "r,g,b,alpha" of "#rrggbb"; grey if it is not a colour.
-std::string rgba(const std::string& colour, int alpha) {
-  unsigned value = 0x888888;
-  if (colour.size() == 7) std::from_chars(colour.data() + 1, colour.data() + 7, value, 16);
-  return fmt::format("{},{},{},{}", value >> 16 & 255, value >> 8 & 255, value & 255, alpha);
-}
-
 std::string property(std::string_view name, std::string_view expression) {
   return fmt::format(
       R"(<Option name="{}" type="Map"><Option name="active" value="true" type="bool"/>)"
@@ -55,9 +48,31 @@ std::string properties(const std::string& inner) {
          inner + R"(</Option><Option name="type" value="collection" type="QString"/></Option>)";
 }
 
-// Millimetres: 1.6 for a feature of 0, one more for each power of ten.
-std::string size_expression(const std::string& feature) {
-  return fmt::format("1.6 + coalesce(log10(1 + max(0, &quot;{}&quot;)), 0)", feature);
+/// Symbols that are outlines from above are drawn to scale where that is larger; triangles would hide others.
+bool is_to_scale(const LandmarkType& type) {
+  return type.body.feature == type.size_feature &&
+         (type.drawn_as == Solid::bowl || type.drawn_as == Solid::cylinder || type.drawn_as == Solid::sphere);
+}
+
+/// Returns by what QGIS's scale is too large or small. On a map in degrees it counts the distance across the
+/// pole of the Earth: its parallels shrink with the latitude, not with its cosine.
+std::string scale_correction(const Crs& crs) {
+  if (crs.kind() != CrsKind::geographic) return "";
+  constexpr double kQgisRadius = 6.37e6;
+  return fmt::format(
+      " * if(@map_extent_width &lt;= 400 and abs(y(@map_extent_center)) &lt;= 90, "
+      "{:.6g} * (1 - abs(y(@map_extent_center)) / 90), 1)",
+      kQgisRadius / crs.body().equatorial_radius);
+}
+
+// Millimetres: 1.6 for a feature of 0, one more for each power of ten; or the body's diameter at the map's
+// scale.
+std::string size_expression(const LandmarkType& type, const Crs& crs) {
+  const std::string size =
+      fmt::format("1.6 + coalesce(log10(1 + max(0, &quot;{}&quot;)), 0)", type.size_feature);
+  if (!is_to_scale(type)) return size;
+  return fmt::format("max({}, coalesce({:.6g} * &quot;{}&quot; / @map_scale{}, 0))", size,
+                     2000 * type.body.radius_per_value, type.body.feature, scale_correction(crs));
 }
 
 // Large numbers, e.g. elevations, have no decimals.
@@ -65,10 +80,9 @@ std::string label_expression(const std::string& feature) {
   return fmt::format("round(&quot;{0}&quot;, if(abs(&quot;{0}&quot;) &lt; 100, 1, 0))", feature);
 }
 
-std::string qml_symbol(const LandmarkType& type) {
+std::string qml_symbol(const LandmarkType& type, const Crs& crs) {
   const Marker marker = marker_of(type.drawn_as);
-  const std::string size =
-      type.size_feature.empty() ? "" : property("size", size_expression(type.size_feature));
+  const std::string size = type.size_feature.empty() ? "" : property("size", size_expression(type, crs));
   return fmt::format(R"(  <renderer-v2 type="singleSymbol" forceraster="0" symbollevels="0" enableorderby="0">
     <symbols>
       <symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">
@@ -90,8 +104,8 @@ std::string qml_symbol(const LandmarkType& type) {
     </symbols>
   </renderer-v2>
 )",
-                     marker.qgis, rgba(type.colour, marker.filled ? 255 : 0),
-                     marker.filled ? "255,255,255,255" : rgba(type.colour, 255), marker.filled ? 0.2 : 0.5,
+                     marker.qgis, qml_colour(type.colour, marker.filled ? 1 : 0),
+                     marker.filled ? "255,255,255,255" : qml_colour(type.colour), marker.filled ? 0.2 : 0.5,
                      properties(size));
 }
 
@@ -163,12 +177,13 @@ std::string qml_form(const LandmarkType& type) {
 
 }  // namespace
 
-std::string qml_style(const LandmarkType& type) {
+std::string qml_style(const LandmarkType& type, const Crs& crs) {
   return "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
          "<qgis version=\"3.22\" "
          "styleCategories=\"Symbology|Labeling|Fields|Forms|MapTips|LayerConfiguration\"" +
-         std::string(type.label_feature.empty() ? "" : " labelsEnabled=\"1\"") + ">\n" + qml_symbol(type) +
-         qml_labels(type) + qml_form(type) + "  <layerGeometryType>0</layerGeometryType>\n</qgis>\n";
+         std::string(type.label_feature.empty() ? "" : " labelsEnabled=\"1\"") + ">\n" +
+         qml_symbol(type, crs) + qml_labels(type) + qml_form(type) +
+         "  <layerGeometryType>0</layerGeometryType>\n</qgis>\n";
 }
 
 std::string sld_style(const LandmarkType& type) {

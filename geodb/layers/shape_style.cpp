@@ -7,16 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "geodb/layers/qml_colour.hpp"
 #include "geodb/layers/shape_table.hpp"
 
 namespace waymark::geodb {
 namespace {
-
-std::string rgba(const std::string& colour, double opacity) {
-  unsigned value = 0x888888;
-  if (colour.size() == 7) std::from_chars(colour.data() + 1, colour.data() + 7, value, 16);
-  return fmt::format("{},{},{},{:.0f}", value >> 16 & 255, value >> 8 & 255, value & 255, 255 * opacity);
-}
 
 std::string option(const char* name, const std::string& value) {
   return fmt::format(R"(            <Option name="{}" value="{}" type="QString"/>)"
@@ -31,7 +26,7 @@ struct Symbol {
 
 Symbol symbol_of(const ShapeLayer& layer) {
   const ShapeStyle& s = layer.style;
-  const std::string width = fmt::format("{}", s.width), line = rgba(s.colour, 1);
+  const std::string width = fmt::format("{}", s.width), line = qml_colour(s.colour);
   switch (layer.kind) {
     case ShapeKind::point:
       return {"marker", "SimpleMarker",
@@ -44,10 +39,11 @@ Symbol symbol_of(const ShapeLayer& layer) {
     case ShapeKind::polygon:
       break;
   }
-  return {"fill", "SimpleFill",
-          option("color", rgba(s.fill.empty() ? s.colour : s.fill, s.fill.empty() ? 0 : s.fill_opacity)) +
-              option("style", s.fill.empty() ? "no" : "solid") + option("outline_color", line) +
-              option("outline_width", width) + option("outline_width_unit", "MM")};
+  return {
+      "fill", "SimpleFill",
+      option("color", qml_colour(s.fill.empty() ? s.colour : s.fill, s.fill.empty() ? 0 : s.fill_opacity)) +
+          option("style", s.fill.empty() ? "no" : "solid") + option("outline_color", line) +
+          option("outline_width", width) + option("outline_width_unit", "MM")};
 }
 
 std::string labels(const ShapeLayer& layer) {
@@ -106,7 +102,7 @@ std::string renderer(const ShapeLayer& layer) {
     one.style.fill_opacity = 0.8;
     symbols += qml_symbol_of(one, std::to_string(i));
     ranges += fmt::format(
-        "      <range symbol=\"{0}\" lower=\"{1:.9g}\" upper=\"{2:.9g}\" label=\"{1:.4g} to {2:.4g}\" "
+        "      <range symbol=\"{0}\" lower=\"{1}\" upper=\"{2}\" label=\"{1:.4g} to {2:.4g}\" "
         "render=\"true\"/>\n",
         i, bounds[i], bounds[i + 1]);
   }
@@ -119,9 +115,23 @@ std::string renderer(const ShapeLayer& layer) {
       layer.style.graduated, ranges, symbols);
 }
 
-/// Returns the heading of a column: "Volume m3 per ha (m3/ha)".
+/// Returns the unit as names of columns spell it, e.g. "_m3_per_ha".
+std::string unit_in_names(const std::string& unit) {
+  const std::size_t slash = unit.find('/');
+  if (slash == std::string::npos) return "_" + unit;
+  return (unit.substr(0, slash) == "1" ? "" : "_" + unit.substr(0, slash)) + "_per_" + unit.substr(slash + 1);
+}
+
+/// Returns the heading of a column: "Volume, standard error (m3/ha)" of volume_m3_per_ha_se.
 std::string column_title(const AttributeSpec& column) {
   std::string title = column.name;
+  if (!column.unit.empty()) {
+    const std::string unit = unit_in_names(column.unit);
+    const std::size_t at = title.find(unit), end = at + unit.size();
+    if (at != std::string::npos && at > 0 && (end == title.size() || title[end] == '_'))
+      title.erase(at, unit.size());
+  }
+  if (title.ends_with("_se")) title.replace(title.size() - 3, 3, ", standard error");
   std::ranges::replace(title, '_', ' ');
   if (title[0] >= 'a' && title[0] <= 'z') title[0] = static_cast<char>(title[0] - 'a' + 'A');
   return column.unit.empty() ? title : title + " (" + column.unit + ")";

@@ -20,9 +20,9 @@ using BagVisitor = std::function<void(const BagMessage&)>;
 /// Throws Error{input}.
 void visit_rosbag2(const std::filesystem::path& file, const BagVisitor& visit);
 
-/// Visits the messages of an MCAP file (https://mcap.dev/spec) whose chunks are not compressed, in the order
-/// of the file. Returns a remark if the file is cut off, as when a recorder was killed; the messages before
-/// that are visited. Throws Error{input} for compressed chunks and for records that contradict each other.
+/// Visits the messages of an MCAP file (https://mcap.dev/spec) in the order of the file; chunks may be
+/// compressed by zstd or lz4. Returns a remark if the file is cut off, as when a recorder was killed; the
+/// messages before that are visited. Throws Error{input} for records that contradict each other.
 std::vector<std::string> visit_mcap(const std::filesystem::path& file, const BagVisitor& visit);
 
 /// Returns the files of a bag: `path` itself, or the .db3 and .mcap files of a folder by name.

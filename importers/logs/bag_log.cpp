@@ -58,7 +58,8 @@ void turn_over(localization::LaserScan& scan) {
 
 class BagReader {
  public:
-  explicit BagReader(const std::filesystem::path& path) : path_(path) {}
+  BagReader(const std::filesystem::path& path, const std::vector<std::string>& topics)
+      : path_(path), wanted_(topics) {}
 
   void read(const BagMessage& message) {
     try {
@@ -83,6 +84,7 @@ class BagReader {
           unsound_ ? fmt::format("no message of the bag can be read; the first bad one is {}", first_unsound_)
                    : "the bag has neither odometry nor scans",
           path_.string(), "nav_msgs/msg/Odometry and sensor_msgs/msg/LaserScan are read");
+    check_wanted();
     if (unsound_)
       log_.remarks.push_back(fmt::format("{} messages cannot be read and are skipped, the first is {}",
                                          unsound_, first_unsound_));
@@ -151,18 +153,39 @@ class BagReader {
     }
   }
 
+  void check_wanted() const {
+    std::vector<std::string> known;
+    for (const auto& [name, topic] : odometry_) known.push_back(name);
+    for (const auto& [name, topic] : scans_) known.push_back(name);
+    for (const std::string& name : wanted_)
+      if (std::ranges::find(known, name) == known.end())
+        throw Error(ErrorCode::usage, "the bag has no odometry and no scans of the topic " + name,
+                    path_.string(), fmt::format("it has them of {}", fmt::join(known, ", ")));
+  }
+
   // A bag may hold raw and filtered odometry, or several scanners.
   template <class Topic, class Member>
   Topic* largest(std::map<std::string, Topic>& topics, const char* what, Member member) {
     if (topics.empty()) return nullptr;
-    const auto chosen = std::ranges::max_element(
-        topics, {}, [&](const auto& topic) { return std::invoke(member, topic.second).size(); });
+    const auto is_wanted = [&](const auto& topic) {
+      return std::ranges::find(wanted_, topic.first) != wanted_.end();
+    };
+    if (std::ranges::count_if(topics, is_wanted) > 1)
+      throw Error(ErrorCode::usage, fmt::format("several of the topics that {} read from are named", what),
+                  path_.string(), "name one topic of odometry and one of scans");
+    auto chosen = std::ranges::find_if(topics, is_wanted);
+    const char* why = "as asked";
+    if (chosen == topics.end()) {
+      chosen = std::ranges::max_element(
+          topics, {}, [&](const auto& topic) { return std::invoke(member, topic.second).size(); });
+      why = "which has the most messages";
+    }
     std::vector<std::string> unused;
     for (const auto& [name, topic] : topics)
       if (name != chosen->first) unused.push_back(name);
     if (!unused.empty())
-      log_.remarks.push_back(fmt::format("{} read from {}, which has the most messages; not from {}", what,
-                                         chosen->first, fmt::join(unused, ", ")));
+      log_.remarks.push_back(
+          fmt::format("{} read from {}, {}; not from {}", what, chosen->first, why, fmt::join(unused, ", ")));
     return &chosen->second;
   }
 
@@ -177,7 +200,7 @@ class BagReader {
       throw Error(ErrorCode::input,
                   fmt::format("the scanner {} is tilted by {:.0f} degrees", topic.frame,
                               std::acos(std::abs(place(2, 2))) * 180 / std::numbers::pi),
-                  path_.string(), "scans of level scanners are read; leave this topic out of the bag");
+                  path_.string(), "scans of level scanners are read; --topic names another");
     for (localization::LogEvent& event : topic.scans) {
       auto& scan = std::get<localization::LaserScan>(event.what);
       scan.robot_from_sensor = level(place);
@@ -187,6 +210,7 @@ class BagReader {
   }
 
   const std::filesystem::path& path_;
+  const std::vector<std::string>& wanted_;
   localization::RobotLog log_;
   std::map<std::string, OdometryTopic> odometry_;
   std::map<std::string, ScanTopic> scans_;
@@ -208,8 +232,9 @@ std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path) 
   return files;
 }
 
-localization::RobotLog import_bag_log(const std::filesystem::path& path) {
-  BagReader reader(path);
+localization::RobotLog import_bag_log(const std::filesystem::path& path,
+                                      const std::vector<std::string>& topics) {
+  BagReader reader(path, topics);
   const BagVisitor visit = [&](const BagMessage& message) { reader.read(message); };
   std::vector<std::string> remarks;
   for (const std::filesystem::path& file : bag_files(path)) {

@@ -61,13 +61,16 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (!how.columns.empty() && format != "csv")
     throw Error(ErrorCode::usage, "columns are given for a log of the format " + format, path.string(),
                 "only text tables (csv) have columns");
+  if (!how.topics.empty() && format != "rosbag2" && format != "mcap")
+    throw Error(ErrorCode::usage, "topics are given for a log of the format " + format, path.string(),
+                "only bags of ROS 2 (rosbag2, mcap) have topics");
   if (format == "csv") return import_csv_log(path, how.columns, types, how.sensor);
   if (format == "waymark") return import_waymark_log(path, types, how.sensor, how.held_types);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "carmen") return import_carmen_log(path);
-  if (format == "rosbag2" || format == "mcap") return import_bag_log(path);
+  if (format == "rosbag2" || format == "mcap") return import_bag_log(path, how.topics);
   if (format == "points") return import_point_log(path, types, how.held_types);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(

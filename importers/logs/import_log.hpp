@@ -21,6 +21,7 @@ struct LogImport {
                              ///< g2o, toro; empty: recognised by what is there
   std::int64_t robot = 0;    ///< MRCLAM: which of the five; 0: the robot of the named file
   std::string columns = {};  ///< csv: target=expression, separated by commas (import_csv_log)
+  std::vector<std::string> topics = {};  ///< rosbag2, mcap: read these where a bag has several of a type
   /// waymark, csv: its standard deviations are those of sightings for which the log gives none.
   std::optional<SensorCoverage> sensor = {};
   /// Types that the map holds: only these are detected in 3-D scans. Empty: all of `types`.
@@ -71,9 +72,10 @@ localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 
 /// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Throws Error{input}.
 /// - Odometry becomes steps; scans get their pose on the robot from tf and tf_static.
-/// - Of several topics of a type, the one with the most messages is read.
+/// - Of several topics of a type, the one in `topics` is read, else the one with the most messages.
 /// - Messages that cannot be read are skipped and counted.
-localization::RobotLog import_bag_log(const std::filesystem::path& path);
+localization::RobotLog import_bag_log(const std::filesystem::path& path,
+                                      const std::vector<std::string>& topics = {});
 
 /// Reads a folder of 3-D scans (point_files.hpp), or its subfolder `velodyne`, in the order of their names:
 /// each becomes sightings by the detectors whose types the map holds, so that one scan is in memory at a

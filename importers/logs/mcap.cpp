@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "importers/logs/bag_file.hpp"
+#include "importers/logs/mcap_chunk.hpp"
 #include "importers/vsi_file.hpp"
 
 namespace waymark::importers {
@@ -88,11 +89,15 @@ class McapReader {
   }
 
   void chunk(McapFields& fields) {
-    fields.bytes(28);  // first and last time, uncompressed size, CRC
+    fields.bytes(16);  // first and last time
+    const auto size = fields.number<std::uint64_t>();
+    fields.bytes(4);  // CRC
     const std::string_view compression = fields.text();
-    if (!compression.empty())
-      throw std::runtime_error(fmt::format("its chunks are compressed by '{}'", compression));
-    McapFields records(fields.bytes(fields.number<std::uint64_t>()));
+    std::string_view content = fields.bytes(fields.number<std::uint64_t>());
+    std::string unpacked;
+    if (!compression.empty() && !content.empty())
+      content = unpacked = unpacked_chunk(compression, content, size);
+    McapFields records(content);
     while (!records.rest().empty()) {
       const auto opcode = records.number<unsigned char>();
       record(opcode, records.bytes(records.number<std::uint64_t>()), true);
@@ -133,7 +138,7 @@ std::vector<std::string> visit_mcap(const std::filesystem::path& file, const Bag
       throw Error(ErrorCode::input,
                   fmt::format("the MCAP record at byte {} cannot be read: {}", at, problem.what()),
                   file.string(),
-                  "`mcap decompress` writes a copy without compression, `mcap recover` one without damage");
+                  "chunks compressed by zstd and lz4 are read; `mcap recover` writes a copy without damage");
     }
     at += kRecordHead + length;
   }

@@ -96,6 +96,10 @@ std::string& log_columns(Request& request) {
   return request.log_format.columns;
 }
 template <class Request>
+std::vector<std::string>& log_topics(Request& request) {
+  return request.log_format.topics;
+}
+template <class Request>
 std::int64_t& log_robot(Request& request) {
   return request.log_format.robot;
 }

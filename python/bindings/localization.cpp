@@ -48,6 +48,7 @@ const Keywords<workflows::LocalizeRequest>& localize_keywords() {
                               .add("seed", &R::seed)
                               .add("log_format", &log_format<R>)
                               .add("columns", &log_columns<R>)
+                              .add("topic", &log_topics<R>)
                               .add("robot", &log_robot<R>)
                               .add("use_identities", &R::use_identities)
                               .add("start", &R::start)

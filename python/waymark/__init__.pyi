@@ -896,7 +896,7 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         threads"""
     ...
 
-def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ..., start: Any = ..., progress: Any = ..., output: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., seed: int = ..., log_format: _Path = ..., columns: _Path = ..., robot: int = ..., use_identities: bool = ..., write_map: _Path = ..., update_map: bool = ..., dem: Sequence[Any] | _Path = ..., in_map_crs: bool = ..., layers: _Path = ..., timing: bool = ..., live: float = ..., threads: int = ...) -> Localization:
+def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ..., start: Any = ..., progress: Any = ..., output: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., seed: int = ..., log_format: _Path = ..., columns: _Path = ..., topic: Sequence[Any] | _Path = ..., robot: int = ..., use_identities: bool = ..., write_map: _Path = ..., update_map: bool = ..., dem: Sequence[Any] | _Path = ..., in_map_crs: bool = ..., layers: _Path = ..., timing: bool = ..., live: float = ..., threads: int = ...) -> Localization:
     """Follows a robot through a map by its log, as `waymark localize`; returns a Localization.
 
     map is a Map or a file ("none": without a map). start is (x, y, yaw) in metres and radians, "truth" or "none".
@@ -910,6 +910,7 @@ def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ...
         seed: of all random numbers
         log_format: waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam, g2o, toro; empty: recognised by what is there
         columns: csv: target=expression, separated by commas (import_csv_log)
+        topic: rosbag2, mcap: read these where a bag has several of a type
         robot: MRCLAM: which of the five; 0: the robot of the named file
         use_identities: identities in the log are used for data association
         write_map: slam, graph: map to write with the updates; empty: none

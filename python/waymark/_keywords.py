@@ -49,6 +49,7 @@ DESCRIPTIONS = {'detect': {'kind': '"craters", "rocks" or "trees"',
               'log_format': 'waymark, csv, mrclam, victoria-park, carmen, rosbag2, mcap, points, isam, g2o, toro; '
                             'empty: recognised by what is there',
               'columns': 'csv: target=expression, separated by commas (import_csv_log)',
+              'topic': 'rosbag2, mcap: read these where a bag has several of a type',
               'robot': 'MRCLAM: which of the five; 0: the robot of the named file',
               'use_identities': 'identities in the log are used for data association',
               'start': '"X,Y,YAW" (m, rad), "truth" or "none"; empty: the log decides',

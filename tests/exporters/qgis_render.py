@@ -7,6 +7,7 @@ Checks that every landmark layer is valid, has a valid CRS and got the style sto
 Exit codes: 0 done, 1 a check failed, 77 QGIS is not installed.
 """
 
+import math
 import os
 import sys
 
@@ -14,8 +15,10 @@ os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ["GDAL_PAM_ENABLED"] = "NO"  # leave no statistics beside the DEM
 try:
     from osgeo import ogr
-    from qgis.core import (QgsApplication, QgsHillshadeRenderer, QgsMapRendererSequentialJob, QgsMapSettings,
-                           QgsRasterLayer, QgsSingleSymbolRenderer, QgsVectorLayer)
+    from qgis.core import (QgsApplication, QgsEllipsoidUtils, QgsExpression, QgsExpressionContext,
+                           QgsExpressionContextUtils, QgsHillshadeRenderer, QgsMapRendererSequentialJob,
+                           QgsMapSettings, QgsRasterLayer, QgsRenderContext, QgsSingleSymbolRenderer,
+                           QgsSymbolLayer, QgsVectorLayer)
     from qgis.PyQt.QtCore import QSize
     from qgis.PyQt.QtGui import QColor
 except ImportError as missing:
@@ -41,9 +44,42 @@ def complaints(layer):
         found.append("its CRS is not valid")
     renderer = layer.renderer()
     if isinstance(renderer, QgsSingleSymbolRenderer) and renderer.symbol().symbolLayer(0).layerType() == "SimpleMarker" \
-            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled():
+            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled() \
+            and layer.fields().indexOf("var_x") >= 0:
         found.append("the style of the map is not applied")
+    context = QgsRenderContext()
+    for symbol in renderer.symbols(context):
+        drawn = symbol.symbolLayer(0)
+        # A bowl has no fill, an outline has no colour of its own.
+        if max(drawn.color().alpha(), drawn.strokeColor().alpha()) < 100 or 0 < drawn.strokeColor().alpha() < 100:
+            found.append("a symbol cannot be seen")
+    renderer.startRender(context, layer.fields())
+    undrawn = sum(renderer.symbolForFeature(feature, context) is None for feature in layer.getFeatures())
+    renderer.stopRender(context)
+    if undrawn:
+        found.append(f"{undrawn} rows are in no class of the style")
     return found
+
+
+def rank(layer):
+    """Points are drawn over lines, lines over polygons."""
+    return layer.geometryType()
+
+
+def scale_complaints(layer, settings):
+    """Craters measure on the map, from north to south, what their radius says."""
+    crater = next((f for f in layer.getFeatures() if layer.name() == "crater"), None)
+    if crater is None:
+        return []
+    crs = layer.crs()
+    unit = math.pi / 180 * QgsEllipsoidUtils.ellipsoidParameters(crs.ellipsoidAcronym()).semiMajor if crs.isGeographic() else 1
+    wanted = 2 * crater["radius"] / unit / settings.mapUnitsPerPixel() / settings.outputDpi() * 25.4
+    context = QgsExpressionContext(settings.expressionContext())
+    context.setFields(layer.fields())
+    context.setFeature(crater)
+    size = layer.renderer().symbol().symbolLayer(0).dataDefinedProperties().property(QgsSymbolLayer.PropertySize)
+    drawn = QgsExpression(size.expressionString()).evaluate(context)
+    return [f"a crater of {wanted:.1f} mm has {drawn:.1f} mm"] if wanted > 5 and abs(drawn / wanted - 1) > 0.03 else []
 
 
 def shaded_dem(path):
@@ -57,16 +93,22 @@ def shaded_dem(path):
 def render(layers, picture):
     settings = QgsMapSettings()
     settings.setLayers(layers)
-    settings.setDestinationCrs(layers[-1].crs())
+    settings.setDestinationCrs(layers[0].crs())
     settings.setBackgroundColor(QColor("#f4f1ea"))
     extent = layers[-1].extent()
     extent.scale(1.05)
     settings.setExtent(extent)
     settings.setOutputSize(QSize(900, int(900 * min(1.4, max(0.5, extent.height() / extent.width())))))
+    context = QgsExpressionContext()  # as the canvas gives it: styles use @map_scale
+    context.appendScope(QgsExpressionContextUtils.globalScope())
+    context.appendScope(QgsExpressionContextUtils.mapSettingsScope(settings))
+    settings.setExpressionContext(context)
     job = QgsMapRendererSequentialJob(settings)
     job.start()
     job.waitForFinished()
-    return job.renderedImage().save(picture)
+    found = [complaint for layer in layers if isinstance(layer, QgsVectorLayer) for complaint in scale_complaints(layer, settings)]
+    print(*found, sep="\n", end="\n" if found else "")
+    return not found and job.renderedImage().save(picture)
 
 
 def main(path, picture, dem=None):
@@ -83,10 +125,11 @@ def main(path, picture, dem=None):
               f"{layer.renderer().type()}, labels {'on' if layer.labelsEnabled() else 'off'}")
         if layer.isValid() and layer.featureCount() > 0:
             layers.append(layer)
+    layers.sort(key=rank)
     if dem:
         layers.append(shaded_dem(dem))
     if not layers or not render(layers, picture):
-        print("nothing was drawn")
+        print("nothing was drawn, or not to scale")
         failed = True
     return 1 if failed else 0
 

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+#include "geodb/write_map.hpp"
 #include "small_map.hpp"
 
 namespace waymark::test {
@@ -27,6 +28,37 @@ void expect_qgis_draws(const std::filesystem::path& map, const std::filesystem::
 TEST(QgisRender, DrawsAnEarthMapWithItsStyle) {
   const test::TemporaryFolder folder;
   test::write_two_type_map(folder / "map.gpkg");
+  expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
+}
+
+TEST(QgisRender, DrawsCratersToScale) {
+  const test::TemporaryFolder folder;
+  test::write_crater_map(folder / "mars.gpkg", "IAU_2015:49900", 77, 40, 1);
+  expect_qgis_draws(folder / "mars.gpkg", folder / "mars.png");
+  test::write_crater_map(folder / "local.gpkg", "local", 0, 0, 50'000);
+  expect_qgis_draws(folder / "local.gpkg", folder / "local.png");
+}
+
+TEST(QgisRender, DrawsStandsInClassesAndLines) {
+  const test::TemporaryFolder folder;
+  geodb::MapContents map = test::three_summits("EPSG:32632", 450'000, 5'050'000, 1000);
+  geodb::ShapeLayer stands{.name = "stand",
+                           .summary = "Stands",
+                           .columns = {{"volume", "m3/ha", AttributeSpec::Kind::real, ""}},
+                           .style = {.fill = "#a5d6a7", .graduated = "volume"}};
+  for (const double volume : {127.179463898547, 182.208887808091, 224.910330979472}) {
+    const double x = 450'000 + 10 * volume, y = 5'050'000;
+    stands.rows.push_back(
+        {{{.outer = {{x, y}, {x + 300, y}, {x + 300, y + 900}, {x, y + 900}, {x, y}}}}, {volume}});
+    stands.style.classes.push_back(volume);
+  }
+  map.layers = {stands,
+                {.name = "track",
+                 .summary = "",
+                 .kind = geodb::ShapeKind::line,
+                 .columns = {},
+                 .rows = {{{{.outer = {{450'000, 5'050'000}, {452'000, 5'051'000}}}}, {}}}}};
+  geodb::write_map(folder / "map.gpkg", map);
   expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
 }
 

@@ -86,6 +86,13 @@ void write_two_type_map(const std::filesystem::path& path) {
   geodb::write_map(path, map);
 }
 
+void write_crater_map(const std::filesystem::path& path, const std::string& crs, double x, double y,
+                      double spacing) {
+  geodb::MapContents map = three_summits(crs, x, y, spacing);
+  map.landmarks = {crater(map, "cr-one", x, y, 8000), crater(map, "cr-two", x + spacing, y + spacing, 8000)};
+  geodb::write_map(path, map);
+}
+
 std::string content_of(const std::filesystem::path& file) {
   return read_text(file, "the output");
 }

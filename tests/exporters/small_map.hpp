@@ -31,6 +31,10 @@ void write_mars_map(const std::filesystem::path& path);
 /// Writes three summits and two craters.
 void write_two_type_map(const std::filesystem::path& path);
 
+/// Writes two craters with a radius of 8 km, `spacing` CRS units apart.
+void write_crater_map(const std::filesystem::path& path, const std::string& crs, double x, double y,
+                      double spacing);
+
 std::string content_of(const std::filesystem::path& file);
 
 /// Lists the names in a folder, sorted.

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "geodb/geopackage/shape_blob.hpp"
+#include "geodb/layers/shape_table.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
@@ -95,6 +96,34 @@ TEST(ShapeLayer, IsAddedToAMapAndReplaced) {
     EXPECT_THAT(validate_map(folder / "map.gpkg"), IsEmpty());
     expect_equal(read_shape_layer(folder / "map.gpkg", "crown"), squares(count));
   }
+}
+
+TEST(ShapeLayer, IsDrawnOpaqueInQgisAndEveryValueHasAClass) {
+  ShapeLayer layer = squares(3);
+  const double least = 127.179463898547, most = 224.910330979472;
+  layer.style.graduated = "area";
+  layer.style.classes = {least, 182.208887808091, most};
+  const std::string qml = qml_shape_style(layer);
+  EXPECT_THAT(qml, HasSubstr(R"(name="outline_color" value="46,125,50,255")"));
+  const auto bound = [&](const std::string& name, std::size_t from) {
+    return std::stod(qml.substr(qml.find(name + "=\"", from) + name.size() + 2));
+  };
+  EXPECT_LE(bound("lower", 0), least);
+  EXPECT_GE(bound("upper", qml.rfind("<range ")), most);
+  EXPECT_THAT(qml_shape_style(track()), HasSubstr(R"(name="line_color" value="136,136,136,255")"));
+  EXPECT_THAT(qml_shape_style(harvested()), HasSubstr(R"(name="color" value="136,136,136,255")"));
+}
+
+TEST(ShapeLayer, HeadingsOfColumnsNameTheirUnitOnce) {
+  ShapeLayer layer = track();
+  layer.columns = {{"height_m", "m", Kind::real, ""},
+                   {"basal_area_m2_per_ha_se", "m2/ha", Kind::real, ""},
+                   {"stems_per_ha", "1/ha", Kind::real, ""},
+                   {"elevation", "m", Kind::real, ""}};
+  const std::string qml = qml_shape_style(layer);
+  for (const char* title :
+       {"Height (m)", "Basal area, standard error (m2/ha)", "Stems (1/ha)", "Elevation (m)"})
+    EXPECT_THAT(qml, HasSubstr("name=\"" + std::string(title) + "\""));
 }
 
 TEST(ShapeLayer, IsFoundByGdalWithItsHoles) {

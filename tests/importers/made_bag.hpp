@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -117,9 +118,11 @@ inline void write_rosbag2(const std::filesystem::path& file, const MadeBag& bag)
   sqlite3_close(db);
 }
 
-/// Bytes of an MCAP file; with `chunk_size` > 0, so many messages share a chunk with their channels.
-inline std::string made_mcap(const MadeBag& bag, std::size_t chunk_size,
-                             const std::string& compression = "") {
+/// Bytes of an MCAP file; with `chunk_size` > 0, so many messages share a chunk with their channels. `pack`
+/// compresses a chunk.
+inline std::string made_mcap(
+    const MadeBag& bag, std::size_t chunk_size, const std::string& compression = "",
+    const std::function<std::string(const std::string&)>& pack = [](const std::string& all) { return all; }) {
   const auto number = []<class T>(T value) {
     return std::string(reinterpret_cast<const char*>(&value), sizeof value);
   };
@@ -131,12 +134,14 @@ inline std::string made_mcap(const MadeBag& bag, std::size_t chunk_size,
   std::map<std::string, std::uint16_t> channels;
   std::size_t in_chunk = 0;
   const auto close = [&] {
-    if (chunk_size && !chunk.empty())
+    if (chunk_size && !chunk.empty()) {
+      const std::string packed = pack(chunk);
       out += record(6, number(std::uint64_t{0}) + number(std::uint64_t{0}) +
                            number(std::uint64_t(chunk.size())) + number(std::uint32_t{0}) +
-                           text(compression) + number(std::uint64_t(chunk.size())) + chunk);
-    else
+                           text(compression) + number(std::uint64_t(packed.size())) + packed);
+    } else {
       out += chunk;
+    }
     chunk.clear(), in_chunk = 0;
   };
   for (const MadeMessage& m : bag) {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -157,6 +158,13 @@ std::optional<exporters::Relief> read_terrain(const WebMapRequest& request, cons
   return relief;
 }
 
+double lowest_of(const exporters::Relief& relief) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const float height : relief.heights.cells())
+    if (height < lowest) lowest = height;
+  return lowest;
+}
+
 void write_texts(const fs::path& folder, const std::map<std::string, std::string>& files,
                  const fs::path& output) {
   for (const auto& [name, text] : files)
@@ -210,6 +218,7 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   if (relief) {
     terrain.emplace(crs, plane, *relief);
     style.terrain_outline = terrain->outline();
+    style.terrain_lowest = lowest_of(*relief);
     style.terrain_caption =
         fmt::format("Terrain, {:.3g} m per pixel", std::min(relief->cell_x, relief->cell_y));
     style.tint = exporters::hypsometric_tint(*relief, crs.body());

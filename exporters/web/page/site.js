@@ -37,9 +37,11 @@ const problem = (...words) => document.body.append(element('p', {className: 'pro
 const numberText = (value, decimals) => value.toLocaleString('en', {minimumFractionDigits: decimals,
   maximumFractionDigits: decimals}).replaceAll(',', '\u202f').replace('-', '\u2212');
 
-/// Formats a number of a list of features {unit, factor, decimals}.
-const featureText = (value, feature) =>
-  numberText(value * feature.factor, feature.decimals) + (feature.unit ? '\u00a0' + feature.unit : '');
+/// Formats a number of a list of features {unit, factor, decimals}, with its standard deviation where that is known.
+const featureText = (value, sd, feature) => {
+  const texts = [value, sd].filter(one => one !== undefined).map(one => numberText(one * feature.factor, feature.decimals));
+  return texts.join(' \u00b1 ') + (feature.unit === '\u00b0' ? feature.unit : feature.unit && '\u00a0' + feature.unit);
+};
 
 /// Metres to a decimetre; other numbers, such as degrees, as they are to five decimals.
 const attributeText = (value, unit) => unit === 'm' ? numberText(value, 1) : String(Number(value.toFixed(5))).replace('-', '\u2212');
@@ -86,8 +88,7 @@ const details = (about, type, p) => {
   for (const feature of type.features) {
     const value = p[feature.name], sd = p[feature.name + '_sd'];
     if (value === undefined) continue;
-    row(feature.title, featureText(value, feature) +
-      (sd === undefined ? '' : ' \u00b1 ' + numberText(sd * feature.factor, feature.decimals)), feature.summary);
+    row(feature.title, featureText(value, sd, feature), feature.summary);
   }
   for (const attribute of type.attributes)
     if (p[attribute.name] !== undefined && attribute.name !== 'name')
@@ -106,6 +107,25 @@ const details = (about, type, p) => {
 
 const filterOf = (confidence, quality) => ['all', ['>=', ['coalesce', ['get', 'confidence'], 1], confidence],
   ['any', ['<=', quality, 0], ['>=', ['coalesce', ['get', 'quality'], -1], quality]]];
+
+/// Says how many landmarks of the view only finer zooms show.
+function addCountOfHidden(map, about, panel) {
+  const note = element('p', {id: 'hidden'});
+  panel.append(note);
+  map.on('idle', () => {
+    const layers = about.types.map(type => type.name);
+    const hidden = new Map(map.queryRenderedFeatures({layers}).map(one => [one.properties.uid, one.properties.hidden ?? 0]));
+    const count = [...hidden.values()].reduce((sum, one) => sum + one, 0);
+    note.textContent = count ? `Zoom in to see up to ${numberText(count, 0)} lesser landmarks.` : '';
+  });
+}
+
+/// Source of the mesh of the terrain: its heights count from the lowest, where MapLibre's camera stands at first.
+const meshSource = about => {
+  const factor = about.height_factor;
+  return {encoding: 'custom', redFactor: 256 * factor, greenFactor: factor, blueFactor: factor / 256,
+    baseShift: (32768 + about.lowest) * factor};
+};
 
 function addPanel(map, about) {
   const panel = document.getElementById('panel');
@@ -137,11 +157,14 @@ function addPanel(map, about) {
     box.onchange = () => {
       map.setTerrain(box.checked ? {source: 'terrain_mesh', exaggeration: 1} : null);
       map.easeTo({pitch: box.checked ? 60 : 0, duration: 0});
+      map.once('idle', () => map.jumpTo({}));  // to the height of the ground, once that is loaded
     };
     panel.append(element('label', {title: about.terrain}, box, 'Terrain in 3-D'));
   }
-  const notes = [about.plane ? `${about.crs_name}: x and y are drawn to scale on a plane, so the scale bar holds everywhere.`
-    : `${about.body}, ${about.crs_name}. The Mercator projection enlarges towards the poles; the scale bar holds in the middle of the map.`];
+  addCountOfHidden(map, about, panel);
+  const place = about.body ? `${about.body}, ${about.crs_name}` : 'Local coordinates';
+  const notes = [about.plane ? `${place}: x and y are drawn to scale on a plane, so the scale bar holds everywhere.`
+    : `${place}. The Mercator projection enlarges towards the poles; the scale bar holds in the middle of the map.`];
   if (about.outside) notes.push(`${about.outside} landmarks beyond the edge of the map are not shown.`);
   panel.append(element('p', {}, notes.join(' ')));
 }
@@ -201,7 +224,7 @@ async function start() {
     if (answer.data === null) throw new Error(NO_TILE);
     return answer;
   });
-  if (about.terrain) style.sources.terrain_mesh = {...style.sources.terrain};
+  if (about.terrain) style.sources.terrain_mesh = {...style.sources.terrain, ...meshSource(about)};
   const map = new maplibregl.Map({container: 'map', style, bounds: about.bounds, fitBoundsOptions: {
       padding: {top: 60, bottom: 60, right: 60, left: Math.min(310, innerWidth / 3)}, maxZoom: 21},
     maxZoom: 24, maxPitch: 80, hash: true, attributionControl: false, renderWorldCopies: !about.plane});

@@ -161,6 +161,8 @@ class LandmarkPanel(QDockWidget):
             if shown is not None:
                 item.setIcon(QIcon(shown))
             self.evidence.addItem(item)
+        if self.evidence.count() == 0:
+            self.evidence.addItem("No single sightings are recorded.")
 
     def run(self, words):
         """Runs the program and shows the layer as it is now; returns whether it succeeded."""

@@ -36,7 +36,9 @@ class WebCommand : public testing::Test {
     MadeDem dem{.columns = 120, .rows = 120};
     dem.crs = "";
     dem.geotransform = {-10, 1, 0, 110, 0, -1};
-    dem.height = [](int column, int row) { return 3 * std::sin(0.2 * column) * std::cos(0.15 * row); };
+    dem.height = [](int column, int row) {
+      return -2500 + 3 * std::sin(0.2 * column) * std::cos(0.15 * row);
+    };
     make_dem(folder_ / "dem.tif", dem);
   }
 
@@ -99,10 +101,10 @@ TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
       "eval:(() => { const d = 180 / Math.PI / 6371008.8, p = x => waymark.map.project([x * d, 50 * d]).x;"
       " const bar = document.querySelector(\"#scale span\").getBoundingClientRect().width;"
       " return [parseFloat(document.getElementById(\"scale\").innerText), bar / (p(100) - p(0)) * 100]; })()",
-      // A height of the terrain tiles is read back through the style's decoding.
-      "eval:(waymark.map.setTerrain({source: \"terrain_mesh\"}), 1)",
-      "eval:waymark.map.queryTerrainElevation([50.5 / 6371008.8 * 180 / Math.PI, 50.5 / 6371008.8 * 180 / "
-      "Math.PI])",
+      // A height of the terrain tiles is read back through the style's decoding: the camera sees it.
+      "eval:document.getElementById(\"relief\").click()",
+      "eval:(() => { const at = [50.5, 50.5].map(x => x / 6371008.8 * 180 / Math.PI);"
+      " return waymark.map.queryTerrainElevation(at) + waymark.about.lowest; })()",
       "eval:(() => { const s = document.getElementById(\"confidence\"); s.value = 1; s.oninput(); "
       "document.querySelector(\"#panel input\").click(); return 1; })()",
       "eval:waymark.map.queryRenderedFeatures({layers: [\"rock\"]}).length", "errors", "requests",
@@ -120,7 +122,7 @@ TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
   EXPECT_GE(values[4][0].get<double>(), 5);
   EXPECT_NEAR(values[4][1].get<double>() / values[4][0].get<double>(), 1, 0.01);
   // Cell (60, 59) of the DEM, the middle of the map.
-  EXPECT_NEAR(values[6].get<double>(), 3 * std::sin(0.2 * 60) * std::cos(0.15 * 59), 0.25);
+  EXPECT_NEAR(values[6].get<double>(), -2500 + 3 * std::sin(0.2 * 60) * std::cos(0.15 * 59), 0.25);
   EXPECT_EQ(values[8], 0);
   EXPECT_THAT(values[9], IsEmpty());
   for (const Json& url : values[10])
@@ -129,6 +131,37 @@ TEST_F(WebCommand, TheBrowserShowsTheLandmarks) {
         << url;
   EXPECT_EQ(values[11], Json({0, 0, 1}));
   for (const Json& range : values.back()) EXPECT_NE(range[1], "whole");
+}
+
+TEST_F(WebCommand, APopupLiesOverThePanelAndHiddenLandmarksAreCounted) {
+  if (library().empty()) GTEST_SKIP() << "WAYMARK_MAPLIBRE names no folder of scripts/fetch-maplibre";
+  std::string table = "uid,x,y,radius,radius_sd\n";
+  for (int i = 0; i < 1500; ++i) table += fmt::format("rock-{},{},{},1.5,0.25\n", i, i % 50, i / 50);
+  write_text(folder_ / "many.csv", table);
+  const std::string many = folder_ / "many.gpkg";
+  ASSERT_EQ(
+      waymark({"import", folder_ / "many.csv", "--type", "rock", "--map-crs", "local", "-o", many}).code, 0);
+  ASSERT_EQ(waymark({"web", many, "-o", site_, "--assets", library()}).code, 0);
+  const auto values = browse(
+      {"eval:waymark.map.jumpTo({zoom: 18}), 1", "eval:document.getElementById(\"hidden\").innerText",
+       // A landmark beside the panel, so that its popup reaches over it.
+       "eval:(waymark.map.jumpTo({zoom: 22, center: [2e-4, 1e-4]}), 1)",
+       "clickon:waymark.map.queryRenderedFeatures({layers: [\"rock\"]}).map(f => "
+       "waymark.map.project(f.geometry.coordinates)).find(p => p.x > 295 && p.x < 355 && p.y > 240 && p.y < "
+       "310)",
+       "eval:(() => { const box = document.querySelector(\".maplibregl-popup\").getBoundingClientRect(), "
+       "panel = document.getElementById(\"panel\").getBoundingClientRect(), "
+       "x = (Math.max(box.left, panel.left) + panel.right) / 2, "
+       "y = (Math.max(box.top, panel.top) + Math.min(box.bottom, panel.bottom)) / 2; "
+       "return [box.left < panel.right && box.top < panel.bottom, "
+       "!!document.elementFromPoint(x, y).closest(\".maplibregl-popup\")]; })()",
+       "eval:document.querySelector(\".maplibregl-popup\").innerText",
+       "eval:document.getElementById(\"hidden\").innerText"});
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_THAT(values[1].get<std::string>(), HasSubstr("lesser landmarks"));
+  EXPECT_EQ(values[4], Json({true, true}));
+  EXPECT_THAT(values[5].get<std::string>(), HasSubstr("1.50 \u00b1 0.25\u00a0m"));
+  EXPECT_EQ(values[6], "");
 }
 
 TEST_F(WebCommand, AServerWithoutRangesServesTheMapToo) {

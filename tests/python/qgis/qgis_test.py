@@ -88,6 +88,7 @@ if icon is not None:
 dock.reason.setText("by the test")
 result["accepted"] = dock.edit_selected("accept")
 layer.selectByExpression("uid = 'b'")
+result["of_b"] = [dock.title.text(), [dock.evidence.item(i).text() for i in range(dock.evidence.count())]]
 result["rejected"] = dock.edit_selected("reject")
 result["left"] = sorted(f["uid"] for f in layer.getFeatures())
 result["none"] = dock.edit_selected("reject")
@@ -130,6 +131,7 @@ def test_the_panel_shows_evidence_and_edits_by_the_program(site, rocks, tmp_path
     assert result["evidence"] == ["one.tif\nweight 0.90", "two.tif\nweight 0.50"]
     assert all(abs(part - 0.5) < 0.06 for part in result["outline"]), result["outline"]
     assert not result["said"][:-1], result["said"]
+    assert result["of_b"][1] == ["No single sightings are recorded."]
     assert result["accepted"] and result["rejected"] and result["added"]
     assert result["left"] == ["a", "c"] and result["count_after"] == 3
     assert not result["none"] and result["said"] == ["No landmark is selected."]
