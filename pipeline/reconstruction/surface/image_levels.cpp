@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "pipeline/vision/half_image.hpp"
@@ -15,6 +16,18 @@ std::size_t bytes_of(const ImageLevel& level) {
 }
 
 }  // namespace
+
+float sample_level(const ImageLevel& image, double x, double y) {
+  const Pixels& p = image.pixels;
+  if (!(x >= 0 && y >= 0 && x <= double(p.columns() - 1) && y <= double(p.rows() - 1)))
+    return std::numeric_limits<float>::quiet_NaN();
+  const auto i = std::min(static_cast<std::int64_t>(x), p.columns() - 2);
+  const auto j = std::min(static_cast<std::int64_t>(y), p.rows() - 2);
+  const double a = x - double(i), b = y - double(j);
+  const auto at = [&](std::int64_t c, std::int64_t r) { return static_cast<double>(p(c, r)); };
+  return static_cast<float>((1 - b) * ((1 - a) * at(i, j) + a * at(i + 1, j)) +
+                            b * ((1 - a) * at(i, j + 1) + a * at(i + 1, j + 1)));
+}
 
 double noise_of(const Pixels& image, int level) {
   constexpr std::int64_t kBlock = 16;

@@ -15,6 +15,9 @@ struct ImageLevel {
   double noise = 0;  ///< standard deviation of the noise of a pixel
 };
 
+/// Returns the bilinear brightness at a pixel of the level; NaN outside and beside pixels without data.
+float sample_level(const ImageLevel& image, double x, double y);
+
 /// Returns the standard deviation of pixel noise: the lower decile over blocks of 16 x 16 of the robust
 /// second mixed difference (Immerkaer 1996). At least 0.3, the rounding of integers, reduced by 2^level.
 double noise_of(const Pixels& image, int level);

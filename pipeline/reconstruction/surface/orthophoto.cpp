@@ -21,18 +21,6 @@ constexpr std::int64_t kGainSpacing = 4;   // cells
 constexpr std::int64_t kGainRows = 32;     // summed at a time
 constexpr double kMaxLogDifference = 0.7;  // a factor of 2: beyond it, one of the two is a shadow
 
-float sample_level(const ImageLevel& image, double x, double y) {
-  const Pixels& p = image.pixels;
-  if (!(x >= 0 && y >= 0 && x <= double(p.columns() - 1) && y <= double(p.rows() - 1)))
-    return std::numeric_limits<float>::quiet_NaN();
-  const auto i = std::min(static_cast<std::int64_t>(x), p.columns() - 2);
-  const auto j = std::min(static_cast<std::int64_t>(y), p.rows() - 2);
-  const double a = x - double(i), b = y - double(j);
-  const auto at = [&](std::int64_t c, std::int64_t r) { return static_cast<double>(p(c, r)); };
-  return static_cast<float>((1 - b) * ((1 - a) * at(i, j) + a * at(i + 1, j)) +
-                            b * ((1 - a) * at(i, j + 1) + a * at(i + 1, j + 1)));
-}
-
 class Rectifier {
  public:
   Rectifier(const std::vector<SurfaceView>& views, const SurfaceGrid& grid, const Grid<float>& heights,
