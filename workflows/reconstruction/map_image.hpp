@@ -10,13 +10,14 @@ namespace waymark::workflows {
 struct MapImage {
   Crs crs = Crs::local();
   pipeline::LevelImage image = {};
-  std::vector<std::string> messages = {};  ///< what was done to the file: reduced, projected anew
+  std::vector<std::string> messages = {};  ///< how the file was changed: reduced, projected
 };
 
-/// Reads an orthophoto and resamples it to `crs`; empty: its own CRS, or a local projection about its middle
-/// if metres of its own differ from those on the ground by more than 0.2 %. Files above 36 megapixels are
-/// reduced by a whole number. Throws Error{input} for an image without a georeference or in degrees,
-/// Error{usage} for a `crs` in degrees.
+/// Reads an orthophoto and resamples it to `crs`.
+/// - Empty: its own CRS, or a local projection about its middle if lengths in its own are wrong by 0.2 %.
+/// - Files above 36 megapixels are reduced by a whole number.
+/// - Throws Error{input} for an image without a georeference or in degrees, Error{usage} for a `crs` in
+/// degrees.
 MapImage read_map_image(const std::string& file, const std::string& crs);
 
 /// Throws what read_map_image() would throw for the file and the CRS, without reading pixels.

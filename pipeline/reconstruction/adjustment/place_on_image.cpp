@@ -14,12 +14,12 @@
 namespace waymark::pipeline {
 namespace {
 
-constexpr int kSearchCells = 64, kFineCells = 160;  // across the mosaic
-constexpr double kYawTurn = 4 * std::numbers::pi / 180, kScaleRatio = 1.06;
+constexpr int kSearchCells = 48, kFineCells = 160;  // across the mosaic
+constexpr double kYawTurn = 6 * std::numbers::pi / 180, kScaleRatio = 1.08;
 constexpr double kMinCoverage = 0.6;  // of the mosaic, by the map
 constexpr double kFewMapCells = 24;   // of the map, across the mosaic: less shows no pattern
 constexpr std::size_t kPeaks = 4;     // kept per yaw and scale
-constexpr std::size_t kRefined = 12;
+constexpr std::size_t kRefined = 8;
 
 /// Brightness about its local mean in units of its local contrast, and where it is known (1 or 0).
 struct Texture {
@@ -90,26 +90,52 @@ Texture turned(const Texture& mosaic, double yaw) {
   return out;
 }
 
-cv::Mat correlated(const cv::Mat& image, const cv::Mat& pattern) {
-  cv::Mat out;
-  cv::matchTemplate(image, pattern, out, cv::TM_CCORR);
+// Transform of a matrix at the upper left of zeros.
+cv::Mat spectrum_of(const cv::Mat& matrix, cv::Size size) {
+  cv::Mat out = cv::Mat::zeros(size, CV_32F);
+  matrix.copyTo(out(cv::Rect({0, 0}, matrix.size())));
+  cv::dft(out, out, 0, matrix.rows);
   return out;
+}
+
+/// Transforms of a part of the map, from which its correlation with any mosaic follows.
+struct MapSpectra {
+  cv::Size map = {}, size = {};
+  cv::Mat value, squares, known;
+
+  explicit MapSpectra(const Texture& texture)
+      : map(texture.value.size()),
+        size(cv::getOptimalDFTSize(map.width), cv::getOptimalDFTSize(map.height)),
+        value(spectrum_of(texture.value, size)),
+        squares(spectrum_of(texture.value.mul(texture.value), size)),
+        known(spectrum_of(texture.known, size)) {}
+};
+
+// Sums of products of a map and a pattern at each shift of the pattern's upper left corner.
+cv::Mat correlated(const cv::Mat& map, const cv::Mat& pattern, cv::Size shifts) {
+  cv::Mat out;
+  cv::mulSpectrums(map, pattern, out, 0, true);
+  cv::dft(out, out, cv::DFT_INVERSE | cv::DFT_SCALE, shifts.height);
+  return out(cv::Rect({0, 0}, shifts));
 }
 
 // Normalized cross-correlation of a mosaic with the map at each shift of its upper left corner; -1 where the
 // map covers too little of it.
-cv::Mat scores_of(const Texture& map, const Texture& mosaic) {
+cv::Mat scores_of(const MapSpectra& map, const Texture& mosaic) {
   const double count = cv::sum(mosaic.known)[0];
   if (!(count > 0)) return {};
   const cv::Mat pattern = (mosaic.value - cv::sum(mosaic.value)[0] / count).mul(mosaic.known);
   const double energy = pattern.dot(pattern);
-  const cv::Mat covered = correlated(map.known, mosaic.known) + 1e-6;
-  const cv::Mat sums = correlated(map.value, mosaic.known);
-  cv::Mat squares = correlated(map.value.mul(map.value), mosaic.known) - sums.mul(sums) / covered;
+  const cv::Mat pattern_there = spectrum_of(pattern, map.size),
+                known_there = spectrum_of(mosaic.known, map.size);
+  const cv::Size shifts(map.map.width - pattern.cols + 1, map.map.height - pattern.rows + 1);
+  const cv::Mat covered = cv::max(correlated(map.known, known_there, shifts), 1e-3);
+  const cv::Mat sums = correlated(map.value, known_there, shifts);
+  cv::Mat squares = correlated(map.squares, known_there, shifts) - sums.mul(sums) / covered;
   squares = cv::max(squares, 0.01 * count);
   cv::Mat norm;
   cv::sqrt(squares.mul(covered) * (energy / count), norm);
-  cv::Mat out = correlated(map.value, pattern) / norm;
+  cv::Mat out = correlated(map.value, pattern_there, shifts) / norm;
   out.setTo(-1, covered < kMinCoverage * count);
   return out;
 }
@@ -135,7 +161,7 @@ class Correlator {
   // The best trials of one scale, over all yaws and shifts.
   std::vector<Trial> search(double scale) const {
     const double cell = scale * extent_ / kSearchCells;
-    const Texture map = map_texture(map_, cell, kSearchCells, kSearchCells / 2);
+    const MapSpectra map(map_texture(map_, cell, kSearchCells, kSearchCells / 2));
     std::vector<Trial> out;
     const int yaws = static_cast<int>(std::lround(2 * std::numbers::pi / kYawTurn));
     for (int i = 0; i < yaws; ++i) {
@@ -156,35 +182,45 @@ class Correlator {
     return out;
   }
 
-  // The best trial within some cells of a start, with the scale and yaw of the start.
-  Trial near(Trial start, double scale, double yaw, int reach) const {
+  // The best trial of one scale and some yaws, within some cells of a start.
+  Trial near(const Trial& start, double scale, const std::vector<double>& yaws, int reach) const {
     const double cell = scale * extent_ / kFineCells;
     const double half = (kFineCells / 2 + reach + 1) * cell;
     const SurfaceGrid& g = of_map_;
-    const auto clamp = [](double v, double most) { return static_cast<int>(std::clamp(v, 0.0, most)); };
-    const cv::Rect part(cv::Point(clamp(std::floor((start.x - half - g.west) / g.cell), double(map_.cols)),
-                                  clamp(std::floor((g.north - start.y - half) / g.cell), double(map_.rows))),
-                        cv::Point(clamp(std::ceil((start.x + half - g.west) / g.cell), double(map_.cols)),
-                                  clamp(std::ceil((g.north - start.y + half) / g.cell), double(map_.rows))));
-    start.score = -1;
-    if (part.width < 8 || part.height < 8) return start;
+    const auto column_at = [&](double x) {
+      return static_cast<int>(std::clamp(std::floor((x - g.west) / g.cell), 0.0, double(map_.cols)));
+    };
+    const auto row_at = [&](double y) {
+      return static_cast<int>(std::clamp(std::floor((g.north - y) / g.cell), 0.0, double(map_.rows)));
+    };
+    const cv::Rect part(cv::Point(column_at(start.x - half), row_at(start.y + half)),
+                        cv::Point(column_at(start.x + half + g.cell), row_at(start.y - half - g.cell)));
+    Trial best = start;
+    best.score = -1;
+    if (part.width < 8 || part.height < 8) return best;
     const double west = g.west + part.x * g.cell, north = g.north - part.y * g.cell;
     const Texture map = map_texture(map_(part), cell, kFineCells, kFineCells / 2);
-    const cv::Mat scores = scores_of(map, turned(fine_, yaw));
-    if (scores.empty()) return start;
     const int c = static_cast<int>(std::lround((start.x - west) / cell)),
               r = static_cast<int>(std::lround((north - start.y) / cell));
-    const cv::Rect window = cv::Rect(c - reach, r - reach, 2 * reach + 1, 2 * reach + 1) &
-                            cv::Rect(0, 0, scores.cols, scores.rows);
-    if (window.empty()) return start;
-    double best = 0;
-    cv::Point at;
-    cv::minMaxLoc(scores(window), nullptr, &best, nullptr, &at);
-    return {.scale = scale,
-            .yaw = yaw,
-            .x = west + (window.x + at.x) * cell,
-            .y = north - (window.y + at.y) * cell,
-            .score = best};
+    const int side = kFineCells + 2 * reach;
+    const cv::Rect window =
+        cv::Rect(c - reach, r - reach, side, side) & cv::Rect(0, 0, map.value.cols, map.value.rows);
+    if (window.width < kFineCells || window.height < kFineCells) return best;
+    const MapSpectra there({.value = map.value(window), .known = map.known(window)});
+    for (const double yaw : yaws) {
+      const cv::Mat scores = scores_of(there, turned(fine_, yaw));
+      if (scores.empty()) continue;
+      double score = 0;
+      cv::Point at;
+      cv::minMaxLoc(scores, nullptr, &score, nullptr, &at);
+      if (score > best.score)
+        best = {.scale = scale,
+                .yaw = yaw,
+                .x = west + (window.x + at.x) * cell,
+                .y = north - (window.y + at.y) * cell,
+                .score = score};
+    }
+    return best;
   }
 
  private:
@@ -211,11 +247,11 @@ bool apart_in_image(const Trial& a, const Trial& b, double extent) {
          std::abs(std::log(a.scale / b.scale)) > 0.1 || turn > 10 * std::numbers::pi / 180;
 }
 
-std::vector<Trial> distinct(std::vector<Trial> trials, double extent, std::size_t most) {
+std::vector<Trial> distinct(std::vector<Trial> trials, double extent, std::size_t count) {
   std::ranges::stable_sort(trials, std::greater{}, &Trial::score);
   std::vector<Trial> out;
   for (const Trial& trial : trials) {
-    if (out.size() == most) break;
+    if (out.size() == count) break;
     if (std::ranges::all_of(out, [&](const Trial& kept) { return apart_in_image(kept, trial, extent); }))
       out.push_back(trial);
   }
@@ -231,14 +267,14 @@ Trial refined_placement(const Correlator& correlator, const Trial& start) {
   Trial best = start;
   best.score = -1;
   for (const Round& round :
-       {Round{0.025, 2 * kDegree, 12}, Round{0.012, kDegree, 5}, Round{0.004, 0.35 * kDegree, 3}}) {
+       {Round{0.03, 2.5 * kDegree, 12}, Round{0.012, kDegree, 5}, Round{0.004, 0.35 * kDegree, 3}}) {
     const Trial middle = best.score > 0 ? best : start;
-    for (int i = -2; i <= 2; ++i)
-      for (int j = -2; j <= 2; ++j) {
-        const Trial trial = correlator.near(middle, middle.scale * (1 + i * round.scale),
-                                            middle.yaw + j * round.yaw, round.reach);
-        if (trial.score > best.score) best = trial;
-      }
+    std::vector<double> yaws;
+    for (int i = -2; i <= 2; ++i) yaws.push_back(middle.yaw + i * round.yaw);
+    for (int i = -2; i <= 2; ++i) {
+      const Trial trial = correlator.near(middle, middle.scale * (1 + i * round.scale), yaws, round.reach);
+      if (trial.score > best.score) best = trial;
+    }
   }
   return best;
 }

@@ -29,13 +29,13 @@ struct ImagePlacementRules {
   double min_score = 0.15;
   double min_distinction = 1.5;  ///< score of the placement, by that of the next best
   double largest = 1.25;         ///< side of the mosaic, by the longer side of the map
-  double smallest = 1.0 / 12;
+  double smallest = 1.0 / 8;
 };
 
 /// Finds shift, yaw and scale that bring a mosaic onto an orthophoto, without a start.
 /// - Both are levelled in local brightness and contrast, which takes haze, albedo and gain away.
-/// - Correlates 64 x 64 cells of the mosaic at all shifts, yaws of 4 degrees and scales of 6 %, at most two
-///   fifths of it outside the map; refines the best with 160 x 160 cells to 0.4 % and 0.35 degrees.
+/// - Correlates 48 x 48 cells of the mosaic at all shifts, yaws of 6 degrees and scales of 8 %. Two fifths of
+///   it may be outside the map. The best are refined with 160 x 160 cells to 0.4 % and 0.35 degrees.
 /// - Refuses what fits poorly, or another place nearly as well. Relief under another sun looks different.
 /// In parallel, the same for any threads; some 20 s for the full range of scales.
 ImagePlacementResult place_on_image(const LevelImage& mosaic, const LevelImage& map,

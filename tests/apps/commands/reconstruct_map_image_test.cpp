@@ -2,7 +2,7 @@
 // `waymark reconstruct --map`: pictures without positions are placed in an orthophoto.
 #include <gmock/gmock.h>
 
-#include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -29,8 +29,23 @@ const fs::path& orthophoto() {
   return file;
 }
 
-Eigen::Vector3d vector_of(const json& values) {
+using Position = std::array<double, 3>;
+
+Position position_of(const json& values) {
   return {values[0], values[1], values[2]};
+}
+
+double in_plan(const Position& a, const Position& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+double distance(const Position& a, const Position& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+// Standard deviation of a coordinate of the centre of an image in a camera file.
+double sd_of(const json& image, std::size_t k) {
+  return std::sqrt(double(image["covariance"][3 + k][3 + k]));
 }
 
 class ReconstructInMapImage : public PhotoFlight {
@@ -54,19 +69,16 @@ TEST_F(ReconstructInMapImage, PosesAreThoseOfTheMap) {
                               HasSubstr("heights are above the mean level of the terrain")));
   const json found = json::parse(text_of(folder_ / "out/cameras.json"))["images"],
              truth = json::parse(text_of(grid_flight() / "truth/cameras.json"))["images"];
+  const Position first = position_of(found[0]["centre"]), true_first = position_of(truth[0]["centre"]);
   for (std::size_t i = 0; i < 6; ++i) {
-    const Eigen::Vector3d error = vector_of(found[i]["centre"]) - vector_of(truth[i]["centre"]);
-    const Eigen::MatrixXd sd = [&] {
-      Eigen::MatrixXd out(3, 1);
-      for (int k = 0; k < 3; ++k) out(k) = std::sqrt(double(found[i]["covariance"][3 + k][3 + k]));
-      return out;
-    }();
-    EXPECT_LT(error.head<2>().norm(), 6) << i;  // 300 m above ground whose slope is taken as 0 +- 1 degree
-    EXPECT_LT(sd.maxCoeff(), 12) << i;
-    for (int k = 0; k < 2; ++k) EXPECT_LT(std::abs(error[k]), 3 * sd(k)) << i;
-    const double base = (vector_of(found[i]["centre"]) - vector_of(found[0]["centre"])).norm(),
-                 true_base = (vector_of(truth[i]["centre"]) - vector_of(truth[0]["centre"])).norm();
-    EXPECT_NEAR(base, true_base, 0.01 * true_base) << i;
+    const Position at = position_of(found[i]["centre"]), true_at = position_of(truth[i]["centre"]);
+    EXPECT_LT(in_plan(at, true_at), 6) << i;  // 300 m above ground whose slope is taken as 0 +- 1 degree
+    for (const std::size_t k : {0U, 1U}) {
+      EXPECT_LT(sd_of(found[i], k), 12) << i;
+      EXPECT_LT(std::abs(at[k] - true_at[k]), 3 * sd_of(found[i], k)) << i;
+    }
+    EXPECT_NEAR(distance(at, first), distance(true_at, true_first), 0.01 * distance(true_at, true_first))
+        << i;
   }
 }
 
@@ -96,7 +108,7 @@ TEST_F(ReconstructInMapImage, AMapThatCannotServeIsRefusedAtOnce) {
 /// Published pose of a frame of the Lander Vision System of Mars 2020 (position to some metres).
 struct PublishedFrame {
   std::string name = {};
-  Eigen::Vector3d body_fixed = Eigen::Vector3d::Zero();
+  Position body_fixed = {};
   double height = 0;  ///< above the place of touchdown, metres
 };
 
@@ -104,12 +116,12 @@ constexpr double kMarsRadius = 3396190, kLat = 18.45 * std::numbers::pi / 180,
                  kLon = 77.45 * std::numbers::pi / 180;
 
 // In the orthographic projection about (kLat, kLon).
-Eigen::Vector2d in_plan(const Eigen::Vector3d& body_fixed) {
-  const double lat = std::asin(body_fixed.z() / body_fixed.norm()),
-               lon = std::atan2(body_fixed.y(), body_fixed.x());
-  return kMarsRadius * Eigen::Vector2d(std::cos(lat) * std::sin(lon - kLon),
-                                       std::cos(kLat) * std::sin(lat) -
-                                           std::sin(kLat) * std::cos(lat) * std::cos(lon - kLon));
+Position projected(const PublishedFrame& frame) {
+  const auto& [x, y, z] = frame.body_fixed;
+  const double lat = std::atan2(z, std::hypot(x, y)), lon = std::atan2(y, x) - kLon;
+  return {kMarsRadius * std::cos(lat) * std::sin(lon),
+          kMarsRadius * (std::cos(kLat) * std::sin(lat) - std::sin(kLat) * std::cos(lat) * std::cos(lon)),
+          frame.height};
 }
 
 // Twelve frames from 6.3 to 2.3 km above Jezero, in a mosaic with pixels of 15.6 m. The map's projection
@@ -142,20 +154,19 @@ TEST(RealDescent, PerseveranceIsPlacedInItsMap) {
       {"LVS_15_51_38.jpg", {701403.2, 3145680.6, 1075894.4}, 5832},
       {"LVS_15_52_18.jpg", {700204.2, 3142714.1, 1074352.6}, 2350},
   };
-  std::vector<Eigen::Vector3d> found, truth;
+  std::vector<Position> found, truth;
   for (const json& image : json::parse(text_of(folder / "out/cameras.json"))["images"])
     for (const PublishedFrame& frame : published)
       if (image["name"] == frame.name) {
-        found.push_back(vector_of(image["centre"]));
-        truth.push_back({in_plan(frame.body_fixed).x(), in_plan(frame.body_fixed).y(), frame.height});
-        const Eigen::Vector2d error = (found.back() - truth.back()).head<2>();
-        EXPECT_LT(error.norm(), 0.05 * frame.height) << frame.name;  // the terrain is not level
-        for (int k = 0; k < 2; ++k)
-          EXPECT_LT(std::abs(error[k]), 3 * std::sqrt(double(image["covariance"][3 + k][3 + k])))
-              << frame.name;
+        found.push_back(position_of(image["centre"]));
+        truth.push_back(projected(frame));
+        EXPECT_LT(in_plan(found.back(), truth.back()), 0.05 * frame.height)
+            << frame.name;  // no level terrain
+        for (const std::size_t k : {0U, 1U})
+          EXPECT_LT(std::abs(found.back()[k] - truth.back()[k]), 3 * sd_of(image, k)) << frame.name;
       }
   ASSERT_EQ(found.size(), 2U);
-  EXPECT_NEAR((found[0] - found[1]).norm() / (truth[0] - truth[1]).norm(), 1, 0.01);
+  EXPECT_NEAR(distance(found[0], found[1]) / distance(truth[0], truth[1]), 1, 0.01);
 }
 
 }  // namespace

@@ -53,13 +53,16 @@ Similarity placement(double scale, double yaw, double x, double y) {
           .shift = {x, y, 0}};
 }
 
+// Fewer scales than by default, for time.
+constexpr pipeline::ImagePlacementRules kRules{.largest = 0.8, .smallest = 0.15};
+
 constexpr MadeGround kMapGround{.longest = 200, .shortest = 8, .seed = 3};
 
 TEST(PlaceOnImage, FindsShiftYawAndScale) {
   const LevelImage map = made_map(kMapGround);
   for (const Similarity& truth :
        {placement(0.4, 130 * kDegree, 5520, 8480), placement(0.17, -75 * kDegree, 5300, 8300)}) {
-    const auto placed = pipeline::place_on_image(made_mosaic(kMapGround, truth, 0.4, 4), map);
+    const auto placed = pipeline::place_on_image(made_mosaic(kMapGround, truth, 0.4, 4), map, kRules);
     ASSERT_TRUE(placed.found) << placed.message;
     const Similarity& found = placed.found->map_from_mosaic;
     EXPECT_NEAR(found.scale / truth.scale, 1, 0.01);
@@ -71,7 +74,7 @@ TEST(PlaceOnImage, FindsShiftYawAndScale) {
 
 TEST(PlaceOnImage, AMosaicMayReachBeyondTheMap) {
   const Similarity truth = placement(0.35, 0.3, 5120, 8700);  // of 350 m: 55 m are beyond the western border
-  const auto placed = pipeline::place_on_image(made_mosaic(kMapGround, truth), made_map(kMapGround));
+  const auto placed = pipeline::place_on_image(made_mosaic(kMapGround, truth), made_map(kMapGround), kRules);
   ASSERT_TRUE(placed.found) << placed.message;
   EXPECT_LT((placed.found->map_from_mosaic.shift - truth.shift).norm(), 6);
 }
@@ -79,8 +82,8 @@ TEST(PlaceOnImage, AMosaicMayReachBeyondTheMap) {
 TEST(PlaceOnImage, OtherGroundIsRefused) {
   for (std::uint32_t seed = 10; seed < 13; ++seed) {
     const MadeGround other{.longest = 200, .shortest = 8, .seed = seed};
-    const auto placed =
-        pipeline::place_on_image(made_mosaic(other, placement(0.4, 1, 5500, 8500)), made_map(kMapGround));
+    const auto placed = pipeline::place_on_image(made_mosaic(other, placement(0.4, 1, 5500, 8500)),
+                                                 made_map(kMapGround), kRules);
     EXPECT_FALSE(placed.found) << seed << ": " << placed.found->score << ", next "
                                << placed.found->next_best_score;
     EXPECT_NE(placed.message, "");
@@ -92,7 +95,8 @@ TEST(PlaceOnImage, GroundThatRepeatsItselfIsAmbiguous) {
   for (std::int64_t r = 0; r < map.grid.rows; ++r)
     for (std::int64_t c = map.grid.columns / 2; c < map.grid.columns; ++c)
       map.brightness(c, r) = map.brightness(c - map.grid.columns / 2, r);
-  const auto placed = pipeline::place_on_image(made_mosaic(kMapGround, placement(0.3, 0, 5240, 8500)), map);
+  const auto placed =
+      pipeline::place_on_image(made_mosaic(kMapGround, placement(0.3, 0, 5240, 8500)), map, kRules);
   EXPECT_FALSE(placed.found);
   EXPECT_NE(placed.message.find("ambiguous"), std::string::npos) << placed.message;
 }
@@ -103,10 +107,10 @@ TEST(PlaceOnImage, ImagesWithoutPatternAreRefused) {
   for (float& v : empty.brightness.cells()) v = std::numeric_limits<float>::quiet_NaN();
   const LevelImage mosaic = made_mosaic(kMapGround, placement(0.4, 0, 5500, 8500));
   for (const LevelImage& map : {grey, empty}) {
-    EXPECT_FALSE(pipeline::place_on_image(mosaic, map).found);
+    EXPECT_FALSE(pipeline::place_on_image(mosaic, map, kRules).found);
     LevelImage flat = mosaic;
     flat.brightness = Grid<float>(160, 160, map.brightness(0, 0));
-    EXPECT_FALSE(pipeline::place_on_image(flat, made_map(kMapGround)).found);
+    EXPECT_FALSE(pipeline::place_on_image(flat, made_map(kMapGround), kRules).found);
   }
 }
 
@@ -114,7 +118,7 @@ TEST(PlaceOnImage, ImagesWithoutPatternAreRefused) {
 TEST(PlaceOnImage, TheScoreIsTheCorrelationOfBrightness) {
   const Similarity truth = placement(0.4, 0.8, 5500, 8500);
   const LevelImage mosaic = made_mosaic(kMapGround, truth);
-  const auto placed = pipeline::place_on_image(mosaic, made_map(kMapGround));
+  const auto placed = pipeline::place_on_image(mosaic, made_map(kMapGround), kRules);
   ASSERT_TRUE(placed.found) << placed.message;
   const auto correlation = [&](const Similarity& to) {
     double n = 0, a = 0, b = 0, aa = 0, bb = 0, ab = 0;
