@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::size_t kMosaicBytes = std::size_t{1} << 29;
 constexpr std::int64_t kMosaicCells = 160, kGroundCells = 48;  // across
-constexpr double kSlopeSd = std::numbers::pi / 180;            // of terrain taken as level, radians
+constexpr double kMinSine = 0.7;  // of the elevation of a camera above the ground of the mosaic
+constexpr double kSlopeSd = std::numbers::pi / 180;  // of terrain taken as level, radians
 constexpr double kDisplacement =
     0.1;  // of what is higher in an orthophoto, by its height: a view 6 degrees off
 
@@ -97,15 +98,44 @@ std::size_t component_of(const pipeline::Reconstruction& scene) {
   return 0;
 }
 
-// Mosaic of the images in a level frame with an extent of 1000.
+// Whether a view sees a point steeply enough to show it as a map does.
+bool sees_from_above(const pipeline::SurfaceView& view, const Eigen::Vector3d& point) {
+  const auto pixel = project(view.view, {point});
+  return pixel && pipeline::in_image(view.view.camera, *pixel, 1) &&
+         (view.view.centre().xyz - point).normalized().z() > kMinSine;
+}
+
+// Square about the points of a level scene that are seen from above, without the outermost hundredth.
+pipeline::SurfaceGrid mosaic_grid(const std::vector<Eigen::Vector3d>& points,
+                                  const std::vector<pipeline::SurfaceView>& views) {
+  std::vector<double> x, y;
+  for (const Eigen::Vector3d& p : points)
+    if (std::ranges::any_of(views, [&](const auto& view) { return sees_from_above(view, p); }))
+      x.push_back(p.x()), y.push_back(p.y());
+  if (x.size() < 3) return square_grid({0, 0}, 1000, kMosaicCells);
+  std::ranges::sort(x), std::ranges::sort(y);
+  const std::size_t low = x.size() / 100, high = x.size() - 1 - low;
+  return square_grid({(x[low] + x[high]) / 2, (y[low] + y[high]) / 2},
+                     std::max(x[high] - x[low], y[high] - y[low]), kMosaicCells);
+}
+
+// Mosaic of what the images of a level scene show from above.
 pipeline::LevelImage level_mosaic(const pipeline::Reconstruction& scene, const Photos& photos) {
-  constexpr double kExtent = 1000;
   const std::vector<Eigen::Vector3d> points = points_of(scene);
-  pipeline::LevelImage out{.grid = square_grid({0, 0}, kExtent, kMosaicCells)};
-  const pipeline::SurfaceGrid coarse = square_grid({0, 0}, kExtent, kGroundCells);
+  const std::vector<pipeline::SurfaceView> views = views_of(scene, photos).views;
+  pipeline::LevelImage out{.grid = mosaic_grid(points, views)};
+  const pipeline::SurfaceGrid coarse =
+      out.grid.with_cell(out.grid.cell * double(kMosaicCells) / double(kGroundCells));
   const Grid<float> heights = pipeline::resample(heights_of(points, coarse), coarse, out.grid);
-  out.brightness =
-      pipeline::make_orthophoto(views_of(scene, photos).views, out.grid, heights, 1, kMosaicBytes).brightness;
+  pipeline::Orthophoto mosaic = pipeline::make_orthophoto(views, out.grid, heights, 1, kMosaicBytes);
+  out.brightness = std::move(mosaic.brightness);
+  for (std::int64_t r = 0; r < out.grid.rows; ++r)
+    for (std::int64_t c = 0; c < out.grid.columns; ++c) {
+      const Eigen::Vector3d at(out.grid.x(double(c)), out.grid.y(double(r)), double(heights(c, r)));
+      const std::size_t source = mosaic.source(c, r);
+      if (source == 0 || !sees_from_above(views[source - 1], at))
+        out.brightness(c, r) = std::numeric_limits<float>::quiet_NaN();
+    }
   return out;
 }
 
