@@ -19,7 +19,8 @@ class Reconstruct final : public Command {
             "(height, its standard deviation, that of the poses, number of views, convergence angle, score, "
             "reason of "
             "no data), orthophoto.tif, report.html and job.json, which `waymark run` turns into the map.\n\n"
-            "Poses without control points, GPS positions or a coarse DEM have an arbitrary scale and end "
+            "Poses without control points, GPS positions, a map image or a coarse DEM have an arbitrary "
+            "scale and end "
             "there. Images "
             "without a pose are named with the reason; the exit code is then 3.\n\n"
             "Heights are measured where two or more images agree. Every other cell has no data and a reason "
@@ -42,7 +43,7 @@ class Reconstruct final : public Command {
                       "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
                       "names that "
                       "begin with check are check points"}
-                 .or_else("GPS positions of the images, else --dem")
+                 .or_else("GPS positions of the images, else --map, else --dem")
                  .offering(Offer::file),
              Argument{"--marks", "TABLE", &request_.marks,
                       "Table with the columns point,image,column,row: where images show the surveyed points"}
@@ -53,8 +54,14 @@ class Reconstruct final : public Command {
                  "in it by their relief"}
                  .or_else("heights are searched below the cameras")
                  .offering(Offer::file),
+             Argument{"--map", "MAP_IMAGE", &request_.map_image,
+                      "Orthophoto of the site, e.g. of an orbiter: images without any position are placed in "
+                      "it by "
+                      "what they show"}
+                 .offering(Offer::file),
              Argument{"--crs", "CRS", &request_.crs, "CRS of the map"}.or_else(
-                 "that of the camera file, control points or DEM, else the UTM zone of the images"),
+                 "that of the camera file, control points, map image or DEM, else the UTM zone of the "
+                 "images"),
              Argument{"--cell", "M", &request_.cell, "Size of a cell of the DEM"}.or_else(
                  "twice the median size of a pixel on the terrain"),
              Argument{"--until", "PRODUCT", &until_, "Last product to make"}
@@ -72,6 +79,8 @@ class Reconstruct final : public Command {
              "The map in one command"},
             {"waymark reconstruct images --control gcp_list.txt -o site",
              "From pictures and surveyed points"},
+            {"waymark reconstruct images --map orbital_mosaic.tif -o site",
+             "From pictures and an orthophoto of the site"},
             {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif --until "
              "dem -o site",
              "A DEM from poses of COLMAP, started at a coarse one"}}};

@@ -47,6 +47,16 @@ double CoarseDem::height(double x, double y) const {
   return (1 - b) * ((1 - a) * cells(0, 0) + a * cells(1, 0)) + b * ((1 - a) * cells(0, 1) + a * cells(1, 1));
 }
 
+double CoarseDem::cell(double x, double y) const {
+  constexpr double kStep = 1;  // metre
+  const auto column = [&](double at_x) {
+    const CrsTransform::XY at =
+        to_dem_ ? (*to_dem_)(at_x / unit_, y / unit_) : CrsTransform::XY{at_x / unit_, y / unit_};
+    return Eigen::Vector2d(dem_->geometry().where.column(at.x), dem_->geometry().where.row(at.y));
+  };
+  return kStep / (column(x + kStep) - column(x)).norm();
+}
+
 pipeline::CoarseHeights CoarseDem::sample(const Eigen::Vector2d& middle, double side,
                                           std::int64_t nodes) const {
   pipeline::CoarseHeights out{.grid = {.west = middle.x() - side / 2,

@@ -20,6 +20,8 @@ class CoarseDem {
   const Crs& map() const { return map_; }
   /// Returns the bilinear height; not finite where it is unknown.
   double height(double x, double y) const;
+  /// Returns the size of a cell of the file at a position, metres along x of the map.
+  double cell(double x, double y) const;
   /// Returns the heights of an area; `side` is its width and height in metres. NaN: unknown.
   pipeline::CoarseHeights sample(const Eigen::Vector2d& middle, double side, std::int64_t nodes) const;
   /// Returns the heights of the whole DEM, with at most `nodes` cells across.

@@ -13,6 +13,7 @@
 #include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
 #include "workflows/reconstruction/photo_priors.hpp"
+#include "workflows/reconstruction/place_photos.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -186,6 +187,8 @@ void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoCo
   const pipeline::Georeferenced result =
       pipeline::georeference(moved, references.seen, {.free_lens_parameters = admitted_parameters(posed)});
   if (!result.metric) {
+    if (!request.map_image.empty() && control.points.empty() && references.seen.positions.size() < 3)
+      return place_photos_in_image(posed, photos, references.seen, admitted_parameters(posed), request);
     if (!request.dem.empty() && control.points.empty() && references.seen.positions.size() < 3)
       return georeference_on_dem(posed, references.seen, request);
     for (const std::string& message : result.messages) posed.messages.push_back(message);

@@ -16,10 +16,11 @@ struct PosePhotosRequest {
   std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
   std::string dem =
       {};  ///< coarse DEM, start of heights, and the reference if there is no other; empty: none
-  std::string crs = {};     ///< of the map; empty: that of camera file or references, else a UTM zone
-  double max_pixels = 8e6;  ///< larger images are reduced to find features
-  std::string work = {};    ///< folder that keeps the results of steps for later runs; empty: none
-  int threads = 0;          ///< 0: one per processor
+  std::string map_image = {};  ///< orthophoto of the site, the reference if there is no better; empty: none
+  std::string crs = {};        ///< of the map; empty: that of camera file or references, else a UTM zone
+  double max_pixels = 8e6;     ///< larger images are reduced to find features
+  std::string work = {};       ///< folder that keeps the results of steps for later runs; empty: none
+  int threads = 0;             ///< 0: one per processor
 };
 
 /// Poses of a set of pictures.

@@ -70,7 +70,8 @@ PoseSteps pose_steps(const PosePhotosRequest& request, const Photos& photos, con
   steps.solved.depends_on = steps.matches.fingerprint();
   ByteWriter references;
   references(steps.solved.fingerprint());
-  for (const std::string& file : {request.control, request.marks, request.dem}) references(hash_of(file));
+  for (const std::string& file : {request.control, request.marks, request.dem, request.map_image})
+    references(hash_of(file));
   references(request.crs);
   steps.poses.depends_on = references.take();
   return steps;

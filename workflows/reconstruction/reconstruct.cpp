@@ -18,6 +18,7 @@
 #include "pipeline/reconstruction/surface/sweep_heights.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
+#include "workflows/reconstruction/map_image.hpp"
 #include "workflows/reconstruction/pose_photos.hpp"
 #include "workflows/reconstruction/posed_images.hpp"
 #include "workflows/reconstruction/report_reconstruction.hpp"
@@ -42,6 +43,11 @@ void check_request(const ReconstructRequest& request) {
     throw Error(ErrorCode::usage,
                 "--control and --cameras are both given, but control points serve to solve the poses", "",
                 "leave out --cameras; or tie its poses to the map (docs/how_to/tie_cameras_to_the_map.md)");
+  if (!request.cameras.empty() && !request.map_image.empty())
+    throw Error(ErrorCode::usage,
+                "--map and --cameras are both given, but the map image serves to place solved poses", "",
+                "leave out --cameras or --map");
+  if (!request.map_image.empty()) check_map_image(request.map_image, request.crs);
   if (request.control.empty() && !request.marks.empty())
     throw Error(ErrorCode::usage, "--marks is given, but no control points", "", "pass --control FILE");
   if (!(request.cell >= 0 && std::isfinite(request.cell)))
@@ -174,7 +180,7 @@ PosedPhotos solve_poses_of(const ReconstructRequest& request, const Callbacks& c
   if (made.crs.empty() && request.until != ReconstructUntil::poses)
     throw Error(ErrorCode::input, "heights need poses in metres, but the frame of the poses is arbitrary",
                 cameras,
-                "pass --control POINTS or --dem COARSE, or tie the cameras to the map "
+                "pass --control POINTS, --map MAP_IMAGE or --dem COARSE, or tie the cameras to the map "
                 "(docs/how_to/tie_cameras_to_the_map.md) and pass them by --cameras, or pass --until poses");
   return made;
 }
