@@ -209,7 +209,7 @@ MapImageControl control_of_map_image(const LevelImage& map, const CoarseHeights&
   out.matched = shifts.size();
   const std::vector<std::size_t> kept = following_one_trend(shifts, matching.agreement);
   out.agreeing = kept.size();
-  if (kept.size() < kMinShifts) return out;
+  if (kept.size() < kMinShifts || 2 * kept.size() < shifts.size()) return out;
   std::optional<std::size_t> last;
   for (const std::size_t i : kept) {
     const Shift& s = shifts[i];

@@ -26,7 +26,7 @@ struct MapImageControl {
 /// Measures where images show points of an orthophoto.
 /// - Each image is rectified about a point on `ground`, at the cells of the map, and correlated with the map.
 /// - Of the maxima, those whose shifts follow one affine trend become marks, with a deviation of a third of a
-///   cell; the map's own position has one of half a cell.
+///   cell; the map's own position has one of half a cell. No points if less than half of them do.
 /// - `views[i]` is image `image_of_view[i]` of the reconstruction. In parallel over points.
 MapImageControl control_of_map_image(const LevelImage& map, const CoarseHeights& ground,
                                      const std::vector<SurfaceView>& views,

@@ -241,18 +241,22 @@ class Correlator {
   Texture search_, fine_;
 };
 
-bool apart_in_image(const Trial& a, const Trial& b, double extent) {
+constexpr double kSimilarScale = 0.1, kSameScale = 0.4;  // logarithms of ratios
+
+// Whether trials differ by an eighth of the mosaic, 10 degrees or a ratio of scales.
+bool apart_in_image(const Trial& a, const Trial& b, double extent, double scales) {
   const double turn = std::abs(std::remainder(a.yaw - b.yaw, 2 * std::numbers::pi));
   return std::hypot(a.x - b.x, a.y - b.y) > std::min(a.scale, b.scale) * extent / 8 ||
-         std::abs(std::log(a.scale / b.scale)) > 0.1 || turn > 10 * std::numbers::pi / 180;
+         std::abs(std::log(a.scale / b.scale)) > scales || turn > 10 * std::numbers::pi / 180;
 }
 
-std::vector<Trial> distinct(std::vector<Trial> trials, double extent, std::size_t count) {
+std::vector<Trial> distinct(std::vector<Trial> trials, double extent, double scales, std::size_t count) {
   std::ranges::stable_sort(trials, std::greater{}, &Trial::score);
   std::vector<Trial> out;
   for (const Trial& trial : trials) {
     if (out.size() == count) break;
-    if (std::ranges::all_of(out, [&](const Trial& kept) { return apart_in_image(kept, trial, extent); }))
+    if (std::ranges::all_of(out,
+                            [&](const Trial& kept) { return apart_in_image(kept, trial, extent, scales); }))
       out.push_back(trial);
   }
   return out;
@@ -295,11 +299,11 @@ ImagePlacementResult place_on_image(const LevelImage& mosaic, const LevelImage& 
       tbb::simple_partitioner());
   std::vector<Trial> trials;
   for (const auto& some : by_scale) trials.insert(trials.end(), some.begin(), some.end());
-  std::vector<Trial> best = distinct(std::move(trials), correlator.extent(), kRefined);
+  std::vector<Trial> best = distinct(std::move(trials), correlator.extent(), kSimilarScale, kRefined);
   tbb::parallel_for(
       std::size_t{0}, best.size(), [&](std::size_t i) { best[i] = refined_placement(correlator, best[i]); },
       tbb::simple_partitioner());
-  best = distinct(std::move(best), correlator.extent(), 2);
+  best = distinct(std::move(best), correlator.extent(), kSameScale, 2);
   if (best.empty() || !(best[0].score > 0))
     return {.message = "the map image has no pattern that the images could be compared with"};
   ImagePlacement placed{.score = best[0].score,

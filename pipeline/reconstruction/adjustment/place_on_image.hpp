@@ -27,8 +27,8 @@ struct ImagePlacementResult {
 /// Limits of a placement that is accepted.
 struct ImagePlacementRules {
   double min_score = 0.15;
-  double min_distinction = 1.5;  ///< score of the placement, by that of the next best
-  double largest = 1.25;         ///< side of the mosaic, by the longer side of the map
+  double min_distinction = 1.25;  ///< score of the placement, by that of the next best
+  double largest = 1.25;          ///< side of the mosaic, by the longer side of the map
   double smallest = 1.0 / 8;
 };
 
