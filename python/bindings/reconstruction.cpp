@@ -17,6 +17,7 @@ const Keywords<workflows::ReconstructRequest>& reconstruct_keywords() {
                               .add("lens", &R::lens)
                               .add("control", &R::control)
                               .add("marks", &R::marks)
+                              .add("map_image", &R::map_image)
                               .add("dem", &R::dem)
                               .add("crs", &R::crs)
                               .add("cell", &R::cell)

@@ -19,7 +19,7 @@ SPELLED = {
     "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs"},
     "route": {"from": "start", "to": "goal"},
     "hazards": {},
-    "reconstruct": {"output": "folder", "map-landmarks": "map"},
+    "reconstruct": {"output": "folder", "map-landmarks": "map", "map": "map_image"},
     "simulate": {"output": "folder"},
     "evaluate": {"format": None},
 }
