@@ -957,7 +957,7 @@ def read_map(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
 
-def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., control: _Path = ..., marks: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
+def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., control: _Path = ..., marks: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 
     until: "poses", "dem" or "ortho". options: cameras, lens, control, marks, dem, crs, cell, map, threads.
@@ -968,6 +968,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         lens: camera file whose lens is kept fixed; empty: self-calibration
         control: surveyed points; empty: none
         marks: table of their marks; empty: `control` is a gcp_list.txt
+        map_image: orthophoto of the site, the reference if there is no better; empty: none
         dem: coarse DEM, start of heights, and the reference if there is no other; empty: none
         crs: of the map; empty: that of camera file or references, else a UTM zone
         cell: of the DEM, metres; 0: twice the median ground sample distance
