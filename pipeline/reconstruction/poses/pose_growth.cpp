@@ -318,6 +318,21 @@ void PoseGrowth::grow() {
   }
 }
 
+double PoseGrowth::settled_cost(std::span<const TiePoint> tracks) {
+  adjust_all(30);
+  double cost = 0;
+  for (std::size_t p = 0; p < tracks.size(); ++p)
+    for (const Mark& mark : tracks[p].marks) {
+      if (!scene_.images[mark.image].world_from_camera) continue;
+      const double limit = limit_of(mark.image), sd = std::max(mark.sd, 0.1);
+      const TiePoint& point = scene_.points[p];
+      const auto r = point.position ? residual(point, mark) : std::nullopt;
+      const double bounded = r ? std::min(*r, limit) : limit;
+      cost += std::log1p(bounded * bounded / (sd * sd));
+    }
+  return cost;
+}
+
 void PoseGrowth::finish(std::vector<TiePoint> tracks) {
   scene_.points = std::move(tracks);
   triangulate_points();

@@ -31,6 +31,11 @@ class PoseGrowth {
   /// Replaces the tracks, triangulates them and adjusts all.
   void finish(std::vector<TiePoint> tracks);
 
+  /// Adjusts what has grown and returns how badly it fits the given tracks, of which its own are a part: the
+  /// sum over the marks in posed images of ln(1 + r^2 / s^2), r <= limit; marks that it lost count as the
+  /// limit.
+  double settled_cost(std::span<const TiePoint> tracks);
+
   const Reconstruction& scene() const { return scene_; }
   std::size_t posed() const;
   /// Returns the number of positioned points that an image shows.

@@ -125,15 +125,18 @@ class PoseSolver {
     }
     const std::vector<std::size_t> reachable = group_sizes(matches_, open_);
     std::optional<PoseGrowth> best;
+    SeedPair start_of_best;
     for (const SeedPair& seed : varied(seed_pairs(matches_, open_), settings_.seeds)) {
       PoseGrowth growth(start, matches_.lenses, settings_.growth);
       if (!growth.seed(seed.pair->images, seed.pair->geometry.poses[seed.pose])) continue;
       growth.grow();
       if (settings_.progress) settings_.progress(growth.posed());
       const bool complete = growth.posed() >= reachable[seed.pair->images.first];
-      if (!best || growth.posed() > best->posed()) best = std::move(growth);
+      const bool better = !best || growth.posed() > best->posed();
+      if (better) best = std::move(growth), start_of_best = seed;
       if (complete) break;
     }
+    if (best) replace_by_twin(*best, start_of_best, start);
     if (!best) return best;
     std::vector<TiePoint> all;
     for (TiePoint& track : select(tracks_, thin_tracks(tracks_, start_, settings_.final_marks))) {
@@ -143,6 +146,29 @@ class PoseSolver {
     }
     best->finish(std::move(all));
     return best;
+  }
+
+  // A plane seen along one line of motion has two solutions for all images at once, in which its normal and
+  // the motion change places: relief alone tells them apart, by residuals that differ little. So the other
+  // solutions of the pair that a growth began with are grown, too; the first stays unless another fits
+  // clearly better.
+  void replace_by_twin(PoseGrowth& best, const SeedPair& seed, const Reconstruction& start) const {
+    const std::vector<RelativePose>& poses = seed.pair->geometry.poses;
+    if (poses.size() < 2) return;
+    constexpr double kMaxTwinCost = 0.8;
+    std::optional<double> cost;
+    for (std::size_t pose = 0; pose < poses.size(); ++pose) {
+      if (pose == seed.pose) continue;
+      PoseGrowth twin(start, matches_.lenses, settings_.growth);
+      if (!twin.seed(seed.pair->images, poses[pose])) continue;
+      twin.grow();
+      if (twin.posed() < best.posed()) continue;
+      if (!cost) cost = PoseGrowth(best).settled_cost(start.points);
+      const double of_twin = PoseGrowth(twin).settled_cost(start.points);
+      if (!(of_twin < kMaxTwinCost * *cost)) continue;
+      best = std::move(twin);
+      cost = of_twin;
+    }
   }
 
   void explain(SolvedPoses& out) const {

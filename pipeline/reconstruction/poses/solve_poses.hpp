@@ -26,7 +26,8 @@ struct SolvedPoses {
 };
 
 /// Solves the poses of images incrementally (Schonberger & Frahm 2016).
-/// - Starts from up to `seeds` pairs, and from both solutions of a plane; keeps what poses most images.
+/// - Starts from up to `seeds` pairs; keeps what poses most images. Where the plane of its pair leaves two
+///   solutions, the second if it fits all marks better by a fifth.
 /// - Images that cannot be joined start a component of their own; components are never joined by a guess.
 /// - The frame of each component is arbitrary: that of its first camera.
 SolvedPoses solve_poses(std::span<const ImageToMatch> images, std::span<const ImageFeatures> features,

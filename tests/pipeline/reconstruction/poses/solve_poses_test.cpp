@@ -101,6 +101,32 @@ TEST(SolvePoses, AVerticalDescentIsPosed) {
   EXPECT_LT(error_of(s.poses.components[0].scene, s.truth).position, 0.25);
 }
 
+// Seen along one line, a plane has a second solution, in which its normal and the motion change places: here
+// one that is wrong by ten degrees in all images. Gentle relief tells them apart.
+TEST(SolvePoses, AnObliqueDescentAlongALineTakesTheRightOfTwoSolutions) {
+  const Camera camera = made_camera(500, 500, 75);
+  for (const std::uint32_t seed : {1U, 2U, 3U, 4U}) {
+    std::vector<PosedCamera> views;
+    for (int i = 0; i < 6; ++i) {
+      const double height = 120 * std::pow(0.87, i);
+      views.push_back(
+          made_view(camera, {0.2 * (120 - height), -0.1 * (120 - height), height}, 2, 40.0 * i, 5.0 * i));
+    }
+    const Solved s = solved({.relief = 1, .seed = seed}, views);
+    ASSERT_GE(s.poses.components.size(), 1u);
+    EXPECT_EQ(s.poses.components[0].posed, 6u);
+    // Centres on a line leave the rotation about it open, so rotations are compared with each other.
+    const auto& images = s.poses.components[0].scene.images;
+    for (std::size_t i = 1; i < 6; ++i) {
+      const Eigen::Matrix3d found =
+          images[0].world_from_camera->linear().transpose() * images[i].world_from_camera->linear();
+      const Eigen::Matrix3d truth = views[0].grid_from_camera.transform.linear().transpose() *
+                                    views[i].grid_from_camera.transform.linear();
+      EXPECT_LT(Eigen::AngleAxisd(found.transpose() * truth).angle(), 0.5 * kDegree) << seed << ", " << i;
+    }
+  }
+}
+
 TEST(SolvePoses, TwoSitesStayApart) {
   const Camera camera = made_camera(400, 300, 60);
   std::vector<PosedCamera> views;
