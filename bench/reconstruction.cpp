@@ -2,7 +2,10 @@
 // Adjustment of an aerial block with self-calibration: the last solution with its covariances. One thread.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
 #include "pipeline/reconstruction/adjustment/adjust.hpp"
+#include "pipeline/reconstruction/adjustment/place_on_image.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
 #include "tests/pipeline/reconstruction/made_scene.hpp"
 
@@ -46,6 +49,37 @@ void triangulate_points(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(made.truth.points.size()));
 }
 BENCHMARK(triangulate_points)->Unit(benchmark::kMillisecond);
+
+// A mosaic in an orthophoto of so many cells across, over the default range of scales. All threads.
+void place_in_image(benchmark::State& state) {
+  const std::int64_t cells = state.range(0);
+  const auto brightness = [](double x, double y) {
+    return 100 + 20 * std::sin(x / 7 + 3 * std::sin(y / 31)) + 15 * std::sin(y / 11 + 2 * std::cos(x / 43)) +
+           25 * std::sin((x + y) / 97);
+  };
+  pipeline::LevelImage map{.grid = {.west = 0, .north = double(cells), .columns = cells, .rows = cells}};
+  map.brightness = Grid<float>(cells, cells);
+  pipeline::LevelImage mosaic{.grid = {.west = -80, .north = 80, .columns = 160, .rows = 160}};
+  mosaic.brightness = Grid<float>(160, 160);
+  for (std::int64_t r = 0; r < cells; ++r)
+    for (std::int64_t c = 0; c < cells; ++c)
+      map.brightness(c, r) = static_cast<float>(brightness(double(c), double(r)));
+  const double scale = double(cells) / 3 / 160, turn = 0.7;
+  for (std::int64_t r = 0; r < 160; ++r)
+    for (std::int64_t c = 0; c < 160; ++c) {
+      const double x = scale * (double(c) - 80), y = scale * (double(r) - 80);
+      mosaic.brightness(c, r) =
+          static_cast<float>(brightness(double(cells) / 2 + std::cos(turn) * x - std::sin(turn) * y,
+                                        double(cells) / 2 + std::sin(turn) * x + std::cos(turn) * y));
+    }
+  for (auto _ : state) benchmark::DoNotOptimize(pipeline::place_on_image(mosaic, map).found.has_value());
+}
+BENCHMARK(place_in_image)
+    ->ArgName("cells")
+    ->Arg(500)
+    ->Arg(2000)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace waymark::bench
