@@ -156,7 +156,8 @@ TEST(RealDescent, PerseveranceIsPlacedInItsMap) {
       {"LVS_15_52_18.jpg", {700204.2, 3142714.1, 1074352.6}, 2350},
   };
   std::vector<Position> found, truth;
-  for (const json& image : json::parse(text_of(folder / "out/cameras.json"))["images"])
+  const json cameras = json::parse(text_of(folder / "out/cameras.json"));
+  for (const json& image : cameras["images"])
     for (const PublishedFrame& frame : published)
       if (image["name"] == frame.name) {
         found.push_back(position_of(image["centre"]));
