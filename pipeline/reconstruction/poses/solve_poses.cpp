@@ -148,10 +148,9 @@ class PoseSolver {
     return best;
   }
 
-  // A plane seen along one line of motion has two solutions for all images at once, in which its normal and
-  // the motion change places: relief alone tells them apart, by residuals that differ little. So the other
-  // solutions of the pair that a growth began with are grown, too; the first stays unless another fits
-  // clearly better.
+  // A plane seen along one line of motion has two solutions for all images at once: its normal and the motion
+  // are exchanged. Relief alone distinguishes them, by residuals that differ little. All solutions of the
+  // pair that a growth began with are grown, therefore; the first stays unless another fits clearly better.
   void replace_by_twin(PoseGrowth& best, const SeedPair& seed, const Reconstruction& start) const {
     const std::vector<RelativePose>& poses = seed.pair->geometry.poses;
     if (poses.size() < 2) return;
