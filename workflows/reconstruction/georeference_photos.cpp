@@ -12,6 +12,7 @@
 #include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
 #include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
+#include "workflows/reconstruction/free_relief.hpp"
 #include "workflows/reconstruction/photo_priors.hpp"
 #include "workflows/reconstruction/place_photos.hpp"
 
@@ -86,25 +87,6 @@ double rms_in_plan(const pipeline::AdjustmentResult& adjustment) {
   return used > 0 ? std::sqrt(squares / used) : 0;
 }
 
-/// Parts of a reconstruction that are searched in a DEM.
-struct FreeRelief {
-  std::vector<Eigen::Vector3d> points = {}, centres = {};
-  std::optional<Eigen::Vector3d> up = {};  // by the gimbals
-};
-
-FreeRelief free_relief(const pipeline::Reconstruction& scene, const pipeline::Observations& seen) {
-  FreeRelief out;
-  for (const pipeline::TiePoint& point : scene.points)
-    if (point.position) out.points.push_back(*point.position);
-  for (const pipeline::AdjustedImage& image : scene.images)
-    if (image.world_from_camera) out.centres.push_back(image.world_from_camera->translation());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const pipeline::ObservedUp& up : seen.ups)
-    sum += scene.images[up.image].world_from_camera->linear() * up.up_in_camera;
-  if (sum.norm() > 0.9 * double(seen.ups.size()) && !seen.ups.empty()) out.up = sum.normalized();
-  return out;
-}
-
 // Tie points within one cell of the DEM share its error, and neighbouring cells do as far as the residuals
 // correlate: each then counts for its part only.
 double deviation_of_surface(const std::vector<Eigen::Vector3d>& points, const Similarity& map_from_frame,
@@ -131,19 +113,14 @@ void georeference_on_dem(PosedPhotos& posed, pipeline::Observations seen, const 
   const CoarseDem dem(request.dem, map);
   const pipeline::CoarseHeights heights = dem.sample_all(kNodes);
   const FreeRelief relief = free_relief(posed.scene, seen);
-  const pipeline::DemPlacementResult placed =
-      pipeline::place_on_dem({.points = relief.points, .centres = relief.centres, .up = relief.up}, heights);
+  const pipeline::DemPlacementResult placed = pipeline::place_on_dem(relief.view(), heights);
   if (!placed.found) {
     posed.messages.push_back("the frame is arbitrary: " + placed.message +
                              "; control points or GPS positions give it for certain");
     return;
   }
   pipeline::Reconstruction moved = posed.scene;
-  for (const pipeline::AdjustedImage& image : moved.images)
-    if (image.world_from_camera) {
-      pipeline::transform(moved, image.component, placed.found->map_from_frame);
-      break;
-    }
+  pipeline::transform(moved, relief.component, placed.found->map_from_frame);
   moved.frame = pipeline::ReconstructionFrame::metric;
   const double deviation =
       deviation_of_surface(relief.points, placed.found->map_from_frame, heights, placed.found->residual);
@@ -195,6 +172,10 @@ void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoCo
     return;
   }
   for (const std::string& message : result.messages) callbacks.warning(message);
+  if (!request.map_image.empty())
+    callbacks.warning(
+        fmt::format("{} is not used: {} give the frame", request.map_image,
+                    control.points.empty() ? "the positions of the images" : "the control points"));
   if (const std::size_t up = cameras_looking_up(moved); 2 * up > posed.posed) {
     posed.messages.push_back(mirrored(references, up, posed.posed));
     return;

@@ -13,6 +13,8 @@
 
 #include "core/error.hpp"
 #include "importers/images/image.hpp"
+#include "pipeline/reconstruction/surface/image_levels.hpp"
+#include "workflows/reconstruction/read_photos.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -25,22 +27,6 @@ struct Orthophoto {
   Georeference where = {};
   int factor = 1;  ///< by which the file was reduced
 };
-
-Pixels reduced(const ImageSource& image, std::int64_t by) {
-  const ImageInfo& info = image.info();
-  if (by == 1) return image.read({0, 0, info.columns, info.rows});
-  Pixels out(info.columns / by, info.rows / by);
-  for (std::int64_t r = 0; r < out.rows(); ++r) {
-    const Pixels strip = image.read({0, r * by, out.columns() * by, by});
-    for (std::int64_t c = 0; c < out.columns(); ++c) {
-      float sum = 0;
-      for (std::int64_t y = 0; y < by; ++y)
-        for (std::int64_t x = 0; x < by; ++x) sum += strip(c * by + x, y);
-      out(c, r) = sum / static_cast<float>(by * by);
-    }
-  }
-  return out;
-}
 
 std::shared_ptr<const importers::ImportedImage> opened(const std::string& file, const std::string& crs) {
   std::shared_ptr<const importers::ImportedImage> image = importers::import_image(file);
@@ -57,8 +43,9 @@ Orthophoto read_orthophoto(const std::string& file, const std::string& crs,
   const auto image = opened(file, crs);
   const ImageInfo& info = image->info();
   Orthophoto out{.where = *info.ortho};
-  while (double(info.columns / out.factor) * double(info.rows / out.factor) > kMaxPixels) ++out.factor;
-  out.pixels = reduced(*image, out.factor);
+  out.factor = reduction_to(info.columns, info.rows, kMaxPixels);
+  out.pixels = block_means([&](const Window& window) { return image->read(window); }, info.columns, info.rows,
+                           out.factor);
   const double by = out.factor;
   out.where.x0 += out.where.dx * (by - 1) / 2, out.where.y0 += out.where.dy * (by - 1) / 2;
   out.where.dx *= by, out.where.dy *= by;
@@ -106,19 +93,9 @@ Crs map_crs_of(const Orthophoto& photo, const std::string& file, const std::stri
   return crs.empty() ? ground : wanted;
 }
 
-float bilinear(const Pixels& pixels, double column, double row) {
-  const auto i = static_cast<std::int64_t>(std::floor(column)),
-             j = static_cast<std::int64_t>(std::floor(row));
-  if (!pixels.contains(i, j) || !pixels.contains(i + 1, j + 1))
-    return std::numeric_limits<float>::quiet_NaN();
-  const double a = column - double(i), b = row - double(j);
-  return static_cast<float>((1 - b) * ((1 - a) * double(pixels(i, j)) + a * double(pixels(i + 1, j))) +
-                            b * ((1 - a) * double(pixels(i, j + 1)) + a * double(pixels(i + 1, j + 1))));
-}
-
 // Grid of square cells in the map's frame, which covers the orthophoto.
-pipeline::SurfaceGrid grid_of(const Orthophoto& photo, const std::optional<CrsTransform>& to_map,
-                              double unit) {
+pipeline::SurfaceGrid grid_of(const Orthophoto& photo, const std::optional<CrsTransform>& to_map, double unit,
+                              const std::string& file) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   constexpr int kSteps = 16;  // along each side
   for (int i = 0; i <= kSteps; ++i)
@@ -131,6 +108,9 @@ pipeline::SurfaceGrid grid_of(const Orthophoto& photo, const std::optional<CrsTr
       high = high.cwiseMax(Eigen::Vector2d(at.x, at.y) * unit);
     }
   const Eigen::Vector2d size = high - low;
+  if (!(size.minCoeff() > 0) || !(size.maxCoeff() < 1e8))
+    throw Error(ErrorCode::usage, "the map image is not within reach of the CRS of the map", file,
+                "pass a --crs for its site, or leave it out");
   const double cell =
       std::sqrt(size.x() * size.y() / (double(photo.pixels.columns()) * double(photo.pixels.rows())));
   return {.west = low.x(),
@@ -144,27 +124,33 @@ pipeline::SurfaceGrid grid_of(const Orthophoto& photo, const std::optional<CrsTr
 
 void check_map_image(const std::string& file, const std::string& crs) {
   const auto image = opened(file, crs);
-  if (image->info().ortho->crs.kind() != CrsKind::local && !crs.empty() && crs != "local")
-    CrsTransform(given_crs(crs), image->info().ortho->crs);
+  const Crs& own = image->info().ortho->crs;
+  if (own.kind() == CrsKind::local || crs.empty()) return;
+  if (crs == "local")
+    throw Error(ErrorCode::usage, fmt::format("the map image is in {}, but --crs is local", own.id()), file,
+                "leave out --crs");
+  CrsTransform(given_crs(crs), own);
 }
 
 MapImage read_map_image(const std::string& file, const std::string& crs) {
   MapImage out;
   const Orthophoto photo = read_orthophoto(file, crs, out.messages);
-  out.crs = map_crs_of(photo, file, crs == "local" ? "" : crs, out.messages);
+  out.crs = map_crs_of(photo, file, crs, out.messages);
   std::optional<CrsTransform> to_map, from_map;
   if (!out.crs.same_as(photo.where.crs)) {
     to_map.emplace(photo.where.crs, out.crs);
     from_map.emplace(out.crs, photo.where.crs);
   }
   const double unit = out.crs.kind() == CrsKind::local ? 1 : out.crs.metres_per_unit();
-  out.image.grid = grid_of(photo, to_map, unit);
+  out.image.grid = grid_of(photo, to_map, unit, file);
   out.image.brightness = Grid<float>(out.image.grid.columns, out.image.grid.rows);
   for (std::int64_t r = 0; r < out.image.grid.rows; ++r)
     for (std::int64_t c = 0; c < out.image.grid.columns; ++c) {
       const double x = out.image.grid.x(double(c)) / unit, y = out.image.grid.y(double(r)) / unit;
       const auto at = from_map ? (*from_map)(x, y) : CrsTransform::XY{x, y};
-      out.image.brightness(c, r) = bilinear(photo.pixels, photo.where.column(at.x), photo.where.row(at.y));
+      out.image.brightness(c, r) =
+          pipeline::bilinear(photo.pixels, static_cast<float>(photo.where.column(at.x)),
+                             static_cast<float>(photo.where.row(at.y)));
     }
   return out;
 }

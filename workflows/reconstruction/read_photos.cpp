@@ -104,30 +104,39 @@ Photos read_photos(const PhotosRequest& request, const Callbacks& callbacks) {
   return out;
 }
 
-ReducedPixels read_reduced(const Photo& photo, double max_pixels) {
-  const std::int64_t columns = photo.metadata.columns, rows = photo.metadata.rows;
-  ReducedPixels out;
-  while (double(columns / out.factor) * double(rows / out.factor) > max_pixels) ++out.factor;
-  const importers::GdalDataset dataset = importers::open_raster(photo.path);
-  const std::int64_t by = out.factor;
-  if (by == 1) {
-    out.pixels = importers::read_pixels(*dataset, {0, 0, columns, rows}, 0, photo.path);
-    return out;
-  }
-  out.pixels = Pixels(columns / by, rows / by);
+Pixels block_means(const std::function<Pixels(const Window&)>& read, std::int64_t columns, std::int64_t rows,
+                   std::int64_t by) {
+  if (by == 1) return read({0, 0, columns, rows});
+  Pixels out(columns / by, rows / by);
   const std::int64_t strip = 64;
-  for (std::int64_t top = 0; top < out.pixels.rows(); top += strip) {
-    const std::int64_t count = std::min(strip, out.pixels.rows() - top);
-    const Pixels full = importers::read_pixels(*dataset, {0, top * by, columns, count * by}, 0, photo.path);
+  for (std::int64_t top = 0; top < out.rows(); top += strip) {
+    const std::int64_t count = std::min(strip, out.rows() - top);
+    const Pixels full = read({0, top * by, columns, count * by});
     for (std::int64_t r = 0; r < count; ++r)
-      for (std::int64_t c = 0; c < out.pixels.columns(); ++c) {
+      for (std::int64_t c = 0; c < out.columns(); ++c) {
         float sum = 0;
         for (std::int64_t y = 0; y < by; ++y)
           for (std::int64_t x = 0; x < by; ++x) sum += full(c * by + x, r * by + y);
-        out.pixels(c, top + r) = sum / static_cast<float>(by * by);
+        out(c, top + r) = sum / static_cast<float>(by * by);
       }
   }
   return out;
+}
+
+int reduction_to(std::int64_t columns, std::int64_t rows, double max_pixels) {
+  int factor = 1;
+  while (double(columns / factor) * double(rows / factor) > max_pixels) ++factor;
+  return factor;
+}
+
+ReducedPixels read_reduced(const Photo& photo, double max_pixels) {
+  const std::int64_t columns = photo.metadata.columns, rows = photo.metadata.rows;
+  const int factor = reduction_to(columns, rows, max_pixels);
+  const importers::GdalDataset dataset = importers::open_raster(photo.path);
+  const auto read = [&](const Window& window) {
+    return importers::read_pixels(*dataset, window, 0, photo.path);
+  };
+  return {.pixels = block_means(read, columns, rows, factor), .factor = factor};
 }
 
 }  // namespace waymark::workflows

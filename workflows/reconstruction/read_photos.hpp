@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,14 @@ struct PhotosRequest {
 /// Lists pictures and reads their metadata. Files that are no pictures are passed over.
 /// Throws Error{input} without two usable pictures.
 Photos read_photos(const PhotosRequest& request, const Callbacks& callbacks = {});
+
+/// Returns the means of blocks of `by` x `by` pixels; `read` gives the pixels of a window. Incomplete blocks
+/// at the right and lower borders are left out.
+Pixels block_means(const std::function<Pixels(const Window&)>& read, std::int64_t columns, std::int64_t rows,
+                   std::int64_t by);
+
+/// Returns the smallest whole number by which columns and rows are divided to have at most `max_pixels`.
+int reduction_to(std::int64_t columns, std::int64_t rows, double max_pixels);
 
 /// Reads the brightness of a picture reduced by a whole number: means of blocks. `max_pixels` bounds its
 /// size.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/solve.hpp"
+#include "pipeline/reconstruction/surface/parabola_vertex.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -61,12 +62,6 @@ std::optional<cv::Mat> rectified(const SurfaceView& view, const ImageLevel& imag
   return out;
 }
 
-// Vertex of the parabola through three values, the middle one being the largest.
-double parabola_vertex(double before, double here, double after) {
-  const double curvature = before - 2 * here + after;
-  return curvature < 0 ? 0.5 * (before - after) / curvature : 0;
-}
-
 // Distinct maximum of a correlation about its middle, in cells.
 std::optional<Eigen::Vector2d> distinct_peak(const cv::Mat& scores, double min_score) {
   double best = 0, second = 0;
@@ -78,9 +73,9 @@ std::optional<Eigen::Vector2d> distinct_peak(const cv::Mat& scores, double min_s
   cv::circle(others, at, 4, -1, cv::FILLED);
   cv::minMaxLoc(others, nullptr, &second);
   if (!(second <= best - kSecondPeak)) return std::nullopt;
-  const auto value = [&](int c, int r) { return double(scores.at<float>(at.y + r, at.x + c)); };
-  return Eigen::Vector2d(at.x - scores.cols / 2 + parabola_vertex(value(-1, 0), best, value(1, 0)),
-                         -(at.y - scores.rows / 2 + parabola_vertex(value(0, -1), best, value(0, 1))));
+  const auto value = [&](int c, int r) { return scores.at<float>(at.y + r, at.x + c); };
+  return Eigen::Vector2d(at.x - scores.cols / 2 + parabola_vertex(value(-1, 0), value(0, 0), value(1, 0)),
+                         -(at.y - scores.rows / 2 + parabola_vertex(value(0, -1), value(0, 0), value(0, 1))));
 }
 
 /// Searches the patterns of a map in images.
@@ -101,7 +96,7 @@ class Matcher {
     std::ranges::sort(found);
     std::vector<std::size_t> out;
     for (const auto& [distance, v] : found)
-      if (double(out.size()) < matching_.max_views) out.push_back(v);
+      if (out.size() < matching_.max_views) out.push_back(v);
     return out;
   }
 

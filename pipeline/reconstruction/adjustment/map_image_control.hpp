@@ -9,12 +9,12 @@ namespace waymark::pipeline {
 
 /// How points of an orthophoto are searched in images.
 struct MapImageMatching {
-  int across = 14;          ///< points along the longer side of the ground that the images cover
-  int half = 12;            ///< of a pattern, cells of the map on each side of its middle
-  int reach = 10;           ///< of the search, cells of the map
-  double min_score = 0.45;  ///< normalized cross-correlation
-  double max_views = 6;     ///< images per point: those whose pixels are closest to the map's cells
-  double agreement = 2.5;   ///< of shifts with their affine trend, cells of the map
+  int across = 14;            ///< points along the longer side of the ground that the images cover
+  int half = 12;              ///< of a pattern, cells of the map on each side of its middle
+  int reach = 10;             ///< of the search, cells of the map
+  double min_score = 0.45;    ///< normalized cross-correlation
+  std::size_t max_views = 6;  ///< images per point: those whose pixels are closest to the map's cells
+  double agreement = 2.5;     ///< of shifts with their affine trend, cells of the map
 };
 
 /// Patterns of the map that images show.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "pipeline/reconstruction/surface/parabola_vertex.hpp"
 #include "pipeline/reconstruction/surface/sweep_scores.hpp"
 
 namespace waymark::pipeline {
@@ -90,14 +91,6 @@ class ChunkSweep {
     return out;
   }
 
-  // Vertex of the parabola through three scores, in steps from the middle one; 0 without a maximum.
-  static double vertex(float left, float middle, float right) {
-    const double bend =
-        static_cast<double>(left) - 2 * static_cast<double>(middle) + static_cast<double>(right);
-    if (!(bend < 0)) return 0;
-    return std::clamp(0.5 * (static_cast<double>(left) - static_cast<double>(right)) / bend, -0.5, 0.5);
-  }
-
   // Height above the base of the best step; `std::nullopt` where it is an end of the range.
   std::optional<double> half_height(const std::vector<float>& scores, std::size_t at) const {
     int top = -1;
@@ -107,7 +100,7 @@ class ChunkSweep {
         top = k;
     if (top <= 0 || top >= scores_.steps() - 1) return std::nullopt;
     const auto s = [&](int k) { return scores[at + static_cast<std::size_t>(k)]; };
-    return scores_.step_height(top) + scores_.step * vertex(s(top - 1), s(top), s(top + 1));
+    return scores_.step_height(top) + scores_.step * parabola_vertex(s(top - 1), s(top), s(top + 1));
   }
 
   NoHeight decide_node(std::size_t node, int best, double base, ChunkHeights& out, std::size_t i) const {
@@ -131,8 +124,9 @@ class ChunkSweep {
     if (std::isnan(score(top - 1)) || std::isnan(score(top + 1))) return NoHeight::margin;
     const bool peak = score(top) >= score(top - 1) && score(top) >= score(top + 1);
     if (peak)
-      out.height[i] = static_cast<float>(base + scores_.step_height(top) +
-                                         scores_.step * vertex(score(top - 1), score(top), score(top + 1)));
+      out.height[i] =
+          static_cast<float>(base + scores_.step_height(top) +
+                             scores_.step * parabola_vertex(score(top - 1), score(top), score(top + 1)));
     if (!(static_cast<double>(score(top)) >= rules.min_score)) return NoHeight::low_score;
     if (!peak || second_peak(at, top) > static_cast<double>(score(top)) - rules.min_lead)
       return NoHeight::ambiguous;

@@ -21,18 +21,18 @@ std::string refusal(const std::string& bytes, std::uint64_t size) {
 }
 
 TEST(McapChunk, MatchesOfLz4ReachIntoEarlierBlocksAndOverTheirOwnEnd) {
-  // 8 bytes from 12 back; then 2 literals and 18 bytes from 2 back; then 3 literals.
+  // 8 bytes from 12 back; then 2 literals and 18 bytes from 2 back; then 12 literals.
   const std::string block = "\x04\x0C\0"s +
                             "\x2E"
                             "xy"
                             "\x02\0"s +
-                            "\x30"
-                            "end"s;
+                            "\xC0"
+                            "end of block"s;  // 12 literals: a block ends with 5 or more
   const std::string frame =
       kHead + kStored + static_cast<char>(block.size()) + "\0\0\0"s + block + "\0\0\0\0"s;
-  EXPECT_EQ(unpacked_chunk("lz4", frame, 43), "abcdefghijklabcdefghxyxyxyxyxyxyxyxyxyxyend");
+  EXPECT_EQ(unpacked_chunk("lz4", frame, 52), "abcdefghijklabcdefghxyxyxyxyxyxyxyxyxyxyend of block");
   const std::string skipped = "\x50\x2A\x4D\x18\x02\0\0\0zz"s;
-  EXPECT_EQ(unpacked_chunk("lz4", skipped + frame, 43).substr(40), "end");
+  EXPECT_EQ(unpacked_chunk("lz4", skipped + frame, 52).substr(40), "end of block");
 }
 
 TEST(McapChunk, RefusesWhatContradictsItself) {
