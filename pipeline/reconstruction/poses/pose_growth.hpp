@@ -31,9 +31,9 @@ class PoseGrowth {
   /// Replaces the tracks, triangulates them and adjusts all.
   void finish(std::vector<TiePoint> tracks);
 
-  /// Adjusts what has grown and returns how badly it fits the given tracks, of which its own are a part: the
-  /// sum over the marks in posed images of ln(1 + r^2 / s^2), r <= limit; marks that it lost count as the
-  /// limit.
+  /// Adjusts what has grown and returns its cost: the sum of ln(1 + r^2 / s^2) over the marks in posed
+  /// images, with residuals r up to the limit and deviations s, both in pixels. `tracks` are those it started
+  /// with; marks that it lost since count as the limit.
   double settled_cost(std::span<const TiePoint> tracks);
 
   const Reconstruction& scene() const { return scene_; }
