@@ -84,6 +84,11 @@ void Vehicle::describe(OptionVisitor& option) {
          {.help = "Highest rock that the vehicle climbs or stands on", .min = 0.001, .max = 10});
   option("belly_clearance", belly_clearance,
          {.help = "Height of the body's lowest point above level terrain", .min = 0.001, .max = 20});
+  option("mass", mass, {.help = "Mass in kilograms; 0: unknown", .min = 0, .max = 1e6});
+  option("centre_of_mass", centre_of_mass,
+         {.help = "Height of the centre of mass above level terrain, over the middle; 0: unknown",
+          .min = 0,
+          .max = 20});
 }
 
 double Vehicle::base_radius() const {

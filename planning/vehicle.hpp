@@ -26,6 +26,8 @@ struct Vehicle {
   Meters max_step{0.3};       ///< change of height over a wheel's diameter beyond that of the plane
   Meters max_obstacle{0.3};   ///< height of a rock
   Meters belly_clearance{0.5};
+  double mass = 0;           ///< kg; 0: unknown
+  Meters centre_of_mass{0};  ///< height above level terrain, above the middle; 0: unknown
   std::vector<Support> supports;
 
   void describe(OptionVisitor& option);

@@ -123,6 +123,16 @@ void describe_navigation(DriveSettings& d, OptionVisitor& field) {
   field("avoid", n.avoid, {.help = "Avoid obstacles that the vehicle's own sensors see"});
 }
 
+void describe_dynamics(DriveSettings& d, OptionVisitor& field) {
+  DynamicsModel& m = d.dynamics;
+  field("on", m.on,
+        {.help = "Move a rigid body on wheels, with its suspension, over terrain and rocks: slip, sinking, "
+                 "tipping over"});
+  field("vehicle", m.vehicle, {.help = "Vehicle with a mass: a name of `waymark vehicles`, or a file"});
+  field("gravity", m.gravity, {.help = "Metres per second squared", .min = 0.01, .max = 30});
+  m.soil.describe(field);
+}
+
 }  // namespace
 
 const std::vector<DrivePart>& drive_parts() {
@@ -135,6 +145,7 @@ const std::vector<DrivePart>& drive_parts() {
       {"panorama", "Skyline of the full circle", describe_drive_panorama},
       {"gnss", "GNSS positions", describe_gnss},
       {"crane", "Felling by a harvester", describe_crane},
+      {"dynamics", "Rigid-body dynamics of the vehicle", describe_dynamics},
       {"navigation", "Driving a planned route by the estimated pose", describe_navigation},
   };
   return parts;

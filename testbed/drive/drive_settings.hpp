@@ -11,6 +11,7 @@
 #include "testbed/drive/laser_targets.hpp"
 #include "testbed/drive/panorama.hpp"
 #include "testbed/drive/stereo_camera.hpp"
+#include "testbed/dynamics/soil.hpp"
 namespace waymark::testbed {
 
 /// Wheel slip and odometry errors.
@@ -64,6 +65,14 @@ struct NavigationModel {
   bool avoid = true;              ///< avoid obstacles that its own sensors see
 };
 
+/// Rigid body on wheels (testbed/dynamics) instead of a vehicle that stands on the plane under its wheels.
+struct DynamicsModel {
+  bool on = false;
+  std::string vehicle = "rover";  ///< of `waymark vehicles`, or a file; its mass and supports
+  double gravity = 3.71;          ///< m/s^2
+  Soil soil;
+};
+
 struct DriveSettings {
   bool on = false;                         ///< whether the scenario has a drive
   std::string vehicle = "rover";           ///< or harvester
@@ -90,6 +99,7 @@ struct DriveSettings {
   ForestClutter clutter;
   CraneModel crane;
   NavigationModel navigation;
+  DynamicsModel dynamics;
   std::string trees;  ///< table of real trees; replaces the forest of the scenario
   std::string stand;  ///< use only rows of the table with this stand_id
 

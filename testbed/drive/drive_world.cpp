@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "planning/vehicle.hpp"
 #include "testbed/drive/drive_route.hpp"
 
 namespace waymark::testbed {
@@ -114,6 +115,15 @@ std::uint64_t seed_of(const DriveSettings& settings, std::uint64_t seed) {
 DriveSettings completed(DriveSettings s) {
   if (s.harvester() && s.laser.field.value == 240) s.laser.field = Degrees{180};
   if (s.laser_height == 0) s.laser_height = s.harvester() ? 2.0 : 0.35;
+  if (s.dynamics.on) {
+    // The vehicle that moves is that of its file: its wheels must pass what its route passes.
+    const planning::Vehicle vehicle = planning::find_vehicle(s.dynamics.vehicle);
+    const auto [rear, front] =
+        std::ranges::minmax(vehicle.supports, {}, [](const planning::Support& p) { return p.x; });
+    s.wheels = {.base = front.x.value - rear.x.value,
+                .track = vehicle.track_width() - vehicle.supports.front().width.value};
+    s.clearance = std::max(s.clearance, vehicle.base_radius());
+  }
   return s;
 }
 
@@ -137,8 +147,9 @@ DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::ve
                       std::uint64_t seed) {
   const std::uint64_t own = seed_of(settings, seed);
   const DriveSettings s = completed(settings);
-  DriveWorld world{s, own, plan_path(s, scene, own), {}, std::move(trees), {}, {scene.terrain, {}}};
-  world.steps = drive_along(scene.terrain, world.path, s, own);
+  DriveWorld world{s, own, plan_path(s, scene, own), {}, {}, std::move(trees), {}, {scene.terrain, {}}};
+  PathDrive drive = drive_along(scene.terrain, scene.solids, world.path, s, own);
+  world.steps = std::move(drive.steps), world.mishap = std::move(drive.mishap);
   if (s.harvester()) world.felled = fell(world, own);
   add_targets(world, scene, seed);
   return world;
@@ -146,7 +157,7 @@ DriveWorld make_drive(const DriveSettings& settings, const Scene& scene, std::ve
 
 DriveWorld make_drive_site(const DriveSettings& settings, const Scene& scene, std::vector<StandingTree> trees,
                            std::uint64_t seed) {
-  DriveWorld world{completed(settings), seed_of(settings, seed), {}, {}, std::move(trees), {},
+  DriveWorld world{completed(settings), seed_of(settings, seed), {}, {}, {}, std::move(trees), {},
                    {scene.terrain, {}}};
   add_targets(world, scene, seed);
   return world;

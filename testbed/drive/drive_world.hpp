@@ -19,6 +19,7 @@ struct DriveWorld {
   std::uint64_t seed = 0;
   std::vector<Eigen::Vector2d> path;  ///< a point every half metre
   std::vector<DriveStep> steps;
+  std::string mishap;  ///< that ended the drive before its path did; empty if none
   std::vector<StandingTree> trees;
   std::vector<FelledTree> felled;  ///< in the order of time
   LaserTargets targets;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "testbed/drive/dynamic_vehicle.hpp"
 
 namespace waymark::testbed {
 namespace {
@@ -39,6 +40,13 @@ std::optional<DriveCommand> PathPursuit::command(const localization::Pose2& pose
   double turn = 2 * std::sin(off) / to.norm() * wheels;
   if (std::abs(off) > 1.4) turn = std::copysign(0.5, off);
   return DriveCommand{wheels, std::clamp(turn, -0.6, 0.6)};
+}
+
+std::unique_ptr<VehicleMotion> make_motion(const Terrain& terrain, std::span<const RockSolid> rocks,
+                                           const DriveSettings& settings, const localization::Pose2& start,
+                                           std::uint64_t seed) {
+  if (settings.dynamics.on) return std::make_unique<DynamicVehicle>(terrain, rocks, settings, start, seed);
+  return std::make_unique<SlippingVehicle>(terrain, settings, start, seed);
 }
 
 SlippingVehicle::SlippingVehicle(const Terrain& terrain, const DriveSettings& settings,

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 #include "core/random.hpp"
 #include "geo/terrain.hpp"
 #include "testbed/drive/drive_settings.hpp"
+#include "testbed/landing/rock_solid.hpp"
 namespace waymark::testbed {
 
 /// State of a simulated drive: true pose, and the odometry reading until the next step.
@@ -39,18 +43,35 @@ class PathPursuit {
   std::size_t target_ = 0;
 };
 
-/// Vehicle on a terrain with slip that depends on the slope, and odometry with errors. Deterministic for a
-/// seed. The terrain and the settings must outlive it.
-class SlippingVehicle {
+/// Vehicle that moves and measures its odometry. Deterministic for a seed.
+class VehicleMotion {
  public:
-  /// Throws Error{usage} if a wheel is not on the terrain, as step() does.
+  virtual ~VehicleMotion() = default;
+
+  /// Returns the state; its odometry reading is that of the last step.
+  virtual const DriveStep& now() const = 0;
+  /// Drives for one period of the odometry. Returns the state before it, with the odometry reading. Throws
+  /// Error{usage} if a wheel leaves the terrain.
+  virtual DriveStep step(const DriveCommand& command) = 0;
+  /// Returns why the vehicle cannot go on, as a predicate ("tipped over"); empty while it can.
+  virtual std::string mishap() const { return {}; }
+};
+
+/// Returns a WheeledVehicle if the settings ask for dynamics, a SlippingVehicle otherwise. Terrain, rocks and
+/// settings must outlive it. Throws Error{usage} if a wheel is not on the terrain.
+std::unique_ptr<VehicleMotion> make_motion(const Terrain& terrain, std::span<const RockSolid> rocks,
+                                           const DriveSettings& settings, const localization::Pose2& start,
+                                           std::uint64_t seed);
+
+/// Vehicle that stands on the plane under its wheels, with slip that depends on the slope. The terrain and the
+/// settings must outlive it.
+class SlippingVehicle final : public VehicleMotion {
+ public:
   SlippingVehicle(const Terrain& terrain, const DriveSettings& settings, const localization::Pose2& start,
                   std::uint64_t seed);
 
-  /// Returns the state; its odometry reading is that of the last step.
-  const DriveStep& now() const { return now_; }
-  /// Drives for one period of the odometry. Returns the state before it, with the odometry reading.
-  DriveStep step(const DriveCommand& command);
+  const DriveStep& now() const override { return now_; }
+  DriveStep step(const DriveCommand& command) override;
 
  private:
   const Terrain& terrain_;

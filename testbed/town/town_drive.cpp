@@ -56,7 +56,8 @@ DriveSettings town_settings() {
 }
 
 TownDrive drive_through(const Town& town, const DriveSettings& settings, std::uint64_t seed) {
-  const std::vector<DriveStep> steps = drive_along(level_ground(town.path), town.path, settings, seed);
+  const std::vector<DriveStep> steps =
+      drive_along(level_ground(town.path), {}, town.path, settings, seed).steps;
   Random random(seed, "start");
   const localization::Pose2& start = steps.front().at.plane;
   TownDrive drive;

@@ -20,7 +20,7 @@ struct DriveEvent {
 /// A drive along a route, as written to drive.json. Metres and seconds.
 struct DriveReport {
   bool reached = false;
-  std::string ended;  ///< goal, contact, no_route, gave_up, too_steep, lost, time
+  std::string ended;  ///< goal, contact, no_route, gave_up, too_steep, tipped_over, stuck, lost, time
   double seconds = 0, driven = 0;
   double goal_distance = 0;                   ///< true distance to the goal at the end
   double planned_length = 0, planned_sd = 0;  ///< of the first plan; sd: its largest

@@ -100,14 +100,14 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
                                     .noise = odometry.white()},
                                    hazards),
                       stations, report);
-  testbed::SlippingVehicle motion(scene.terrain, settings, start, world.seed);
+  const auto motion = testbed::make_motion(scene.terrain, scene.solids, settings, start, world.seed);
   testbed::DriveSensors sensors(world, place);
   std::vector<testbed::DriveStep> steps;
   drive.log = header;
   double keep_out = 0, distance = 0;
   const double max_seconds = 600 + 10 * report.planned_length / settings.speed;
   for (std::size_t i = 0; report.ended.empty(); ++i) {
-    const testbed::DriveStep now = motion.now();
+    const testbed::DriveStep now = motion->now();
     for (const std::string& line : sensors.lines(i, now)) {
       drive.log += line;
       const std::int64_t sets = live.replay().track().updates;
@@ -126,13 +126,15 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
       report.contact = fmt::format("a rock of {:.2f} m height at {:.1f}, {:.1f}", hit.height,
                                    hit.position.x(), hit.position.y());
       end("contact", *report.contact);
+    } else if (const std::string mishap = motion->mishap(); !mishap.empty()) {
+      end(mishap == "stuck" ? "stuck" : "tipped_over", "the vehicle is " + mishap);
     } else if (command && steepest > vehicle.max_slope.value) {
       end("too_steep", fmt::format("the slope of {:.0f} deg exceeds the vehicle's {:.0f}", steepest,
                                    vehicle.max_slope.value));
     } else if (command && now.t > max_seconds) {
       end("time", "ten times the time of the plan has passed");
     }
-    const testbed::DriveStep done = command ? motion.step(*command) : now;
+    const testbed::DriveStep done = command ? motion->step(*command) : now;
     steps.push_back(done);
     const std::string lines = testbed::odometry_lines(world, place, done);
     drive.log += lines;

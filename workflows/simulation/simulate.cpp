@@ -133,7 +133,9 @@ std::string write_route_drive(const fs::path& folder, const RouteDrive& drive) {
 std::string write_drive(const fs::path& folder, const testbed::Scenario& scenario,
                         const testbed::Scene& scene, std::vector<testbed::StandingTree> trees,
                         const fs::path& scenario_file, const Callbacks& callbacks) {
-  const testbed::DriveSettings& drive = scenario.drive;
+  testbed::DriveSettings drive = scenario.drive;
+  std::string& vehicle = drive.dynamics.vehicle;
+  if (vehicle.ends_with(".json")) vehicle = scenario_file.parent_path() / vehicle;
   if (!drive.trees.empty()) {
     const fs::path table = scenario_file.parent_path() / drive.trees;
     const std::string text =
@@ -149,6 +151,12 @@ std::string write_drive(const fs::path& folder, const testbed::Scenario& scenari
     return write_route_drive(folder, drive_route(site, scene, place, scenario_file.parent_path(), callbacks));
   }
   const testbed::DriveWorld world = testbed::make_drive(drive, scene, std::move(trees), scene.seed);
+  if (!world.mishap.empty()) {
+    const localization::Pose2& at = world.steps.back().at.plane;
+    callbacks.warning(fmt::format(
+        "the drive ends after {:.0f} m and {:.0f} s: the {} is {} at {:.1f}, {:.1f}",
+        world.steps.back().distance, world.steps.back().t, drive.vehicle, world.mishap, at.x, at.y));
+  }
   write_file(folder / "log.jsonl", testbed::drive_log(world, place));
   write_file(folder / "truth/track.csv", testbed::true_track(world, place));
   if (!world.trees.empty()) {
@@ -199,6 +207,9 @@ SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scen
     throw Error(ErrorCode::usage,
                 fmt::format("crs is {}: a street or a hall is made in metres", scenario.crs),
                 request.scenario, "remove crs, or write \"local\"");
+  if (scenario.drive.dynamics.on)
+    throw Error(ErrorCode::usage, "drive.dynamics is on, but the ground of a street or a hall is level",
+                request.scenario, "remove it, or simulate a landing site or a forest");
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   const std::uint64_t drive_seed =
       scenario.drive.seed >= 0 ? static_cast<std::uint64_t>(scenario.drive.seed) : seed;

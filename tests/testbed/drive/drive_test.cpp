@@ -134,7 +134,7 @@ TEST(Drive, OdometryWithoutErrorsIsTheTruth) {
   DriveSettings settings;
   settings.odometry.perfect = true;
   const std::vector<Eigen::Vector2d> path = smooth_path({{-20, -20}, {10, -15}, {20, 20}, {-5, 5}}, 0.5);
-  const auto steps = drive_along(flat, path, settings, 1);
+  const auto steps = drive_along(flat, {}, path, settings, 1).steps;
   localization::Pose2 odometry = steps.front().at.plane;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double dt = steps[i + 1].t - steps[i].t;
