@@ -38,8 +38,7 @@ DriveStep DynamicVehicle::step(const DriveCommand& command) {
     now_.turn = turned;
   } else {
     now_.speed = command.speed * scale_ * (1 + random_.normal(0, model.speed_sd));
-    now_.turn =
-        turned + bias_ + random_.normal(0, to_radians(model.yaw_sd).value) * std::sqrt(metres) / dt;
+    now_.turn = turned + bias_ + random_.normal(0, to_radians(model.yaw_sd).value) * std::sqrt(metres) / dt;
   }
   const DriveStep before = now_;
   now_ = {.t = static_cast<double>(++steps_) * dt, .at = at, .distance = before.distance + moved.norm()};

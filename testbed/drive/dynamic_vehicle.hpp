@@ -4,8 +4,8 @@
 #include "testbed/dynamics/wheeled_vehicle.hpp"
 namespace waymark::testbed {
 
-/// WheeledVehicle with the odometry of its wheels and a gyroscope: slip enters by the difference between rims and
-/// ground.
+/// WheeledVehicle with the odometry of its wheels and a gyroscope: slip enters by the difference between rims
+/// and ground.
 class DynamicVehicle final : public VehicleMotion {
  public:
   /// Terrain, rocks and settings must outlive it. Throws as WheeledVehicle does.
@@ -37,8 +37,8 @@ struct SteadySlip {
   double across = 0;  ///< m sideways per metre on a cross slope
 };
 
-/// Returns the slip on soil at a slope along and one across the vehicle, rad. 1 where the wheels cannot pull that
-/// much.
+/// Returns the slip on soil at a slope along and one across the vehicle, rad. 1 where the wheels cannot pull
+/// that much.
 SteadySlip steady_slip(const planning::Vehicle& vehicle, const Soil& soil, double gravity, double climb,
                        double cross);
 

@@ -9,9 +9,9 @@
 namespace waymark::testbed {
 namespace {
 
-constexpr double kDriftDistance = 10;  // m: between the 5 m of the model's slip and the length of slopes
+constexpr double kDriftDistance = 10;    // m: between the 5 m of the model's slip and the length of slopes
 constexpr double kRoughnessSlip = 0.02;  // of wheels that roll over stones and steps
-constexpr double kRounding = 1e-8;     // m^2/m and rad^2/m: of the log's digits and the integration of arcs
+constexpr double kRounding = 1e-8;       // m^2/m and rad^2/m: of the log's digits and the integration of arcs
 
 }  // namespace
 

@@ -63,8 +63,8 @@ std::unique_ptr<VehicleMotion> make_motion(const Terrain& terrain, std::span<con
                                            const DriveSettings& settings, const localization::Pose2& start,
                                            std::uint64_t seed);
 
-/// Vehicle that stands on the plane under its wheels, with slip that depends on the slope. The terrain and the
-/// settings must outlive it.
+/// Vehicle that stands on the plane under its wheels, with slip that depends on the slope. The terrain and
+/// the settings must outlive it.
 class SlippingVehicle final : public VehicleMotion {
  public:
   SlippingVehicle(const Terrain& terrain, const DriveSettings& settings, const localization::Pose2& start,

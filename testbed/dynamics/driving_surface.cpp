@@ -7,8 +7,8 @@
 namespace waymark::testbed {
 namespace {
 
-constexpr double kSquare = 4;       // m
-constexpr double kMaxRadius = 1.5;  // m, of a wheel, and half its width
+constexpr double kSquare = 4;           // m
+constexpr double kMaxRadius = 1.5;      // m, of a wheel, and half its width
 constexpr int kAlong = 5, kAcross = 1;  // samples of the rim on each side of the centre
 constexpr double kRimAngle = 1.4;       // rad, from the lowest point of the rim to the farthest sample
 
@@ -30,7 +30,8 @@ DrivingSurface::DrivingSurface(const Terrain& terrain, std::span<const RockSolid
     const std::int64_t last_column = std::min(squares_.columns() - 1, square_of(x + reach));
     const std::int64_t last_row = std::min(squares_.rows() - 1, square_of(y + reach));
     for (std::int64_t row = std::max<std::int64_t>(0, square_of(y - reach)); row <= last_row; ++row)
-      for (std::int64_t column = std::max<std::int64_t>(0, square_of(x - reach)); column <= last_column; ++column)
+      for (std::int64_t column = std::max<std::int64_t>(0, square_of(x - reach)); column <= last_column;
+           ++column)
         squares_(column, row).push_back(rock);
   }
 }
@@ -76,7 +77,8 @@ std::optional<DrivingSurface::Touch> DrivingSurface::lower_wheel(const Eigen::Ve
     const double above = rock.foot.z() + rock.reach + 1;
     for (int i = -kAlong; i <= kAlong; ++i)
       for (int k = -kAcross; k <= kAcross; ++k) {
-        const double along = radius * std::sin(kRimAngle * i / kAlong), sideways = 0.9 * width / 2 * k / kAcross;
+        const double along = radius * std::sin(kRimAngle * i / kAlong),
+                     sideways = 0.9 * width / 2 * k / kAcross;
         const Eigen::Vector2d at = centre + along * heading + sideways * across;
         const auto hit = intersect(rock, {at.x(), at.y(), above}, -Eigen::Vector3d::UnitZ());
         if (!hit) continue;

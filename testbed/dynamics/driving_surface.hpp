@@ -19,8 +19,8 @@ class DrivingSurface {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
     bool on_rock = false;
   };
-  /// Returns the surface at a position; `std::nullopt` outside the terrain and on unknown cells. Cost: the rocks
-  /// within some metres.
+  /// Returns the surface at a position; `std::nullopt` outside the terrain and on unknown cells. Cost: the
+  /// rocks within some metres.
   std::optional<Point> at(const Eigen::Vector2d& position) const;
 
   /// Where a wheel touches.
@@ -29,8 +29,8 @@ class DrivingSurface {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from the point of contact to the centre
     bool on_rock = false;
   };
-  /// Returns where an upright wheel touches when it is lowered onto the surface, with the axis across `heading`
-  /// (a horizontal unit vector). A rock is touched by the rim, before the centre is above it.
+  /// Returns where an upright wheel touches when it is lowered onto the surface, with the axis across
+  /// `heading` (a horizontal unit vector). A rock is touched by the rim, before the centre is above it.
   std::optional<Touch> lower_wheel(const Eigen::Vector2d& centre, const Eigen::Vector2d& heading,
                                    double radius, double width) const;
 

@@ -17,8 +17,7 @@ constexpr double kMaxSinkage = 0.5;       // of the radius: the law holds for sh
 void Soil::describe(OptionVisitor& option) {
   option("friction", friction, {.help = "Angle of internal friction of the soil", .min = 5, .max = 60});
   option("cohesion", cohesion, {.help = "Cohesion of the soil, pascal", .min = 0, .max = 1e6});
-  option("stiffness", stiffness,
-         {.help = "Pressure per metre of sinkage, pascal", .min = 1e4, .max = 1e9});
+  option("stiffness", stiffness, {.help = "Pressure per metre of sinkage, pascal", .min = 1e4, .max = 1e9});
   option("shear_length", shear_length,
          {.help = "Shear at which 63 % of the strength is reached, metres", .min = 1e-3, .max = 1});
   option("rock_friction", rock_friction,
@@ -32,14 +31,13 @@ WheelFooting wheel_footing(const Soil& soil, double load, double radius, double 
             .resistance = kRockResistance * load,
             .strength = soil.rock_friction * load,
             .shear_length = kRockShear};
-  const double depth =
-      std::pow(1.5 * load / (soil.stiffness * width * std::sqrt(2 * radius)), 2.0 / 3.0);
+  const double depth = std::pow(1.5 * load / (soil.stiffness * width * std::sqrt(2 * radius)), 2.0 / 3.0);
   WheelFooting footing;
   footing.sinkage = std::min(depth, kMaxSinkage * radius);
   footing.contact_length = std::sqrt(2 * radius * footing.sinkage);
   footing.resistance = width * soil.stiffness * footing.sinkage * footing.sinkage / 2;
-  footing.strength = load * std::tan(to_radians(soil.friction).value) +
-                     soil.cohesion * width * footing.contact_length;
+  footing.strength =
+      load * std::tan(to_radians(soil.friction).value) + soil.cohesion * width * footing.contact_length;
   footing.shear_length = soil.shear_length;
   return footing;
 }

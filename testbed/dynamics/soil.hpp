@@ -8,11 +8,11 @@ namespace waymark::testbed {
 /// Soil under a wheel. Defaults: lunar regolith (Carrier, Olhoeft & Mendell 1991, Lunar Sourcebook, table
 /// 9.14).
 struct Soil {
-  Degrees friction{35};        ///< angle of internal friction
-  double cohesion = 170;       ///< Pa
-  double stiffness = 8.2e5;    ///< N/m^3, pressure per sinkage (Bekker's law with exponent 1)
+  Degrees friction{35};         ///< angle of internal friction
+  double cohesion = 170;        ///< Pa
+  double stiffness = 8.2e5;     ///< N/m^3, pressure per sinkage (Bekker's law with exponent 1)
   double shear_length = 0.018;  ///< m, of shear at which 63 % of the shear strength is reached (Janosi)
-  double rock_friction = 0.8;  ///< coefficient between a wheel and a rock
+  double rock_friction = 0.8;   ///< coefficient between a wheel and a rock
 
   void describe(OptionVisitor& option);
 };
@@ -34,8 +34,8 @@ WheelFooting wheel_footing(const Soil& soil, double load, double radius, double 
 /// (1961), averaged over a contact in which the displacement grows from 0 to `displacement` metres.
 double mobilized_fraction(double displacement, double shear_length);
 
-/// Returns the slip of a wheel that pulls with a fraction of its strength: 1 - speed over ground / speed of the
-/// rim. 1 if it pulls with all of it or more. The inverse of mobilized_fraction() over a rolling contact.
+/// Returns the slip of a wheel that pulls with a fraction of its strength: 1 - speed over ground / speed of
+/// the rim. 1 if it pulls with all of it or more. The inverse of mobilized_fraction() over a rolling contact.
 double slip_of_pull(double fraction, const WheelFooting& footing);
 
 }  // namespace waymark::testbed

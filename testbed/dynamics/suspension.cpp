@@ -12,9 +12,9 @@ namespace waymark::testbed {
 namespace {
 
 constexpr double kDampingRatio = 0.5;
-constexpr double kMaxLinkAngle = 0.6;   // rad: stops of rockers and bogies
+constexpr double kMaxLinkAngle = 0.6;    // rad: stops of rockers and bogies
 constexpr double kMaxDampingLoad = 1.5;  // of the load at rest: an edge is no hammer
-constexpr int kMaxRounds = 8;           // of the search for the wheels that touch
+constexpr int kMaxRounds = 8;            // of the search for the wheels that touch
 
 /// Returns the wheels of one side, from the front to the rear.
 std::vector<Eigen::Index> wheels_of_side(std::span<const Eigen::Vector2d> wheels, bool left) {
@@ -48,7 +48,8 @@ Eigen::MatrixXd lift_of_links(std::span<const Eigen::Vector2d> wheels, const std
       if (side.size() != 3) refuse(kind, "three wheels on each side");
       bogie(side[1], side[2]);
       // The pivot of the rocker lies where all three wheels bear equal loads.
-      const double pivot = (x(side[0]) + x(side[1]) + x(side[2])) / 3, carrier = (x(side[1]) + x(side[2])) / 2;
+      const double pivot = (x(side[0]) + x(side[1]) + x(side[2])) / 3,
+                   carrier = (x(side[1]) + x(side[2])) / 2;
       const double turn = left ? 1 : -1;
       differential[side[0]] = turn * (x(side[0]) - pivot);
       differential[side[1]] = differential[side[2]] = turn * (carrier - pivot);
@@ -68,14 +69,13 @@ Eigen::MatrixXd lift_of_links(std::span<const Eigen::Vector2d> wheels, const std
   return lift;
 }
 
-/// Returns the least loads, in the square, that carry the weight above the origin without a moment and keep the
-/// links in balance.
+/// Returns the least loads, in the square, that carry the weight above the origin without a moment and keep
+/// the links in balance.
 Eigen::VectorXd loads_at_rest(std::span<const Eigen::Vector2d> wheels, const Eigen::MatrixXd& lift,
                               double weight) {
   const auto count = static_cast<Eigen::Index>(wheels.size());
   Eigen::MatrixXd balance(3 + lift.cols(), count);
-  for (Eigen::Index i = 0; i < count; ++i)
-    balance.col(i).head<3>() << 1, wheels[static_cast<std::size_t>(i)];
+  for (Eigen::Index i = 0; i < count; ++i) balance.col(i).head<3>() << 1, wheels[static_cast<std::size_t>(i)];
   balance.bottomRows(lift.cols()) = lift.transpose();
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(balance.rows());
   sums[0] = weight;

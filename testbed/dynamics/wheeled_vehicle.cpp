@@ -12,18 +12,18 @@
 namespace waymark::testbed {
 namespace {
 
-constexpr double kStep = 0.0025;          // s
-constexpr double kSag = 0.02;             // m, of springs and tyres at rest
-constexpr double kSettling = 2;           // s, until the body is at rest after it is put down
-constexpr double kMinUpright = 0.25;      // cosine between the leg and the normal of a contact
-constexpr double kMaxShear = 8;           // lengths of shear: 88 % of the strength and more do not differ
-constexpr double kSinkingTime = 0.05;     // s: light wheels would jump on soil that yields at once
-constexpr double kSoilDamping = 0.3;      // of the shear of standing wheels, relative to critical
-constexpr double kRollingSpeed = 0.01;    // m/s at which the resistance to rolling is full
-constexpr double kBellyFriction = 0.5;    // between underside and ground
-constexpr double kBellyDepth = 0.02;      // m at which one point of the underside carries the weight
-constexpr double kSlidingSpeed = 0.05;    // m/s at which that friction is full
-constexpr double kTipped = 0.5;           // cosine of the lean at which a vehicle does not come back
+constexpr double kStep = 0.0025;        // s
+constexpr double kSag = 0.02;           // m, of springs and tyres at rest
+constexpr double kSettling = 2;         // s, until the body is at rest after it is put down
+constexpr double kMinUpright = 0.25;    // cosine between the leg and the normal of a contact
+constexpr double kMaxShear = 8;         // lengths of shear: 88 % of the strength and more do not differ
+constexpr double kSinkingTime = 0.05;   // s: light wheels would jump on soil that yields at once
+constexpr double kSoilDamping = 0.3;    // of the shear of standing wheels, relative to critical
+constexpr double kRollingSpeed = 0.01;  // m/s at which the resistance to rolling is full
+constexpr double kBellyFriction = 0.5;  // between underside and ground
+constexpr double kBellyDepth = 0.02;    // m at which one point of the underside carries the weight
+constexpr double kSlidingSpeed = 0.05;  // m/s at which that friction is full
+constexpr double kTipped = 0.5;         // cosine of the lean at which a vehicle does not come back
 
 /// Supports of a vehicle relative to the point below its centre of mass.
 std::vector<Eigen::Vector2d> positions(const planning::Vehicle& vehicle) {
@@ -50,12 +50,13 @@ Eigen::Vector2d limited(const Eigen::Vector2d& force, double strength) {
   return size > strength ? Eigen::Vector2d(strength / size * force) : force;
 }
 
-/// Returns the shear of the soil after `dt`: it grows by the sliding, and what a rolling wheel leaves behind is
-/// replaced within one length of contact.
+/// Returns the shear of the soil after `dt`: it grows by the sliding, and what a rolling wheel leaves behind
+/// is replaced within one length of contact.
 Eigen::Vector2d sheared(const Eigen::Vector2d& before, const Eigen::Vector2d& sliding, double rim,
                         const WheelFooting& ground, double dt) {
   const double length = std::max(ground.contact_length, 1e-3);
-  return limited((before + dt * sliding) / (1 + dt * std::abs(rim) / length), kMaxShear * ground.shear_length);
+  return limited((before + dt * sliding) / (1 + dt * std::abs(rim) / length),
+                 kMaxShear * ground.shear_length);
 }
 
 /// Returns the force of sheared soil on a wheel, against the shear.
@@ -101,8 +102,8 @@ WheeledVehicle::WheeledVehicle(const planning::Vehicle& vehicle, const Soil& soi
       start, {.base = size.x(), .track = size.y()});
   if (!stands)
     throw Error(ErrorCode::usage,
-                fmt::format("the drive begins outside the terrain, at {:.1f}, {:.1f}", start.x, start.y), "drive",
-                "enlarge the site (ground.width, ground.height), or move the waypoints");
+                fmt::format("the drive begins outside the terrain, at {:.1f}, {:.1f}", start.x, start.y),
+                "drive", "enlarge the site (ground.width, ground.height), or move the waypoints");
   const Eigen::Isometry3d pose = stands->grid_from_robot().transform;
   body_.attitude = Eigen::Quaterniond(pose.linear());
   body_.position = pose * Eigen::Vector3d(0, 0, height_);
@@ -125,12 +126,12 @@ void WheeledVehicle::step(double speed, double turn, double dt) {
     const Eigen::Vector3d below(wheel.at.x(), wheel.at.y(), -height_);
     const Eigen::Vector3d centre = body_.point(below) + wheel.radius * up;
     const Eigen::Vector3d heading = axes.leftCols<2>() * rim.heading;
-    const auto touch = surface_.lower_wheel(centre.head<2>(), heading.head<2>().normalized(), wheel.radius,
-                                            wheel.width);
+    const auto touch =
+        surface_.lower_wheel(centre.head<2>(), heading.head<2>().normalized(), wheel.radius, wheel.width);
     if (!touch)
       throw Error(ErrorCode::usage,
-                  fmt::format("the drive leaves the terrain at {:.1f}, {:.1f}", centre.x(), centre.y()), "drive",
-                  "enlarge the site (ground.width, ground.height), or move the waypoints");
+                  fmt::format("the drive leaves the terrain at {:.1f}, {:.1f}", centre.x(), centre.y()),
+                  "drive", "enlarge the site (ground.width, ground.height), or move the waypoints");
     wheel.on_rock = touch->on_rock;
     const Eigen::Vector3d& normal = touch->normal;
     const double upright = std::max(kMinUpright, normal.dot(up));
@@ -161,14 +162,16 @@ void WheeledVehicle::step(double speed, double turn, double dt) {
     const double upright = std::max(kMinUpright, f.normal.dot(up)), push = wheel.load / upright;
     const WheelFooting ground = wheel_footing(soil_, push, wheel.radius, wheel.width, wheel.on_rock);
     wheel.sinkage += dt / kSinkingTime * (ground.sinkage - wheel.sinkage);
-    const Eigen::Vector3d velocity = body_.velocity_at(body_.attitude.conjugate() * (f.point - body_.position));
+    const Eigen::Vector3d velocity =
+        body_.velocity_at(body_.attitude.conjugate() * (f.point - body_.position));
     const double forward = velocity.dot(f.along);
     const Eigen::Vector2d sliding(forward - f.rim, velocity.dot(f.across));
     wheel.slip = f.rim != 0 ? 1 - forward / f.rim : 0;
     wheel.shear = sheared(wheel.shear, sliding, f.rim, ground, dt);
     Eigen::Vector2d force = traction(wheel.shear, ground);
     if (f.rim == 0) {
-      const double damping = 2 * kSoilDamping * std::sqrt(ground.strength / (2 * ground.shear_length) * carried);
+      const double damping =
+          2 * kSoilDamping * std::sqrt(ground.strength / (2 * ground.shear_length) * carried);
       force = limited(force - damping * sliding, ground.strength);
     }
     // Full against the rolling, also of wheels that spin on the spot; reversed for those that slide back.
@@ -201,7 +204,8 @@ Wrench WheeledVehicle::belly_forces() const {
       const double push =
           std::max(0.0, stiffness * (ground->height - at.z()) * ground->normal.z() + damping * closing);
       const Eigen::Vector3d slide = velocity + closing * ground->normal;
-      wrench.add(body_, push * (ground->normal - kBellyFriction * slide / std::max(kSlidingSpeed, slide.norm())),
+      wrench.add(body_,
+                 push * (ground->normal - kBellyFriction * slide / std::max(kSlidingSpeed, slide.norm())),
                  at);
     }
   return wrench;

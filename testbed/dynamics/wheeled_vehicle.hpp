@@ -11,8 +11,8 @@
 #include "testbed/dynamics/suspension.hpp"
 namespace waymark::testbed {
 
-/// Body on wheels that roll, slip and sink: every wheel is driven at the speed of the command and steered to its
-/// instantaneous centre of rotation. Deterministic. Cost: about 3 us per wheel and step of 2.5 ms.
+/// Body on wheels that roll, slip and sink: every wheel is driven at the speed of the command and steered to
+/// its instantaneous centre of rotation. Deterministic. Cost: about 3 us per wheel and step of 2.5 ms.
 class WheeledVehicle {
  public:
   /// Stands at rest on the surface, which must outlive it. `gravity`: m/s^2.
@@ -29,11 +29,11 @@ class WheeledVehicle {
   const RigidBody& body() const { return body_; }
 
   struct Wheel {
-    Eigen::Vector2d at;                               ///< m, forwards and left of the centre of mass
-    double radius = 0, width = 0;                     ///< m
-    double load = 0;                                  ///< N along the vertical axis of the body
-    double sinkage = 0;                               ///< m
-    double slip = 0;                                  ///< 1 - speed over ground / speed of the rim
+    Eigen::Vector2d at;            ///< m, forwards and left of the centre of mass
+    double radius = 0, width = 0;  ///< m
+    double load = 0;               ///< N along the vertical axis of the body
+    double sinkage = 0;            ///< m
+    double slip = 0;               ///< 1 - speed over ground / speed of the rim
     bool on_rock = false;
     Eigen::Vector2d shear = Eigen::Vector2d::Zero();  ///< m, of the soil, along and across the wheel
   };

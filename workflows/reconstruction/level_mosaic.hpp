@@ -21,9 +21,8 @@ SceneViews views_of(const pipeline::Reconstruction& scene, const Photos& photos)
 /// Returns the ground that the tie points of a level scene show: medians in 48 x 48 cells, gaps filled.
 pipeline::CoarseHeights ground_of(const pipeline::Reconstruction& scene);
 
-/// Returns a mosaic of 160 x 160 cells of what the images of a level scene show from more than 44 degrees
-/// above the horizon, in the scene's units; NaN: nothing. Throws Error{input} for an image that cannot be
-/// read.
+/// Returns a mosaic of 160 x 160 cells in the units of a level scene; NaN where no image shows the ground
+/// from more than 44 degrees above the horizon. Throws Error{input} for an image that cannot be read.
 pipeline::LevelImage level_mosaic(const pipeline::Reconstruction& scene, const Photos& photos);
 
 }  // namespace waymark::workflows

@@ -182,7 +182,8 @@ TEST(WheeledVehicle, SaysWhyItCannotDrive) {
   const DrivingSurface surface(level, {});
   planning::Vehicle light = planning::find_vehicle("rover");
   light.mass = 0;
-  const auto refusal = [&](const planning::Vehicle& vehicle, const localization::Pose2& start) -> std::string {
+  const auto refusal = [&](const planning::Vehicle& vehicle,
+                           const localization::Pose2& start) -> std::string {
     try {
       WheeledVehicle made(vehicle, {}, kMars, surface, start);
       made.drive(1, 0, 60);
