@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -109,6 +110,7 @@ struct Painter {
   const RockTiles& rocks;
   Eigen::Vector3d light;
   double pixel_angle;  ///< radians per pixel of a camera
+  int instants;        ///< of an exposure while the camera moves; 0: it does not
 
   double brightness(double albedo, double lit, const Eigen::Vector3d& normal,
                     const Eigen::Vector3d& to_eye) const {
@@ -135,20 +137,45 @@ struct Painter {
         {{view.x0 + x * view.gsd, view.y0 - y * view.gsd, scene.terrain.max_height() + 100}}, {{0, 0, -1}}};
   }
 
-  // Light along one ray; NaN beyond the terrain.
+  // Light along the ray of a pixel; NaN beyond the terrain.
   double sample(double x, double y, const RockTiles::Tile& tile) const {
-    constexpr auto kNone = static_cast<std::uint32_t>(-1);
     const auto line = ray_through(x, y);
     if (!line) return std::numeric_limits<double>::quiet_NaN();
     const RayHit hit = scene.terrain.cast(*line);
     if (hit.end != RayEnd::ground) return std::numeric_limits<double>::quiet_NaN();
-    const Eigen::Vector3d& along = line->direction.unit;
+    return sample(*line, hit, tile);
+  }
+
+  // The same, seconds after the middle of the exposure. Rocks are those of the pixel that shows the ground
+  // there at the middle of the exposure.
+  double sample_at(double seconds, double x, double y) const {
+    auto line = ray_through(x, y);
+    if (!line) return std::numeric_limits<double>::quiet_NaN();
+    line->origin.xyz += seconds * view.motion.velocity;
+    const double angle = seconds * view.motion.spin.norm();
+    if (angle != 0)
+      line->direction.unit = Eigen::AngleAxisd(angle, view.motion.spin.normalized()) * line->direction.unit;
+    const RayHit hit = scene.terrain.cast(*line);
+    if (hit.end != RayEnd::ground) return std::numeric_limits<double>::quiet_NaN();
+    const auto spot = spot_of(view, hit.point.xyz);
+    const auto tile_of = [](double at, std::int64_t tiles) {
+      const double tile = std::floor((at + 0.5) / double(RockTiles::kSide));
+      return static_cast<std::int64_t>(std::clamp(tile, 0.0, double(tiles - 1)));
+    };
+    const Spot at = spot.value_or(Spot{x, y, 1});
+    return sample(*line, hit,
+                  rocks.tiles(tile_of(at.x, rocks.tiles.columns()), tile_of(at.y, rocks.tiles.rows())));
+  }
+
+  double sample(const Ray<GridFrame>& line, const RayHit& hit, const RockTiles::Tile& tile) const {
+    constexpr auto kNone = static_cast<std::uint32_t>(-1);
+    const Eigen::Vector3d& along = line.direction.unit;
     const double size = view.camera ? hit.range * pixel_angle : view.gsd;
 
     std::uint32_t rock = kNone;
     SolidHit nearest{hit.range, {}};
     for (const std::uint32_t k : tile.rocks)
-      if (const auto met = intersect(scene.solids[k], line->origin.xyz, along); met && met->t < nearest.t)
+      if (const auto met = intersect(scene.solids[k], line.origin.xyz, along); met && met->t < nearest.t)
         nearest = *met, rock = k;
     if (rock == kNone) {
       const SurfaceShading look = ground.shading(hit.point.xyz, size);
@@ -156,7 +183,7 @@ struct Painter {
       return brightness(look.albedo, lit, Eigen::Vector3d(-look.slope_x, -look.slope_y, 1).normalized(),
                         -along);
     }
-    const Eigen::Vector3d point = line->origin.xyz + nearest.t * along;
+    const Eigen::Vector3d point = line.origin.xyz + nearest.t * along;
     const SurfaceShading look = ground.shading(scene.solids[rock].foot, size);
     const bool free =
         point.z() > ground.shadow_height(point.x(), point.y()) && !behind_rock(tile, point, rock);
@@ -164,6 +191,7 @@ struct Painter {
   }
 
   double pixel(std::int64_t i, std::int64_t j) const {
+    if (instants > 0) return moving_pixel(i, j);
     const auto& tile = rocks.tiles(i / RockTiles::kSide, j / RockTiles::kSide);
     const int n = rocks.busy(i, j) ? std::max(1, exposure.samples) : 1;
     double sum = 0;
@@ -172,7 +200,33 @@ struct Painter {
         sum += sample(double(i) + (a + 0.5) / n - 0.5, double(j) + (b + 0.5) / n - 0.5, tile);
     return sum / (n * n);
   }
+
+  // Mean over the exposure of the row; the instants share the rays of a pixel near rocks.
+  double moving_pixel(std::int64_t i, std::int64_t j) const {
+    const int n = rocks.busy(i, j) ? std::max(1, exposure.samples) : 1, count = std::max(instants, n * n);
+    const double row = view.rows > 1 ? double(j) / double(view.rows - 1) - 0.5 : 0;
+    double sum = 0;
+    for (int k = 0; k < count; ++k) {
+      const double t = exposure.readout_time * row + exposure.exposure_time * ((k + 0.5) / count - 0.5);
+      const int ray = n == 1 ? 0 : k * 7 % (n * n);  // spreads neighbouring instants over the pixel
+      sum += sample_at(t, double(i) + (ray % n + 0.5) / n - 0.5, double(j) + (ray / n % n + 0.5) / n - 0.5);
+    }
+    return sum / count;
+  }
 };
+
+/// Returns the number of instants at which an exposure samples its motion: one for each half pixel of blur, 0
+/// for a camera that stands still.
+int instants_of(const Scene& scene, const View& view, const Exposure& exposure, double focal) {
+  constexpr double kMost = 32;
+  const bool moves = view.motion.velocity.norm() + view.motion.spin.norm() > 0;
+  if (!view.camera || !moves || !(exposure.exposure_time + exposure.readout_time > 0)) return 0;
+  const double height =
+      view.camera->grid_from_camera.transform.translation().z() - scene.terrain.max_height();
+  const double blur = exposure.exposure_time * focal *
+                      (view.motion.spin.norm() + view.motion.velocity.norm() / std::max(1.0, height));
+  return static_cast<int>(std::clamp(std::ceil(2 * blur), 1.0, kMost));
+}
 
 }  // namespace
 
@@ -184,7 +238,10 @@ Pixels render_view(const Scene& scene, const LitTerrain& ground, const View& vie
                 "elevation " + std::to_string(exposure.sun.elevation.value) + " degrees");
   const RockTiles rocks = bin_rocks(scene, view, ground.sun(), kMinRock);
   const double focal = view.camera ? std::max(view.camera->camera.fx, view.camera->camera.fy) : 1;
-  const Painter painter{scene, ground, view, exposure, rocks, sun_direction(ground.sun()).unit, 1 / focal};
+  const Painter painter{scene,     ground,
+                        view,      exposure,
+                        rocks,     sun_direction(ground.sun()).unit,
+                        1 / focal, instants_of(scene, view, exposure, focal)};
   Pixels light(view.columns, view.rows);
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, view.rows, 8), [&](const auto& range) {
     for (std::int64_t j = range.begin(); j < range.end(); ++j)

@@ -29,18 +29,27 @@ struct Exposure {
   double shot_noise = 0.01;   ///< standard deviation at full scale, fraction of full scale
   double level = 0.4;         ///< mean brightness, fraction of full scale; 0: no automatic exposure
   double contrast = 1;        ///< stretch about the mean after exposure
+  double exposure_time = 0;   ///< s: motion blurs the image
+  double readout_time = 0;    ///< s from the first row to the last: a rolling shutter; 0: global
   int samples = 3;            ///< per pixel and direction near rocks, else 1
+};
+
+/// Motion of a camera while it takes an image, GridFrame.
+struct CameraMotion {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+  Eigen::Vector3d spin = Eigen::Vector3d::Zero();      ///< rad/s
 };
 
 /// Central camera, or a vertical map view.
 struct View {
-  std::optional<PosedCamera> camera;
+  std::optional<PosedCamera> camera;  ///< its pose is that of the middle row at the middle of the exposure
+  CameraMotion motion;
   std::int64_t columns = 0, rows = 0;  ///< size of a map view
   double x0 = 0, y0 = 0, gsd = 1;      ///< map view: GridFrame of pixel (0, 0), metres per pixel
 };
 View map_view(const Scene& scene, double gsd, std::int64_t columns,
               std::int64_t rows);  ///< about the centre of the scene
-View camera_view(PosedCamera camera);
+View camera_view(PosedCamera camera, const CameraMotion& motion = {});
 
 /// Renders an image in [0, 1] (full scale 1), not quantised. Pixels that look past the terrain are NaN.
 /// `noise_seed` affects the noise only. The result does not depend on the number of threads.

@@ -7,6 +7,7 @@
 #include "core/options/option_reader.hpp"
 #include "testbed/drive/drive_settings.hpp"
 #include "testbed/forest/forest_model.hpp"
+#include "testbed/landing/descent.hpp"
 #include "testbed/render.hpp"
 #include "testbed/site_model.hpp"
 #include "testbed/town/town_model.hpp"
@@ -20,10 +21,14 @@ struct Lens {
 };
 Camera camera_of(const Lens& lens);
 
-/// Images along one straight path or several parallel ones. Positions in metres from the centre of the
-/// site, altitudes above its height `up`. Altitude changes geometrically, as in a descent.
+/// Images along one straight path or several parallel ones, or along a landing. Positions in metres from the
+/// centre of the site, altitudes above its height `up`.
+/// - Lines: the altitude changes geometrically, as in a descent.
+/// - Landing: images at equal times; the attitude is that of the lander, the camera looks down along its
+/// axis.
 struct Flight {
   std::string name = "descent";  ///< its images are <name>_0001.png, ...
+  std::string path = "lines";    ///< or landing
   std::int64_t images = 16;      ///< per line
   std::int64_t lines = 1;        ///< parallel lines, flown to and fro
   double line_spacing = 0;       ///< metres
@@ -32,6 +37,7 @@ struct Flight {
   Degrees tilt{0};           ///< of the view, from straight down towards the heading
   Degrees attitude_sd{1.5};  ///< variation of the attitude about each camera axis
   double track_sd = 2;       ///< metres, variation of the path
+  DescentModel landing;      ///< of a landing, which has neither lines nor these deviations
 };
 
 /// Errors of the reported poses: standard deviations.

@@ -127,6 +127,12 @@ void describe_picture(Scenario& s, OptionVisitor& field) {
         {.help = "Shot noise at full scale, fraction of full scale", .min = 0, .max = 1});
   field("level", e.level, {.help = "Mean brightness, fraction of full scale", .min = 0.01, .max = 1});
   field("contrast", e.contrast, {.help = "Contrast stretch about the mean", .min = 0.1, .max = 20});
+  field("exposure_time", e.exposure_time,
+        {.help = "Seconds of exposure; the motion of a landing blurs its images", .min = 0, .max = 10});
+  field("readout_time", e.readout_time,
+        {.help = "Seconds from the first to the last row of a rolling shutter; 0: global shutter",
+         .min = 0,
+         .max = 10});
   std::int64_t samples = e.samples;
   field("samples", samples, {.help = "Rays per pixel and direction near rocks", .min = 1, .max = 8});
   e.samples = static_cast<int>(samples);
@@ -196,7 +202,11 @@ const std::vector<ScenarioSection>& scenario_sections() {
 
 void describe_flight(Flight& f, OptionVisitor& field) {
   field("name", f.name, {.help = "Images are <name>_0001.png, ..."});
-  field("images", f.images, {.help = "Images on each line", .min = 1, .max = 100000});
+  field("path", f.path,
+        {.help = "lines, or landing: a parachute, rockets and a sky crane, from the start to the end",
+         .choices = {"lines", "landing"}});
+  field("images", f.images,
+        {.help = "Images on each line; of a landing, at equal times", .min = 1, .max = 100000});
   field("lines", f.lines, {.help = "Parallel lines", .min = 1, .max = 10000});
   field("line_spacing", f.line_spacing, {.help = "Spacing of lines, to the right, metres"});
   field("from_east", f.from_east, {.help = "Start of the first line, metres from the centre"});
@@ -208,6 +218,7 @@ void describe_flight(Flight& f, OptionVisitor& field) {
   field("tilt", f.tilt, {.help = "Forward tilt of the view from nadir", .min = -80, .max = 80});
   field("attitude_sd", f.attitude_sd, {.help = "Standard deviation of the attitude", .min = 0, .max = 45});
   field("track_sd", f.track_sd, {.help = "Standard deviation of the path, metres", .min = 0, .max = 1e4});
+  f.landing.describe(field);
 }
 
 }  // namespace waymark::testbed

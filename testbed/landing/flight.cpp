@@ -62,42 +62,74 @@ Camera camera_of(const Lens& lens) {
   return camera;
 }
 
-std::vector<Shot> plan_shots(const Scenario& scenario) {
-  const Camera camera = camera_of(scenario.lens);
-  const SiteModel& ground = scenario.ground;
+namespace {
+
+/// Adds a shot at a true pose, reported with the errors of the scenario.
+void add_shot(std::vector<Shot>& shots, const Scenario& scenario, const std::string& name,
+              const Eigen::Isometry3d& pose, const CameraMotion& motion, Random& errors) {
   const double position_sd = scenario.pose_errors.position_sd;
   const double attitude_sd = to_radians(scenario.pose_errors.attitude_sd).value;
+  Shot shot;
+  shot.name = name;
+  shot.motion = motion;
+  shot.view = {.camera = camera_of(scenario.lens), .grid_from_camera = {pose}};
+  shot.view.covariance.diagonal() << Eigen::Vector3d::Constant(attitude_sd * attitude_sd),
+      Eigen::Vector3d::Constant(position_sd * position_sd);
+  shot.reported.transform = pose;
+  shot.reported.transform.linear() = pose.linear() * rotation_from(random_vector(errors, attitude_sd));
+  shot.reported.transform.translation() += random_vector(errors, position_sd);
+  shots.push_back(std::move(shot));
+}
+
+void add_lines(std::vector<Shot>& shots, const Scenario& scenario, const Flight& f, Random& errors) {
+  const SiteModel& ground = scenario.ground;
+  Random random(static_cast<std::uint64_t>(scenario.seed), "flight " + f.name);
+  const Eigen::Vector2d from(f.from_east, f.from_north), to(f.to_east, f.to_north);
+  const Eigen::Vector2d ahead =
+      (to - from).norm() > 0.01 ? Eigen::Vector2d((to - from).normalized()) : Eigen::Vector2d(0, 1);
+  const Eigen::Vector2d right(ahead.y(), -ahead.x());
+  for (std::int64_t line = 0; line < f.lines; ++line)
+    for (std::int64_t i = 0; i < f.images; ++i) {
+      const double forth = f.images > 1 ? double(i) / double(f.images - 1) : 0;
+      const bool back = line % 2 == 1;
+      const double along = back ? 1 - forth : forth;
+      const Eigen::Vector2d place = (1 - along) * from + along * to + double(line) * f.line_spacing * right;
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.linear() = attitude(back ? Eigen::Vector2d(-ahead) : ahead, to_radians(f.tilt).value) *
+                      rotation_from(random_vector(random, to_radians(f.attitude_sd).value));
+      const Eigen::Vector3d off = random_vector(random, f.track_sd);
+      const double altitude = f.from_altitude * std::pow(f.to_altitude / f.from_altitude, along);
+      pose.translation() =
+          Eigen::Vector3d(ground.east + place.x(), ground.north + place.y(), ground.up + altitude) + off;
+      add_shot(shots, scenario, fmt::format("{}_{:04}.png", f.name, line * f.images + i + 1), pose, {},
+               errors);
+    }
+}
+
+void add_landing(std::vector<Shot>& shots, const Scenario& scenario, const Flight& f, Random& errors) {
+  const SiteModel& ground = scenario.ground;
+  const std::vector<DescentState> states = simulate_descent(
+      f.landing, {f.from_east, f.from_north, f.from_altitude}, {f.to_east, f.to_north, f.to_altitude},
+      named_seed(static_cast<std::uint64_t>(scenario.seed), "flight " + f.name));
+  for (std::int64_t i = 0; i < f.images; ++i) {
+    const double along = f.images > 1 ? double(i) / double(f.images - 1) : 0;
+    const RigidBody& body =
+        states[static_cast<std::size_t>(std::lround(along * double(states.size() - 1)))].body;
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = body.attitude * attitude({1, 0}, to_radians(f.tilt).value);
+    pose.translation() = body.position + Eigen::Vector3d(ground.east, ground.north, ground.up);
+    add_shot(shots, scenario, fmt::format("{}_{:04}.png", f.name, i + 1), pose,
+             {.velocity = body.velocity, .spin = body.attitude * body.spin}, errors);
+  }
+}
+
+}  // namespace
+
+std::vector<Shot> plan_shots(const Scenario& scenario) {
   std::vector<Shot> shots;
   for (const Flight& f : scenario.flights) {
-    Random random(static_cast<std::uint64_t>(scenario.seed), "flight " + f.name);
     Random errors(static_cast<std::uint64_t>(scenario.seed), "pose errors " + f.name);
-    const Eigen::Vector2d from(f.from_east, f.from_north), to(f.to_east, f.to_north);
-    const Eigen::Vector2d ahead =
-        (to - from).norm() > 0.01 ? Eigen::Vector2d((to - from).normalized()) : Eigen::Vector2d(0, 1);
-    const Eigen::Vector2d right(ahead.y(), -ahead.x());
-    for (std::int64_t line = 0; line < f.lines; ++line)
-      for (std::int64_t i = 0; i < f.images; ++i) {
-        const double forth = f.images > 1 ? double(i) / double(f.images - 1) : 0;
-        const bool back = line % 2 == 1;
-        const double along = back ? 1 - forth : forth;
-        const Eigen::Vector2d place = (1 - along) * from + along * to + double(line) * f.line_spacing * right;
-        Shot shot;
-        shot.name = fmt::format("{}_{:04}.png", f.name, line * f.images + i + 1);
-        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-        pose.linear() = attitude(back ? Eigen::Vector2d(-ahead) : ahead, to_radians(f.tilt).value) *
-                        rotation_from(random_vector(random, to_radians(f.attitude_sd).value));
-        const Eigen::Vector3d off = random_vector(random, f.track_sd);
-        const double altitude = f.from_altitude * std::pow(f.to_altitude / f.from_altitude, along);
-        pose.translation() =
-            Eigen::Vector3d(ground.east + place.x(), ground.north + place.y(), ground.up + altitude) + off;
-        shot.view = {.camera = camera, .grid_from_camera = {pose}};
-        shot.view.covariance.diagonal() << Eigen::Vector3d::Constant(attitude_sd * attitude_sd),
-            Eigen::Vector3d::Constant(position_sd * position_sd);
-        shot.reported.transform = pose;
-        shot.reported.transform.linear() = pose.linear() * rotation_from(random_vector(errors, attitude_sd));
-        shot.reported.transform.translation() += random_vector(errors, position_sd);
-        shots.push_back(std::move(shot));
-      }
+    (f.path == "landing" ? add_landing : add_lines)(shots, scenario, f, errors);
   }
   return shots;
 }

@@ -61,6 +61,7 @@ std::optional<PixelEllipse> outline(const View& view, const Eigen::Vector3d& mid
 
 View map_view(const Scene& scene, double gsd, std::int64_t columns, std::int64_t rows) {
   return {.camera = {},
+          .motion = {},
           .columns = columns,
           .rows = rows,
           .x0 = scene.ground.east - double(columns - 1) * gsd / 2,
@@ -68,8 +69,9 @@ View map_view(const Scene& scene, double gsd, std::int64_t columns, std::int64_t
           .gsd = gsd};
 }
 
-View camera_view(PosedCamera camera) {
+View camera_view(PosedCamera camera, const CameraMotion& motion) {
   View view;
+  view.motion = motion;
   view.columns = camera.camera.columns;
   view.rows = camera.camera.rows;
   view.camera = std::move(camera);

@@ -122,6 +122,64 @@ TEST(Render, CameraAndMapAgree) {
   EXPECT_LT(off / 1600, 0.003);
 }
 
+PosedCamera moved(PosedCamera camera, const CameraMotion& motion, double seconds) {
+  Eigen::Isometry3d& pose = camera.grid_from_camera.transform;
+  pose.translation() += seconds * motion.velocity;
+  const double angle = seconds * motion.spin.norm();
+  if (angle != 0) pose.linear() = Eigen::AngleAxisd(angle, motion.spin.normalized()) * pose.linear();
+  return camera;
+}
+
+// The slow twin takes one image of a standing camera for each row.
+TEST(Render, ARollingShutterTakesEachRowAtItsTime) {
+  const Scene scene = with_rock(RockShape::ellipsoid, 4, 2);
+  const PosedCamera camera = looking_down(70);
+  Exposure exposure = plain_light(60, 40);
+  exposure.samples = 1;
+  const CameraMotion motion{.velocity = {4, -2, -10}, .spin = {0.05, 0.1, -0.2}};
+  exposure.readout_time = 2;
+  const Pixels rolling = render_view(scene, camera_view(camera, motion), exposure, 1);
+  const Pixels global = render_view(scene, camera_view(camera), exposure, 1);
+  double worst = 0, changed = 0;
+  for (const std::int64_t row : {60, 92, 96, 104, 108, 140}) {
+    const double t = 2 * (double(row) / 199 - 0.5);
+    const Pixels standing = render_view(scene, camera_view(moved(camera, motion, t)), plain_light(60, 40), 1);
+    double off = 0;
+    for (std::int64_t i = 40; i < 160; ++i) {
+      off += std::abs(double(rolling(i, row)) - double(standing(i, row))) / 120;
+      changed = std::max(changed, std::abs(double(rolling(i, row)) - double(global(i, row))));
+    }
+    worst = std::max(worst, off);
+  }
+  EXPECT_LT(worst, 0.003) << "of a brightness of 0.19; the standing images are supersampled";
+  EXPECT_GT(changed, 0.1);
+}
+
+TEST(Render, MotionBlursAsTheMeanOfItsInstants) {
+  const Scene scene = with_rock(RockShape::ellipsoid, 4, 2);
+  const PosedCamera camera = looking_down(70);
+  Exposure exposure = plain_light(60, 40);
+  const CameraMotion motion{.velocity = {20, 0, 0}, .spin = {0, 0, 0.3}};
+  exposure.exposure_time = 0.1;
+  const Pixels blurred = render_view(scene, camera_view(camera, motion), exposure, 1);
+  Pixels mean(200, 200, 0);
+  constexpr int kInstants = 48;
+  for (int k = 0; k < kInstants; ++k) {
+    const double t = 0.1 * ((k + 0.5) / kInstants - 0.5);
+    const Pixels still = render_view(scene, camera_view(moved(camera, motion, t)), plain_light(60, 40), 1);
+    for (std::int64_t j = 0; j < 200; ++j)
+      for (std::int64_t i = 0; i < 200; ++i) mean(i, j) += still(i, j) / kInstants;
+  }
+  double off = 0, unlike = 0;
+  const Pixels sharp = render_view(scene, camera_view(camera), plain_light(60, 40), 1);
+  for (std::int64_t j = 60; j < 140; ++j)
+    for (std::int64_t i = 60; i < 140; ++i) {
+      off += std::abs(double(blurred(i, j)) - double(mean(i, j))) / 6400;
+      unlike += std::abs(double(sharp(i, j)) - double(mean(i, j))) / 6400;
+    }
+  EXPECT_LT(off, 0.25 * unlike);
+}
+
 TEST(Render, PastTheGroundIsNoData) {
   const Scene scene = make_scene(bare_ground(), 1);
   const Pixels image = render_view(scene, map_view(scene, 0.5, 100, 20), plain_light(60, 40), 1);

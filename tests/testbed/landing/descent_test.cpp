@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "testbed/landing/descent.hpp"
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "core/error.hpp"
+
+namespace waymark::test {
+using namespace testbed;
+namespace {
+
+using ::testing::HasSubstr;
+
+const Eigen::Vector3d kFrom(300, -200, 4000), kTo(20, 30, 8);
+
+double lean_degrees(const RigidBody& body) {
+  return std::acos(std::clamp((body.attitude * Eigen::Vector3d::UnitZ()).z(), -1.0, 1.0)) * 180 /
+         std::numbers::pi;
+}
+
+TEST(Descent, LandsWhereItWasSentForAnyWind) {
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
+    const auto states = simulate_descent({}, kFrom, kTo, seed);
+    const RigidBody& end = states.back().body;
+    EXPECT_LT((end.position - kTo).head<2>().norm(), 1) << seed;
+    EXPECT_NEAR(end.position.z(), 8, 0.1);
+    EXPECT_NEAR(end.velocity.z(), -0.75, 0.1);
+    EXPECT_LT(end.velocity.head<2>().norm(), 0.2);
+    EXPECT_LT(lean_degrees(end), 3);
+    EXPECT_EQ(states.back().phase, DescentPhase::crane);
+    EXPECT_GT(states.back().t, 50);
+    EXPECT_LT(states.back().t, 180);
+  }
+}
+
+TEST(Descent, SwingsUnderTheParachuteAtItsSpeed) {
+  const auto states = simulate_descent({}, kFrom, kTo, 7);
+  double speed = 0, swung = 0, before = 0;
+  int count = 0, turns = 0;
+  for (const DescentState& state : states) {
+    if (state.phase != DescentPhase::parachute) break;
+    speed += -state.body.velocity.z(), ++count;
+    swung = std::max(swung, lean_degrees(state.body));
+    const double east = (state.body.attitude * Eigen::Vector3d::UnitZ()).x();
+    turns += east * before < 0 ? 1 : 0;
+    before = east;
+  }
+  EXPECT_NEAR(speed / count, 85, 8);
+  EXPECT_GT(swung, 4);
+  EXPECT_LT(swung, 30);
+  EXPECT_GE(turns, 3) << "it swings to and fro";
+}
+
+TEST(Descent, WithoutWindAndSwingItFallsStraight) {
+  const DescentModel calm{.swing = Degrees{0}, .wind = 0};
+  for (const DescentState& state : simulate_descent(calm, {0, 0, 4000}, {0, 0, 8}, 1)) {
+    ASSERT_LT(state.body.position.head<2>().norm(), 1e-6);
+    ASSERT_LT(lean_degrees(state.body), 1e-4);
+  }
+}
+
+TEST(Descent, TheThrustIsThatOfTheEngines) {
+  const auto states = simulate_descent({}, kFrom, kTo, 3);
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    if (states[i - 1].phase == DescentPhase::parachute) continue;
+    const Eigen::Vector3d acceleration =
+        (states[i].body.velocity - states[i - 1].body.velocity) / (states[i].t - states[i - 1].t);
+    EXPECT_LT((acceleration + Eigen::Vector3d(0, 0, 3.71)).norm(), 4.05 * 3.71);
+  }
+}
+
+TEST(Descent, RefusesAltitudesOutOfOrder) {
+  const auto refusal = [](const DescentModel& model, double from, double to) -> std::string {
+    try {
+      simulate_descent(model, {0, 0, from}, {0, 0, to}, 1);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(refusal({}, 100, 200), HasSubstr("altitudes fall"));
+  EXPECT_THAT(refusal({.powered_altitude = 10}, 100, 5), HasSubstr("altitudes fall"));
+  EXPECT_THAT(refusal({}, 4000, 30), HasSubstr("altitudes fall"));
+  EXPECT_EQ(refusal({}, 1500, 10), "accepted") << "already under rockets";
+}
+
+}  // namespace
+}  // namespace waymark::test
