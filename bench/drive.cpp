@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays of the line scanners: a rover among rocks, a harvester among stems. One thread; items are rays.
+// Dynamics of a rover among rocks: items are steps of 2.5 ms.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 
 #include "testbed/drive/laser_scanner.hpp"
+#include "testbed/dynamics/wheeled_vehicle.hpp"
 #include "testbed/scene.hpp"
 
 namespace waymark::bench {
@@ -53,6 +55,19 @@ void harvester_scan(benchmark::State& state) {
   scan_at_random_poses(state, testbed::LaserTargets(scene.terrain, {}, solids.stems, solids.thickets), 2);
 }
 BENCHMARK(harvester_scan)->Unit(benchmark::kMillisecond);
+
+void rover_dynamics(benchmark::State& state) {
+  const testbed::Scene scene = site(0.08);
+  const testbed::DrivingSurface surface(scene.terrain, scene.solids);
+  const planning::Vehicle rover = planning::find_vehicle("rover");
+  for (auto _ : state) {
+    testbed::WheeledVehicle vehicle(rover, {}, 3.71, surface, {0, 0, 0});
+    vehicle.drive(0.3, 0.02, 60);  // a circle of 15 m
+    benchmark::DoNotOptimize(vehicle.pose());
+  }
+  state.SetItemsProcessed(state.iterations() * 24000);
+}
+BENCHMARK(rover_dynamics)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench

@@ -43,7 +43,7 @@ struct CameraMotion {
 /// Central camera, or a vertical map view.
 struct View {
   std::optional<PosedCamera> camera;  ///< its pose is that of the middle row at the middle of the exposure
-  CameraMotion motion;
+  CameraMotion motion = {};
   std::int64_t columns = 0, rows = 0;  ///< size of a map view
   double x0 = 0, y0 = 0, gsd = 1;      ///< map view: GridFrame of pixel (0, 0), metres per pixel
 };

@@ -9,7 +9,7 @@ namespace waymark::testbed {
 struct Shot {
   std::string name;                       ///< file name
   PosedCamera view;                       ///< true pose, with the covariance of the reported pose
-  CameraMotion motion;                    ///< while the shutter is open; zero along lines
+  CameraMotion motion = {};               ///< while the shutter is open; zero along lines
   Pose<GridFrame, CameraFrame> reported;  ///< reported pose, with the errors of the scenario
 };
 

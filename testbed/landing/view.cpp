@@ -61,7 +61,6 @@ std::optional<PixelEllipse> outline(const View& view, const Eigen::Vector3d& mid
 
 View map_view(const Scene& scene, double gsd, std::int64_t columns, std::int64_t rows) {
   return {.camera = {},
-          .motion = {},
           .columns = columns,
           .rows = rows,
           .x0 = scene.ground.east - double(columns - 1) * gsd / 2,

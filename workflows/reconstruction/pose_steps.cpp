@@ -63,7 +63,7 @@ constexpr auto kPosed = [](auto& io, auto& value) {
 PoseSteps pose_steps(const PosePhotosRequest& request, const Photos& photos, const PhotoFeatures& found,
                      const std::vector<pipeline::ImageToMatch>& images, const pipeline::KeptResults& kept) {
   PoseSteps steps{.matches = {.name = "match_images", .item = "all", .version = 1, .depends_on = ""},
-                  .solved = {.name = "solve_poses", .item = "all", .version = 2, .depends_on = ""},
+                  .solved = {.name = "solve_poses", .item = "all", .version = 3, .depends_on = ""},
                   .poses = {.name = "georeference", .item = "all", .version = 1, .depends_on = ""}};
   if (!kept.enabled()) return steps;
   steps.matches.depends_on = key_of_matches(photos, found, images);

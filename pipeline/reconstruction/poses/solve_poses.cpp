@@ -150,11 +150,10 @@ class PoseSolver {
 
   // A plane seen along one line of motion has two solutions for all images at once: its normal and the motion
   // are exchanged. Relief alone distinguishes them, by residuals that differ little. All solutions of the
-  // pair that a growth began with are grown, therefore; the first stays unless another fits clearly better.
+  // pair that a growth began with are grown, therefore, and the one that fits best is taken.
   void replace_by_twin(PoseGrowth& best, const SeedPair& seed, const Reconstruction& start) const {
     const std::vector<RelativePose>& poses = seed.pair->geometry.poses;
     if (poses.size() < 2) return;
-    constexpr double kMaxTwinCost = 0.8;
     std::optional<double> cost;
     for (std::size_t pose = 0; pose < poses.size(); ++pose) {
       if (pose == seed.pose) continue;
@@ -164,7 +163,7 @@ class PoseSolver {
       if (twin.posed() < best.posed()) continue;
       if (!cost) cost = PoseGrowth(best).settled_cost(start.points);
       const double of_twin = PoseGrowth(twin).settled_cost(start.points);
-      if (!(of_twin < kMaxTwinCost * *cost)) continue;
+      if (!(of_twin < *cost)) continue;
       best = std::move(twin);
       cost = of_twin;
     }

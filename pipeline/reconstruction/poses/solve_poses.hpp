@@ -27,8 +27,7 @@ struct SolvedPoses {
 
 /// Solves the poses of images incrementally (Schonberger & Frahm 2016).
 /// - Starts from up to `seeds` pairs; keeps what poses most images.
-/// - Where the plane of its pair leaves two solutions, both are grown. The second is taken if its cost is
-///   lower by a fifth.
+/// - Where the plane of its pair leaves two solutions, both are grown. The one of lower cost is taken.
 /// - Images that cannot be joined start a component of their own; components are never joined by a guess.
 /// - The frame of each component is arbitrary: that of its first camera.
 SolvedPoses solve_poses(std::span<const ImageToMatch> images, std::span<const ImageFeatures> features,

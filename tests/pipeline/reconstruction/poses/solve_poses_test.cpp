@@ -134,9 +134,9 @@ double relative_rotation_error(const Reconstruction& scene, const std::vector<Po
 // Seen along one line, a plane has a second solution, in which its normal and the motion are exchanged.
 // Relief distinguishes them, whichever of the two a pair names first.
 TEST(SolvePoses, AnObliqueDescentAlongALineTakesTheRightOfTwoSolutions) {
-  for (const std::uint32_t seed : {1U, 2U, 3U, 4U})
+  for (const std::uint32_t seed : {1U, 2U})
     for (const bool exchanged : {false, true}) {
-      const Solved s = solved({.relief = 4, .seed = seed}, oblique_descent(), 0, exchanged);
+      const Solved s = solved({.relief = 1.3, .seed = seed}, oblique_descent(), 0, exchanged);
       ASSERT_GE(s.poses.components.size(), 1u);
       ASSERT_EQ(s.poses.components[0].posed, 6u);
       EXPECT_LT(relative_rotation_error(s.poses.components[0].scene, s.truth), 0.5) << seed << exchanged;
