@@ -157,5 +157,44 @@ TEST_F(RouteDriveCommand, RoutesOfEveryFormatAreTheSame) {
   EXPECT_GT(json::parse(logs[0])["planned_worst_sd"], 0.05);
 }
 
+TEST_F(RouteDriveCommand, ARigidBodyFollowsARouteByItsEstimate) {
+  write_scenario(
+      {{"route", "route.csv"}, {"dynamics", {{"on", true}}}, {"navigation", {{"map", "map.gpkg"}}}});
+  const Outcome driven = waymark({"simulate", folder_ / "s.json", "-o", folder_ / "drive", "--drive-only"});
+  ASSERT_EQ(driven.code, 0) << driven.err;
+  EXPECT_TRUE(report()["reached"]) << driven.err;
+  EXPECT_LT(report()["rms_error"], 0.5);
+  // Wheels slip: the rims turn farther than the body moves.
+  double rims = 0, before = 0, speed = 0;
+  std::istringstream lines(text_of(folder_ / "drive/log.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const json row = json::parse(line);
+    if (row["kind"] != "odometry") continue;
+    rims += speed * (row["t"].get<double>() - before);
+    before = row["t"], speed = row["v"];
+  }
+  EXPECT_GT(rims, 1.04 * report()["driven"].get<double>());
+}
+
+TEST_F(RouteDriveCommand, DynamicsNeedAVehicleWithAMass) {
+  write_text(folder_ / "light.json", R"({"waymark_vehicle": 1, "supports": [{"x": 1, "y": 1, "diameter": 0.5},
+    {"x": 1, "y": -1, "diameter": 0.5}, {"x": -1, "y": 1, "diameter": 0.5}, {"x": -1, "y": -1, "diameter": 0.5}]})");
+  const auto refusal = [&](const json& dynamics) {
+    write_scenario({{"route", "wander"}, {"length", 5}, {"dynamics", dynamics}});
+    const Outcome failed = waymark({"simulate", folder_ / "s.json", "-o", folder_ / "drive", "--drive-only"});
+    EXPECT_EQ(failed.code, 2) << failed.err;
+    return failed.err;
+  };
+  EXPECT_THAT(refusal({{"on", true}, {"vehicle", "light.json"}}), HasSubstr("has no mass"));
+  EXPECT_THAT(refusal({{"on", true}, {"vehicle", "hovercraft"}}), HasSubstr("hovercraft"));
+  EXPECT_THAT(refusal({{"on", true}, {"friction", 80}}),
+              HasSubstr("drive.dynamics.friction = 80 is outside"));
+  write_text(folder_ / "s.json", R"({"waymark_scenario": 1, "flights": [], "hall": {},
+    "drive": {"dynamics": {"on": true}}})");
+  const Outcome hall = waymark({"simulate", folder_ / "s.json", "-o", folder_ / "hall"});
+  EXPECT_EQ(hall.code, 2);
+  EXPECT_THAT(hall.err, HasSubstr("the ground of a street or a hall is level"));
+}
+
 }  // namespace
 }  // namespace waymark::test
