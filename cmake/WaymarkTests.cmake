@@ -25,8 +25,9 @@ function(waymark_tests)
   waymark_use_precompiled(${target} waymark_tests_precompiled)
   waymark_unity(${target})
   waymark_patience(patience 600)
+  # ctest keeps the times of tests whose names have no spaces, so names are those without values of parameters.
   # The last line of a skipped test. A suite whose preparation fails skips its tests, too, and says more after it.
-  gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60
+  gtest_discover_tests(${target} TEST_PREFIX ${arg_NAME}. DISCOVERY_TIMEOUT 60 NO_PRETTY_VALUES
                        PROPERTIES TIMEOUT ${patience} ENVIRONMENT RC_PARAMS=seed=2026
                        SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\] [^[]*$")
 endfunction()

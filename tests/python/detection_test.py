@@ -16,6 +16,9 @@ def photo(tmp_path_factory):
     gdal = pytest.importorskip("osgeo.gdal")
     folder = tmp_path_factory.mktemp("photo") / "site"
     scenario = json.loads((SOURCE / "sample_data/mars_landing/scenario.json").read_text())
+    end = {f"{word}_{axis}": scenario["flights"][0][f"to_{axis}"]
+           for word in ("from", "to") for axis in ("east", "north", "altitude")}
+    scenario["flights"][0].update(end, images=1)  # the last one alone
     file = folder.parent / "scenario.json"
     file.write_text(json.dumps(scenario))
     counts = waymark.simulate(file, folder)

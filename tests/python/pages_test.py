@@ -3,10 +3,15 @@
 
 import ast
 import json
+import os
 import re
+import shutil
+from pathlib import Path
 
 import pytest
 from conftest import SOURCE
+
+import waymark
 
 PAGES = ["tutorials/python.md", "how_to/detect_in_arrays.md"]
 
@@ -15,6 +20,14 @@ PAGES = ["tutorials/python.md", "how_to/detect_in_arrays.md"]
 def room(tmp_path, monkeypatch):
     (tmp_path / "sample_data").symlink_to(SOURCE / "sample_data")
     monkeypatch.chdir(tmp_path)
+    simulate = waymark.simulate
+
+    def scene_or_simulation(scenario, folder):
+        """Copies the scene of tests/docs/scenes_are_made, if it made it."""
+        made = Path(os.environ.get("WAYMARK_SCENES", "none")) / scenario
+        return shutil.copytree(made, folder) if made.is_dir() else simulate(scenario, folder)
+
+    monkeypatch.setattr(waymark, "simulate", scene_or_simulation)
     return tmp_path
 
 

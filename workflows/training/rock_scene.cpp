@@ -2,8 +2,10 @@
 #include "workflows/training/rock_scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "core/random.hpp"
@@ -68,17 +70,22 @@ Body make_body(const RockScene& scene, double x, double y, double diameter, Rand
   return body;
 }
 
-// Smooth noise of unit standard deviation (value noise on a lattice, cubic weights).
+// Smooth noise of unit standard deviation (value noise on a lattice, cubic weights). Its nodes are kept from
+// call to call: neighbours in a row of samples mostly lie in the same square.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) : seed_(seed) {}
-  double at(double x, double y) const {
+  double at(double x, double y) {
     const double fx = std::floor(x), fy = std::floor(y);
-    const auto i = static_cast<std::int64_t>(fx), j = static_cast<std::int64_t>(fy);
+    if (!(fx == x_ && fy == y_)) {
+      const auto i = static_cast<std::int64_t>(fx), j = static_cast<std::int64_t>(fy);
+      x_ = fx, y_ = fy;
+      nodes_ = {node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j + 1)};
+    }
     const auto fade = [](double t) { return t * t * (3 - 2 * t); };
     const double u = fade(x - fx), v = fade(y - fy);
-    return 2.6 * ((1 - v) * ((1 - u) * node(i, j) + u * node(i + 1, j)) +
-                  v * ((1 - u) * node(i, j + 1) + u * node(i + 1, j + 1)));
+    return 2.6 *
+           ((1 - v) * ((1 - u) * nodes_[0] + u * nodes_[1]) + v * ((1 - u) * nodes_[2] + u * nodes_[3]));
   }
 
  private:
@@ -88,6 +95,8 @@ class Noise {
     return static_cast<double>(bits >> 11) * 0x1p-53 - 0.5;
   }
   std::uint64_t seed_;
+  double x_ = std::numeric_limits<double>::quiet_NaN(), y_ = 0;  // corner of the square
+  std::array<double, 4> nodes_ = {};
 };
 
 struct Bowl {
@@ -174,7 +183,10 @@ RockImage render(const RockScene& scene) {
   const std::int64_t w = (scene.columns + 2 * margin) * kFine, h = (scene.rows + 2 * margin) * kFine;
   const auto bodies = make_bodies(scene, random);
   const auto bowls = make_bowls(scene, random);
-  const Noise rough(scene.seed * 3 + 1), patchy(scene.seed * 3 + 2), bend(scene.seed * 3 + 3);
+  // One for each place where it is read, so that each keeps its own square.
+  std::array<Noise, 4> rough = {Noise(scene.seed * 3 + 1), Noise(scene.seed * 3 + 1),
+                                Noise(scene.seed * 3 + 1), Noise(scene.seed * 3 + 1)};
+  Noise patchy(scene.seed * 3 + 2), small_patchy = patchy, bend(scene.seed * 3 + 3), cover_bend = bend;
   const double slope_x =
       -std::tan(to_radians(scene.slope).value) * std::cos(to_radians(scene.downhill).value);
   const double slope_y =
@@ -185,15 +197,16 @@ RockImage render(const RockScene& scene) {
   };
   const auto ground = [&](double x, double y) {
     double z = slope_x * x + slope_y * y;
-    for (int octave = 0; octave < 4; ++octave) {
-      const double length = 40 / std::pow(2.0, octave);
-      z += 0.35 * scene.roughness * length * rough.at(x / length + 31 * octave, y / length);
+    for (std::size_t octave = 0; octave < rough.size(); ++octave) {
+      const double length = 40 / static_cast<double>(1 << octave);
+      z += 0.35 * scene.roughness * length *
+           rough[octave].at(x / length + 31 * static_cast<double>(octave), y / length);
     }
     if (scene.dunes > 0) {
       const double along = x * std::cos(dune_angle) + y * std::sin(dune_angle);
       const double phase = along / scene.dune_length + 0.8 * bend.at(x / 60, y / 60);
       const double saw = phase - std::floor(phase);  // a gentle windward side and a steep lee
-      const double cover = std::clamp(bend.at(x / 90 + 9, y / 90) + 0.6, 0.0, 1.0);
+      const double cover = std::clamp(cover_bend.at(x / 90 + 9, y / 90) + 0.6, 0.0, 1.0);
       z += cover * scene.dunes * (saw < 0.7 ? saw / 0.7 : (1 - saw) / 0.3);
     }
     return z;
@@ -226,26 +239,52 @@ RockImage render(const RockScene& scene) {
 
   const double e = kPi / 2 - to_radians(scene.incidence).value, angle = to_radians(scene.sun_angle).value;
   const double sx = std::cos(e) * std::cos(angle), sy = std::cos(e) * std::sin(angle), sz = std::sin(e);
-  constexpr std::int64_t kBlock = 16;
-  const std::int64_t bw = (w + kBlock - 1) / kBlock, bh = (h + kBlock - 1) / kBlock;
-  std::vector<float> block(static_cast<std::size_t>(bw * bh), -1e9F);
-  float highest = -1e9F;
-  for (std::int64_t v = 0; v < h; ++v)
-    for (std::int64_t u = 0; u < w; ++u) {
-      auto& top = block[static_cast<std::size_t>((v / kBlock) * bw + u / kBlock)];
-      top = std::max(top, height[static_cast<std::size_t>(v * w + u)]);
-      highest = std::max(highest, top);
-    }
+  // Highest samples of squares of 16, 64 and 256: a ray above a square is above the rest of it, too.
+  struct Squares {
+    int bits;  // of the side
+    std::int64_t columns;
+    std::vector<float> top;
+  };
+  std::vector<Squares> squares;
+  for (const int bits : {4, 6, 8}) {
+    Squares of{bits, ((w - 1) >> bits) + 1, {}};
+    of.top.assign(static_cast<std::size_t>(of.columns * (((h - 1) >> bits) + 1)), -1e9F);
+    for (std::int64_t v = 0; v < h; ++v)
+      for (std::int64_t u = 0; u < w; ++u) {
+        auto& top = of.top[static_cast<std::size_t>((v >> bits) * of.columns + (u >> bits))];
+        top = std::max(top, height[static_cast<std::size_t>(v * w + u)]);
+      }
+    squares.push_back(std::move(of));
+  }
+  const float highest = std::ranges::max(squares.back().top);
   const double cx = std::cos(angle), cy = std::sin(angle), rise = std::tan(e) / kFine;
+  // Steps from a position to the border of its square.
+  const auto steps_within = [](double at, double speed, std::int64_t index, int bits) {
+    const double from = static_cast<double>(index >> bits << bits) - 0.5;
+    const double to = from + static_cast<double>(std::int64_t{1} << bits);
+    return speed > 0 ? (to - at) / speed : speed < 0 ? (from - at) / speed : 1e9;
+  };
+  const double right = static_cast<double>(w) - 0.5, bottom = static_cast<double>(h) - 0.5;
   const auto shadowed = [&](std::int64_t u, std::int64_t v) {
     const double z0 = height[static_cast<std::size_t>(v * w + u)] + 1e-4;
     for (double t = 1;;) {
-      const double z = z0 + t * rise;
-      const auto pu = static_cast<std::int64_t>(std::lround(static_cast<double>(u) + t * cx));
-      const auto pv = static_cast<std::int64_t>(std::lround(static_cast<double>(v) + t * cy));
-      if (pu < 0 || pv < 0 || pu >= w || pv >= h || z > static_cast<double>(highest)) return false;
-      if (z > static_cast<double>(block[static_cast<std::size_t>((pv / kBlock) * bw + pu / kBlock)])) {
-        t += 2;  // the whole block is below the ray
+      const double z = z0 + t * rise, x = static_cast<double>(u) + t * cx,
+                   y = static_cast<double>(v) + t * cy;
+      if (!(x > -0.5 && y > -0.5 && x < right && y < bottom) || z > static_cast<double>(highest))
+        return false;
+      const auto pu = static_cast<std::int64_t>(x + 0.5), pv = static_cast<std::int64_t>(y + 0.5);
+      const auto is_above = [&](const Squares& of) {
+        return z > static_cast<double>(
+                       of.top[static_cast<std::size_t>((pv >> of.bits) * of.columns + (pu >> of.bits))]);
+      };
+      int bits = 0;  // of the largest square that is below the ray
+      for (const Squares& of : squares) {
+        if (!is_above(of)) break;
+        bits = of.bits;
+      }
+      if (bits > 0) {  // steps of two samples; the last one within the square is looked at again
+        const double steps = std::min(steps_within(x, cx, pu, bits), steps_within(y, cy, pv, bits)) - 0.01;
+        t += steps > 4 ? 2 * static_cast<double>(static_cast<std::int64_t>(steps / 2)) : 2;
         continue;
       }
       if (static_cast<double>(height[static_cast<std::size_t>(pv * w + pu)]) > z) return true;
@@ -267,7 +306,7 @@ RockImage render(const RockScene& scene) {
       const double sunlight = cos_i > 0 && !shadowed(u, v) ? lit : 0;
       const double x = coordinate(u), y = coordinate(v);
       const double albedo =
-          1 + scene.albedo * (patchy.at(x / 25, y / 25) + 0.5 * patchy.at(x / 6 + 50, y / 6));
+          1 + scene.albedo * (patchy.at(x / 25, y / 25) + 0.5 * small_patchy.at(x / 6 + 50, y / 6));
       light[static_cast<std::size_t>(v * w + u)] = static_cast<float>(
           ((1 - scene.skylight) * sunlight + scene.skylight) * albedo * (1 - scene.haze) + scene.haze);
     }

@@ -221,11 +221,12 @@ TEST(Skyline, FindsThePlaceByBearingsAndElevations) {
   const Cones c = cones();
   SkylineOptions o{.body_radius = 1737400};
   o.position_sd = o.height_sd = 5;
+  const SkylineIndex index(c.summits, c, o);
   Random random(9);
   for (int i = 0; i < 4; ++i) {
     const Pose2 robot{random.uniform(8000, 22000), random.uniform(8000, 22000), random.uniform(-3, 3)};
     const auto tops = tops_of(c, robot, o, true, 12);
-    const auto answer = find_by_skyline(tops, c.summits, c, o);
+    const auto answer = i == 0 ? find_by_skyline(tops, c.summits, c, o) : index.find(tops);
     ASSERT_TRUE(answer.fix) << answer.reason << " with " << tops.size() << " tops";
     EXPECT_LT((answer.fix->at.pose.at() - robot.at()).norm(), 30);
   }
@@ -234,14 +235,15 @@ TEST(Skyline, FindsThePlaceByBearingsAndElevations) {
 TEST(Skyline, ForeignHorizonsAreUnknown) {
   const Cones c = cones();
   SkylineOptions o{.body_radius = 1737400};
+  const SkylineIndex index(c.summits, c, o);
   Random random(4);
   for (int i = 0; i < 3; ++i) {
     std::vector<HorizonTop> tops;
     for (int k = 0; k < 8; ++k)
       tops.push_back({.bearing = random.uniform(-3.1, 3.1), .elevation = random.uniform(0.005, 0.08)});
-    EXPECT_FALSE(find_by_skyline(tops, c.summits, c, o).fix);
+    EXPECT_FALSE(index.find(tops).fix);
   }
-  EXPECT_EQ(find_by_skyline({}, c.summits, c, o).reason, "too few tops on the horizon");
+  EXPECT_EQ(index.find({}).reason, "too few tops on the horizon");
   EXPECT_EQ(find_by_skyline(std::vector<HorizonTop>(4), {}, c, o).reason, "too few summits in the map");
 }
 
