@@ -218,14 +218,14 @@ struct Painter {
 /// Returns the number of instants at which an exposure samples its motion: one for each half pixel of blur, 0
 /// for a camera that stands still.
 int instants_of(const Scene& scene, const View& view, const Exposure& exposure, double focal) {
-  constexpr double kMost = 32;
+  constexpr double kMaxInstants = 32;
   const bool moves = view.motion.velocity.norm() + view.motion.spin.norm() > 0;
   if (!view.camera || !moves || !(exposure.exposure_time + exposure.readout_time > 0)) return 0;
   const double height =
       view.camera->grid_from_camera.transform.translation().z() - scene.terrain.max_height();
   const double blur = exposure.exposure_time * focal *
                       (view.motion.spin.norm() + view.motion.velocity.norm() / std::max(1.0, height));
-  return static_cast<int>(std::clamp(std::ceil(2 * blur), 1.0, kMost));
+  return static_cast<int>(std::clamp(std::ceil(2 * blur), 1.0, kMaxInstants));
 }
 
 }  // namespace
