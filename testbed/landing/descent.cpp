@@ -113,8 +113,8 @@ class Descent {
     Eigen::Vector3d thrust = body.mass * (acceleration + Eigen::Vector3d(0, 0, model_.gravity));
     const double weight = body.mass * model_.gravity;
     thrust.z() = std::max(thrust.z(), 0.1 * weight);
-    const double sideways = thrust.head<2>().norm(), most = thrust.z() * std::tan(kMaxLean);
-    if (sideways > most) thrust.head<2>() *= most / sideways;
+    const double sideways = thrust.head<2>().norm(), max_sideways = thrust.z() * std::tan(kMaxLean);
+    if (sideways > max_sideways) thrust.head<2>() *= max_sideways / sideways;
     if (thrust.norm() > kMaxThrust * weight) thrust *= kMaxThrust * weight / thrust.norm();
     // The engines push along the axis; a moment turns the axis to the wanted thrust.
     const Eigen::Vector3d axis = body.attitude * Eigen::Vector3d::UnitZ();

@@ -150,7 +150,7 @@ class PoseSolver {
 
   // A plane seen along one line of motion has two solutions for all images at once: its normal and the motion
   // are exchanged. Relief alone distinguishes them, by residuals that differ little. All solutions of the
-  // pair that a growth began with are grown, therefore, and the one that fits best is taken.
+  // pair that a growth began with are grown, therefore, and that of lowest cost is taken.
   void replace_by_twin(PoseGrowth& best, const SeedPair& seed, const Reconstruction& start) const {
     const std::vector<RelativePose>& poses = seed.pair->geometry.poses;
     if (poses.size() < 2) return;
