@@ -6,6 +6,7 @@
 #include <string_view>
 #include <variant>
 #include <vector>
+#include "apps/result.hpp"
 namespace waymark::apps {
 
 struct Session;
@@ -69,6 +70,7 @@ struct CommandSpec {
   std::string about = {};  ///< paragraphs separated by an empty line; no line breaks inside
   std::vector<Argument> arguments = {};
   std::vector<Example> examples = {};
+  std::vector<ResultKey> result = {};  ///< of `--format json`; empty: the command prints no such object
 };
 
 /// Subcommand, a file of apps/commands. Its members receive its arguments.

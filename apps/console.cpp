@@ -138,7 +138,7 @@ std::function<void(const pipeline::Progress&)> progress_renderer(const Session& 
   return SparseLines();
 }
 
-void write_message(const workflows::Message& message) {
+void write_message(const workflows::Message& message, bool only_json) {
   switch (message.kind) {
     case workflows::MessageKind::detail:
       return log_detail(message.text);
@@ -150,14 +150,17 @@ void write_message(const workflows::Message& message) {
       if (quiet_log()) log_error(message.text);
       return;
     case workflows::MessageKind::result:
+      if (only_json) return log_summary(message.text);
       std::cout << message.text;
   }
 }
 
 }  // namespace
 
-workflows::Callbacks console_callbacks(const Session& session) {
-  return {.progress = progress_renderer(session), .message = write_message};
+workflows::Callbacks console_callbacks(const Session& session, std::string_view format) {
+  const bool only_json = format == "json";
+  return {.progress = progress_renderer(session),
+          .message = [only_json](const workflows::Message& message) { write_message(message, only_json); }};
 }
 
 }  // namespace waymark::apps

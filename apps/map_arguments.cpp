@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/map_arguments.hpp"
 
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "apps/console.hpp"
-#include "core/json_text.hpp"
 #include "pipeline/engine/registry.hpp"
 #include "pipeline/engine/report.hpp"
 #include "workflows/registries.hpp"
@@ -13,17 +11,17 @@
 namespace waymark::apps {
 namespace {
 
-/// Returns the map, its landmarks by type, the input files and the report of the stages.
-std::string result_as_json(const workflows::MapResult& result, const std::string& map) {
-  nlohmann::ordered_json json;
-  json["map"] = result.written ? nlohmann::ordered_json(map) : nullptr;
-  json["landmarks"] = result.landmarks;
-  json["inputs"] = nlohmann::ordered_json::array();
-  for (const auto& input : result.inputs)
-    json["inputs"].push_back({{"path", input.path}, {"sha256", input.sha256}});
-  json["run"] =
-      nlohmann::ordered_json::parse(checked_json(pipeline::report_as_json(result.report), "report"));
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+std::string inputs_as_json(const std::vector<InputFile>& inputs) {
+  auto list = nlohmann::ordered_json::array();
+  for (const InputFile& input : inputs) list.push_back({{"path", input.path}, {"sha256", input.sha256}});
+  return list.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+void print_map_result(const workflows::MapResult& result, const std::string& map) {
+  print_result(map_result_keys(), {{"map", text_or_null(result.written ? map : "")},
+                                   {"landmarks", result.landmarks},
+                                   {"inputs", ResultJson{inputs_as_json(result.inputs)}},
+                                   {"run", ResultJson{pipeline::report_as_json(result.report)}}});
 }
 
 }  // namespace
@@ -50,13 +48,21 @@ std::vector<Argument> map_arguments(MapCommand& asked) {
   };
 }
 
+std::vector<ResultKey> map_result_keys() {
+  return {{"map", ResultKind::text, "Map that was written; null: none, as with --check"},
+          {"landmarks", ResultKind::counts, "Landmarks by type"},
+          {"inputs", ResultKind::objects, "Input files: path, sha256"},
+          {"run", ResultKind::object, "Report of the stages, as in the table `run` of the map"}};
+}
+
 int make_map_command(const pipeline::Job& job, const MapCommand& asked, const Session& session) {
   workflows::MapRequest request = asked.request;
   request.run.work = asked.work;
   request.run.threads = static_cast<int>(session.threads);
   request.command_line = session.command_line;
-  const workflows::MapResult result = workflows::make_map(job, request, console_callbacks(session));
-  if (asked.format == "json") std::cout << result_as_json(result, request.map);
+  const workflows::MapResult result =
+      workflows::make_map(job, request, console_callbacks(session, asked.format));
+  if (asked.format == "json") print_map_result(result, request.map);
   return result.exit_code();
 }
 

@@ -17,6 +17,9 @@ struct MapCommand {
 /// Returns the arguments that `waymark run` and the shortcuts share. They point into `asked`.
 std::vector<Argument> map_arguments(MapCommand& asked);
 
+/// Returns the keys of what `waymark run` and the shortcuts print with `--format json`.
+std::vector<ResultKey> map_result_keys();
+
 /// Runs the job, writes the map and returns the exit code.
 int make_map_command(const pipeline::Job& job, const MapCommand& asked, const Session& session);
 

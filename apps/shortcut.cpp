@@ -94,6 +94,7 @@ void StageOptions::apply(pipeline::Pipeline& pipeline) const {
 
 CommandSpec Shortcut::describe() {
   CommandSpec spec = describe_own();
+  spec.result = map_result_keys();
   for (auto& argument : map_arguments(asked_)) spec.arguments.push_back(std::move(argument));
   for (auto& argument : options_.arguments()) spec.arguments.push_back(std::move(argument));
   spec.arguments.push_back(

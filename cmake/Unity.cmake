@@ -4,7 +4,7 @@ option(WAYMARK_UNITY "Compile several sources of a library at a time" OFF)
 # Files whose private names occur in other files of their library, too, and decompositions of Eigen: the time of g++
 # grows with the square of their number in a unit.
 set(alone
-  apps/commands/man.cpp apps/waymark.cpp
+  apps/commands/man.cpp apps/result.cpp apps/waymark.cpp
   core/solve/cholesky.cpp core/solve/inverse_by_lu.cpp core/solve/least_squares.cpp core/solve/rotation_between.cpp
   core/solve/singular_values.cpp core/solve/solve_symmetric.cpp core/solve/symmetric_eigen.cpp
   geo/terrain_pyramid.cpp

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 #include "localization/localizer.hpp"
 namespace waymark::localization {
@@ -19,6 +20,13 @@ struct TrackRow {
   double seconds = 0;  ///< of the update, if timed
 };
 
+/// Least-squares fit of a whole drive.
+struct GraphFit {
+  double chi2 = 0;  ///< sum of squared whitened errors, without kernel
+  std::int64_t residuals = 0, unknowns = 0;
+  bool converged = false;
+};
+
 /// Estimates along a log, with counts over all events.
 struct Track {
   std::vector<TrackRow> rows;
@@ -28,6 +36,7 @@ struct Track {
   std::int64_t updates = 0;                        ///< sets of sightings
   std::int64_t fixes = 0, fixes_rejected = 0;      ///< GNSS and compass readings
   double seconds = 0;                              ///< of all updates, if timed
+  std::optional<GraphFit> graph = {};              ///< of methods that optimise a graph
 };
 
 }  // namespace waymark::localization

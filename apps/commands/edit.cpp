@@ -56,14 +56,16 @@ class Edit final : public Command {
                  .or_else("not known"),
              Argument{"--confidence", "P", &request_.confidence, "Of accepted and new landmarks"}.or_else(
                  "0.99"),
-             {"--reason", "TEXT", &request_.reason, "Recorded with the run"}},
-        .examples = {
-            {"waymark edit site.gpkg reject rock-8v2k1 rock-8v2q7 --reason 'tents'",
-             "Remove two false rocks"},
-            {"waymark edit site.gpkg add --type crater --rim 10 0 0 10 -10 0", "A crater by three points"},
-            {"waymark edit site.gpkg add --type rock --at 12.5 40 --feature radius=0.4", "A rock"},
-            {"waymark edit site.gpkg move rock-8v2k1 --at 12.7 40.1 --position-sd 0.05",
-             "A surveyed position"}}};
+             {"--reason", "TEXT", &request_.reason, "Recorded with the run"},
+             format_option(&format_)},
+        .examples = {{"waymark edit site.gpkg reject rock-8v2k1 rock-8v2q7 --reason 'tents'",
+                      "Remove two false rocks"},
+                     {"waymark edit site.gpkg add --type crater --rim 10 0 0 10 -10 0",
+                      "A crater by three points"},
+                     {"waymark edit site.gpkg add --type rock --at 12.5 40 --feature radius=0.4", "A rock"},
+                     {"waymark edit site.gpkg move rock-8v2k1 --at 12.7 40.1 --position-sd 0.05",
+                      "A surveyed position"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
@@ -71,12 +73,25 @@ class Edit final : public Command {
       if (action_ == edit.name) request_.edit = edit.edit;
     if (!std::isnan(z_)) request_.z = z_;
     request_.command_line = session.command_line;
-    for (const std::string& uid : workflows::edit_map(request_, console_callbacks(session)))
-      std::cout << uid << '\n';
+    const std::vector<std::string> uids = workflows::edit_map(request_, console_callbacks(session, format_));
+    if (format_ == "json") {
+      print_result(result_keys(), {{"map", request_.result.empty() ? request_.map : request_.result},
+                                   {"action", action_},
+                                   {"landmarks", uids}});
+      return 0;
+    }
+    for (const std::string& uid : uids) std::cout << uid << '\n';
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"map", ResultKind::text, "Map that was changed or written"},
+            {"action", ResultKind::text, "accept, reject, add or move"},
+            {"landmarks", ResultKind::texts, "Uids of the landmarks concerned"}};
+  }
+
+  std::string format_ = "text";
   workflows::EditRequest request_;
   std::string action_;
   double z_ = std::numeric_limits<double>::quiet_NaN();

@@ -76,23 +76,61 @@ class Hazards final : public Command {
              Argument{"--nav2", "MAP.yaml", &request_.nav2,
                       "Write the probability for Nav2's map_server, with a PGM beside it"}
                  .offering(Offer::file),
-             Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("512")},
-        .examples = {
-            {"waymark hazards site.gpkg --dem dem.tif -o hazard.tif", "For a rover, with the map's rocks"},
-            {"waymark hazards site.gpkg --dem dem.tif -o land.tif --vehicle lander --polygons land.gpkg",
-             "For a lander, with polygons"},
-            {"waymark hazards dem.tif -o hazard.tif --vehicle robot.json --height-sd 0.05 --nav2 map.yaml",
-             "A robot of your own, for Nav2"}}};
+             Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("512"),
+             format_option(&format_)},
+        .examples =
+            {{"waymark hazards site.gpkg --dem dem.tif -o hazard.tif", "For a rover, with the map's rocks"},
+             {"waymark hazards site.gpkg --dem dem.tif -o land.tif --vehicle lander --polygons land.gpkg",
+              "For a lander, with polygons"},
+             {"waymark hazards dem.tif -o hazard.tif --vehicle robot.json --height-sd 0.05 --nav2 map.yaml",
+              "A robot of your own, for Nav2"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.threads = static_cast<int>(session.threads);
     request_.command_line = session.command_line;
-    workflows::make_hazard_map(request_, console_callbacks(session));
+    const workflows::HazardMapResult made =
+        workflows::make_hazard_map(request_, console_callbacks(session, format_));
+    if (format_ == "json") print_made(made);
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {
+        {"hazard_map", ResultKind::text, "Hazard map that was written"},
+        {"polygons", ResultKind::text, "File of the polygons; null without --polygons"},
+        {"nav2", ResultKind::text, "Map for Nav2; null without --nav2"},
+        {"cells", ResultKind::counts, "Cells by class: safe, uncertain, hazard, unknown"},
+        {"objects", ResultKind::integer, "Landmarks that may be hazards"},
+        {"detected_diameter_m", ResultKind::number, "Diameter from which the map has all rocks"},
+        {"rock_cover", ResultKind::number, "Fraction of the terrain under rocks, 0 to 1; null: not known"},
+        {"rock_cover_sd", ResultKind::number, "Its standard deviation; null as rock_cover"},
+        {"undetected_per_km", ResultKind::number,
+         "Expected hazardous undetected rocks per kilometre driven; null as rock_cover"},
+        {"undetected_per_km_sd", ResultKind::number, "Its standard deviation; null as rock_cover"}};
+  }
+
+  void print_made(const workflows::HazardMapResult& made) const {
+    const planning::UndetectedRocks& rocks = made.undetected;
+    const auto if_known = [&](double value) { return rocks.known ? ResultValue(value) : ResultValue(); };
+    const std::vector<std::string> classes = workflows::hazard_class_names();
+    std::map<std::string, std::int64_t> cells;
+    for (std::size_t i = 0; i < classes.size(); ++i) cells[classes[i]] = made.cells.at(i);
+    print_result(result_keys(), {{"hazard_map", request_.output},
+                                 {"polygons", text_or_null(request_.polygons)},
+                                 {"nav2", text_or_null(request_.nav2)},
+                                 {"cells", cells},
+                                 {"objects", made.objects},
+                                 {"detected_diameter_m", rocks.detected_diameter},
+                                 {"rock_cover", if_known(rocks.cover.k)},
+                                 {"rock_cover_sd", if_known(rocks.cover.sd)},
+                                 {"undetected_per_km", if_known(1000 * made.undetected_per_metre.value)},
+                                 {"undetected_per_km_sd", if_known(1000 * made.undetected_per_metre.sd)}});
+  }
+
+  std::string format_ = "text";
   workflows::HazardMapRequest request_;
 };
 

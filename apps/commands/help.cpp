@@ -48,15 +48,23 @@ CommandJson arguments_json(std::span<const Argument> arguments) {
   return list;
 }
 
+CommandJson result_json(std::span<const ResultKey> keys) {
+  CommandJson list = CommandJson::array();
+  for (const ResultKey& key : keys)
+    list.push_back({{"name", key.name}, {"kind", name_of(key.kind)}, {"meaning", key.meaning}});
+  return list;
+}
+
 const char* group_name(Group group) {
   return group == Group::make ? "make" : group == Group::use ? "use" : "look_up";
 }
 
 /// Returns the declarations of commands and global options as JSON, from which other programs make forms:
 /// {"version": ..., "globals": [...], "commands": [{"name", "group", "summary", "about", "arguments",
-/// "examples"}]}. An argument has "names" (none: a positional word), "value", "kind" (flag, integer, number,
-/// numbers, text, texts), "help", "required", and if there are any "choices", "suggestions", "offer" (file,
-/// folder), "default".
+/// "examples", "result"}]}. "result" lists the keys of what the command prints with `--format json`: "name",
+/// "kind" (of ResultKind), "meaning". An argument has "names" (none: a positional word), "value", "kind"
+/// (flag, integer, number, numbers, text, texts), "help", "required", and if there are any "choices",
+/// "suggestions", "offer" (file, folder), "default".
 std::string commands_as_json(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
   CommandJson list = CommandJson::array();
   for (const CommandSpec& command : commands) {
@@ -68,7 +76,8 @@ std::string commands_as_json(std::span<const CommandSpec> commands, std::span<co
                     {"summary", command.summary},
                     {"about", command.about},
                     {"arguments", arguments_json(command.arguments)},
-                    {"examples", examples}});
+                    {"examples", examples},
+                    {"result", result_json(command.result)}});
   }
   return CommandJson{{"version", workflows::program_version()},
                      {"globals", arguments_json(globals)},

@@ -3,6 +3,7 @@
 
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "geodb/map_store.hpp"
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/postgres_map.hpp"
 #include "workflows/mapping/import_landmarks.hpp"
@@ -63,19 +64,21 @@ class Import final : public Command {
                       Argument{"--print-rules", "", &print_rules_, "Print these rules and stop"}.alone(),
                       Argument{"--layer", "NAME", &request_.layer, "Layer of a file that holds several"},
                       {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
-                       "Reject rows that cannot be read, instead of stopping at the first"}},
-        .examples = {
-            {"waymark import LROCCraters.csv -o moon.gpkg --type crater --map-crs IAU_2015:30100 --columns "
-             "'x=Long,y=Lat,radius=\"Diameter (km)\"*500'",
-             "A catalogue of the Moon"},
-            {"waymark import stems.shp -o trees.gpkg --type tree --columns "
-             "'diameter=dbh_cm/100,position_sd=0.3'",
-             "A survey with its accuracy"},
-            {"waymark import truth.csv -o truth.gpkg --map-crs EPSG:32611",
-             "All types of a table with a column `type`"},
-            {"waymark import town.osm -o town.gpkg --rules osm",
-             "Lamps, signs, trees and buildings of OpenStreetMap"},
-            {"waymark import 'pg:dbname=maps schema=alps' -o alps.gpkg", "A map from PostGIS"}}};
+                       "Reject rows that cannot be read, instead of stopping at the first"},
+                      format_option(&format_)},
+        .examples =
+            {{"waymark import LROCCraters.csv -o moon.gpkg --type crater --map-crs IAU_2015:30100 --columns "
+              "'x=Long,y=Lat,radius=\"Diameter (km)\"*500'",
+              "A catalogue of the Moon"},
+             {"waymark import stems.shp -o trees.gpkg --type tree --columns "
+              "'diameter=dbh_cm/100,position_sd=0.3'",
+              "A survey with its accuracy"},
+             {"waymark import truth.csv -o truth.gpkg --map-crs EPSG:32611",
+              "All types of a table with a column `type`"},
+             {"waymark import town.osm -o town.gpkg --rules osm",
+              "Lamps, signs, trees and buildings of OpenStreetMap"},
+             {"waymark import 'pg:dbname=maps schema=alps' -o alps.gpkg", "A map from PostGIS"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
@@ -85,14 +88,54 @@ class Import final : public Command {
     }
     if (geodb::postgres::is_address(request_.table)) {
       geodb::import_from_postgres(request_.table, request_.map);
+      if (format_ == "json") print_stored();
       return 0;
     }
     request_.command_line = session.command_line;
-    workflows::import_landmarks(request_, console_callbacks(session));
+    const importers::ImportedTable table =
+        workflows::import_landmarks(request_, console_callbacks(session, format_));
+    if (format_ == "json") print_table(table);
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"map", ResultKind::text, "Map that was written"},
+            {"crs", ResultKind::text, "Its CRS"},
+            {"types", ResultKind::texts, "Landmark types that were read"},
+            {"landmarks", ResultKind::integer, "Landmarks of the map"},
+            {"rows", ResultKind::integer, "Rows of the table; null for a map from PostgreSQL"},
+            {"rejected", ResultKind::counts, "Rejected rows by reason"},
+            {"first_rejection", ResultKind::text, "Where and why the first was rejected; null: none was"},
+            {"columns", ResultKind::texts, "How the columns were interpreted"},
+            {"warnings", ResultKind::texts, "Warnings, which standard error has, too"}};
+  }
+
+  void print_table(const importers::ImportedTable& table) const {
+    print_result(result_keys(), {{"map", request_.map},
+                                 {"crs", table.crs.id()},
+                                 {"types", table.types},
+                                 {"landmarks", table.landmarks},
+                                 {"rows", table.rows},
+                                 {"rejected", table.rejected_by_reason},
+                                 {"first_rejection", text_or_null(table.first_rejection)},
+                                 {"columns", table.bindings},
+                                 {"warnings", table.warnings}});
+  }
+
+  void print_stored() const {
+    const geodb::MapStore map = geodb::MapStore::open(request_.map);
+    print_result(result_keys(), {{"map", request_.map},
+                                 {"crs", map.crs().id()},
+                                 {"types", map.types().names()},
+                                 {"landmarks", map.count()},
+                                 {"rows", {}},
+                                 {"rejected", std::map<std::string, std::int64_t>()},
+                                 {"first_rejection", {}},
+                                 {"columns", std::vector<std::string>()},
+                                 {"warnings", std::vector<std::string>()}});
+  }
+
   static std::string names_of_ready_rules() {
     std::string names;
     for (const std::string& name : workflows::ready_rule_names()) names += (names.empty() ? "" : ", ") + name;
@@ -101,6 +144,7 @@ class Import final : public Command {
 
   workflows::ImportRequest request_;
   bool print_rules_ = false;
+  std::string format_ = "text";
 };
 
 }  // namespace

@@ -93,33 +93,117 @@ class Localize final : public Command {
                  "Write the duration of each update as well (seconds_used), which differs from run to run"},
              Argument{"--live", "SECONDS", &request_.live,
                       "Write --layers while the log plays: so often, in seconds of the log, and after each "
-                      "felled tree"}},
-        .examples = {
-            {"waymark localize site.gpkg drive.jsonl -o track.csv --method pf --start none",
-             "Find the robot and follow it"},
-            {"waymark localize mrclam.gpkg MRCLAM_Dataset6 --robot 1 --method ekf -o track.csv",
-             "A robot of MRCLAM"},
-            {"waymark localize site.gpkg drive.csv --columns "
-             "t=stamp,v=speed/3.6,omega=rad(rate),bearing=b,range=r "
-             "-o track.tum",
-             "A CSV log in km/h and degrees; a track for other tools"},
-            {"waymark localize site.gpkg recording.mcap --start 0,0,0 -o track.csv", "A recording of ROS 2"},
-            {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1",
-             "The errors of that track"}}};
+                      "felled tree"},
+             format_option(&format_)},
+        .examples = {{"waymark localize site.gpkg drive.jsonl -o track.csv --method pf --start none",
+                      "Find the robot and follow it"},
+                     {"waymark localize mrclam.gpkg MRCLAM_Dataset6 --robot 1 --method ekf -o track.csv",
+                      "A robot of MRCLAM"},
+                     {"waymark localize site.gpkg drive.csv --columns "
+                      "t=stamp,v=speed/3.6,omega=rad(rate),bearing=b,range=r "
+                      "-o track.tum",
+                      "A CSV log in km/h and degrees; a track for other tools"},
+                     {"waymark localize site.gpkg recording.mcap --start 0,0,0 -o track.csv",
+                      "A recording of ROS 2"},
+                     {"waymark evaluate track track.csv --truth MRCLAM_Dataset6 --robot 1",
+                      "The errors of that track"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.use_identities = ids_ == "known";
     request_.threads = session.threads;
     request_.command_line = session.command_line;
-    if (list_) std::cout << workflows::localize_settings(request_);
-    if (list_ && (request_.map.empty() || request_.log.empty() || request_.output.empty())) return 0;
-    const workflows::LocalizeResult result = workflows::localize(request_, console_callbacks(session));
+    const bool json = format_ == "json";
+    if (list_ && !json) std::cout << workflows::localize_settings(request_);
+    if (list_ && (request_.map.empty() || request_.log.empty() || request_.output.empty())) {
+      if (json) print_values({}, workflows::localize_settings_json(request_));
+      return 0;
+    }
+    const workflows::LocalizeResult result =
+        workflows::localize(request_, console_callbacks(session, format_));
     summarize(result.track);
+    if (json) print_values(values_of(result.track), result.settings_json);
     return 0;
   }
 
  private:
+  using Values = std::vector<std::pair<std::string, ResultValue>>;
+
+  static std::vector<ResultKey> result_keys() {
+    return {
+        {"track", ResultKind::text, "Track that was written"},
+        {"map", ResultKind::text, "Map that was written or updated; null: none"},
+        {"rows", ResultKind::integer, "Poses of the track"},
+        {"sightings", ResultKind::counts,
+         "Sightings by outcome: matched; unsound (not a usable number); unknown_type (the map has none); "
+         "nothing_near; features_differ; too_far (outside the gate); ambiguous; taken (its landmark matches "
+         "another)"},
+        {"fixes", ResultKind::integer, "Readings of GNSS and compass"},
+        {"fixes_rejected", ResultKind::integer, "Those of them that were not used"},
+        {"identified", ResultKind::integer, "Matches whose landmark the log names"},
+        {"wrong", ResultKind::integer, "Those of them with another landmark"},
+        {"lost_rows", ResultKind::integer, "Poses while the robot was lost"},
+        {"first_lost_s", ResultKind::number, "Time of the first of them; null: none"},
+        {"end_s", ResultKind::number, "Time of the last pose"},
+        {"end_x_m", ResultKind::number, "Last pose, x in the map frame"},
+        {"end_y_m", ResultKind::number, "Last pose, y in the map frame"},
+        {"end_yaw_rad", ResultKind::number, "Last pose, yaw from the map's x towards y"},
+        {"time_per_update_us", ResultKind::number,
+         "Mean duration of an update, microseconds; differs from run "
+         "to run; null: no updates"},
+        {"chi2", ResultKind::number, "Sum of squared whitened errors of the graph; null: no graph, as below"},
+        {"residuals", ResultKind::integer, "Errors that the graph adjusts"},
+        {"unknowns", ResultKind::integer, "Parameters of the graph"},
+        {"converged", ResultKind::flag, "Whether the adjustment converged"},
+        {"settings", ResultKind::object,
+         "Settings of the method by name; `waymark localize --settings` explains "
+         "them"}};
+  }
+
+  Values values_of(const localization::Track& track) const {
+    std::map<std::string, std::int64_t> sightings;
+    for (int v = 0; v < localization::kVerdicts; ++v)
+      sightings[std::string(localization::verdict_name(static_cast<localization::Verdict>(v)))] =
+          track.verdicts[static_cast<std::size_t>(v)];
+    const auto lost = std::ranges::find(track.rows, true, &localization::TrackRow::lost);
+    Values values{{"track", request_.output},
+                  {"map", text_or_null(request_.update_map ? request_.map : request_.write_map)},
+                  {"rows", static_cast<std::int64_t>(track.rows.size())},
+                  {"sightings", sightings},
+                  {"fixes", track.fixes},
+                  {"fixes_rejected", track.fixes_rejected},
+                  {"identified", track.named},
+                  {"wrong", track.wrong},
+                  {"lost_rows", std::ranges::count(track.rows, true, &localization::TrackRow::lost)}};
+    if (lost != track.rows.end()) values.emplace_back("first_lost_s", lost->t);
+    if (!track.rows.empty()) {
+      const localization::TrackRow& end = track.rows.back();
+      values.insert(values.end(), {{"end_s", end.t},
+                                   {"end_x_m", end.at.pose.x},
+                                   {"end_y_m", end.at.pose.y},
+                                   {"end_yaw_rad", end.at.pose.yaw}});
+    }
+    if (track.updates)
+      values.emplace_back("time_per_update_us", 1e6 * track.seconds / static_cast<double>(track.updates));
+    if (track.graph)
+      values.insert(values.end(), {{"chi2", track.graph->chi2},
+                                   {"residuals", track.graph->residuals},
+                                   {"unknowns", track.graph->unknowns},
+                                   {"converged", track.graph->converged}});
+    return values;
+  }
+
+  /// Prints the result; keys without a value are null.
+  static void print_values(Values values, const std::string& settings) {
+    values.emplace_back("settings", ResultJson{settings});
+    const std::vector<ResultKey> keys = result_keys();
+    for (const ResultKey& key : keys)
+      if (std::ranges::find(values, key.name, &Values::value_type::first) == values.end())
+        values.emplace_back(key.name, ResultValue());
+    print_result(keys, values);
+  }
+
   void summarize(const localization::Track& track) const {
     std::vector<std::string> parts;
     for (int v = 0; v < localization::kVerdicts; ++v)
@@ -145,7 +229,7 @@ class Localize final : public Command {
   }
 
   workflows::LocalizeRequest request_;
-  std::string ids_ = "known";
+  std::string ids_ = "known", format_ = "text";
   bool list_ = false;
 };
 

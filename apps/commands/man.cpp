@@ -60,6 +60,9 @@ std::string section(const CommandSpec& command) {
                      (usage.empty() ? "" : usage.substr(1) + "\n") + ".PP\n" + plain(command.summary) + ".\n";
   if (!command.about.empty()) text += ".PP\n" + paragraphs(command.about);
   for (const Argument& argument : command.arguments) text += entry(argument);
+  if (!command.result.empty()) text += ".PP\nKeys of \\-\\-format json:\n";
+  for (const ResultKey& key : command.result)
+    text += ".TP\n" + bold(key.name) + "\n" + plain(key.meaning) + ".\n";
   for (const Example& example : command.examples)
     text +=
         ".PP\n" + plain(example.says) + ":\n.PP\n.nf\n.RS\n" + plain(example.command_line) + "\n.RE\n.fi\n";

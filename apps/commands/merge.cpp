@@ -24,16 +24,33 @@ class Merge final : public Command {
         .arguments = {Argument{"", "MAP.gpkg...", &request_.maps, "Maps, two or more"}.needed().offering(
                           Offer::file),
                       Argument{"-o,--output", "MAP.gpkg", &request_.result, "Map to write"}.needed().offering(
-                          Offer::file)},
-        .examples = {{"waymark merge north.gpkg south.gpkg -o site.gpkg", "Two flights over one site"}}};
+                          Offer::file),
+                      format_option(&format_)},
+        .examples = {{"waymark merge north.gpkg south.gpkg -o site.gpkg", "Two flights over one site"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
-    workflows::merge_maps(request_, console_callbacks(session));
+    const workflows::MergeResult done = workflows::merge_maps(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(), {{"map", request_.result},
+                                   {"maps", static_cast<std::int64_t>(request_.maps.size())},
+                                   {"landmarks", done.landmarks},
+                                   {"fused", done.fused},
+                                   {"identical", done.identical}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"map", ResultKind::text, "Map that was written"},
+            {"maps", ResultKind::integer, "Maps that were read"},
+            {"landmarks", ResultKind::integer, "Landmarks of the written map"},
+            {"fused", ResultKind::integer, "Landmarks of several maps, by different observations"},
+            {"identical", ResultKind::integer, "Landmarks of several maps, by the same observations"}};
+  }
+
+  std::string format_ = "text";
   workflows::MergeRequest request_;
 };
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <nlohmann/json.hpp>
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "core/units.hpp"
 #include "workflows/mapping/register_map.hpp"
 
 namespace waymark::apps {
@@ -44,20 +48,61 @@ class Register final : public Command {
              Argument{"--max-wrong", "P", &request_.rules.max_wrong,
                       "Largest probability of a wrong place that is accepted; with a DEM, number of places "
                       "that fit "
-                      "as well by chance"}},
+                      "as well by chance"},
+             format_option(&format_)},
         .examples = {{"waymark register rough.gpkg --to craters.csv --crs IAU_2015:49910 -o site.gpkg",
                       "Place a map of Mars by a catalogue in degrees"},
                      {"waymark register rough.gpkg --dem made/dem.tif --to orbital.tif -o site.gpkg",
-                      "Place a map from pictures by an orbital DEM"}}};
+                      "Place a map from pictures by an orbital DEM"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.command_line = session.command_line;
-    workflows::register_map(request_, console_callbacks(session));
+    const workflows::MapPlace place = workflows::register_map(request_, console_callbacks(session, format_));
+    if (format_ == "json") print_place(place);
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"map", ResultKind::text, "Map that was written"},
+            {"crs", ResultKind::text, "Its CRS"},
+            {"scale", ResultKind::number, "Length in the new map per length in the old one"},
+            {"scale_sd", ResultKind::number, "Standard deviation of the scale"},
+            {"yaw_deg", ResultKind::number, "Turn of the map, from x towards y"},
+            {"yaw_sd_deg", ResultKind::number, "Its standard deviation"},
+            {"middle_m", ResultKind::object, "x, y and z of the map's middle in the new CRS, metres"},
+            {"middle_sd_m", ResultKind::object, "Their standard deviations"},
+            {"compared", ResultKind::integer, "Craters, or cells of heights"},
+            {"agreed", ResultKind::integer, "Those of them that match"},
+            {"residual_m", ResultKind::number,
+             "Root mean square of their differences: positions of craters, or heights"}};
+  }
+
+  void print_place(const workflows::MapPlace& place) const {
+    const workflows::MapMove& move = place.move;
+    const double scale = std::exp(move.plane.log_scale);
+    const auto sd = [&](int k) { return std::sqrt(move.covariance(k, k)); };
+    const auto degrees = [](double radians) { return to_degrees(Radians{radians}).value; };
+    print_result(result_keys(), {{"map", request_.result},
+                                 {"crs", place.crs.id()},
+                                 {"scale", scale},
+                                 {"scale_sd", scale * sd(3)},
+                                 {"yaw_deg", degrees(move.plane.yaw)},
+                                 {"yaw_sd_deg", degrees(sd(2))},
+                                 {"middle_m", xyz(move.pivot.x(), move.pivot.y(), move.pivot.z())},
+                                 {"middle_sd_m", xyz(sd(0), sd(1), sd(4))},
+                                 {"compared", place.compared},
+                                 {"agreed", place.agreed},
+                                 {"residual_m", place.residual}});
+  }
+
+  static ResultJson xyz(double x, double y, double z) {
+    return {nlohmann::ordered_json{{"x", x}, {"y", y}, {"z", z}}.dump()};
+  }
+
+  std::string format_ = "text";
   workflows::RegisterRequest request_;
 };
 

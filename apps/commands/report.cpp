@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "exporters/report/report_html.hpp"
@@ -6,6 +9,14 @@
 
 namespace waymark::apps {
 namespace {
+
+std::string checks_as_json(const std::vector<exporters::QualityCheck>& checks) {
+  auto list = nlohmann::ordered_json::array();
+  for (const exporters::QualityCheck& check : checks)
+    list.push_back(
+        {{"type", check.type}, {"claim", check.claim}, {"calibration_error", check.expected_error}});
+  return list.dump();
+}
 
 class Report final : public Command {
  public:
@@ -34,10 +45,12 @@ class Report final : public Command {
              Argument{"--truth", "FILE", &truth_,
                       "Map or table of true objects: shows how reliable confidence and quality "
                       "are (see `waymark evaluate`)"}
-                 .offering(Offer::file)},
-        .examples = {
-            {"waymark report alps.gpkg -o alps.html", "A report to read and to print"},
-            {"waymark report mars.gpkg -o mars.html --truth mars/truth.csv", "With the truth of a testbed"}}};
+                 .offering(Offer::file),
+             format_option(&format_)},
+        .examples = {{"waymark report alps.gpkg -o alps.html", "A report to read and to print"},
+                     {"waymark report mars.gpkg -o mars.html --truth mars/truth.csv",
+                      "With the truth of a testbed"}},
+        .result = result_keys()};
   }
 
   int run(const Session&) override {
@@ -45,10 +58,23 @@ class Report final : public Command {
     if (!truth_.empty()) options_.checks = workflows::check_quality(map_, truth_);
     exporters::write_report(map_, html_, options_);
     log_summary(html_ + "\n");
+    if (format_ == "json")
+      print_result(result_keys(), {{"report", html_},
+                                   {"bytes", static_cast<std::int64_t>(std::filesystem::file_size(html_))},
+                                   {"checks", ResultJson{checks_as_json(options_.checks)}}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"report", ResultKind::text, "Report that was written"},
+            {"bytes", ResultKind::integer, "Its size"},
+            {"checks", ResultKind::objects,
+             "With --truth: type, claim (confidence or quality), calibration_error (mean difference of the "
+             "claimed probability and the correct fraction, 0 to 1)"}};
+  }
+
+  std::string format_ = "text";
   std::string map_, html_, truth_;
   bool static_ = false;
   exporters::ReportOptions options_;

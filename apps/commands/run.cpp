@@ -41,14 +41,15 @@ class Run final : public Command {
             "under a fingerprint of its options and inputs: a second run does only what is missing or has "
             "changed.",
         .arguments = all,
-        .examples = {
-            {"waymark run job.json -o map.gpkg --work work", "Run so that an interrupted run can be resumed"},
-            {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
-             "The same job with another threshold"},
-            {"waymark run job.json --check", "Check the job without running it"},
-            {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"},
-            {"waymark run job.json --work /shared/work --stage rocks_from_shadows --shard 3/8",
-             "The third of eight shards of one stage"}}};
+        .examples = {{"waymark run job.json -o map.gpkg --work work",
+                      "Run so that an interrupted run can be resumed"},
+                     {"waymark run job.json -o map.gpkg --set find_mountain_tops.min_prominence=50",
+                      "The same job with another threshold"},
+                     {"waymark run job.json --check", "Check the job without running it"},
+                     {"waymark run job.json --work /shared/work --shard 3/8", "The third of eight machines"},
+                     {"waymark run job.json --work /shared/work --stage rocks_from_shadows --shard 3/8",
+                      "The third of eight shards of one stage"}},
+        .result = map_result_keys()};
   }
 
   int run(const Session& session) override {

@@ -29,20 +29,32 @@ class Stac final : public Command {
                           .or_else("when they were made"),
                       Argument{"--href", "URL", &request_.href,
                                "Address of the folder that will serve the files"}
-                          .or_else("paths relative to the records")},
+                          .or_else("paths relative to the records"),
+                      format_option(&format_)},
         .examples = {{"waymark stac alps.gpkg -o alps.json", "An item"},
                      {"waymark stac site.gpkg dem.tif hazard.tif -o catalogue --collection landing_site",
                       "A collection of three items"},
                      {"waymark stac maps/*.gpkg -o catalogue --href https://example.org/maps",
-                      "Files that a server will hold"}}};
+                      "Files that a server will hold"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
-    workflows::make_stac(request_, console_callbacks(session));
+    const workflows::StacResult made = workflows::make_stac(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(),
+                   {{"items", made.items}, {"collection", text_or_null(made.collection)}, {"id", made.id}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"items", ResultKind::texts, "Items that were written, in the order of the files"},
+            {"collection", ResultKind::text, "collection.json; null for a single item"},
+            {"id", ResultKind::text, "Id of the collection, or of the single item"}};
+  }
+
+  std::string format_ = "text";
   workflows::StacRequest request_;
 };
 

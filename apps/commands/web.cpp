@@ -46,21 +46,43 @@ class Web final : public Command {
                       "Folder of the map library, as scripts/fetch-maplibre fetches it"}
                  .offering(Offer::folder)
                  .or_else("fetched later"),
-             Argument{"--title", "TEXT", &request_.title, "Title of the page"}.or_else("the map's name")},
+             Argument{"--title", "TEXT", &request_.title, "Title of the page"}.or_else("the map's name"),
+             format_option(&format_)},
         .examples = {{"waymark web alps.gpkg -o site && (cd site && sh fetch-maplibre lib)",
                       "A page with all that it needs"},
                      {"waymark web mars.gpkg -o site --dem ctx_dem.tif --type crater --min-confidence 0.5",
-                      "Craters on terrain"}}};
+                      "Craters on terrain"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.max_zoom = static_cast<int>(max_zoom_);
     request_.threads = static_cast<int>(session.threads);
-    workflows::make_web_map(request_, console_callbacks(session));
+    const workflows::WebMapResult made =
+        workflows::make_web_map(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(), {{"folder", request_.output},
+                                   {"landmarks", made.landmarks},
+                                   {"outside", made.outside},
+                                   {"max_zoom", std::int64_t{made.max_zoom}},
+                                   {"landmark_tiles", made.landmark_tiles},
+                                   {"terrain_tiles", made.terrain_tiles},
+                                   {"has_library", made.has_library}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"folder", ResultKind::text, "Folder that was written"},
+            {"landmarks", ResultKind::integer, "Landmarks on the map"},
+            {"outside", ResultKind::integer, "Landmarks beyond the edges of web maps"},
+            {"max_zoom", ResultKind::integer, "Zoom that shows all landmarks"},
+            {"landmark_tiles", ResultKind::integer, "Tiles of landmarks"},
+            {"terrain_tiles", ResultKind::integer, "Tiles of terrain; 0 without a DEM"},
+            {"has_library", ResultKind::flag, "Whether the map library is in the folder"}};
+  }
+
+  std::string format_ = "text";
   workflows::WebMapRequest request_;
   std::int64_t max_zoom_ = -1;
 };

@@ -283,6 +283,13 @@ std::string_view wording(Verdict verdict) {
   return kWords[static_cast<std::size_t>(verdict)];
 }
 
+std::string_view verdict_name(Verdict verdict) {
+  constexpr std::array<std::string_view, kVerdicts> kNames{
+      "matched",         "unsound", "unknown_type", "nothing_near",
+      "features_differ", "too_far", "ambiguous",    "taken"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
 std::vector<AngleFix> headings_from_angles(const SeenLandmark& seen, const Pose2& robot_from_sensor,
                                            const MapLandmark& landmark, double robot_yaw,
                                            const FeatureScales& scales,

@@ -95,6 +95,8 @@ enum class Verdict {
 inline constexpr int kVerdicts = 8;
 /// Returns a verdict in words.
 std::string_view wording(Verdict verdict);
+/// Returns the name of a verdict as above: "nothing_near".
+std::string_view verdict_name(Verdict verdict);
 
 /// A sighting and a landmark that may match.
 struct CandidatePair {

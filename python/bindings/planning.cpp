@@ -113,11 +113,28 @@ py::dict route(const py::dict& keywords, py::object progress, py::object message
                   py::arg("lower_bound") = planned.lower_bound);
 }
 
-void hazards(const py::dict& keywords, py::object progress, py::object message) {
+/// Returns the numbers that `waymark hazards --format json` prints.
+py::dict hazards(const py::dict& keywords, py::object progress, py::object message) {
   const workflows::HazardMapRequest request = hazard_keywords().request(keywords);
   const workflows::Callbacks callbacks = python_callbacks(std::move(progress), std::move(message));
-  const py::gil_scoped_release no_gil;
-  workflows::make_hazard_map(request, callbacks);
+  const workflows::HazardMapResult made = [&] {
+    const py::gil_scoped_release no_gil;
+    return workflows::make_hazard_map(request, callbacks);
+  }();
+  const planning::UndetectedRocks& rocks = made.undetected;
+  const auto if_known = [&](double value) -> py::object {
+    if (!rocks.known) return py::none();
+    return py::float_(value);
+  };
+  py::dict cells;
+  const std::vector<std::string> classes = workflows::hazard_class_names();
+  for (std::size_t i = 0; i < classes.size(); ++i) cells[classes[i].c_str()] = made.cells.at(i);
+  return py::dict(py::arg("cells") = cells, py::arg("objects") = made.objects,
+                  py::arg("detected_diameter_m") = rocks.detected_diameter,
+                  py::arg("rock_cover") = if_known(rocks.cover.k),
+                  py::arg("rock_cover_sd") = if_known(rocks.cover.sd),
+                  py::arg("undetected_per_km") = if_known(1000 * made.undetected_per_metre.value),
+                  py::arg("undetected_per_km_sd") = if_known(1000 * made.undetected_per_metre.sd));
 }
 
 }  // namespace

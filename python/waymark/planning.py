@@ -30,5 +30,7 @@ def route(map, start, goal, output, *, sensor, via=None, progress=None, **option
 
 @takes("hazards", but=["input"])
 def hazards(map, output, *, progress=None, **options):
-    """Writes a hazard map of a map or a DEM, as `waymark hazards`. options: vehicle, dem, polygons, nav2, ..."""
-    call(_waymark.hazards, keywords(input=_path(map), output=output, **options), progress=progress)
+    """Writes a hazard map of a map or a DEM, as `waymark hazards`; returns the numbers of its `--format json`: cells by
+    class, objects, rock_cover, ... options: vehicle, dem, polygons, nav2, ...
+    """
+    return call(_waymark.hazards, keywords(input=_path(map), output=output, **options), progress=progress)

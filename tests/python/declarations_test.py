@@ -16,9 +16,10 @@ import waymark
 SPELLED = {
     "detect": {},
     "run": {"set": "settings", "shard": None, "format": None, "confined": None},
-    "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs"},
+    "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs",
+                 "format": None},
     "route": {"from": "start", "to": "goal"},
-    "hazards": {},
+    "hazards": {"format": None},
     "reconstruct": {"output": "folder", "map-landmarks": "map", "map": "map_image"},
     "simulate": {"output": "folder"},
     "evaluate": {"format": None},

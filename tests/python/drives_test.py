@@ -134,6 +134,7 @@ def test_a_route_is_that_of_the_program(site, tmp_path):
 def test_hazards_are_those_of_the_program(site, tmp_path):
     dem = site / "site/dem.tif"
     map = waymark.open(site / "map.gpkg")
-    waymark.hazards(map, tmp_path / "python.tif", dem=dem, vehicle="rover")
-    program("hazards", map.path, "--dem", dem, "-o", tmp_path / "program.tif")
+    made = waymark.hazards(map, tmp_path / "python.tif", dem=dem, vehicle="rover")
+    printed = json.loads(program("hazards", map.path, "--dem", dem, "-o", tmp_path / "program.tif", "--format", "json"))
+    assert made == {name: printed[name] for name in made}
     assert (tmp_path / "python.tif").read_bytes() == (tmp_path / "program.tif").read_bytes()

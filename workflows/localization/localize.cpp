@@ -214,6 +214,21 @@ const MethodTable& method_table() {
   return table;
 }
 
+/// Returns every setting of the request's method.
+std::vector<OptionRow> settings_of(const LocalizeRequest& request) {
+  MethodTable methods;
+  register_methods(methods);
+  LocalizeMethod& method = methods.find(request.method);
+  const std::shared_ptr<const SensorProfile> sensor =
+      request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
+  LocalizeSettings settings = make_settings(request, method, sensor.get(), {});
+  const DescribeOptions options = [&](OptionVisitor& visitor) {
+    settings.describe(visitor);
+    method.describe(visitor);
+  };
+  return option_table(options);
+}
+
 }  // namespace
 
 LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbacks) {
@@ -262,24 +277,20 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   if (!request.layers.empty()) geodb::check_before_copy(request.layers);
   if (request.live > 0) task.watch = LiveLayers(request.layers, log, map.frame, request.live);
   if (request.watch) task.watch = both(std::move(task.watch), request.watch);
-  LocalizeResult result{.track = method.run(task), .settings = options_as_text(option_table(options))};
+  LocalizeResult result{.track = method.run(task),
+                        .settings = options_as_text(option_table(options)),
+                        .settings_json = task.settings_json};
   if (!request.output.empty()) write_track(request, result.track, map);
   if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);
   return result;
 }
 
 std::string localize_settings(const LocalizeRequest& request) {
-  MethodTable methods;
-  register_methods(methods);
-  LocalizeMethod& method = methods.find(request.method);
-  const std::shared_ptr<const SensorProfile> sensor =
-      request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
-  LocalizeSettings settings = make_settings(request, method, sensor.get(), {});
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings.describe(visitor);
-    method.describe(visitor);
-  };
-  return options_as_text(option_table(options));
+  return options_as_text(settings_of(request));
+}
+
+std::string localize_settings_json(const LocalizeRequest& request) {
+  return options_as_json(settings_of(request));
 }
 
 std::vector<std::string> localize_methods() {

@@ -39,6 +39,7 @@ struct LocalizeRequest {
 struct LocalizeResult {
   localization::Track track;  ///< map frame
   std::string settings;       ///< every setting of the method with its value and effect, a line each
+  std::string settings_json;  ///< the values as a JSON object
 };
 
 /// Follows a robot through a map by its log and writes the track. Throws Error{usage} for unknown methods and
@@ -48,6 +49,8 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
 
 /// Returns every setting of the request's method as LocalizeResult::settings, without a map or a log.
 std::string localize_settings(const LocalizeRequest& request);
+/// Returns the values likewise as LocalizeResult::settings_json.
+std::string localize_settings_json(const LocalizeRequest& request);
 
 /// Returns the names of all methods.
 std::vector<std::string> localize_methods();

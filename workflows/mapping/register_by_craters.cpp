@@ -118,7 +118,8 @@ MapPlace register_by_craters(const RegisterRequest& request, const geodb::MapSto
   MapPlace out{.crs = catalogue.crs,
                .compared = std::int64_t(craters.circles.size()),
                .agreed = std::int64_t(fit.matched),
-               .disagreed = "not in the catalogue"};
+               .disagreed = "not in the catalogue",
+               .residual = fit.residual};
   const double scale = std::exp(fit.catalogue_from_map.log_scale);
   out.move.plane = fit.catalogue_from_map;
   out.move.lift = (1 - scale) * craters.height;  // catalogues hardly state heights: theirs stays

@@ -77,7 +77,8 @@ MapPlace register_by_heights(const RegisterRequest& request, const geodb::MapSto
           .text = text_of(found),
           .compared = std::int64_t(found.cells),
           .agreed = std::int64_t(found.cells),
-          .disagreed = ""};
+          .disagreed = "",
+          .residual = found.residual};
 }
 
 }  // namespace waymark::workflows

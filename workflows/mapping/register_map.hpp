@@ -28,6 +28,7 @@ struct MapPlace {
   std::int64_t compared = 0;   ///< craters or cells
   std::int64_t agreed = 0;     ///< those of them that match
   std::string disagreed = {};  ///< why the others do not
+  double residual = 0;         ///< m, root mean square: positions of craters, or heights
 };
 
 /// Registers a map by its craters, or by its heights if the catalogue is a raster. Writes it with everything

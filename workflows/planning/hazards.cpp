@@ -160,6 +160,10 @@ void check(const HazardMapRequest& request) {
 
 }  // namespace
 
+std::vector<std::string> hazard_class_names() {
+  return {std::begin(kClassNames), std::end(kClassNames)};
+}
+
 HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks& callbacks) {
   check(request);
   const planning::Vehicle vehicle = planning::find_vehicle(request.vehicle);

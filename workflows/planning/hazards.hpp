@@ -37,6 +37,9 @@ struct HazardMapResult {
   planning::Uncertain undetected_per_metre;  ///< expected hazardous undetected rocks per metre driven
 };
 
+/// Returns the names of the classes of cells: safe, uncertain, hazard, unknown.
+std::vector<std::string> hazard_class_names();
+
 /// Writes a hazard map by tiles; memory does not depend on its size. The bytes do not depend on tiles and
 /// threads. Throws Error{usage} or Error{input} for a DEM in degrees, a map without heights, a bad vehicle.
 HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks& callbacks = {});

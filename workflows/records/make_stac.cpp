@@ -69,14 +69,14 @@ void check_request(const StacRequest& request) {
 
 }  // namespace
 
-void make_stac(const StacRequest& request, const Callbacks& callbacks) {
+StacResult make_stac(const StacRequest& request, const Callbacks& callbacks) {
   check_request(request);
   if (fs::path(request.output).extension() == ".json") {
     RecordFacts facts = facts_of(request, request.files.front(), fs::path(request.output).parent_path());
     facts.description = request.description;
     write_file(request.output, exporters::stac_item(facts));
     callbacks.summary(fmt::format("{}: item {}\n", request.output, facts.id));
-    return;
+    return {.items = {request.output}, .collection = {}, .id = facts.id};
   }
   const fs::path folder = request.output;
   std::vector<RecordFacts> items;
@@ -84,13 +84,16 @@ void make_stac(const StacRequest& request, const Callbacks& callbacks) {
   const fs::path named = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
   const std::string id = request.collection.empty() ? named.string() : request.collection;
   fs::create_directories(folder);
-  for (const RecordFacts& facts : items)
-    write_file(folder / (facts.id + ".json"), exporters::stac_item(facts, id));
+  StacResult result{.items = {}, .collection = (folder / "collection.json").string(), .id = id};
+  for (const RecordFacts& facts : items) {
+    result.items.push_back((folder / (facts.id + ".json")).string());
+    write_file(result.items.back(), exporters::stac_item(facts, id));
+  }
   const std::string description =
       request.description.empty() ? "Maps and rasters of " + id : request.description;
-  write_file(folder / "collection.json", exporters::stac_collection(id, description, items));
-  callbacks.summary(
-      fmt::format("{}: collection {}, {} items\n", (folder / "collection.json").string(), id, items.size()));
+  write_file(result.collection, exporters::stac_collection(id, description, items));
+  callbacks.summary(fmt::format("{}: collection {}, {} items\n", result.collection, id, items.size()));
+  return result;
 }
 
 }  // namespace waymark::workflows

@@ -16,9 +16,16 @@ struct StacRequest {
   std::string href;                ///< prefix of asset addresses; empty: relative paths
 };
 
+/// Records that were written.
+struct StacResult {
+  std::vector<std::string> items;  ///< their files, in the order of the request
+  std::string collection;          ///< its file; empty: a single item
+  std::string id;                  ///< of the collection or the single item
+};
+
 /// Writes an item, or a folder with collection.json and an item for each file.
 /// Throws Error{usage} for two files of one name, Error{input} for a file that is neither a map nor a raster.
-void make_stac(const StacRequest& request, const Callbacks& callbacks);
+StacResult make_stac(const StacRequest& request, const Callbacks& callbacks);
 
 /// Return what a record needs to know; assets have no address yet. Throw Error{input}.
 exporters::RecordFacts facts_of_map(const std::string& map);

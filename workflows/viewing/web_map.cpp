@@ -250,7 +250,8 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   if (relief)
     callbacks.summary(fmt::format("{}, {} tiles, {}\n", style.terrain_caption, result.terrain_tiles,
                                   size_text(output / exporters::kTerrainTiles)));
-  if (!fs::exists(output / "lib"))
+  result.has_library = fs::exists(output / "lib");
+  if (!result.has_library)
     callbacks.summary(
         fmt::format("Fetch the map library once: (cd {} && sh fetch-maplibre lib)\n", output.string()));
   return result;

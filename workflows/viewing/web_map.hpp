@@ -24,6 +24,7 @@ struct WebMapResult {
   std::int64_t landmarks = 0, outside = 0;  ///< shown; beyond the edges of web maps
   int max_zoom = 0;
   std::int64_t landmark_tiles = 0, terrain_tiles = 0;
+  bool has_library = false;  ///< the folder holds the map library
 };
 
 /// Writes the folder. Its bytes do not depend on threads. Memory: about 300 bytes per landmark and 6 per

@@ -17,6 +17,13 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+localization::GraphFit fit_of(const localization::GraphSolution& solution) {
+  return {.chi2 = solution.chi2,
+          .residuals = static_cast<std::int64_t>(solution.residuals),
+          .unknowns = static_cast<std::int64_t>(solution.unknowns),
+          .converged = solution.converged};
+}
+
 /// Returns a row for each pose.
 localization::Track to_track(const localization::GraphSolution& solution) {
   localization::Track track;
@@ -27,6 +34,7 @@ localization::Track to_track(const localization::GraphSolution& solution) {
     track.rows.push_back(row);
   }
   for (const localization::SightingEdge& e : solution.graph.sightings) ++track.rows[e.pose].matched;
+  track.graph = fit_of(solution);
   return track;
 }
 
@@ -111,6 +119,7 @@ class Graph final : public LocalizeMethod {
       track.rows[i].at = localization::predict_pose(
           at, {localization::inverse(before) * track.rows[i].at.pose, Eigen::Matrix3d::Zero()});
     }
+    track.graph = fit_of(solution);
     return track;
   }
 
