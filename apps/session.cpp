@@ -34,7 +34,9 @@ void log_gdal(CPLErr level, CPLErrorNum number, const char* text) {
 std::vector<Argument> global_arguments(Session& session) {
   return {
       {"-h,--help", "", &session.help, "Show what a command does, its options and examples"},
-      {"-V,--version", "", &session.version, "Show the version"},
+      {"-V,--version", "", &session.version,
+       "Show the version, how the program was built and with which libraries; "
+       "with --format json for a program"},
       {"-q,--quiet", "", &session.quiet, "Print errors only"},
       {"-v,--verbose", "", &session.verbose, "Print more: every input file with its SHA-256"},
       Argument{"--threads", "N", &session.threads, "Threads to compute with"}.or_else("one per processor"),

@@ -11,6 +11,7 @@
 #include "apps/log.hpp"
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
+#include "apps/version.hpp"
 #include "core/error.hpp"
 #include "workflows/file_access.hpp"
 #include "workflows/provenance.hpp"
@@ -47,9 +48,13 @@ int run_program(const std::vector<std::string>& words) {
   CommandTable commands;
   register_commands(commands);
   const std::vector<Argument> globals = global_arguments(session);
-  const std::vector<std::string> rest = parse_leading(globals, {words.begin() + 1, words.end()});
+  std::vector<Argument> leading = globals;
+  std::string version_format;
+  if (words.size() > 1 && (words[1] == "-V" || words[1] == "--version"))
+    leading.push_back(format_option(&version_format));
+  const std::vector<std::string> rest = parse_leading(leading, {words.begin() + 1, words.end()});
   if (session.version) {
-    std::cout << workflows::program_version() << '\n';
+    std::cout << (version_format == "json" ? version_as_json() : version_as_text());
     return 0;
   }
   if (rest.empty()) {

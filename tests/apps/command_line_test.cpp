@@ -60,8 +60,31 @@ TEST(CommandLine, DeclarationsAreJsonForPrograms) {
   EXPECT_THAT(arguments.at("--format")["choices"], testing::Contains("geojson"));
 }
 
-TEST(CommandLine, VersionIsOneLine) {
-  EXPECT_THAT(waymark({"--version"}).out, testing::MatchesRegex("waymark [0-9.]+\n"));
+TEST(CommandLine, VersionIsTheFirstLineAndTheBuildFollows) {
+  const Outcome said = waymark({"--version"});
+  EXPECT_EQ(said.code, 0);
+  EXPECT_THAT(said.out, testing::MatchesRegex("waymark [0-9.]+\n(  [a-z0-9]+ +[^\n]+\n)+"));
+  for (const char* name :
+       {"compiler", "gdal", "geos", "proj", "sqlite", "libpq", "opencv", "ceres", "tbb", "zstd", "lz4"})
+    EXPECT_THAT(said.out, HasSubstr("\n  " + std::string(name) + " "));
+}
+
+TEST(CommandLine, VersionIsAlsoJson) {
+  const Outcome said = waymark({"-V", "--format", "json"});
+  EXPECT_EQ(said.code, 0);
+  const auto build = nlohmann::json::parse(said.out);
+  EXPECT_THAT(waymark({"-V"}).out, StartsWith("waymark " + build["version"].get<std::string>() + "\n"));
+  const Outcome gdal = bash("gdalinfo --version");
+  if (gdal.code == 0) {
+    EXPECT_THAT(gdal.out, StartsWith("GDAL " + build["libraries"]["gdal"].get<std::string>() + ","));
+  }
+  for (const char* name : {"proj", "sqlite", "libpq", "opencv", "ceres", "tbb"})
+    EXPECT_THAT(build["libraries"][name].get<std::string>(), testing::MatchesRegex("[0-9]+[.][0-9.]+"))
+        << name;
+  EXPECT_TRUE(build["decompressors"]["zstd"].is_boolean());
+  EXPECT_FALSE(build["compiler"].get<std::string>().empty() || build["processor"].get<std::string>().empty());
+  EXPECT_EQ(waymark({"-V", "--format", "xml"}).code, 2);
+  EXPECT_EQ(waymark({"-V", "--fromat", "json"}).code, 2);
 }
 
 TEST(CommandLine, VersionHasAShortName) {
