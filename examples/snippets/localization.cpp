@@ -170,8 +170,8 @@ void localize_log() {
   //! [localize]
   //! [methods]
   for (const std::string& method : workflows::localize_methods()) std::cout << method << ' ';
-  std::cout << workflows::describe_localize_methods() << '\n' << workflows::localize_settings(request)
-            << workflows::localize_settings_json(request) << '\n';
+  std::cout << workflows::describe_localize_methods() << '\n'
+            << workflows::localize_settings(request) << workflows::localize_settings_json(request) << '\n';
   for (const localization::TrackErrorAt& row :
        workflows::track_errors({.track = "track.csv", .truth = "site/log.jsonl"}))
     if (row.error > 3 * row.sd) std::cout << row.t << " s: " << row.error << " m\n";
